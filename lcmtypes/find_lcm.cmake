@@ -1,0 +1,21 @@
+# Defines buoyancy::lcm, whatever LCM is installed: 1.3.1 of Debian 12 has no CMake config, 1.4 and newer have one
+# with a target that is called lcm or lcm::lcm. Sets LCM_GEN_EXECUTABLE where lcm-gen is found.
+if(NOT TARGET buoyancy::lcm)
+  add_library(buoyancy::lcm INTERFACE IMPORTED)
+  find_package(lcm CONFIG QUIET)
+  if(TARGET lcm::lcm)
+    target_link_libraries(buoyancy::lcm INTERFACE lcm::lcm)
+  elseif(TARGET lcm)
+    target_link_libraries(buoyancy::lcm INTERFACE lcm)
+  else()
+    find_path(LCM_INCLUDE_DIR lcm/lcm.h)
+    find_library(LCM_LIBRARY lcm)
+    if(NOT LCM_INCLUDE_DIR OR NOT LCM_LIBRARY)
+      message(FATAL_ERROR "LCM was not found: no CMake package 'lcm', and no lcm/lcm.h with liblcm on the search "
+                          "paths. On Debian: apt-get install liblcm-dev")
+    endif()
+    target_include_directories(buoyancy::lcm SYSTEM INTERFACE ${LCM_INCLUDE_DIR})
+    target_link_libraries(buoyancy::lcm INTERFACE ${LCM_LIBRARY})
+  endif()
+endif()
+find_program(LCM_GEN_EXECUTABLE lcm-gen)

@@ -1,0 +1,67 @@
+// A question's bytes in, its answer's bytes out: what the live service, the replay and an embedded client
+// share. No transport, no clock.
+//
+// Lock-step law: the answer carries the question's (utime, session_id, seq). A repeat, byte for byte the
+// session's last question, gets the same bytes back without computing. The same (session_id, seq) with other
+// bytes is a new question. A lower seq than the session's newest is answered too, and counted as stale: a
+// service that dropped it would go quiet on an asker that starts over. A new session_id starts afresh.
+// Sessions kept are bounded; the least recently used goes, which costs nothing but the memory of its last
+// answer.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "messages/status.h"
+#include "messages/wire.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+struct ExchangeOptions {
+  std::size_t max_sessions = 64;  // >= 1
+};
+
+class Exchange {
+ public:
+  // scene must outlive the exchange.
+  explicit Exchange(const Scene& scene, const ExchangeOptions& options = {});
+
+  // The answer's bytes, valid until the next call; empty if the question was rejected (and counted by cause).
+  // No heap once the session's buffers are as large as its largest message.
+  Bytes answer(Bytes question);
+
+  // For mode latest: counts a question that was superseded before it was answered.
+  void count_overtaken() { ++counters_.questions, ++counters_.overtaken; }
+  // For mode latest: a question that arrived after a newer one of its session was answered; counted, not
+  // answered.
+  void count_stale() { ++counters_.questions, ++counters_.stale; }
+  // The newest seq answered in the session; nullopt: no such session.
+  std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
+
+  const Counters& counters() const { return counters_; }
+  const Scene& scene() const { return *scene_; }
+
+ private:
+  struct Session {
+    std::int64_t id = 0;
+    std::int64_t newest_seq = 0;
+    std::uint64_t last_use = 0;  // of use_; least: forgotten first
+    QuestionKey last_key;
+    std::vector<std::uint8_t> last_question;
+    std::vector<std::uint8_t> last_answer;
+  };
+
+  Session& session(std::int64_t id, bool& is_new);
+
+  const Scene* scene_;
+  std::size_t max_sessions_;
+  std::vector<Session> sessions_;
+  std::uint64_t use_ = 0;
+  Counters counters_;
+  Question question_;  // reused
+  Answer answer_;      // reused
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,83 @@
+// Generated closed meshes: shapes whose hydrostatics are known in closed form, or that make good benchmarks.
+//
+// Every shape is centred on B's origin unless said, welded, outward oriented and closed. Sizes in metres, all
+// > 0. Arguments are checked by check_shape; what a generator gets is assumed to have passed it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+#include "geometry/error.h"
+#include "geometry/triangle_mesh.h"
+
+namespace buoyancy {
+
+// Edges along x, y, z; each face a grid of squares, two triangles each: 4 (ab + bc + ca) triangles.
+// segments 10 10 10: 1,200 triangles, 100 100 100: 120,000, the two cubes of the paper, section 5.
+struct BoxShape {
+  std::array<double, 3> size{1, 1, 1};
+  std::array<std::int32_t, 3> segments{1, 1, 1};
+};
+// n meridians and n + 1 bands of latitude between the poles along z: 2 n^2 triangles.
+// n = 50: 5,000 triangles, n = 200: 80,000, the two spheres of the paper, section 5. Vertices lie on the
+// sphere.
+struct SphereShape {
+  double radius = 1;
+  std::int32_t segments = 50;
+};
+// Axis along z; regular prism of `segments` sides inscribed in the circle, `stacks` bands along the axis.
+struct CylinderShape {
+  double radius = 0.5;
+  double height = 1;
+  std::int32_t segments = 64;
+  std::int32_t stacks = 1;
+};
+// Axis along z, base circle of `radius` at z = 0, apex at z = height.
+struct ConeShape {
+  double radius = 0.5;
+  double height = 1;
+  std::int32_t segments = 64;
+  std::int32_t stacks = 1;
+};
+// Tube of radius `tube` around the (p, q) torus knot of radius `radius`: q turns about the z axis while p
+// about the ring: (radius (2 + cos p t)/3 cos q t, ..). 2 tubular radial triangles; 110 x 8 gives the paper's
+// 1,760.
+struct TorusKnotShape {
+  double radius = 1;
+  double tube = 0.2;
+  std::int32_t p = 3;
+  std::int32_t q = 2;
+  std::int32_t tubular = 110;
+  std::int32_t radial = 8;
+};
+// The Wigley hull, y = beam/2 (1 - (2x/length)^2) (1 - (z/draft)^2) for -draft <= z <= 0, wall-sided above to
+// z = freeboard, with a flat deck. Length along x, waterplane at z = 0.
+struct WigleyShape {
+  double length = 10;
+  double beam = 1;
+  double draft = 0.625;
+  double freeboard = 0.3;
+  std::int32_t segments = 64;  // along the length;
+  std::int32_t levels = 16;    // along the draft
+};
+// An icosphere of 20 frequency^2 triangles, its radius changed by smooth noise of relative height `roughness`
+// from `seed`: star-shaped, never self-intersecting. Made with +, -, *, / and sqrt alone: the same bits on
+// every machine.
+struct RockShape {
+  double radius = 1;
+  std::int32_t frequency = 16;
+  double roughness = 0.25;  // 0 to 0.6
+  std::uint64_t seed = 1;
+};
+
+using Shape =
+    std::variant<BoxShape, SphereShape, CylinderShape, ConeShape, TorusKnotShape, WigleyShape, RockShape>;
+
+// Errors: sizes not finite or not positive, counts below the shape's minimum, more than 20,000,000 triangles,
+// a knot whose tube is wider than its strands are apart.
+Expected<Shape> check_shape(const Shape& shape);
+
+TriangleMesh make_shape(const Shape& shape);  // a checked shape
+
+}  // namespace buoyancy

@@ -1,0 +1,38 @@
+// From a body's pose to the buoyant wrench in the world: the one function that service, replay and client all
+// end in.
+#pragma once
+
+#include "hydrostatics/solver.h"
+
+namespace buoyancy {
+
+enum class BuoyancyStatus { kOk, kOpenEdgeWet, kOutOfRange };
+
+// How the body lies in the water, by its bounding box: all of it above, all of it below, or cut by the
+// surface.
+enum class Immersion { kDry, kWet, kCrossing };
+
+struct BuoyancyAnswer {
+  BuoyancyStatus status = BuoyancyStatus::kOk;
+  Immersion immersion = Immersion::kCrossing;
+  Vec3 force_W = Vec3::Zero();   // N
+  Vec3 torque_W = Vec3::Zero();  // N m, about the reference point
+  double volume = 0.0;           // m^3, submerged
+  Vec3 center_of_buoyancy_W =
+      Vec3::Zero();                 // m, W axes, relative to p_WB; zero where volume <= its error bound
+  double force_error_bound = 0.0;   // N; NaN: the method has none
+  double torque_error_bound = 0.0;  // N m; likewise
+  double dropped_force =
+      0.0;  // exact methods: |horizontal part of F| / (rho g V_T), dropped because it must be 0
+  double dropped_torque = 0.0;  // exact methods: |part of torque along up| / (rho g V_T L), likewise
+};
+
+// pose: finite, quaternion not zero. reference_B: m, the point that torque is about.
+// Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing.
+//
+// Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
+// health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate), times 1 +
+// depth/L for bodies deeper than L.
+BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
+
+}  // namespace buoyancy

@@ -1,0 +1,16 @@
+// What a solver hands to the read-out: the displaced volume and its moments in the body frame, about the
+// mesh's centre c, before density, gravity and the world frame come in.
+#pragma once
+
+#include "geometry/vec3.h"
+
+namespace buoyancy {
+
+struct Displacement {
+  double volume = 0.0;         // m^3
+  Vec3 moment = Vec3::Zero();  // m^4, B axes: integral of (x - c) over the displaced volume
+  Vec3 force = Vec3::Zero();   // m^3, B axes: F/(rho g), as computed
+  Vec3 torque = Vec3::Zero();  // m^4, B axes: torque about c/(rho g), as computed
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,44 @@
+// A mesh made ready for queries: coordinates about its own centre c, and the constants that do not depend on
+// a pose. Built once per mesh and scale, shared by every body that uses it, never changed afterwards.
+//
+// c is the centre of the bounding box, rounded so that x_B - c is exact for float32 input: a mesh that lies
+// 1e6 m from its own origin loses nothing (docs/mathematics.md, "Re-centring").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh_validation.h"
+
+namespace buoyancy {
+
+struct HydrostaticMesh {
+  std::vector<double> x, y, z;  // m, B axes, about center_B
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> boundary_vertices;  // of an accepted open mesh: all must be dry
+
+  Vec3 center_B = Vec3::Zero();  // m: c
+  Vec3 box_min = Vec3::Zero();   // m, about c
+  Vec3 box_max = Vec3::Zero();   // m, about c
+  double diagonal = 0.0;         // m: L
+  double area = 0.0;             // m^2: A_s
+  double volume = 0.0;  // m^3: V_T; of an open mesh: of the part below its boundary's middle, for scale only
+  Vec3 centroid = Vec3::Zero();  // m, about c: centroid of the enclosed volume; box centre for open meshes
+
+  bool open() const { return !boundary_vertices.empty(); }
+
+  Vec3 vertex(std::int32_t i) const {
+    const auto n = static_cast<std::size_t>(i);
+    return {x[n], y[n], z[n]};
+  }
+
+  // The accuracy that the exact solvers hold in volume and force/(rho g), m^3: G_V = eps (64 V_T + L A_s).
+  double volume_gate() const;
+  // Largest distance from a reference point to a corner of the bounding box, m: L_r. Torque is held to G_V
+  // L_r.
+  double largest_lever(const Vec3& reference_B) const;
+};
+
+HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated);
+
+}  // namespace buoyancy

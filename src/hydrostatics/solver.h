@@ -1,0 +1,52 @@
+// One door to all methods: a mesh and a method in, the displacement of any water plane out.
+//
+// The five methods of "Approximate and exact buoyancy calculation for real-time floating simulation of
+// meshes", section 4, kept as published as baselines, one file each:
+//   fast           4.1  precomputed volume elements about B's origin of wholly wet triangles
+//   improved       4.2  volume elements of wholly wet triangles about an apex on the water
+//   exact          4.3  the same, and the wet parts of the triangles that the water cuts
+//   fast_surface   4.4  pressure on wholly wet triangles
+//   exact_surface  4.4  pressure on the whole wet surface
+// A triangle is wholly wet if its three vertices are below the water (z < 0).
+//
+// A Solver is immutable after construction: any number of threads may ask it at once. A query allocates
+// nothing. Complexity of each: O(vertices + triangles) per query.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "hydrostatics/displacement.h"
+#include "hydrostatics/fast.h"
+#include "hydrostatics/hydrostatic_mesh.h"
+#include "hydrostatics/water_plane.h"
+
+namespace buoyancy {
+
+enum class Method { kFast, kImproved, kExact, kFastSurface, kExactSurface };
+
+inline constexpr std::array kAllMethods{Method::kFast, Method::kImproved, Method::kExact,
+                                        Method::kFastSurface, Method::kExactSurface};
+
+std::string_view name(Method method);                           // "exact_surface"
+std::optional<Method> method_from_name(std::string_view name);  // nullopt: no such method
+bool is_exact(Method method);  // exact to rounding in volume, force and torque
+
+class Solver {
+ public:
+  // mesh must outlive the solver. Precomputes what the method needs and nothing else.
+  Solver(const HydrostaticMesh& mesh, Method method);
+
+  Displacement displacement(const WaterPlane& plane) const;
+
+  const HydrostaticMesh& mesh() const { return *mesh_; }
+  Method method() const { return method_; }
+
+ private:
+  const HydrostaticMesh* mesh_;
+  Method method_;
+  std::optional<FastTable> fast_;
+};
+
+}  // namespace buoyancy

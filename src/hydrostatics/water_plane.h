@@ -1,0 +1,43 @@
+// The water's surface as seen from the body: the plane is moved into the body frame, never the vertices into
+// the world. Then a far-away body costs no accuracy, and all that is precomputed in B stays valid for every
+// pose.
+//
+//   k = R_WB^T up,  h_c = level - up . p_WB - k . c,  signed height of a vertex y = x_B - c:  z(y) = k . y -
+//   h_c,
+//
+// wet where z < 0; a vertex on the plane (z = 0) is dry. c is the mesh's own centre (HydrostaticMesh). k and
+// h_c are computed in double-double and rounded once: |error of k| <= eps, |error of h_c| <= eps |h_c| +
+// 1e-29 (|p_WB| + |c|). The quaternion is normalised in the same arithmetic, and q and -q give the same bits.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "geometry/vec3.h"
+
+namespace buoyancy {
+
+inline constexpr double kStandardGravity = 9.80665;  // m/s^2
+inline constexpr double kSeawaterDensity = 1025.0;   // kg/m^3
+
+struct Water {
+  Vec3 up_W = Vec3::UnitZ();          // unit
+  double level = 0.0;                 // m: the surface is where up . x_W = level
+  double density = kSeawaterDensity;  // kg/m^3, >= 0
+  double gravity = kStandardGravity;  // m/s^2, >= 0
+};
+
+struct Pose {
+  Vec3 p_WB = Vec3::Zero();                                  // m
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
+};
+
+struct WaterPlane {
+  Vec3 up_B = Vec3::UnitZ();  // k
+  double h_c = 0.0;           // m
+
+  double height(const Vec3& y) const { return up_B.dot(y) - h_c; }
+};
+
+WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B);
+
+}  // namespace buoyancy

@@ -1,0 +1,61 @@
+// Core types of a question and its answer: what body_states_t and body_wrenches_t say, without LCM.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace buoyancy {
+
+struct BodyState {
+  std::int32_t body_id = 0;
+  std::array<double, 3> position{};          // m, W
+  std::array<double, 4> quaternion_wxyz{};   // q_WB
+  std::array<double, 3> linear_velocity{};   // m/s, W, of B's origin
+  std::array<double, 3> angular_velocity{};  // rad/s, W
+};
+
+// What ties an answer to its question.
+struct QuestionKey {
+  std::int64_t utime = 0;  // us
+  std::int64_t session_id = 0;
+  std::int64_t seq = 0;
+};
+
+struct Question {
+  QuestionKey key;
+  double lead_time = 0.0;  // s
+  std::vector<BodyState> bodies;
+};
+
+// Values as in body_wrench_t.lcm.
+enum class BodyStatus : std::int32_t {
+  kOk = 0,
+  kUnknownBody = 1,
+  kNonFinitePose = 2,
+  kBadQuaternion = 3,
+  kNonFiniteTwist = 4,
+  kBadLeadTime = 5,
+  kOpenEdgeWet = 6,
+  kOutOfRange = 7,
+};
+inline constexpr int kBodyStatusCount = 8;
+const char* name(BodyStatus status);  // "UNKNOWN_BODY", as in the message definition
+
+struct BodyWrench {
+  std::int32_t body_id = 0;
+  BodyStatus status = BodyStatus::kOk;
+  std::array<double, 3> force{};               // N, W
+  std::array<double, 3> torque{};              // N m, W
+  double submerged_volume = 0.0;               // m^3
+  std::array<double, 3> center_of_buoyancy{};  // m, W axes, relative to position
+  double force_error_bound = 0.0;              // N
+  double torque_error_bound = 0.0;             // N m
+};
+
+struct Answer {
+  QuestionKey key;
+  std::vector<BodyWrench> bodies;
+};
+
+}  // namespace buoyancy

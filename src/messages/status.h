@@ -1,0 +1,57 @@
+// The service's status as core type and on the wire (service_status_t).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages/wire.h"
+
+namespace buoyancy {
+
+// Totals since the start; one field per counter of service_status_t.lcm, where each is explained.
+struct Counters {
+  std::int64_t questions = 0;
+  std::int64_t answered = 0;
+  std::int64_t repeated = 0;
+  std::int64_t changed_repeats = 0;
+  std::int64_t stale = 0;
+  std::int64_t overtaken = 0;
+  std::int64_t sessions = 0;
+  std::int64_t sessions_forgotten = 0;
+  std::int64_t rejected_truncated = 0;
+  std::int64_t rejected_fingerprint = 0;
+  std::int64_t rejected_count = 0;
+  std::int64_t rejected_length = 0;
+  std::array<std::int64_t, kBodyStatusCount> bodies{};  // by BodyStatus
+  std::int64_t quaternions_normalised = 0;
+  std::int64_t bodies_dry = 0;
+  std::int64_t bodies_wet = 0;
+  std::int64_t bodies_crossing = 0;
+  std::int64_t bodies_unchanged = 0;
+  double largest_dropped_force = 0.0;
+  double largest_dropped_torque = 0.0;
+
+  std::int64_t rejected() const {
+    return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length;
+  }
+};
+
+struct LatencyPercentiles {  // s
+  double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
+};
+
+struct ServiceStatus {
+  std::int64_t utime = 0;  // us
+  std::int64_t instance_id = 0;
+  std::string version;
+  Counters counters;
+  LatencyPercentiles latency;
+};
+
+void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
+std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status);
+
+}  // namespace buoyancy

@@ -1,0 +1,59 @@
+// The bodies of a scene, ready to be asked: meshes imported or generated, validated, prepared once and
+// shared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/mass_properties.h"
+#include "geometry/mesh_report.h"
+#include "hydrostatics/solver.h"
+#include "scene/scene_file.h"
+
+namespace buoyancy {
+
+// A mesh as several bodies may share it: one per source (file or shape), scale and open policy.
+struct PreparedMesh {
+  MeshReport report;
+  HydrostaticMesh mesh;
+  MassProperties mass_properties;  // density 1; of an open mesh: of what there is
+};
+
+struct Body {
+  std::int32_t id = 0;
+  std::string name;
+  const PreparedMesh* prepared = nullptr;  // owned by the scene
+  Solver solver;
+  double tolerance = 0.0;
+  Vec3 reference_B = Vec3::Zero();  // m
+  ClientSpec client;
+};
+
+class Scene {
+ public:
+  // Imports and prepares what the description names; each mesh once. The scene file's directory resolves
+  // relative mesh paths. Errors name the scene file, the line and the body.
+  static Expected<Scene> prepare(const SceneDescription& description);
+
+  // Reads the file and prepares it.
+  static Expected<Scene> load(const std::filesystem::path& path);
+
+  const Water& water() const { return water_; }
+  const std::vector<Body>& bodies() const { return bodies_; }  // in the file's order
+  const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
+  const Body* find(std::int32_t id) const;                     // nullptr: unknown; O(log n)
+  std::optional<std::size_t> index_of(std::int32_t id) const;  // into bodies()
+
+ private:
+  Water water_;
+  std::vector<std::unique_ptr<PreparedMesh>> meshes_;
+  std::vector<Body> bodies_;
+  std::vector<std::pair<std::int32_t, std::size_t>> index_;  // (id, position in bodies_), ascending by id
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,54 @@
+// An LCM connection that says what is wrong instead of blocking or aborting, and that delivers bytes, not
+// decoded messages: service, client and tests all talk through it.
+//
+// liblcm's traps that this file keeps in one place: a machine without a multicast route (one Error, with the
+// command that mends it), subscribe() hiding that failure, handle() asserting after an exception, select()
+// and EINTR, the queue that drops the newest message. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "geometry/error.h"
+#include "messages/wire.h"
+
+namespace buoyancy {
+
+// The URL that LCM's own tools would use: url if not empty, else $LCM_DEFAULT_URL, else LCM's default.
+std::string effective_lcm_url(const std::string& url);
+
+class LcmConnection {
+ public:
+  // Called for every message: bytes are valid during the call only. Must not throw.
+  using Handler = std::function<void(Bytes bytes, std::string_view channel)>;
+
+  // url: "" for the default, "udpm://239.255.76.67:7667?ttl=0", ... Errors: not an LCM URL, no multicast
+  // route.
+  static Expected<LcmConnection> open(const std::string& url);
+
+  LcmConnection(LcmConnection&&) noexcept;
+  LcmConnection& operator=(LcmConnection&&) noexcept;
+  ~LcmConnection();
+
+  // channel: exactly this name (regular-expression characters are taken literally). queue_capacity: messages
+  // kept between handle() calls, 0: no bound.
+  Expected<void> subscribe(const std::string& channel, Handler handler, int queue_capacity = 0);
+
+  // Errors: the transport refused (message too large, route gone).
+  Expected<void> publish(const std::string& channel, Bytes bytes);
+
+  int fileno() const;  // readable when a message waits: for poll()
+  bool handle_one();   // dispatches one message that fileno() announced; false: none was there
+  const std::string& url() const { return url_; }
+
+ private:
+  struct Impl;
+  explicit LcmConnection(std::unique_ptr<Impl> impl, std::string url);
+  std::unique_ptr<Impl> impl_;
+  std::string url_;
+};
+
+}  // namespace buoyancy
