@@ -1,0 +1,62 @@
+// A program of ours run by a test as its own process: started, listened to, and never left behind.
+//
+// The child's standard output and error go into memory files, so that a child never blocks on a full pipe and
+// what it wrote can be read while it runs and after it died. The destructor kills and reaps a child that
+// still runs; the kernel kills it if the thread that started it dies first. Linux only. One thread at a time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace buoyancy {
+
+struct ChildCommand {
+  std::vector<std::string> arguments;    // the program's path first; searched for in $PATH
+  std::vector<std::string> environment;  // "NAME=value", added to the test's own
+  std::string standard_input = "/dev/null";
+  std::string standard_output;  // a path such as "/dev/full"; empty: captured
+  std::string directory;        // to run in; empty: the test's own
+};
+
+class ChildProcess {
+ public:
+  // A program that cannot be started exits with 127 and says so on its standard error.
+  explicit ChildProcess(const ChildCommand& command);
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  ~ChildProcess();
+
+  pid_t pid() const { return pid_; }
+  void send_signal(int signal) const;  // nothing if it has been waited for
+
+  // The exit code, or 128 + the signal that ended it; nullopt: still running after `seconds`.
+  std::optional<int> wait(double seconds);
+
+  // Waits until standard output or standard error holds `text`. False: not within `seconds`, or the
+  // child ended without writing it.
+  bool wait_for_text(const std::string& text, double seconds);
+
+  std::string standard_output() const;  // so far
+  std::string standard_error() const;   // so far
+
+ private:
+  pid_t pid_ = -1;
+  int process_fd_ = -1;  // readable when the child has ended
+  int output_fd_ = -1;
+  int error_fd_ = -1;
+  std::optional<int> exit_code_;
+};
+
+struct FinishedProcess {
+  std::optional<int> exit_code;  // nullopt: did not end in time, killed
+  std::string standard_output;
+  std::string standard_error;
+};
+
+// Starts, waits at most `seconds`, kills if need be.
+FinishedProcess run_to_end(const ChildCommand& command, double seconds);
+
+}  // namespace buoyancy
