@@ -22,7 +22,7 @@ struct HydrostaticMesh {
   Vec3 box_max = Vec3::Zero();   // m, about c
   double diagonal = 0.0;         // m: L
   double area = 0.0;             // m^2: A_s
-  double volume = 0.0;  // m^3: V_T; of an open mesh: of the part below its boundary's middle, for scale only
+  double volume = 0.0;  // m^3: V_T; of an open mesh the sum about c, a scale and no more
   Vec3 centroid = Vec3::Zero();  // m, about c: centroid of the enclosed volume; box centre for open meshes
 
   bool open() const { return !boundary_vertices.empty(); }

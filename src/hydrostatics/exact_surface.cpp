@@ -1,0 +1,16 @@
+#include "hydrostatics/exact_surface.h"
+
+#include "hydrostatics/pressure_elements.h"
+#include "hydrostatics/wet_surface.h"
+
+namespace buoyancy {
+
+Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  const auto sum = sum_over_wet_surface<PressureElements, CutTriangles::kClip>(
+      mesh, plane, [&](PressureElements& block, const auto& a, const auto& b, const auto& c) {
+        block.add(a, b, c, plane.up_B);
+      });
+  return sum.displacement(plane);
+}
+
+}  // namespace buoyancy

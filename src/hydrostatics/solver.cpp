@@ -1,0 +1,57 @@
+#include "hydrostatics/solver.h"
+
+#include "hydrostatics/exact.h"
+#include "hydrostatics/exact_surface.h"
+#include "hydrostatics/fast_surface.h"
+#include "hydrostatics/improved.h"
+
+namespace buoyancy {
+
+std::string_view name(Method method) {
+  switch (method) {
+    case Method::kFast:
+      return "fast";
+    case Method::kImproved:
+      return "improved";
+    case Method::kExact:
+      return "exact";
+    case Method::kFastSurface:
+      return "fast_surface";
+    case Method::kExactSurface:
+      return "exact_surface";
+  }
+  return "";
+}
+
+std::optional<Method> method_from_name(std::string_view text) {
+  for (const Method method : kAllMethods) {
+    if (name(method) == text) return method;
+  }
+  return std::nullopt;
+}
+
+bool is_exact(Method method) {
+  return method == Method::kExact || method == Method::kExactSurface;
+}
+
+Solver::Solver(const HydrostaticMesh& mesh, Method method) : mesh_(&mesh), method_(method) {
+  if (method == Method::kFast) fast_.emplace(mesh);
+}
+
+Displacement Solver::displacement(const WaterPlane& plane) const {
+  switch (method_) {
+    case Method::kFast:
+      return fast_->displacement(*mesh_, plane);
+    case Method::kImproved:
+      return improved(*mesh_, plane);
+    case Method::kExact:
+      return exact(*mesh_, plane);
+    case Method::kFastSurface:
+      return fast_surface(*mesh_, plane);
+    case Method::kExactSurface:
+      return exact_surface(*mesh_, plane);
+  }
+  return {};
+}
+
+}  // namespace buoyancy

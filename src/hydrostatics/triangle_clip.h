@@ -1,0 +1,48 @@
+// The wet part of a triangle: the law of what is wet, in one place, for any number type.
+//
+// A vertex is wet where its signed height z < 0; a vertex on the plane is dry. A cut point has height exactly
+// 0 and is interpolated from the wet vertex to the dry one, so that the two triangles of an edge find the
+// same point, bit for bit. The wet part keeps the triangle's orientation: a triangle (one vertex wet; paper,
+// figure 3) or a quadrilateral (two), split into two triangles.
+#pragma once
+
+#include "geometry/vec3.h"
+
+namespace buoyancy {
+
+// A point of the surface about the mesh's centre, and its signed height over the water.
+template <typename T>
+struct Corner {
+  Vec3T<T> y;  // m
+  T z;         // m
+
+  bool wet() const { return z < T(0); }
+};
+
+// Where the edge from a wet to a dry corner meets the water.
+template <typename T>
+Corner<T> cut(const Corner<T>& wet, const Corner<T>& dry) {
+  const T share = wet.z / (wet.z - dry.z);
+  return {Vec3T<T>(wet.y + (dry.y - wet.y) * share), T(0)};
+}
+
+// Calls visit(a, b, c) for the one or two wet triangles of a triangle that has both wet and dry corners.
+template <typename T, typename Visit>
+void visit_wet_part(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c, Visit&& visit) {
+  // Rotate so that p is the corner that differs from the two others.
+  const bool b_differs = b.wet() != a.wet() && b.wet() != c.wet();
+  const bool c_differs = c.wet() != a.wet() && c.wet() != b.wet();
+  const Corner<T>& p = b_differs ? b : (c_differs ? c : a);
+  const Corner<T>& q = b_differs ? c : (c_differs ? a : b);
+  const Corner<T>& r = b_differs ? a : (c_differs ? b : c);
+  if (p.wet()) {
+    visit(p, cut(p, q), cut(p, r));
+  } else {
+    const Corner<T> on_pq = cut(q, p);
+    const Corner<T> on_rp = cut(r, p);
+    visit(on_pq, q, r);
+    visit(on_pq, r, on_rp);
+  }
+}
+
+}  // namespace buoyancy
