@@ -25,8 +25,11 @@ class LcmConnection {
   // Called for every message: bytes are valid during the call only. Must not throw.
   using Handler = std::function<void(Bytes bytes, std::string_view channel)>;
 
-  // url: "" for the default, "udpm://239.255.76.67:7667?ttl=0", ... Errors: not an LCM URL, no multicast
-  // route.
+  // url: "" for the default, "udpm://239.255.76.67:7667?ttl=1", or "memq://" (within this connection only, no
+  // network). LCM's other providers are refused: the death of a tcpq server aborts its clients. Asks the
+  // kernel for a receive buffer of 4 MB where the URL does not say. Starts a thread of liblcm's own, which
+  // inherits the caller's signal mask. Errors: not such a URL, no multicast route (at once) or one that
+  // brings nothing back (after 2 s).
   static Expected<LcmConnection> open(const std::string& url);
 
   LcmConnection(LcmConnection&&) noexcept;

@@ -1,0 +1,80 @@
+#include "transport/udpm_url.h"
+
+#include <charconv>
+#include <string_view>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::string_view kScheme = "udpm://";
+constexpr std::string_view kForm = "udpm://ADDRESS:PORT?ttl=N, for instance udpm://239.255.76.67:7667?ttl=0";
+
+std::optional<std::int32_t> whole_number(std::string_view text, std::int32_t lowest, std::int32_t highest) {
+  std::int32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  if (value < lowest || value > highest) return std::nullopt;
+  return value;
+}
+
+bool is_multicast(const std::string& address) {
+  in_addr parsed{};
+  return inet_pton(AF_INET, address.c_str(), &parsed) == 1 && IN_MULTICAST(ntohl(parsed.s_addr));
+}
+
+tl::unexpected<Error> refused(const std::string& url, std::string found, std::string expectation) {
+  return failure({"LCM URL '" + url + "'", std::move(found), std::move(expectation), "", ""});
+}
+
+}  // namespace
+
+Expected<UdpmUrl> parse_udpm_url(const std::string& url) {
+  std::string_view rest = url;
+  if (!rest.starts_with(kScheme)) return refused(url, "no udpm:// in front", std::string(kForm));
+  rest.remove_prefix(kScheme.size());
+
+  UdpmUrl parsed;
+  const std::size_t question_mark = rest.find('?');
+  std::string_view network = rest.substr(0, question_mark);
+  std::string_view options = question_mark == rest.npos ? "" : rest.substr(question_mark + 1);
+
+  const std::size_t colon = network.find(':');
+  if (const std::string_view group = network.substr(0, colon); !group.empty()) parsed.group = group;
+  if (!is_multicast(parsed.group)) {
+    return refused(url, "address '" + parsed.group + "'",
+                   "an IPv4 multicast address, 224.0.0.0 to 239.255.255.255");
+  }
+  if (colon != network.npos) {
+    const std::string_view text = network.substr(colon + 1);
+    const auto port = whole_number(text, 1, 65535);
+    if (!port) return refused(url, "port '" + std::string(text) + "'", "a number from 1 to 65535");
+    parsed.port = static_cast<std::uint16_t>(*port);
+  }
+
+  while (!options.empty()) {
+    const std::size_t ampersand = options.find('&');
+    const std::string_view option = options.substr(0, ampersand);
+    options = ampersand == options.npos ? "" : options.substr(ampersand + 1);
+    const std::size_t equals = option.find('=');
+    const std::string_view key = option.substr(0, equals);
+    const std::string_view text = equals == option.npos ? "" : option.substr(equals + 1);
+    if (key == "ttl") {
+      const auto ttl = whole_number(text, 0, 255);
+      if (!ttl) return refused(url, "ttl '" + std::string(text) + "'", "a number from 0 to 255");
+      parsed.ttl = *ttl;
+    } else if (key == "recv_buf_size") {
+      parsed.recv_buf_size = whole_number(text, 1, INT32_MAX);
+      if (!parsed.recv_buf_size) {
+        return refused(url, "recv_buf_size '" + std::string(text) + "'", "a number of bytes above 0");
+      }
+    } else {
+      return refused(url, "option '" + std::string(option) + "'", "ttl=N or recv_buf_size=N");
+    }
+  }
+  return parsed;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,188 @@
+// Over real UDP multicast, in a network namespace of each test's own (see tests/CMakeLists.txt).
+#include "transport/lcm_connection.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace buoyancy {
+namespace {
+
+constexpr int kPatienceMs = 5000;
+
+// While it lives, this thread's network is one with a loopback that is up, and no route.
+class NetworkWithoutRoutes {
+ public:
+  NetworkWithoutRoutes() : outside_(::open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC)) {
+    if (outside_ < 0 || ::unshare(CLONE_NEWNET) != 0) return;
+    const int control = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    ifreq loopback{};
+    std::strcpy(loopback.ifr_name, "lo");
+    loopback.ifr_flags = IFF_UP | IFF_RUNNING;
+    entered_ = control >= 0 && ::ioctl(control, SIOCSIFFLAGS, &loopback) == 0;
+    ::close(control);
+  }
+  NetworkWithoutRoutes(const NetworkWithoutRoutes&) = delete;
+  NetworkWithoutRoutes& operator=(const NetworkWithoutRoutes&) = delete;
+  ~NetworkWithoutRoutes() {
+    ::setns(outside_, CLONE_NEWNET);
+    ::close(outside_);
+  }
+  bool entered() const { return entered_; }
+
+ private:
+  int outside_;
+  bool entered_ = false;
+};
+
+LcmConnection open_or_die(const std::string& url = "") {
+  Expected<LcmConnection> connection = LcmConnection::open(url);
+  if (!connection) {
+    ADD_FAILURE() << connection.error().message();
+    std::abort();
+  }
+  return std::move(*connection);
+}
+
+bool wait_and_handle(LcmConnection& connection) {
+  pollfd waiting{connection.fileno(), POLLIN, 0};
+  return ::poll(&waiting, 1, kPatienceMs) == 1 && connection.handle_one();
+}
+
+std::vector<std::uint8_t> pattern(std::size_t size) {
+  std::vector<std::uint8_t> bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(i * 2654435761U >> 13U);
+  return bytes;
+}
+
+TEST(LcmConnection, CarriesBytesUnchangedWhateverTheirLength) {
+  LcmConnection sender = open_or_die();
+  LcmConnection receiver = open_or_die();
+  std::vector<std::uint8_t> received;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view channel) {
+    EXPECT_EQ(channel, "A");
+    received.assign(bytes.begin(), bytes.end());
+  }));
+  for (const std::size_t size : {0U, 1U, 1'000U, 65'000U, 65'499U, 65'500U, 1'000'000U}) {
+    const auto sent = pattern(size);
+    ASSERT_TRUE(sender.publish("A", sent)) << size;
+    ASSERT_TRUE(wait_and_handle(receiver)) << size;
+    EXPECT_EQ(received, sent) << size;
+  }
+}
+
+TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {
+  LcmConnection sender = open_or_die();
+  LcmConnection receiver = open_or_die();
+  std::vector<int> received;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view) { received.push_back(bytes[0]); }));
+  std::vector<int> sent;
+  for (int i = 0; i < 200; ++i) {
+    const std::uint8_t byte = static_cast<std::uint8_t>(i);
+    ASSERT_TRUE(sender.publish("A", {&byte, 1}));
+    sent.push_back(i);
+  }
+  while (received.size() < sent.size() && wait_and_handle(receiver)) {
+  }
+  EXPECT_EQ(received, sent);
+  EXPECT_FALSE(receiver.handle_one()) << "nothing is left";
+}
+
+TEST(LcmConnection, TakesChannelNamesLiterally) {
+  LcmConnection connection = open_or_die();
+  const std::string name = R"(A.*(b|c)[d]^$+?{1}\-)";
+  int matching = 0;
+  ASSERT_TRUE(connection.subscribe(name, [&](Bytes, std::string_view channel) {
+    EXPECT_EQ(channel, name);
+    ++matching;
+  }));
+  int dotted = 0;
+  ASSERT_TRUE(connection.subscribe("A.B", [&](Bytes, std::string_view) { ++dotted; }));
+  int last = 0;
+  ASSERT_TRUE(connection.subscribe("LAST", [&](Bytes, std::string_view) { ++last; }));
+  const std::uint8_t byte = 7;
+  for (const std::string& channel : {std::string("AxB"), std::string("Axb"), name, std::string("LAST")}) {
+    ASSERT_TRUE(connection.publish(channel, {&byte, 1}));
+  }
+  while (last == 0 && wait_and_handle(connection)) {
+  }
+  EXPECT_EQ(last, 1);
+  EXPECT_EQ(matching, 1);
+  EXPECT_EQ(dotted, 0);
+}
+
+TEST(LcmConnection, RefusesChannelNamesThatLcmCannotCarry) {
+  LcmConnection connection = open_or_die("memq://");
+  const auto ignore = [](Bytes, std::string_view) {};
+  const std::uint8_t byte = 7;
+  for (const std::string& name : {std::string(), std::string(64, 'a')}) {
+    EXPECT_FALSE(connection.subscribe(name, ignore));
+    EXPECT_FALSE(connection.publish(name, {&byte, 1}));
+  }
+  EXPECT_TRUE(connection.subscribe(std::string(63, 'a'), ignore));
+  EXPECT_TRUE(connection.publish(std::string(63, 'a'), {&byte, 1}));
+}
+
+TEST(LcmConnection, WorksWithinOneProcessWithoutANetwork) {
+  LcmConnection connection = open_or_die("memq://");
+  int received = 0;
+  ASSERT_TRUE(connection.subscribe("A", [&](Bytes bytes, std::string_view) { received = bytes[0]; }));
+  const std::uint8_t byte = 7;
+  ASSERT_TRUE(connection.publish("A", {&byte, 1}));
+  ASSERT_TRUE(wait_and_handle(connection));
+  EXPECT_EQ(received, 7);
+}
+
+TEST(LcmConnection, KeepsItsHandlersWhenMoved) {
+  LcmConnection first = open_or_die("memq://");
+  int received = 0;
+  ASSERT_TRUE(first.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
+  LcmConnection second = std::move(first);
+  const std::uint8_t byte = 7;
+  ASSERT_TRUE(second.publish("A", {&byte, 1}));
+  ASSERT_TRUE(wait_and_handle(second));
+  EXPECT_EQ(received, 1);
+}
+
+TEST(LcmConnection, NamesTheCommandThatMendsAMissingMulticastRoute) {
+  const NetworkWithoutRoutes network;
+  if (!network.entered()) GTEST_SKIP() << "this machine permits no network namespace";
+  const Expected<LcmConnection> connection = LcmConnection::open("");
+  ASSERT_FALSE(connection);
+  const std::string message = connection.error().message();
+  EXPECT_NE(message.find("239.255.76.67:7667"), std::string::npos) << message;
+  EXPECT_NE(message.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << message;
+}
+
+TEST(LcmConnection, RefusesUrlsItDoesNotKnow) {
+  for (const char* url : {"nonsense", "tcpq://127.0.0.1:7700", "udpm://1.2.3.4:5"}) {
+    const Expected<LcmConnection> connection = LcmConnection::open(url);
+    ASSERT_FALSE(connection) << url;
+    EXPECT_NE(connection.error().message().find(url), std::string::npos) << connection.error().message();
+  }
+}
+
+TEST(LcmConnection, TakesItsUrlFromTheEnvironmentAsLcmsOwnToolsDo) {
+  // NOLINTBEGIN(concurrency-mt-unsafe): no other thread lives yet, or lives any more
+  ASSERT_EQ(::setenv("LCM_DEFAULT_URL", "memq://", 1), 0);
+  EXPECT_EQ(effective_lcm_url(""), "memq://");
+  EXPECT_EQ(open_or_die("").url(), "memq://");
+  EXPECT_EQ(effective_lcm_url("udpm://:7700"), "udpm://:7700") << "an explicit URL wins";
+  ASSERT_EQ(::unsetenv("LCM_DEFAULT_URL"), 0);
+  // NOLINTEND(concurrency-mt-unsafe)
+  EXPECT_EQ(effective_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0");
+}
+
+}  // namespace
+}  // namespace buoyancy
