@@ -40,7 +40,8 @@ enum class BodyStatus : std::int32_t {
   kOutOfRange = 7,
 };
 inline constexpr int kBodyStatusCount = 8;
-const char* name(BodyStatus status);  // "UNKNOWN_BODY", as in the message definition
+// "UNKNOWN_BODY", as in the message definition; "UNKNOWN_STATUS" for a value of a later version.
+const char* name(BodyStatus status);
 
 struct BodyWrench {
   std::int32_t body_id = 0;

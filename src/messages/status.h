@@ -51,7 +51,9 @@ struct ServiceStatus {
   LatencyPercentiles latency;
 };
 
+// Encodes into bytes, which is resized. The version holds no NUL.
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
+// Checks as for a question, and the version's length and final NUL. On rejection status is unchanged.
 std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status);
 
 }  // namespace buoyancy

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "messages/question.h"
 
 namespace buoyancy {
@@ -18,17 +20,23 @@ inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 
 using Bytes = std::span<const std::uint8_t>;
 
-// Why bytes are not a message of ours.
-enum class Rejection { kTruncated, kFingerprint, kCount, kLength };
+// Why bytes are not a message of ours: the first of these that holds.
+enum class Rejection {
+  kTruncated,    // shorter than the fixed fields
+  kFingerprint,  // of another type, or of another version of the type
+  kCount,        // the number of bodies is negative, or a string is shorter than its final NUL
+  kLength,       // too short or too long for the count, or a string that ends elsewhere than its length says
+};
 const char* describe(Rejection rejection);  // for logs: "shorter than the fixed fields"
 
 // Decodes into question, whose vector is reused: no heap once it is as large as the largest message.
-// On rejection question is unchanged.
+// On rejection question is unchanged. Values are not judged: numbers may be NaN, an answer's status may be
+// one that this version does not know. O(length).
 std::optional<Rejection> decode(Bytes bytes, Question& question);
 std::optional<Rejection> decode(Bytes bytes, Answer& answer);
 
-// The key alone, after the same checks; cheap.
-std::optional<QuestionKey> peek_key(Bytes bytes);
+// A question's key alone, after the same checks; O(1).
+tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes);
 
 // Encodes into bytes, which is resized: no heap once it is as large as the largest message.
 void encode(const Question& question, std::vector<std::uint8_t>& bytes);

@@ -1,0 +1,149 @@
+// The byte layout of every message, said once: the fields in the order of the .lcm files. Encoding, decoding
+// and measuring are the same visit with another visitor. LCM's law: a fingerprint of 8 bytes, then the fields
+// without padding, big-endian; a string is its length with the final NUL as int32, then the characters and
+// the NUL.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "messages/question.h"
+#include "messages/status.h"
+
+namespace buoyancy {
+
+template <typename T, typename Plain>
+concept MaybeConst = std::same_as<std::remove_const_t<T>, Plain>;
+
+template <MaybeConst<QuestionKey> Key, typename Visitor>
+void visit_fields(Key& key, Visitor& visitor) {
+  visitor(key.utime, key.session_id, key.seq);
+}
+
+template <MaybeConst<BodyState> State, typename Visitor>
+void visit_fields(State& state, Visitor& visitor) {
+  visitor(state.body_id, state.position, state.quaternion_wxyz, state.linear_velocity,
+          state.angular_velocity);
+}
+
+template <MaybeConst<BodyWrench> Wrench, typename Visitor>
+void visit_fields(Wrench& wrench, Visitor& visitor) {
+  visitor(wrench.body_id, wrench.status, wrench.force, wrench.torque, wrench.submerged_volume,
+          wrench.center_of_buoyancy, wrench.force_error_bound, wrench.torque_error_bound);
+}
+
+// What stands before the number of bodies.
+template <MaybeConst<Question> Q, typename Visitor>
+void visit_head(Q& question, Visitor& visitor) {
+  visit_fields(question.key, visitor);
+  visitor(question.lead_time);
+}
+
+template <MaybeConst<Answer> A, typename Visitor>
+void visit_head(A& answer, Visitor& visitor) {
+  visit_fields(answer.key, visitor);
+}
+
+// What stands before and after the version.
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_head(Status& status, Visitor& visitor) {
+  visitor(status.utime, status.instance_id);
+}
+
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_tail(Status& status, Visitor& visitor) {
+  auto& c = status.counters;
+  visitor(c.questions, c.answered, c.repeated, c.changed_repeats, c.stale, c.overtaken, c.sessions,
+          c.sessions_forgotten);
+  visitor(c.rejected_truncated, c.rejected_fingerprint, c.rejected_count, c.rejected_length);
+  visitor(c.bodies, c.quaternions_normalised);
+  visitor(c.bodies_dry, c.bodies_wet, c.bodies_crossing, c.bodies_unchanged);
+  visitor(c.largest_dropped_force, c.largest_dropped_torque);
+  visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
+}
+
+// Adds up how many bytes the visited fields take.
+class LayoutSize {
+ public:
+  template <typename... Fields>
+  void operator()(const Fields&... fields) {
+    ((size_ += sizeof(fields)), ...);
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+template <typename T>
+using UnsignedOf = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+
+inline std::uint64_t big_endian(std::uint64_t value) {
+  return std::endian::native == std::endian::big ? value : __builtin_bswap64(value);
+}
+inline std::uint32_t big_endian(std::uint32_t value) {
+  return std::endian::native == std::endian::big ? value : __builtin_bswap32(value);
+}
+
+// Reads the visited fields from bytes that were found long enough before.
+class BigEndianReader {
+ public:
+  explicit BigEndianReader(const std::uint8_t* bytes) : bytes_(bytes) {}
+
+  template <typename... Fields>
+  void operator()(Fields&... fields) {
+    (read(fields), ...);
+  }
+  const std::uint8_t* position() const { return bytes_; }
+  void skip(std::size_t size) { bytes_ += size; }
+
+ private:
+  template <typename T>
+  void read(T& field) {
+    UnsignedOf<T> value;
+    static_assert(sizeof(T) == sizeof(value));
+    std::memcpy(&value, bytes_, sizeof(value));
+    field = std::bit_cast<T>(big_endian(value));
+    bytes_ += sizeof(value);
+  }
+  template <typename T, std::size_t kSize>
+  void read(std::array<T, kSize>& fields) {
+    for (T& field : fields) read(field);
+  }
+
+  const std::uint8_t* bytes_;
+};
+
+// Writes the visited fields to where there is room for them.
+class BigEndianWriter {
+ public:
+  explicit BigEndianWriter(std::uint8_t* bytes) : bytes_(bytes) {}
+
+  template <typename... Fields>
+  void operator()(const Fields&... fields) {
+    (write(fields), ...);
+  }
+  std::uint8_t* position() const { return bytes_; }
+  void skip(std::size_t size) { bytes_ += size; }
+
+ private:
+  template <typename T>
+  void write(const T& field) {
+    const UnsignedOf<T> value = big_endian(std::bit_cast<UnsignedOf<T>>(field));
+    std::memcpy(bytes_, &value, sizeof(value));
+    bytes_ += sizeof(value);
+  }
+  template <typename T, std::size_t kSize>
+  void write(const std::array<T, kSize>& fields) {
+    for (const T& field : fields) write(field);
+  }
+
+  std::uint8_t* bytes_;
+};
+
+}  // namespace buoyancy

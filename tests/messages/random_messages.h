@@ -1,0 +1,65 @@
+// Random messages for property tests: any bit pattern in every number, NaN and infinities included.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include <rapidcheck.h>
+
+#include "messages/question.h"
+#include "messages/status.h"
+
+namespace buoyancy {
+
+template <typename Integer>
+Integer random_integer() {
+  using Limits = std::numeric_limits<Integer>;
+  return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange<Integer>(Limits::min(), Limits::max()));
+}
+
+inline double random_double() {
+  return std::bit_cast<double>(random_integer<std::uint64_t>());
+}
+
+template <std::size_t kSize>
+void randomise(std::array<double, kSize>& values) {
+  for (double& value : values) value = random_double();
+}
+
+inline QuestionKey random_key() {
+  return {.utime = random_integer<std::int64_t>(),
+          .session_id = random_integer<std::int64_t>(),
+          .seq = random_integer<std::int64_t>()};
+}
+
+inline Question random_question() {
+  Question question{.key = random_key(), .lead_time = random_double(), .bodies = {}};
+  question.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyState& body : question.bodies) {
+    body.body_id = random_integer<std::int32_t>();
+    randomise(body.position);
+    randomise(body.quaternion_wxyz);
+    randomise(body.linear_velocity);
+    randomise(body.angular_velocity);
+  }
+  return question;
+}
+
+inline Answer random_answer() {
+  Answer answer{.key = random_key(), .bodies = {}};
+  answer.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyWrench& body : answer.bodies) {
+    body.body_id = random_integer<std::int32_t>();
+    body.status = static_cast<BodyStatus>(random_integer<std::int32_t>());
+    randomise(body.force);
+    randomise(body.torque);
+    body.submerged_volume = random_double();
+    randomise(body.center_of_buoyancy);
+    body.force_error_bound = random_double();
+    body.torque_error_bound = random_double();
+  }
+  return answer;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,198 @@
+#include "messages/status.h"
+
+#include <climits>
+
+#include <buoyancy/service_status_t.hpp>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/allocation_count.h"
+#include "tests/messages/random_messages.h"
+
+namespace buoyancy {
+namespace {
+
+using ByteVector = std::vector<std::uint8_t>;
+
+constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
+constexpr std::size_t kTail = 8 * std::size_t{12 + 8 + 1 + 4 + 2 + 4};
+
+ServiceStatus random_status() {
+  ServiceStatus status;
+  status.utime = random_integer<std::int64_t>();
+  status.instance_id = random_integer<std::int64_t>();
+  status.version = *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
+  Counters& c = status.counters;
+  for (std::int64_t* counter :
+       {&c.questions, &c.answered, &c.repeated, &c.changed_repeats, &c.stale, &c.overtaken, &c.sessions,
+        &c.sessions_forgotten, &c.rejected_truncated, &c.rejected_fingerprint, &c.rejected_count,
+        &c.rejected_length, &c.quaternions_normalised, &c.bodies_dry, &c.bodies_wet, &c.bodies_crossing,
+        &c.bodies_unchanged}) {
+    *counter = random_integer<std::int64_t>();
+  }
+  for (std::int64_t& counter : c.bodies) counter = random_integer<std::int64_t>();
+  for (double* value : {&c.largest_dropped_force, &c.largest_dropped_torque, &status.latency.p50,
+                        &status.latency.p99, &status.latency.p999, &status.latency.max}) {
+    *value = random_double();
+  }
+  return status;
+}
+
+std::int64_t count(const ServiceStatus& status, BodyStatus body) {
+  return status.counters.bodies[static_cast<std::size_t>(body)];
+}
+
+ByteVector encoded_by_lcm(const ServiceStatus& status) {
+  const Counters& c = status.counters;
+  service_status_t message{};
+  message.utime = status.utime;
+  message.instance_id = status.instance_id;
+  message.version = status.version;
+  message.questions = c.questions;
+  message.answered = c.answered;
+  message.repeated = c.repeated;
+  message.changed_repeats = c.changed_repeats;
+  message.stale = c.stale;
+  message.overtaken = c.overtaken;
+  message.sessions = c.sessions;
+  message.sessions_forgotten = c.sessions_forgotten;
+  message.rejected_truncated = c.rejected_truncated;
+  message.rejected_fingerprint = c.rejected_fingerprint;
+  message.rejected_count = c.rejected_count;
+  message.rejected_length = c.rejected_length;
+  message.bodies_ok = count(status, BodyStatus::kOk);
+  message.bodies_unknown = count(status, BodyStatus::kUnknownBody);
+  message.bodies_non_finite_pose = count(status, BodyStatus::kNonFinitePose);
+  message.bodies_bad_quaternion = count(status, BodyStatus::kBadQuaternion);
+  message.bodies_non_finite_twist = count(status, BodyStatus::kNonFiniteTwist);
+  message.bodies_bad_lead_time = count(status, BodyStatus::kBadLeadTime);
+  message.bodies_open_edge_wet = count(status, BodyStatus::kOpenEdgeWet);
+  message.bodies_out_of_range = count(status, BodyStatus::kOutOfRange);
+  message.quaternions_normalised = c.quaternions_normalised;
+  message.bodies_dry = c.bodies_dry;
+  message.bodies_wet = c.bodies_wet;
+  message.bodies_crossing = c.bodies_crossing;
+  message.bodies_unchanged = c.bodies_unchanged;
+  message.largest_dropped_force = c.largest_dropped_force;
+  message.largest_dropped_torque = c.largest_dropped_torque;
+  message.latency_p50 = status.latency.p50;
+  message.latency_p99 = status.latency.p99;
+  message.latency_p999 = status.latency.p999;
+  message.latency_max = status.latency.max;
+  ByteVector bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+ByteVector encoded(const ServiceStatus& status) {
+  ByteVector bytes;
+  encode(status, bytes);
+  return bytes;
+}
+
+ByteVector with_version(const std::string& version) {
+  ServiceStatus status;
+  status.version = version;
+  return encoded(status);
+}
+
+void set_version_length(ByteVector& bytes, std::int32_t length) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes[kVersionLength + 3 - i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(length) >> (8 * i));
+  }
+}
+
+RC_GTEST_PROP(StatusMessage, EncodesAsTheGeneratedCodeDoes, ()) {
+  const ServiceStatus status = random_status();
+  RC_ASSERT(encoded(status) == encoded_by_lcm(status));
+}
+
+RC_GTEST_PROP(StatusMessage, DecodesWhatTheGeneratedCodeEncodes, ()) {
+  const ByteVector bytes = encoded_by_lcm(random_status());
+  ServiceStatus status = random_status();
+  RC_ASSERT(!decode(bytes, status).has_value());
+  RC_ASSERT(encoded_by_lcm(status) == bytes);
+}
+
+TEST(StatusMessage, RejectsEveryTruncation) {
+  const ByteVector whole = with_version("1.2.3");
+  const std::size_t shortest = kVersionLength + 4 + 1 + kTail;
+  ServiceStatus status;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(decode(Bytes(whole).first(size), status),
+              size < shortest ? Rejection::kTruncated : Rejection::kLength)
+        << size << " bytes";
+  }
+}
+
+TEST(StatusMessage, RejectsVersionLengthsThatDoNotFit) {
+  struct Case {
+    std::int32_t length;
+    Rejection expected;
+  };
+  for (const Case& c :
+       {Case{0, Rejection::kCount}, Case{-1, Rejection::kCount}, Case{INT_MIN, Rejection::kCount},
+        Case{1, Rejection::kLength}, Case{5, Rejection::kLength}, Case{7, Rejection::kLength},
+        Case{INT_MAX, Rejection::kLength}}) {
+    ByteVector bytes = with_version("1.2.3");
+    set_version_length(bytes, c.length);
+    ServiceStatus status;
+    EXPECT_EQ(decode(bytes, status), c.expected) << c.length;
+  }
+}
+
+TEST(StatusMessage, RejectsAVersionThatDoesNotEndWhereItsLengthSays) {
+  ServiceStatus status;
+  ByteVector no_nul = with_version("1.2.3");
+  no_nul[kVersionLength + 4 + 5] = 'x';
+  EXPECT_EQ(decode(no_nul, status), Rejection::kLength);
+  ByteVector early_nul = with_version("1.2.3");
+  early_nul[kVersionLength + 4 + 2] = 0;
+  EXPECT_EQ(decode(early_nul, status), Rejection::kLength);
+}
+
+TEST(StatusMessage, RejectsTrailingBytesAndOtherFingerprints) {
+  ServiceStatus status;
+  ByteVector longer = with_version("1");
+  longer.push_back(0);
+  EXPECT_EQ(decode(longer, status), Rejection::kLength);
+  ByteVector foreign = with_version("1");
+  foreign[3] ^= 1U;
+  EXPECT_EQ(decode(foreign, status), Rejection::kFingerprint);
+}
+
+TEST(StatusMessage, RejectionLeavesTheStatusUnchanged) {
+  ServiceStatus status;
+  ASSERT_FALSE(decode(with_version("kept"), status).has_value());
+  ByteVector bad = with_version("1.2.3");
+  bad.push_back(0);
+  ASSERT_TRUE(decode(bad, status).has_value());
+  EXPECT_EQ(encoded(status), with_version("kept"));
+}
+
+TEST(StatusMessage, TakesNothingFromTheHeapAfterWarmUp) {
+  const ByteVector whole = with_version("a version that is longer than what strings keep in place");
+  ServiceStatus status;
+  ByteVector bytes;
+  ASSERT_FALSE(decode(whole, status).has_value());
+  encode(status, bytes);
+  const AllocationCount allocations;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_FALSE(decode(whole, status).has_value());
+    encode(status, bytes);
+    ASSERT_EQ(bytes, whole);
+  }
+  EXPECT_EQ(allocations.count(), 0);
+}
+
+TEST(Counters, RejectedIsTheSumOverTheCauses) {
+  Counters counters;
+  counters.rejected_truncated = 1;
+  counters.rejected_fingerprint = 10;
+  counters.rejected_count = 100;
+  counters.rejected_length = 1000;
+  EXPECT_EQ(counters.rejected(), 1111);
+}
+
+}  // namespace
+}  // namespace buoyancy
