@@ -1,11 +1,12 @@
 // Generated closed meshes: shapes whose hydrostatics are known in closed form, or that make good benchmarks.
 //
-// Every shape is centred on B's origin unless said, welded, outward oriented and closed. Sizes in metres, all
-// > 0. Arguments are checked by check_shape; what a generator gets is assumed to have passed it.
+// Every shape is centred on B's origin unless said, welded, outward oriented and closed. Sizes in metres,
+// 1e-9 to 1e9. Arguments are checked by check_shape; what a generator gets is assumed to have passed it.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <variant>
 
 #include "geometry/error.h"
@@ -46,7 +47,7 @@ struct ConeShape {
 struct TorusKnotShape {
   double radius = 1;
   double tube = 0.2;
-  std::int32_t p = 3;
+  std::int32_t p = 3;  // p and q: 1 to 32, without a common divisor
   std::int32_t q = 2;
   std::int32_t tubular = 110;
   std::int32_t radial = 8;
@@ -58,7 +59,7 @@ struct WigleyShape {
   double beam = 1;
   double draft = 0.625;
   double freeboard = 0.3;
-  std::int32_t segments = 64;  // along the length;
+  std::int32_t segments = 64;  // along the length
   std::int32_t levels = 16;    // along the draft
 };
 // An icosphere of 20 frequency^2 triangles, its radius changed by smooth noise of relative height `roughness`
@@ -74,8 +75,12 @@ struct RockShape {
 using Shape =
     std::variant<BoxShape, SphereShape, CylinderShape, ConeShape, TorusKnotShape, WigleyShape, RockShape>;
 
-// Errors: sizes not finite or not positive, counts below the shape's minimum, more than 20,000,000 triangles,
-// a knot whose tube is wider than its strands are apart.
+// What a scene file calls the shape: "box", "torus_knot".
+std::string_view type_name(const Shape& shape);
+
+// Errors: sizes outside 1e-9 to 1e9 m, counts below the shape's minimum, more than 20,000,000 triangles, a
+// knot whose p and q have a common divisor or whose tube is wider than 0.9 of what its strands leave room
+// for. The error names the key, the value and the range.
 Expected<Shape> check_shape(const Shape& shape);
 
 TriangleMesh make_shape(const Shape& shape);  // a checked shape

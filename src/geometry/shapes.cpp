@@ -1,0 +1,176 @@
+#include "geometry/shapes.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "geometry/shape_generators.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kSmallestSize = 1e-9;  // m
+constexpr double kLargestSize = 1e9;    // m
+constexpr std::int32_t kLargestCount = 100'000;
+constexpr std::int64_t kLargestTriangleCount = 20'000'000;
+constexpr double kLargestRoughness = 0.6;
+constexpr std::int32_t kLargestWinding = 32;
+constexpr std::int32_t kStepsPerWinding = 12;
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+    if (std::strtod(text.data(), nullptr) == value) break;
+  }
+  return text.data();
+}
+
+// Collects the first thing that is wrong with a shape.
+class Check {
+ public:
+  explicit Check(std::string_view type) : subject_(std::string(type) + " shape") {}
+
+  Check& size(const char* key, double value) {
+    if (!(value >= kSmallestSize && value <= kLargestSize)) {
+      fail(std::string(key) + " = " + shortest(value),
+           "a length from " + shortest(kSmallestSize) + " to " + shortest(kLargestSize) + " (m)");
+    }
+    return *this;
+  }
+  Check& count(const char* key, std::int32_t value, std::int32_t least, std::int32_t most = kLargestCount) {
+    if (value < least || value > most) {
+      fail(std::string(key) + " = " + std::to_string(value),
+           "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    }
+    return *this;
+  }
+  Check& triangles(std::int64_t count) {
+    if (count > kLargestTriangleCount) {
+      fail(std::to_string(count) + " triangles", "at most " + std::to_string(kLargestTriangleCount),
+           "the subdivision is too fine");
+    }
+    return *this;
+  }
+  Check& that(bool right, const std::string& found, const std::string& expectation,
+              const std::string& cause = {}) {
+    if (!right) fail(found, expectation, cause);
+    return *this;
+  }
+
+  bool passed() const { return !error_; }
+  std::optional<Error> error() && { return std::move(error_); }
+
+ private:
+  void fail(const std::string& found, const std::string& expectation, const std::string& cause = {}) {
+    if (!error_) error_ = Error{subject_, found, expectation, cause, {}};
+  }
+
+  std::string subject_;
+  std::optional<Error> error_;
+};
+
+std::optional<Error> fault(const BoxShape& box) {
+  Check check("box");
+  check.size("size[0]", box.size[0]).size("size[1]", box.size[1]).size("size[2]", box.size[2]);
+  check.count("segments[0]", box.segments[0], 1)
+      .count("segments[1]", box.segments[1], 1)
+      .count("segments[2]", box.segments[2], 1);
+  const std::int64_t a = box.segments[0];
+  const std::int64_t b = box.segments[1];
+  const std::int64_t c = box.segments[2];
+  if (check.passed()) check.triangles(4 * (a * b + b * c + c * a));
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const SphereShape& sphere) {
+  Check check("sphere");
+  check.size("radius", sphere.radius).count("segments", sphere.segments, 3);
+  if (check.passed()) check.triangles(2 * std::int64_t{sphere.segments} * sphere.segments);
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const CylinderShape& cylinder) {
+  Check check("cylinder");
+  check.size("radius", cylinder.radius).size("height", cylinder.height);
+  check.count("segments", cylinder.segments, 3).count("stacks", cylinder.stacks, 1);
+  if (check.passed())
+    check.triangles(2 * std::int64_t{cylinder.segments} * (std::int64_t{cylinder.stacks} + 1));
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const ConeShape& cone) {
+  Check check("cone");
+  check.size("radius", cone.radius).size("height", cone.height);
+  check.count("segments", cone.segments, 3).count("stacks", cone.stacks, 1);
+  if (check.passed()) check.triangles(2 * std::int64_t{cone.segments} * cone.stacks);
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const TorusKnotShape& knot) {
+  Check check("torus_knot");
+  check.size("radius", knot.radius).size("tube", knot.tube);
+  check.count("p", knot.p, 1, kLargestWinding).count("q", knot.q, 1, kLargestWinding);
+  check.count("radial", knot.radial, 3);
+  if (check.passed()) {
+    check.that(std::gcd(knot.p, knot.q) == 1,
+               "p = " + std::to_string(knot.p) + " and q = " + std::to_string(knot.q),
+               "numbers without a common divisor", "that is a link of several strands, not a knot");
+    // Coarser than that, the straight pieces of the tube stray from the curve towards each other.
+    check.count("tubular", knot.tubular, kStepsPerWinding * std::max(knot.p, knot.q));
+  }
+  if (check.passed()) check.triangles(2 * std::int64_t{knot.tubular} * knot.radial);
+  if (check.passed()) {
+    const double largest = 0.9 * largest_tube(knot);
+    check.that(knot.tube <= largest, "tube = " + shortest(knot.tube),
+               "at most " + shortest(largest) + " (m) for this radius, p and q",
+               "the tube is wider than the knot's strands are apart");
+  }
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const WigleyShape& hull) {
+  Check check("wigley");
+  check.size("length", hull.length)
+      .size("beam", hull.beam)
+      .size("draft", hull.draft)
+      .size("freeboard", hull.freeboard);
+  check.count("segments", hull.segments, 2).count("levels", hull.levels, 1);
+  if (check.passed())
+    check.triangles(4 * std::int64_t{hull.segments} * (std::int64_t{hull.levels} + 1) +
+                    2 * std::int64_t{hull.segments} - 2);
+  return std::move(check).error();
+}
+
+std::optional<Error> fault(const RockShape& rock) {
+  Check check("rock");
+  check.size("radius", rock.radius).count("frequency", rock.frequency, 1);
+  check.that(rock.roughness >= 0.0 && rock.roughness <= kLargestRoughness,
+             "roughness = " + shortest(rock.roughness), "a number from 0 to " + shortest(kLargestRoughness));
+  if (check.passed()) check.triangles(20 * std::int64_t{rock.frequency} * rock.frequency);
+  return std::move(check).error();
+}
+
+}  // namespace
+
+std::string_view type_name(const Shape& shape) {
+  constexpr std::array<std::string_view, std::variant_size_v<Shape>> kNames{
+      "box", "sphere", "cylinder", "cone", "torus_knot", "wigley", "rock"};
+  return kNames[shape.index()];
+}
+
+Expected<Shape> check_shape(const Shape& shape) {
+  std::optional<Error> error = std::visit([](const auto& s) { return fault(s); }, shape);
+  if (error) return failure(*std::move(error));
+  return shape;
+}
+
+TriangleMesh make_shape(const Shape& shape) {
+  return std::visit([](const auto& s) { return generate(s); }, shape);
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,362 @@
+#include "geometry/shapes.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace buoyancy {
+namespace {
+
+TriangleMesh made(const Shape& shape) {
+  const Expected<Shape> checked = check_shape(shape);
+  EXPECT_TRUE(checked.has_value()) << (checked ? "" : checked.error().message());
+  return make_shape(shape);
+}
+
+double volume_of(const TriangleMesh& mesh) {
+  double six_volumes = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    six_volumes += mesh.vertex(a).dot(mesh.vertex(b).cross(mesh.vertex(c)));
+  }
+  return six_volumes / 6.0;
+}
+
+// Empty if each edge is used once each way, all vertices are used and lie apart, no triangle has zero area.
+std::string what_is_wrong_with(const TriangleMesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
+  std::vector<bool> used(mesh.vertex_count(), false);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (std::size_t side = 0; side < 3; ++side) {
+      ++uses[{triangle[side], triangle[(side + 1) % 3]}];
+      used[static_cast<std::size_t>(triangle[side])] = true;
+    }
+    const Vec3 a = mesh.vertex(triangle[0]);
+    const Vec3 ab = mesh.vertex(triangle[1]) - a;
+    const Vec3 ac = mesh.vertex(triangle[2]) - a;
+    if (!(ab.cross(ac).norm() > 0.0)) return "a triangle without area";
+  }
+  for (const auto& [edge, count] : uses) {
+    if (edge.first == edge.second) return "a triangle names a vertex twice";
+    if (count != 1) return "an edge is used more than once the same way";
+    if (uses.count({edge.second, edge.first}) == 0) return "an edge has no partner";
+  }
+  std::set<std::array<double, 3>> places;
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    if (!used[i]) return "a vertex is used by no triangle";
+    if (!places.insert({mesh.x[i] + 0.0, mesh.y[i] + 0.0, mesh.z[i] + 0.0}).second) {
+      return "two vertices at the same place";
+    }
+  }
+  if (!(volume_of(mesh) > 0.0)) return "inside out";
+  return {};
+}
+
+// Euler characteristic: 2 for what is like a sphere, 0 for what is like a torus.
+std::int64_t euler_characteristic(const TriangleMesh& mesh) {
+  return static_cast<std::int64_t>(mesh.vertex_count()) -
+         static_cast<std::int64_t>(mesh.triangles.size()) / 2;
+}
+
+std::string refusal(const Shape& shape) {
+  const Expected<Shape> checked = check_shape(shape);
+  return checked ? "accepted" : checked.error().message();
+}
+
+// FNV-1a over the coordinates' bits.
+std::uint64_t hash_of(const TriangleMesh& mesh) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (const double value : *coordinates) {
+      const auto bits = std::bit_cast<std::uint64_t>(value);
+      for (unsigned shift = 0; shift < 64; shift += 8) {
+        hash = (hash ^ ((bits >> shift) & 0xffU)) * 0x100000001b3U;
+      }
+    }
+  }
+  return hash;
+}
+
+TEST(BoxShapes, HaveThePapersTriangleCounts) {
+  EXPECT_EQ(made(BoxShape{{1, 1, 1}, {10, 10, 10}}).triangles.size(), 1'200U);
+  EXPECT_EQ(made(BoxShape{{1, 1, 1}, {100, 100, 100}}).triangles.size(), 120'000U);
+}
+
+TEST(BoxShapes, AreClosedForUnequalSegments) {
+  const TriangleMesh mesh = made(BoxShape{{1, 2, 3}, {4, 1, 7}});
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(mesh.triangles.size(), 4U * (4 * 1 + 1 * 7 + 7 * 4));
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_NEAR(volume_of(mesh), 6.0, 1e-14);
+}
+
+TEST(BoxShapes, SpanTheirSizeAroundTheOrigin) {
+  const BoundingBox box = bounding_box(made(BoxShape{{1, 2, 3}, {2, 3, 4}}));
+  EXPECT_EQ(box.min_B, Vec3(-0.5, -1, -1.5));
+  EXPECT_EQ(box.max_B, Vec3(0.5, 1, 1.5));
+}
+
+TEST(SphereShapes, HaveThePapersTriangleCounts) {
+  EXPECT_EQ(made(SphereShape{1, 50}).triangles.size(), 5'000U);
+  EXPECT_EQ(made(SphereShape{1, 200}).triangles.size(), 80'000U);
+}
+
+TEST(SphereShapes, HaveTheirVerticesOnTheSphere) {
+  const TriangleMesh mesh = made(SphereShape{2.5, 31});
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    EXPECT_NEAR(mesh.vertex(static_cast<std::int32_t>(i)).norm(), 2.5, 1e-15);
+  }
+}
+
+TEST(SphereShapes, ApproachTheBallWithTheSquareOfTheSegments) {
+  const double ball = 4.0 / 3.0 * std::numbers::pi;
+  const double coarse = ball - volume_of(made(SphereShape{1, 25}));
+  const double fine = ball - volume_of(made(SphereShape{1, 100}));
+  EXPECT_GT(fine, 0.0);
+  EXPECT_NEAR(coarse / fine, 16.0, 1.0);
+}
+
+double regular_polygon_area(double radius, std::int32_t sides) {
+  return 0.5 * sides * std::sin(2.0 * std::numbers::pi / sides) * radius * radius;
+}
+
+TEST(CylinderShapes, ArePrismsOfARegularPolygon) {
+  const TriangleMesh mesh = made(CylinderShape{0.5, 3, 12, 4});
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(mesh.triangles.size(), 2U * 12 * (4 + 1));
+  EXPECT_NEAR(volume_of(mesh), regular_polygon_area(0.5, 12) * 3, 1e-14);
+  const BoundingBox box = bounding_box(mesh);
+  EXPECT_EQ(box.min_B.z(), -1.5);
+  EXPECT_EQ(box.max_B.z(), 1.5);
+}
+
+TEST(ConeShapes, ArePyramidsOnTheirBaseAtZeroHeight) {
+  const TriangleMesh mesh = made(ConeShape{0.5, 3, 12, 4});
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(mesh.triangles.size(), 2U * 12 * 4);
+  EXPECT_NEAR(volume_of(mesh), regular_polygon_area(0.5, 12), 1e-14);
+  const BoundingBox box = bounding_box(mesh);
+  EXPECT_EQ(box.min_B.z(), 0.0);
+  EXPECT_EQ(box.max_B.z(), 3.0);
+  EXPECT_EQ(box.max_B.x(), 0.5);
+}
+
+TEST(TorusKnotShapes, HaveThePapersTriangleCount) {
+  const TriangleMesh mesh = made(TorusKnotShape{});
+  EXPECT_EQ(mesh.triangles.size(), 1'760U);
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(euler_characteristic(mesh), 0);
+}
+
+TEST(TorusKnotShapes, ApproachATubesVolumeLengthTimesCrossSection) {
+  // Pappus: a tube around a closed curve encloses its cross section times the curve's length, if the cross
+  // section's centroid lies on the curve.
+  const TorusKnotShape knot{1, 0.1, 3, 2, 4'000, 64};
+  double length = 0.0;
+  constexpr int kSteps = 10'000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = 2.0 * std::numbers::pi * i / kSteps;
+    const double distance = (2.0 + std::cos(3 * t)) / 3.0;
+    length += std::hypot(2 * distance, 1.0) * 2.0 * std::numbers::pi / kSteps;
+  }
+  const double expected = length * regular_polygon_area(0.1, 64);
+  EXPECT_NEAR(volume_of(made(knot)), expected, 1e-4 * expected);
+}
+
+TEST(TorusKnotShapes, LeaveTheKnotsTubeRoomAndNoMore) {
+  // A plain ring, p = q = 1 wound on a torus, has the same room as its tightest bend; the default knot's
+  // strands must stay apart.
+  EXPECT_EQ(refusal(TorusKnotShape{}), "accepted");
+  const std::string message = refusal(TorusKnotShape{1, 0.5});
+  EXPECT_NE(message.find("tube = 0.5"), std::string::npos) << message;
+  EXPECT_NE(message.find("at most 0.2"), std::string::npos) << message;
+}
+
+TEST(WigleyShapes, EncloseTheHullAndItsFreeboard) {
+  const WigleyShape hull{10, 1, 0.625, 0.3, 256, 128};
+  const TriangleMesh mesh = made(hull);
+  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+  EXPECT_EQ(mesh.triangles.size(), 4U * 256 * 129 + 2 * 256 - 2);
+  const double below = 4.0 / 9.0 * 10 * 1 * 0.625;
+  const double above = 2.0 / 3.0 * 10 * 1 * 0.3;
+  EXPECT_NEAR(volume_of(mesh), below + above, 1e-4 * (below + above));
+}
+
+TEST(WigleyShapes, ApproachTheHullWithTheSquareOfTheCells) {
+  const double hull = 4.0 / 9.0 * 10 * 0.625 + 2.0 / 3.0 * 10 * 0.3;
+  const double coarse = hull - volume_of(made(WigleyShape{10, 1, 0.625, 0.3, 16, 8}));
+  const double fine = hull - volume_of(made(WigleyShape{10, 1, 0.625, 0.3, 64, 32}));
+  EXPECT_GT(fine, 0.0);
+  EXPECT_NEAR(coarse / fine, 16.0, 0.5);
+}
+
+TEST(WigleyShapes, HaveEveryVertexOnTheFormulaAndAVerticalWallAboveTheWater) {
+  const WigleyShape hull{10, 1, 0.625, 0.3, 9, 5};
+  const TriangleMesh mesh = made(hull);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const double xi = 2.0 * mesh.x[i] / hull.length;
+    const double zeta = std::min(mesh.z[i], 0.0) / hull.draft;
+    EXPECT_NEAR(std::abs(mesh.y[i]), 0.5 * hull.beam * (1 - xi * xi) * (1 - zeta * zeta), 1e-15);
+  }
+  const BoundingBox box = bounding_box(mesh);
+  EXPECT_EQ(box.min_B.z(), -0.625);
+  EXPECT_EQ(box.max_B.z(), 0.3);
+}
+
+TEST(RockShapes, HaveTwentyTimesFrequencySquaredTriangles) {
+  EXPECT_EQ(made(RockShape{1, 16}).triangles.size(), 5'120U);
+  EXPECT_EQ(made(RockShape{1, 224}).triangles.size(), 1'003'520U);
+}
+
+TEST(RockShapes, AreStarShapedAboutTheirCentre) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const TriangleMesh mesh = made(RockShape{1, 24, 0.6, seed});
+    EXPECT_EQ(what_is_wrong_with(mesh), "");
+    EXPECT_EQ(euler_characteristic(mesh), 2);
+    for (const auto& [a, b, c] : mesh.triangles) {
+      EXPECT_GT(mesh.vertex(a).dot(mesh.vertex(b).cross(mesh.vertex(c))), 0.0);
+    }
+  }
+}
+
+TEST(RockShapes, AreIcospheresWithoutRoughness) {
+  const TriangleMesh mesh = made(RockShape{3, 8, 0.0});
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    EXPECT_NEAR(mesh.vertex(static_cast<std::int32_t>(i)).norm(), 3.0, 1e-15);
+  }
+}
+
+TEST(RockShapes, AreRoughAndSmooth) {
+  const TriangleMesh mesh = made(RockShape{1, 64, 0.25});
+  double lowest = 2.0;
+  double highest = 0.0;
+  double steepest = 0.0;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Vec3 a = mesh.vertex(triangle[side]);
+      const Vec3 b = mesh.vertex(triangle[(side + 1) % 3]);
+      lowest = std::min(lowest, a.norm());
+      highest = std::max(highest, a.norm());
+      steepest = std::max(steepest, std::abs(a.norm() - b.norm()) / (a - b).norm());
+    }
+  }
+  EXPECT_GT(highest - lowest, 0.1);
+  EXPECT_GT(steepest, 0.1);
+  EXPECT_LT(steepest, 0.8);
+}
+
+TEST(RockShapes, AreTheSameBitsOnEveryMachine) {
+  EXPECT_EQ(hash_of(made(RockShape{1, 16, 0.25, 1})), 6735242325607126203U);
+}
+
+TEST(RockShapes, DifferFromSeedToSeed) {
+  EXPECT_EQ(hash_of(made(RockShape{1, 8, 0.25, 7})), hash_of(made(RockShape{1, 8, 0.25, 7})));
+  EXPECT_NE(hash_of(made(RockShape{1, 8, 0.25, 7})), hash_of(made(RockShape{1, 8, 0.25, 8})));
+}
+
+TEST(ShapeChecks, NameTheKeyTheValueAndTheRange) {
+  EXPECT_EQ(refusal(SphereShape{-1, 50}),
+            "sphere shape: radius = -1; expected a length from 1e-09 to 1e+09 (m).");
+  EXPECT_EQ(refusal(SphereShape{1, 2}),
+            "sphere shape: segments = 2; expected a whole number from 3 to 100000.");
+  EXPECT_EQ(refusal(BoxShape{{1, std::nan(""), 1}}),
+            "box shape: size[1] = nan; expected a length from 1e-09 to 1e+09 (m).");
+  EXPECT_EQ(refusal(RockShape{1, 16, 0.7}), "rock shape: roughness = 0.7; expected a number from 0 to 0.6.");
+}
+
+TEST(ShapeChecks, RefuseEachImpossibleArgument) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<Shape, std::string>> impossible{
+      {BoxShape{{0, 1, 1}}, "size[0] = 0"},
+      {BoxShape{{1, 1, kInfinity}}, "size[2] = inf"},
+      {BoxShape{{1, 1, 1}, {1, 0, 1}}, "segments[1] = 0"},
+      {BoxShape{{1, 1, 1}, {5'000, 5'000, 1}}, "triangles"},
+      {SphereShape{1, 100'001}, "segments = 100001"},
+      {SphereShape{1, 5'000}, "50000000 triangles"},
+      {CylinderShape{-0.5}, "radius = -0.5"},
+      {CylinderShape{1, 0}, "height = 0"},
+      {CylinderShape{1, 1, 2}, "segments = 2"},
+      {CylinderShape{1, 1, 64, 0}, "stacks = 0"},
+      {ConeShape{1, -1}, "height = -1"},
+      {ConeShape{1, 1, 64, -3}, "stacks = -3"},
+      {TorusKnotShape{1, -0.1}, "tube = -0.1"},
+      {TorusKnotShape{1, 0.1, 4, 2}, "p = 4 and q = 2"},
+      {TorusKnotShape{1, 0.1, 0, 1}, "p = 0"},
+      {TorusKnotShape{1, 0.1, 3, 2, 10}, "tubular = 10"},
+      {TorusKnotShape{1, 0.1, 3, 2, 110, 2}, "radial = 2"},
+      {WigleyShape{10, 1, 0.6, -1}, "freeboard = -1"},
+      {WigleyShape{10, 1, 0.6, 1, 1}, "segments = 1"},
+      {WigleyShape{10, 1, 0.6, 1, 8, 0}, "levels = 0"},
+      {RockShape{0}, "radius = 0"},
+      {RockShape{1, 0}, "frequency = 0"},
+      {RockShape{1, 1'001}, "triangles"},
+      {BoxShape{{1, 1, 1}, {2147483647, 2147483647, 2147483647}}, "segments[0] = 2147483647"},
+      {RockShape{1, 16, -0.1}, "roughness = -0.1"},
+  };
+  for (const auto& [shape, found] : impossible) {
+    const std::string message = refusal(shape);
+    EXPECT_NE(message.find(found), std::string::npos) << message << "\nshould name: " << found;
+  }
+}
+
+double some_size() {
+  return std::exp2(*rc::gen::inRange(-400, 400) / 20.0);
+}
+
+RC_GTEST_PROP(EveryShape, IsClosedAndOutwardOriented, ()) {
+  const auto count = [](int least, int most) { return *rc::gen::inRange<std::int32_t>(least, most); };
+  Shape shape;
+  switch (*rc::gen::inRange(0, 7)) {
+    case 0:
+      shape = BoxShape{{some_size(), some_size(), some_size()}, {count(1, 9), count(1, 9), count(1, 9)}};
+      break;
+    case 1:
+      shape = SphereShape{some_size(), count(3, 40)};
+      break;
+    case 2:
+      shape = CylinderShape{some_size(), some_size(), count(3, 40), count(1, 9)};
+      break;
+    case 3:
+      shape = ConeShape{some_size(), some_size(), count(3, 40), count(1, 9)};
+      break;
+    case 4: {
+      const double radius = some_size();
+      shape = TorusKnotShape{radius, 0.05 * radius, count(1, 5), 1, count(60, 150), count(3, 12)};
+      break;
+    }
+    case 5:
+      shape = WigleyShape{some_size(), some_size(), some_size(), some_size(), count(2, 30), count(1, 9)};
+      break;
+    default:
+      shape = RockShape{some_size(), count(1, 20), *rc::gen::inRange(0, 61) / 100.0,
+                        *rc::gen::arbitrary<std::uint64_t>()};
+      break;
+  }
+  const Expected<Shape> checked = check_shape(shape);
+  if (!checked) RC_FAIL(checked.error().message());
+  RC_ASSERT(what_is_wrong_with(make_shape(*checked)) == std::string());
+}
+
+RC_GTEST_PROP(EveryRock, StaysWithinItsRoughness, ()) {
+  const RockShape rock{some_size(), *rc::gen::inRange<std::int32_t>(1, 24), *rc::gen::inRange(0, 61) / 100.0,
+                       *rc::gen::arbitrary<std::uint64_t>()};
+  const TriangleMesh mesh = make_shape(rock);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const double height = mesh.vertex(static_cast<std::int32_t>(i)).norm() / rock.radius;
+    RC_ASSERT(std::abs(height - 1.0) <= rock.roughness + 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
