@@ -81,8 +81,10 @@ BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& wat
   answer.volume = displaced.volume;
   if (is_exact(solver.method())) {
     const double twist = k.dot(displaced.torque);
-    answer.dropped_force = (displaced.force - k.dot(displaced.force) * k).norm() / mesh.volume;
-    answer.dropped_torque = std::abs(twist) / (mesh.volume * mesh.diagonal);
+    if (mesh.volume > 0.0) {
+      answer.dropped_force = (displaced.force - k.dot(displaced.force) * k).norm() / mesh.volume;
+      answer.dropped_torque = std::abs(twist) / mesh.volume / mesh.diagonal;
+    }
     answer.force_W = (weight * displaced.volume) * water.up_W;
     const Vec3 torque_W = R_WB * (displaced.torque - twist * k + lever.cross(displaced.volume * k));
     answer.torque_W = weight * (torque_W - water.up_W.dot(torque_W) * water.up_W);

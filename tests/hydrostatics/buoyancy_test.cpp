@@ -1,0 +1,145 @@
+#include "hydrostatics/buoyancy.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+const HydrostaticMesh& unit_box() {
+  static const HydrostaticMesh mesh =
+      make_hydrostatic_mesh({make_shape(BoxShape{.segments = {4, 4, 4}}), {}});
+  return mesh;
+}
+
+Pose at_height(double z) {
+  return {Vec3(0, 0, z), Eigen::Quaterniond::Identity()};
+}
+
+TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
+  for (const Method method : kAllMethods) {
+    const BuoyancyAnswer answer = buoyancy(Solver(unit_box(), method), at_height(0.6), {}, Vec3::Zero());
+    EXPECT_EQ(answer.status, BuoyancyStatus::kOk);
+    EXPECT_EQ(answer.immersion, Immersion::kDry);
+    EXPECT_EQ(answer.force_W, Vec3::Zero());
+    EXPECT_EQ(answer.volume, 0.0);
+    EXPECT_EQ(answer.force_error_bound, 0.0);
+  }
+}
+
+TEST(Buoyancy, CallsAFaceOnTheWaterDry) {
+  // The box stands on the water, and just sunk below it.
+  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+    EXPECT_EQ(buoyancy(Solver(unit_box(), method), at_height(0.5), {}, Vec3::Zero()).volume, 0.0);
+    EXPECT_NEAR(buoyancy(Solver(unit_box(), method), at_height(-0.5), {}, Vec3::Zero()).volume, 1.0, 1e-15);
+  }
+}
+
+TEST(Buoyancy, SaysNothingOfACentreThatTheVolumeDoesNotDetermine) {
+  const BuoyancyAnswer answer =
+      buoyancy(Solver(unit_box(), Method::kExact), at_height(0.5 - 1e-16), {}, Vec3::Zero());
+  EXPECT_EQ(answer.center_of_buoyancy_W, Vec3::Zero());
+}
+
+TEST(Buoyancy, HasNoBoundForApproximationsAndOneForExactMethods) {
+  for (const Method method : kAllMethods) {
+    const BuoyancyAnswer answer = buoyancy(Solver(unit_box(), method), at_height(0.1), {}, Vec3::Zero());
+    EXPECT_EQ(std::isnan(answer.force_error_bound), !is_exact(method)) << name(method);
+    EXPECT_EQ(std::isnan(answer.torque_error_bound), !is_exact(method)) << name(method);
+  }
+}
+
+TEST(Buoyancy, RefusesWhatIsBeyondDoublesRangeInsteadOfAnsweringInfinity) {
+  const Solver solver(unit_box(), Method::kExact);
+  for (const double z : {1e308, -1e308}) {
+    Pose pose = at_height(z);
+    Water water;
+    water.up_W = Vec3(0.6, 0, 0.8);
+    pose.p_WB.x() = z;
+    const BuoyancyAnswer answer = buoyancy(solver, pose, water, Vec3::Zero());
+    EXPECT_EQ(answer.status, BuoyancyStatus::kOutOfRange);
+    EXPECT_EQ(answer.force_W, Vec3::Zero());
+  }
+  Water heavy;
+  heavy.density = 1e300;
+  heavy.gravity = 1e300;
+  const BuoyancyAnswer answer = buoyancy(solver, at_height(0), heavy, Vec3::Zero());
+  EXPECT_EQ(answer.status, BuoyancyStatus::kOutOfRange);
+  EXPECT_EQ(answer.torque_W, Vec3::Zero());
+  EXPECT_EQ(answer.volume, 0.0);
+}
+
+// A box without its lid: boundary at z = 0.5.
+HydrostaticMesh open_box() {
+  TriangleMesh mesh = make_shape(BoxShape{.segments = {4, 4, 4}});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return mesh.vertex(t[0]).z() == 0.5 && mesh.vertex(t[1]).z() == 0.5 && mesh.vertex(t[2]).z() == 0.5;
+  });
+  ValidatedMesh validated{mesh, {}};
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(mesh.vertex_count()); ++i) {
+    const Vec3 at = mesh.vertex(i);
+    if (at.z() == 0.5 && at.head<2>().cwiseAbs().maxCoeff() == 0.5) validated.boundary_vertices.push_back(i);
+  }
+  return make_hydrostatic_mesh(validated);
+}
+
+TEST(Buoyancy, OfAnOpenMeshIsExactWhileItsBoundaryIsDryAndRefusedOtherwise) {
+  const HydrostaticMesh mesh = open_box();
+  ASSERT_TRUE(mesh.open());
+  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+    const Solver solver(mesh, method);
+    const BuoyancyAnswer floating = buoyancy(solver, at_height(0.2), {}, Vec3::Zero());
+    EXPECT_EQ(floating.status, BuoyancyStatus::kOk);
+    EXPECT_NEAR(floating.volume, 0.3, 1e-15);
+    const BuoyancyAnswer awash = buoyancy(solver, at_height(-0.5), {}, Vec3::Zero());
+    EXPECT_EQ(awash.status, BuoyancyStatus::kOk) << "a boundary on the plane is dry";
+    EXPECT_NEAR(awash.volume, 1.0, 1e-15);
+    const BuoyancyAnswer sunk = buoyancy(solver, at_height(-0.51), {}, Vec3::Zero());
+    EXPECT_EQ(sunk.status, BuoyancyStatus::kOpenEdgeWet);
+    EXPECT_EQ(sunk.force_W, Vec3::Zero());
+    const BuoyancyAnswer dry = buoyancy(solver, at_height(2), {}, Vec3::Zero());
+    EXPECT_EQ(dry.status, BuoyancyStatus::kOk);
+  }
+}
+
+TEST(Buoyancy, StaysFiniteWithDenormalPosesAndMeshes) {
+  const double denormal = std::numeric_limits<double>::denorm_min();
+  const HydrostaticMesh tiny =
+      make_hydrostatic_mesh({moved_and_scaled(make_shape(BoxShape{}), Vec3::Zero(), 1e-310), {}});
+  for (const Method method : kAllMethods) {
+    for (const HydrostaticMesh* mesh : std::initializer_list<const HydrostaticMesh*>{&unit_box(), &tiny}) {
+      for (const double z : {0.0, denormal, -denormal, 1e-310}) {
+        Pose pose = at_height(z);
+        pose.q_WB.x() = denormal;
+        const BuoyancyAnswer answer = buoyancy(Solver(*mesh, method), pose, {}, Vec3::Zero());
+        EXPECT_TRUE(answer.force_W.allFinite() && answer.torque_W.allFinite() &&
+                    std::isfinite(answer.volume));
+        EXPECT_TRUE(answer.center_of_buoyancy_W.allFinite());
+        EXPECT_TRUE(std::isfinite(answer.dropped_force) && std::isfinite(answer.dropped_torque));
+      }
+    }
+  }
+}
+
+TEST(Buoyancy, OfAMeshScaledByAPowerOfTwoHasTheSameBits) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 6});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  const HydrostaticMesh scaled = make_hydrostatic_mesh({moved_and_scaled(rock, Vec3::Zero(), 0x1p-20), {}});
+  const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  const Water unit{.density = 1, .gravity = 1};
+  for (const Method method : kAllMethods) {
+    const BuoyancyAnswer answer =
+        buoyancy(Solver(mesh, method), {Vec3(0, 0, 0.125), tilted}, unit, Vec3::Zero());
+    const BuoyancyAnswer small =
+        buoyancy(Solver(scaled, method), {Vec3(0, 0, 0.125 * 0x1p-20), tilted}, unit, Vec3::Zero());
+    EXPECT_EQ(small.volume * 0x1p60, answer.volume) << name(method);
+    EXPECT_EQ(Vec3(small.torque_W * 0x1p80), answer.torque_W) << name(method);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,188 @@
+// The two exact methods against exact rational arithmetic, and the laws that every exact method obeys.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+const Water kUnitWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
+
+class ExactMethods : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, ExactMethods, testing::Values(Method::kExact, Method::kExactSurface),
+                         [](const auto& method) { return std::string(name(method.param)); });
+
+// Volume, force and torque of one pose against the oracle, as multiples of the gates.
+struct ErrorOverGate {
+  double volume, force, torque;
+};
+
+ErrorOverGate compare(const Solver& solver, const TriangleMesh& mesh, const Pose& pose, const Water& water,
+                      const Vec3& reference_B) {
+  const BuoyancyAnswer answer = buoyancy(solver, pose, water, reference_B);
+  const auto oracle = exact_displacement<Rational>(mesh, pose, water);
+  const Vec3T<Rational> torque_B = oracle.torque(reference_B);
+  const Vec3 torque_W =
+      pose.q_WB.normalized() * Vec3(torque_B.x().convert_to<double>(), torque_B.y().convert_to<double>(),
+                                    torque_B.z().convert_to<double>());
+  const double volume = oracle.volume.convert_to<double>();
+  const double gate = solver.mesh().volume_gate();
+  return {std::abs(answer.volume - volume) / gate, (answer.force_W - volume * water.up_W).norm() / gate,
+          (answer.torque_W - torque_W).norm() / (gate * solver.mesh().largest_lever(reference_B))};
+}
+
+TEST_P(ExactMethods, StayWithinTheGatesOfRationalArithmeticOnEveryMeshAndPose) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    const Solver solver(mesh, GetParam());
+    const BoundingBox box = bounding_box(named.mesh);
+    RandomPoses random(11);
+    ErrorOverGate worst{};
+    for (int i = 0; i < 24; ++i) {
+      Water water = kUnitWater;
+      if (i % 4 == 3) water.up_W = random.direction();
+      const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(named.mesh, water);
+      const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.direction();
+      const ErrorOverGate error = compare(solver, named.mesh, pose, water, reference_B);
+      worst = {std::max(worst.volume, error.volume), std::max(worst.force, error.force),
+               std::max(worst.torque, error.torque)};
+    }
+    EXPECT_LE(worst.volume, 1.0) << named.name;
+    EXPECT_LE(worst.force, 1.0) << named.name;
+    EXPECT_LE(worst.torque, 1.0) << named.name;
+  }
+}
+
+TEST_P(ExactMethods, WetAndDryPartsAddUpToTheWhole) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    const Solver solver(mesh, GetParam());
+    RandomPoses random(12);
+    for (int i = 0; i < 50; ++i) {
+      const Pose pose = random.crossing(bounding_box(named.mesh), kUnitWater);
+      Water from_above = kUnitWater;  // the same surface with the water on its other side
+      from_above.up_W = -kUnitWater.up_W;
+      from_above.level = -kUnitWater.level;
+      const double wet = buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume;
+      const double dry = buoyancy(solver, pose, from_above, Vec3::Zero()).volume;
+      EXPECT_LE(std::abs(wet + dry - mesh.volume), 3 * mesh.volume_gate()) << named.name;
+    }
+  }
+}
+
+TEST_P(ExactMethods, MoveTheTorqueWithTheReferencePoint) {
+  const NamedMesh named = closed_test_meshes()[9];
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+  const Solver solver(mesh, GetParam());
+  RandomPoses random(13);
+  for (int i = 0; i < 200; ++i) {
+    const Pose pose = random.crossing(bounding_box(named.mesh), kUnitWater);
+    const Vec3 r = random.direction();
+    const Vec3 s = random.direction();
+    const BuoyancyAnswer about_r = buoyancy(solver, pose, kUnitWater, r);
+    const BuoyancyAnswer about_s = buoyancy(solver, pose, kUnitWater, s);
+    const Vec3 lever_W = pose.q_WB * (r - s);
+    EXPECT_LE((about_s.torque_W - about_r.torque_W - lever_W.cross(about_r.force_W)).norm(),
+              2 * mesh.volume_gate() * 3.0);
+  }
+}
+
+TEST_P(ExactMethods, ActAtTheCentreOfBuoyancy) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    const Solver solver(mesh, GetParam());
+    RandomPoses random(14);
+    for (int i = 0; i < 20; ++i) {
+      const Pose pose = random.crossing(bounding_box(named.mesh), kUnitWater);
+      const BuoyancyAnswer answer = buoyancy(solver, pose, kUnitWater, Vec3::Zero());
+      if (answer.volume < 1e-3 * mesh.volume) continue;
+      const auto oracle = exact_displacement<Rational>(named.mesh, pose, kUnitWater);
+      const Vec3T<Rational> center = oracle.moment / oracle.volume;
+      const Vec3 center_W =
+          pose.q_WB.normalized() * Vec3(center.x().convert_to<double>(), center.y().convert_to<double>(),
+                                        center.z().convert_to<double>());
+      EXPECT_LE((answer.center_of_buoyancy_W - center_W).norm(),
+                8 * mesh.volume_gate() * mesh.diagonal / answer.volume +
+                    8 * kEpsilon * mesh.largest_lever(Vec3::Zero()))
+          << named.name;
+      EXPECT_LE((answer.center_of_buoyancy_W.cross(answer.force_W) - answer.torque_W).norm(),
+                16 * mesh.volume_gate() * mesh.largest_lever(Vec3::Zero()))
+          << named.name;
+    }
+  }
+}
+
+TEST_P(ExactMethods, ScaleWithDensityAndGravityAndNothingElse) {
+  const TriangleMesh box = make_shape(BoxShape{.segments = {4, 4, 4}});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({box, {}});
+  const Solver solver(mesh, GetParam());
+  const Pose half{Vec3(5, -7, kUnitWater.level), Eigen::Quaterniond::Identity()};
+  Water sea = kUnitWater;
+  sea.density = 1025.0;
+  sea.gravity = 9.80665;
+  const BuoyancyAnswer answer = buoyancy(solver, half, sea, Vec3(0.5, 0, 0));
+  EXPECT_NEAR(answer.force_W.z(), 1025.0 * 9.80665 * 0.5, 1e-10);
+  EXPECT_NEAR(answer.torque_W.y(), 1025.0 * 9.80665 * 0.5 * 0.5, 1e-10);
+  EXPECT_NEAR(answer.volume, 0.5, 1e-15);
+  EXPECT_NEAR(answer.center_of_buoyancy_W.z(), -0.25, 1e-15);
+}
+
+TEST_P(ExactMethods, PublishAnUprightForceAndATorqueWithoutAComponentAlongUp) {
+  RandomPoses random(15);
+  const NamedMesh named = closed_test_meshes()[7];
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+  const Solver solver(mesh, GetParam());
+  for (int i = 0; i < 100; ++i) {
+    Water water = kUnitWater;
+    water.up_W = random.direction();
+    const BuoyancyAnswer answer =
+        buoyancy(solver, random.crossing(bounding_box(named.mesh), water), water, Vec3::Zero());
+    EXPECT_LE(answer.force_W.cross(water.up_W).norm(), 2 * kEpsilon * answer.force_W.norm());
+    EXPECT_LE(std::abs(answer.torque_W.dot(water.up_W)), 4 * kEpsilon * answer.torque_W.norm());
+    EXPECT_LE(answer.dropped_force, mesh.volume_gate() / mesh.volume);
+    EXPECT_LE(answer.dropped_torque, mesh.volume_gate() / mesh.volume);
+  }
+}
+
+TEST_P(ExactMethods, SumAMillionTrianglesWithoutLosingDigits) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 224});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  const Solver solver(mesh, GetParam());
+  RandomPoses random(16);
+  for (int i = 0; i < 3; ++i) {
+    const Pose pose = random.crossing(bounding_box(rock), kUnitWater);
+    // Extended precision is oracle enough here: rationals of a million triangles take minutes.
+    const auto oracle = exact_displacement<long double>(rock, pose, kUnitWater);
+    const double error = std::abs(buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume -
+                                  static_cast<double>(oracle.volume));
+    EXPECT_LE(error, mesh.volume_gate());
+  }
+}
+
+TEST_P(ExactMethods, HoldTheirBoundsAtDepth) {
+  const NamedMesh named = closed_test_meshes()[9];
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+  const Solver solver(mesh, GetParam());
+  RandomPoses random(17);
+  for (const double depth : {10.0, 1e2, 1e4}) {
+    const Pose pose{Vec3(0, 0, kUnitWater.level - depth), random.rotation()};
+    const BuoyancyAnswer answer = buoyancy(solver, pose, kUnitWater, Vec3::Zero());
+    const auto oracle = exact_displacement<Rational>(named.mesh, pose, kUnitWater);
+    const double error = std::abs(answer.volume - oracle.volume.convert_to<double>());
+    EXPECT_LE(error, mesh.volume_gate() * (1 + depth / mesh.diagonal));
+    EXPECT_LE(error, answer.force_error_bound);
+    EXPECT_EQ(answer.immersion, Immersion::kWet);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

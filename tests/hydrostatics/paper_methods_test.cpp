@@ -1,0 +1,147 @@
+// What the paper says of its five methods, section 5 and figure 4: a cube and a sphere lowered into the
+// water, rho g = 1.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+const Water kPaperWater{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
+
+// Largest |F - closed form| over h, the height of the body's centre over the water.
+template <typename ClosedForm>
+double largest_error(const TriangleMesh& source, Method method, double reach, const ClosedForm& closed_form) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
+  const Solver solver(mesh, method);
+  double largest = 0.0;
+  for (int step = 1; step < 40; ++step) {
+    const double h = reach * (step / 20.0 - 1.0);
+    const Pose pose{Vec3(0, 0, h), Eigen::Quaterniond::Identity()};
+    const double force = buoyancy(solver, pose, kPaperWater, Vec3::Zero()).force_W.z();
+    largest = std::max(largest, std::abs(force - closed_form(h)));
+  }
+  return largest;
+}
+
+double cube_force(double h) {
+  return 0.5 - h;
+}
+double sphere_force(double h) {
+  return std::numbers::pi / 3.0 * (h - 1.0) * (h - 1.0) * (h + 2.0);
+}
+
+const TriangleMesh& cube(int segments) {
+  static const TriangleMesh coarse = make_shape(BoxShape{.segments = {10, 10, 10}});
+  static const TriangleMesh fine = make_shape(BoxShape{.segments = {100, 100, 100}});
+  return segments == 10 ? coarse : fine;
+}
+
+TEST(PaperMethods, ExactOnesGiveTheCubesForceToRounding) {
+  for (const int segments : {10, 100}) {
+    EXPECT_LE(largest_error(cube(segments), Method::kExact, 0.5, cube_force), 1e-13);
+    EXPECT_LE(largest_error(cube(segments), Method::kExactSurface, 0.5, cube_force), 1e-13);
+  }
+}
+
+TEST(PaperMethods, RefiningShrinksTheErrorOfImprovedAndFastSurfaceButNotThatOfFast) {
+  const double fast = largest_error(cube(10), Method::kFast, 0.5, cube_force);
+  const double fast_fine = largest_error(cube(100), Method::kFast, 0.5, cube_force);
+  EXPECT_GT(fast, 0.05);
+  EXPECT_GT(fast_fine, 0.5 * fast);
+  EXPECT_LT(largest_error(cube(100), Method::kImproved, 0.5, cube_force),
+            0.2 * largest_error(cube(10), Method::kImproved, 0.5, cube_force));
+  const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
+  const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
+  EXPECT_LT(largest_error(fine, Method::kFastSurface, 1.0, sphere_force),
+            0.2 * largest_error(coarse, Method::kFastSurface, 1.0, sphere_force));
+}
+
+TEST(PaperMethods, OnSpheresTheExactOnesErrByTheMeshAlone) {
+  const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
+  const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
+  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+    const double error = largest_error(coarse, method, 1.0, sphere_force);
+    const double fine_error = largest_error(fine, method, 1.0, sphere_force);
+    EXPECT_LT(error, 4e-3 * 4.19);
+    EXPECT_NEAR(error / fine_error, 16.0, 1.6) << "an inscribed mesh's error falls as 1/N";
+  }
+}
+
+TEST(PaperMethods, NeverLeaveOutACutTriangleOfTheExactOnesWhereverTheWaterIs) {
+  // The authors' published code compares heights with 0 where the water's level belongs; ours must not.
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
+  for (const double level : {-3.0, 0.0, 5.0, 1234.5}) {
+    for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(-1, 0, 0)}) {
+      Water water = kPaperWater;
+      water.level = level;
+      water.up_W = up;
+      const Pose pose{up * (level + 0.23), Eigen::Quaterniond::Identity()};
+      for (const Method method : {Method::kExact, Method::kExactSurface}) {
+        EXPECT_NEAR(buoyancy(Solver(mesh, method), pose, water, Vec3::Zero()).volume, 0.27, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(PaperMethods, DoNotTreatSmallVolumesAsZero) {
+  // The authors' published code takes any volume below 1e-5 for none.
+  const TriangleMesh tiny = moved_and_scaled(cube(10), Vec3::Zero(), 1e-3);
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({tiny, {}});
+  const Pose pose{Vec3(0, 0, 0.25e-3), Eigen::Quaterniond::Identity()};
+  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+    EXPECT_NEAR(buoyancy(Solver(mesh, method), pose, kPaperWater, Vec3::Zero()).volume, 0.25e-9, 1e-22);
+  }
+}
+
+TEST(PaperMethods, SurfaceMethodsKeepTheSignOfTheRestoringTorqueOnACoarseTiltedBox) {
+  // A flat box heeled by 0.2 rad: centroid times force per triangle would turn this torque's sign.
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(BoxShape{.size = {2, 2, 0.5}}), {}});
+  const Eigen::Quaterniond heeled(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
+  const Pose pose{Vec3::Zero(), heeled};
+  const Vec3 exact = buoyancy(Solver(mesh, Method::kExact), pose, kPaperWater, Vec3::Zero()).torque_W;
+  const Vec3 surface =
+      buoyancy(Solver(mesh, Method::kExactSurface), pose, kPaperWater, Vec3::Zero()).torque_W;
+  EXPECT_LT(exact.x(), -0.1) << "against the heel";
+  EXPECT_LE((exact - surface).norm(), 1e-14);
+}
+
+TEST(PaperMethods, FastUsesBodysOwnOriginAndImprovedDoesNotDependOnIt) {
+  // The same cube, its mesh's origin at a corner: fast changes, improved does not.
+  const TriangleMesh cornered = moved_and_scaled(cube(10), Vec3(0.5, 0.5, 0.5));
+  const HydrostaticMesh centred_mesh = make_hydrostatic_mesh({cube(10), {}});
+  const HydrostaticMesh cornered_mesh = make_hydrostatic_mesh({cornered, {}});
+  const Pose pose{Vec3(0, 0, 0.03), Eigen::Quaterniond::Identity()};
+  const Pose cornered_pose{Vec3(-0.5, -0.5, -0.47), Eigen::Quaterniond::Identity()};
+  const auto volume = [&](Method method, bool corner) {
+    return corner ? buoyancy(Solver(cornered_mesh, method), cornered_pose, kPaperWater, Vec3::Zero()).volume
+                  : buoyancy(Solver(centred_mesh, method), pose, kPaperWater, Vec3::Zero()).volume;
+  };
+  EXPECT_GT(std::abs(volume(Method::kFast, true) - volume(Method::kFast, false)), 0.05);
+  EXPECT_NEAR(volume(Method::kImproved, true), volume(Method::kImproved, false), 1e-12);
+  EXPECT_NEAR(volume(Method::kExact, true), volume(Method::kExact, false), 1e-12);
+}
+
+TEST(PaperMethods, AllGiveTheWholeVolumeWhenWhollySubmerged) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
+  const Pose pose{Vec3(0, 0, -2), Eigen::Quaterniond::Identity()};
+  for (const Method method : kAllMethods) {
+    const BuoyancyAnswer answer = buoyancy(Solver(mesh, method), pose, kPaperWater, Vec3::Zero());
+    EXPECT_NEAR(answer.volume, 1.0, 1e-13) << name(method);
+    EXPECT_NEAR(answer.force_W.z(), 1.0, 1e-13) << name(method);
+    EXPECT_LE(answer.torque_W.norm(), 1e-13) << name(method);
+  }
+}
+
+TEST(PaperMethods, AreFoundByTheirNamesAndByNoOther) {
+  for (const Method method : kAllMethods) EXPECT_EQ(method_from_name(name(method)), method);
+  EXPECT_EQ(method_from_name("exactly"), std::nullopt);
+  EXPECT_EQ(method_from_name(""), std::nullopt);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,92 @@
+#include "hydrostatics/triangle_clip.h"
+
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
+
+namespace buoyancy {
+namespace {
+
+template <typename T>
+struct Clipped {
+  std::vector<std::array<Corner<T>, 3>> triangles;
+  Vec3T<T> twice_area = Vec3T<T>::Constant(T(0));
+};
+
+template <typename T>
+Clipped<T> clip(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
+  Clipped<T> clipped;
+  visit_wet_part(a, b, c, [&](const Corner<T>& p, const Corner<T>& q, const Corner<T>& r) {
+    clipped.triangles.push_back({p, q, r});
+    clipped.twice_area += (q.y - p.y).cross(r.y - p.y);
+  });
+  return clipped;
+}
+
+// A triangle of integer corners whose heights are their z coordinates.
+Corner<Rational> random_corner(RandomPoses& random) {
+  const auto coordinate = [&] { return Rational(static_cast<int>(random.pick(41)) - 20); };
+  Corner<Rational> corner{{coordinate(), coordinate(), coordinate()}, Rational(0)};
+  corner.z = corner.y.z();
+  return corner;
+}
+
+TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
+  RandomPoses random(5);
+  int cut_triangles = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Corner<Rational> a = random_corner(random);
+    const Corner<Rational> b = random_corner(random);
+    const Corner<Rational> c = random_corner(random);
+    const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
+    if (wet == 0 || wet == 3 || a.z == 0 || b.z == 0 || c.z == 0) continue;
+    ++cut_triangles;
+    const auto mirrored = [](Corner<Rational> corner) {
+      corner.z = -corner.z;
+      return corner;
+    };
+    const auto below = clip(a, b, c);
+    const auto above = clip(mirrored(a), mirrored(b), mirrored(c));
+    EXPECT_EQ(below.triangles.size(), std::size_t(wet));
+    EXPECT_EQ(above.triangles.size(), std::size_t(3 - wet));
+    const Vec3T<Rational> whole = (b.y - a.y).cross(c.y - a.y);
+    EXPECT_EQ(Vec3T<Rational>(below.twice_area + above.twice_area), whole);
+    for (const auto& triangle : below.triangles) {
+      for (const Corner<Rational>& corner : triangle) {
+        EXPECT_LE(corner.z, Rational(0));
+        EXPECT_EQ(corner.z, corner.y.z()) << "a cut point lies where the edge meets the water";
+      }
+    }
+  }
+  EXPECT_GT(cut_triangles, 1000);
+}
+
+TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
+  RandomPoses random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const Corner<double> wet{random.direction(), random.uniform(-1, -1e-12)};
+    const Corner<double> dry{random.direction(), random.uniform(0, 1)};
+    const Corner<double> left{random.direction(), random.uniform(0, 1)};
+    const Corner<double> right{random.direction(), random.uniform(-1, -1e-12)};
+    const auto one = clip(wet, dry, left);     // the edge runs wet to dry, one corner wet
+    const auto other = clip(dry, wet, right);  // and dry to wet, two corners wet
+    EXPECT_EQ(one.triangles[0][1].y, other.triangles[0][0].y);
+  }
+}
+
+TEST(TriangleClip, TakesACornerOnTheWaterForDry) {
+  const Corner<double> on{{0, 0, 0}, 0.0};
+  const Corner<double> below{{1, 0, -1}, -1.0};
+  const Corner<double> also_below{{0, 1, -1}, -1.0};
+  EXPECT_FALSE(on.wet());
+  const auto clipped = clip(on, below, also_below);
+  EXPECT_EQ(clipped.twice_area, Vec3(Vec3(1, 0, -1).cross(Vec3(0, 1, -1)))) << "nothing is lost";
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,79 @@
+#include "hydrostatics/water_plane.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
+  RandomPoses random(1);
+  for (int i = 0; i < 2000; ++i) {
+    Water water;
+    water.up_W = random.direction();
+    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
+    Pose pose;
+    pose.q_WB = random.rotation();
+    pose.q_WB.coeffs() *= random.uniform(0.999, 1.001);
+    pose.p_WB = random.direction() * std::pow(10.0, random.uniform(-3, 9));
+    const Vec3 c_B = random.direction() * std::pow(10.0, random.uniform(-3, 6));
+
+    const WaterPlane plane = water_plane_in_body(pose, water, c_B);
+
+    const Vec3T<Rational> k = exact_up_in_body<Rational>(pose, water);
+    const Rational h_c = Rational(water.level) - water.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
+                         k.dot(c_B.cast<Rational>());
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_LE(std::abs(Rational(plane.up_B[axis] - k[axis]).convert_to<double>()), kEpsilon);
+    const double error = std::abs(Rational(plane.h_c - h_c).convert_to<double>());
+    EXPECT_LE(error, kEpsilon * std::abs(plane.h_c) + 1e-29 * (pose.p_WB.norm() + c_B.norm()));
+  }
+}
+
+TEST(WaterPlane, HasTheSameBitsForQAndMinusQ) {
+  RandomPoses random(2);
+  for (int i = 0; i < 1000; ++i) {
+    Pose pose{random.direction(), random.rotation()};
+    Pose opposite = pose;
+    opposite.q_WB.coeffs() = -pose.q_WB.coeffs();
+    const WaterPlane plane = water_plane_in_body(pose, {}, Vec3(1, 2, 3));
+    const WaterPlane same = water_plane_in_body(opposite, {}, Vec3(1, 2, 3));
+    EXPECT_EQ(plane.up_B, same.up_B);
+    EXPECT_EQ(plane.h_c, same.h_c);
+  }
+}
+
+TEST(WaterPlane, ForgetsHorizontalDistanceWhereUpIsAnAxis) {
+  RandomPoses random(3);
+  for (int i = 0; i < 1000; ++i) {
+    Pose here{Vec3(0, 0, random.uniform(-1, 1)), random.rotation()};
+    Pose far = here;
+    far.p_WB.x() = 1e9;
+    far.p_WB.y() = -1e6;
+    EXPECT_EQ(water_plane_in_body(here, {}, Vec3::Ones()).h_c,
+              water_plane_in_body(far, {}, Vec3::Ones()).h_c);
+  }
+}
+
+TEST(WaterPlane, TakesQuaternionsOfAnyNorm) {
+  RandomPoses random(4);
+  for (const double norm : {1e-300, 1e-160, 0.5, 2.0, 1e160, 1e300}) {
+    const Pose unit{Vec3(0.1, 0.2, 0.3), random.rotation()};
+    Pose scaled = unit;
+    scaled.q_WB.coeffs() *= norm;
+    const WaterPlane expected = water_plane_in_body(unit, {}, Vec3::Zero());
+    const WaterPlane plane = water_plane_in_body(scaled, {}, Vec3::Zero());
+    EXPECT_LE((plane.up_B - expected.up_B).norm(), 4 * kEpsilon) << norm;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
