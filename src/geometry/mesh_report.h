@@ -15,10 +15,17 @@ namespace buoyancy {
 // Triangles connected through shared edges.
 struct ComponentReport {
   std::int64_t triangles = 0;
-  double volume = 0.0;  // m^3, signed, as used (after turning)
+  double volume = 0.0;  // m^3, signed, as used (after turning), about the mesh's bounding-box centre
   bool closed = false;  // no boundary edge
   bool cavity = false;  // negative volume, inside another component: counted as a hole
+  bool nested = false;  // positive volume, inside another component: that volume is counted twice
   bool turned = false;  // was inside out and has been turned
+};
+
+// Boundary edges that hang together.
+struct HoleReport {
+  std::int64_t edges = 0;
+  BoundingBox box{Vec3::Zero(), Vec3::Zero()};
 };
 
 struct MeshReport {
@@ -48,6 +55,7 @@ struct MeshReport {
   std::optional<std::int64_t> intersecting_pairs;  // pairs of faces that cross each other; where counted
 
   std::vector<ComponentReport> components;  // largest absolute volume first
+  std::vector<HoleReport> holes;            // most edges first
   bool turned = false;                      // the whole mesh was inside out and has been turned
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0 && misoriented_edges == 0; }

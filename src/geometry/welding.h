@@ -1,9 +1,11 @@
 // Makes vertices that lie at the same place one vertex, so that neighbouring triangles share their edges.
 //
-// First vertices of equal coordinates (-0 equals 0). If that leaves edges without a partner, also vertices
-// within 1e-6 L of each other (L: bounding-box diagonal), but only if the result is then closed; else the
-// exact weld stands. Triangles that thereby name a vertex twice enclose nothing and are dropped and counted.
-// Complexity O(n log n) or better, n vertices.
+// First vertices of equal coordinates (-0 equals 0). If that leaves edges without a partner, also those
+// edges' vertices that lie within 1e-6 L of each other (L: bounding-box diagonal), but only if every edge
+// then has its partner (closed or balanced, mesh_topology.h); else the exact weld stands. What is not beside
+// a crack never moves. Vertices keep the order of their first occurrence. Triangles that name a vertex twice
+// enclose nothing and are dropped and counted. Complexity: O(n log n) for n vertices, unless many of them
+// crowd into two neighbouring cells of the tolerance's size without being within it.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +26,7 @@ struct WeldedMesh {
   double largest_move = 0.0;       // m: farthest any vertex was moved by a tolerance weld
 };
 
+// mesh: coordinates finite, indices in range.
 WeldedMesh weld(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

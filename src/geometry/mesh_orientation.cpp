@@ -1,0 +1,110 @@
+#include "geometry/mesh_orientation.h"
+
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "geometry/pairwise_sum.h"
+
+namespace buoyancy {
+namespace {
+
+double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return a.dot(b.cross(c)) / 6.0;
+}
+
+double signed_volume(const TriangleMesh& mesh, const Triangle& face, const Vec3& center_B) {
+  return signed_volume(mesh.vertex(face[0]) - center_B, mesh.vertex(face[1]) - center_B,
+                       mesh.vertex(face[2]) - center_B);
+}
+
+// Faces by component: those of component i are faces[first[i]] .. faces[first[i + 1] - 1], ascending.
+struct FacesByComponent {
+  std::vector<std::size_t> faces;
+  std::vector<std::size_t> first;
+};
+
+FacesByComponent faces_by_component(const MeshTopology& topology) {
+  FacesByComponent sorted;
+  sorted.first.assign(static_cast<std::size_t>(topology.components) + 1, 0);
+  for (const std::int32_t component : topology.component_of_face) {
+    ++sorted.first[static_cast<std::size_t>(component) + 1];
+  }
+  std::partial_sum(sorted.first.begin(), sorted.first.end(), sorted.first.begin());
+  std::vector<std::size_t> next(sorted.first.begin(), sorted.first.end() - 1);
+  sorted.faces.resize(topology.component_of_face.size());
+  for (std::size_t f = 0; f < sorted.faces.size(); ++f) {
+    sorted.faces[next[static_cast<std::size_t>(topology.component_of_face[f])]++] = f;
+  }
+  return sorted;
+}
+
+// The volume of an open mesh, its holes closed.
+double volume_with_holes_closed(const TriangleMesh& mesh, const std::vector<Hole>& holes) {
+  const Vec3 center_B = bounding_box(mesh).center();
+  PairwiseSum<double> volume;
+  for (const Triangle& face : mesh.triangles) volume.add(signed_volume(mesh, face, center_B));
+  for (const Hole& hole : holes) {
+    Vec3 middle = Vec3::Zero();  // about center_B
+    for (const Edge& edge : hole.edges) middle += mesh.vertex(edge[0]) - center_B;
+    middle /= static_cast<double>(hole.edges.size());
+    for (const auto& [from, to] : hole.edges) {
+      volume.add(signed_volume(mesh.vertex(to) - center_B, mesh.vertex(from) - center_B, middle));
+    }
+  }
+  return volume.total();
+}
+
+void turn(ComponentReport& component) {
+  component.volume = -component.volume;
+  component.turned = !component.turned;
+}
+
+}  // namespace
+
+std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const MeshTopology& topology) {
+  const Vec3 center_B = bounding_box(mesh).center();
+  const FacesByComponent sorted = faces_by_component(topology);
+  std::vector<ComponentReport> components(static_cast<std::size_t>(topology.components));
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    PairwiseSum<double> volume;
+    for (std::size_t n = sorted.first[i]; n < sorted.first[i + 1]; ++n) {
+      volume.add(signed_volume(mesh, mesh.triangles[sorted.faces[n]], center_B));
+    }
+    components[i].triangles = static_cast<std::int64_t>(sorted.first[i + 1] - sorted.first[i]);
+    components[i].volume = volume.total();
+    components[i].closed = true;
+  }
+  for (const std::int32_t face : topology.boundary_faces) {
+    const std::int32_t component = topology.component_of_face[static_cast<std::size_t>(face)];
+    components[static_cast<std::size_t>(component)].closed = false;
+  }
+  return components;
+}
+
+void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
+                   std::vector<ComponentReport>& components) {
+  double volume = 0.0;
+  for (const ComponentReport& component : components) volume += component.volume;
+  if (volume < 0.0) {
+    for (ComponentReport& component : components) turn(component);
+  }
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (components[static_cast<std::size_t>(topology.component_of_face[f])].turned) {
+      std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
+    }
+  }
+}
+
+double orient_open(TriangleMesh& mesh, const std::vector<Hole>& holes,
+                   std::vector<ComponentReport>& components) {
+  const double volume = volume_with_holes_closed(mesh, holes);
+  if (volume >= 0.0) return volume;
+  for (Triangle& face : mesh.triangles) std::swap(face[1], face[2]);
+  for (ComponentReport& component : components) turn(component);
+  return -volume;
+}
+
+}  // namespace buoyancy

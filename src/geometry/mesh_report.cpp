@@ -1,0 +1,169 @@
+#include "geometry/mesh_report.h"
+
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kListed = 8;  // of components and of holes
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+std::string point(const Vec3& point_B) {
+  return number(point_B.x()) + ", " + number(point_B.y()) + ", " + number(point_B.z());
+}
+
+std::string counted(std::int64_t count, const std::string& singular, const std::string& plural) {
+  return std::to_string(count) + " " + (count == 1 ? singular : plural);
+}
+
+// "a, b, c", or `otherwise` if there is nothing to say.
+class Listing {
+ public:
+  void add_if(bool applies, const std::string& item) {
+    if (!applies) return;
+    if (!text_.empty()) text_ += ", ";
+    text_ += item;
+  }
+  std::string text(const std::string& otherwise) const { return text_.empty() ? otherwise : text_; }
+
+ private:
+  std::string text_;
+};
+
+class AlignedLines {
+ public:
+  void add(std::string_view label, const std::string& value) {
+    constexpr std::size_t kLabelWidth = 14;
+    if (!text_.empty()) text_ += '\n';
+    text_ += "  ";
+    text_ += label;
+    text_.append(label.size() < kLabelWidth ? kLabelWidth - label.size() : 1, ' ');
+    text_ += value;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string source_text(const MeshSource& source) {
+  Listing listing;
+  listing.add_if(!source.format.empty(), source.format);
+  listing.add_if(!source.up_axis.empty(), "up axis " + source.up_axis);
+  listing.add_if(source.nodes > 1, std::to_string(source.nodes) + " nodes");
+  listing.add_if(source.left_out > 0,
+                 counted(source.left_out, "point or line left out", "points and lines left out"));
+  listing.add_if(!source.note.empty(), source.note);
+  return listing.text("");
+}
+
+std::string vertices_text(const MeshReport& report) {
+  std::string text = std::to_string(report.vertices_stored) + " stored, " +
+                     std::to_string(report.vertices_welded) + " after welding";
+  if (report.weld == WeldKind::kTolerance) {
+    text += "; cracks closed by moving vertices up to " + number(report.weld_largest_move) + " m";
+  }
+  return text;
+}
+
+std::string edges_text(const MeshReport& report) {
+  Listing listing;
+  listing.add_if(report.boundary_edges > 0, std::to_string(report.boundary_edges) + " boundary");
+  listing.add_if(report.non_manifold_edges > 0, std::to_string(report.non_manifold_edges) + " non-manifold");
+  listing.add_if(report.misoriented_edges > 0, std::to_string(report.misoriented_edges) + " misoriented");
+  listing.add_if(report.balanced_edges > 0, std::to_string(report.balanced_edges) + " balanced");
+  if (!report.closed()) return listing.text("");
+  return listing.text("each used once each way") +
+         (report.balanced_edges > 0 ? " (shared by four or more faces)" : "");
+}
+
+std::string state_text(const MeshReport& report) {
+  if (report.triangles == 0) return "empty";
+  if (report.closed()) return report.balanced_edges == 0 ? "closed" : "balanced";
+  return report.non_manifold_edges == 0 && report.misoriented_edges == 0 ? "open" : "open or inconsistent";
+}
+
+std::string faces_text(const MeshReport& report) {
+  Listing listing;
+  listing.add_if(report.dropped_faces > 0,
+                 std::to_string(report.dropped_faces) + " dropped for naming a vertex twice");
+  listing.add_if(report.degenerate_faces > 0, std::to_string(report.degenerate_faces) + " of zero area");
+  listing.add_if(report.duplicate_faces > 0,
+                 counted(report.duplicate_faces, "duplicate", "duplicates") + " of an earlier face");
+  return listing.text("");
+}
+
+std::string component_text(const ComponentReport& component) {
+  std::string text =
+      counted(component.triangles, "triangle", "triangles") + ", " + number(component.volume) + " m^3";
+  if (!component.closed) text += ", open";
+  if (component.cavity) text += ", a cavity";
+  if (component.nested) text += ", inside another: its volume counts twice";
+  if (component.turned) text += ", was inside out and has been turned";
+  return text;
+}
+
+std::string hole_text(const HoleReport& hole) {
+  return counted(hole.edges, "edge", "edges") + ", from " + point(hole.box.min_B) + " to " +
+         point(hole.box.max_B);
+}
+
+void add_components(const MeshReport& report, AlignedLines& lines) {
+  if (report.components.size() == 1) return;
+  lines.add("components", std::to_string(report.components.size()));
+  for (std::size_t i = 0; i < report.components.size() && i < kListed; ++i) {
+    lines.add("", component_text(report.components[i]));
+  }
+  if (report.components.size() > kListed) {
+    lines.add("", "and " + std::to_string(report.components.size() - kListed) + " smaller ones");
+  }
+}
+
+void add_holes(const MeshReport& report, AlignedLines& lines) {
+  if (report.holes.empty()) return;
+  lines.add("holes", std::to_string(report.holes.size()));
+  for (std::size_t i = 0; i < report.holes.size() && i < kListed; ++i) {
+    lines.add("", hole_text(report.holes[i]));
+  }
+  if (report.holes.size() > kListed) {
+    lines.add("", "and " + std::to_string(report.holes.size() - kListed) + " smaller ones");
+  }
+}
+
+}  // namespace
+
+std::string to_text(const MeshReport& report) {
+  AlignedLines lines;
+  const std::string source = source_text(report.source);
+  if (!source.empty()) lines.add("source", source);
+  lines.add("surface", state_text(report));
+  lines.add("triangles", std::to_string(report.triangles));
+  lines.add("vertices", vertices_text(report));
+  lines.add("edges", edges_text(report));
+  const std::string faces = faces_text(report);
+  if (!faces.empty()) lines.add("faces", faces);
+  lines.add("box", "from " + point(report.box.min_B) + " to " + point(report.box.max_B) + " m, diagonal " +
+                       number(report.diagonal) + " m");
+  lines.add("area", number(report.area) + " m^2");
+  lines.add("volume",
+            number(report.volume) + " m^3" +
+                (report.closed() ? "" : " about the box's centre, which means nothing while it is open"));
+  lines.add("", "from x, y, z: " + point(report.volume_by_axis) + " m^3");
+  lines.add("", "integral of n dA: " + point(report.area_vector) + " m^2");
+  add_components(report, lines);
+  add_holes(report, lines);
+  if (report.intersecting_pairs) {
+    lines.add("intersecting", counted(*report.intersecting_pairs, "pair of faces", "pairs of faces"));
+  }
+  if (report.turned) lines.add("turned", "was inside out: all faces have been turned");
+  return report.name + "\n" + lines.text();
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,130 @@
+#include "geometry/mesh_validation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/mesh_orientation.h"
+#include "geometry/mesh_refusal.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/pairwise_sum.h"
+#include "geometry/surface_moments.h"
+
+namespace buoyancy {
+namespace {
+
+struct SurfaceTotals {
+  SurfaceMoments<double> moments;  // about the centre of the bounding box
+  double area = 0.0;
+  std::int64_t degenerate_faces = 0;
+
+  SurfaceTotals& operator+=(const SurfaceTotals& other) {
+    moments += other.moments;
+    area += other.area;
+    degenerate_faces += other.degenerate_faces;
+    return *this;
+  }
+};
+
+void report_weld(const WeldedMesh& welded, MeshReport& report) {
+  report.triangles = static_cast<std::int64_t>(welded.mesh.triangles.size());
+  report.vertices_welded = static_cast<std::int64_t>(welded.mesh.vertex_count());
+  report.weld = welded.kind;
+  report.weld_largest_move = welded.largest_move;
+  report.dropped_faces = welded.faces_dropped;
+}
+
+void report_surface(const TriangleMesh& mesh, MeshReport& report) {
+  if (mesh.triangles.empty()) return;
+  report.box = bounding_box(mesh);
+  report.diagonal = report.box.diagonal();
+  const Vec3 center_B = report.box.center();
+  PairwiseSum<SurfaceTotals> sum;
+  for (const Triangle& face : mesh.triangles) {
+    SurfaceTotals totals;
+    totals.moments = moments_of_triangle<double>(
+        mesh.vertex(face[0]) - center_B, mesh.vertex(face[1]) - center_B, mesh.vertex(face[2]) - center_B);
+    totals.area = totals.moments.S.norm();
+    totals.degenerate_faces = totals.area == 0.0 ? 1 : 0;
+    sum.add(totals);
+  }
+  const SurfaceTotals total = sum.total();
+  report.area = total.area;
+  report.area_vector = total.moments.S;
+  report.volume_by_axis = total.moments.N.diagonal();
+  report.volume = report.volume_by_axis.sum() / 3.0;
+  report.degenerate_faces = total.degenerate_faces;
+}
+
+void report_topology(const MeshTopology& topology, const std::vector<Hole>& holes, MeshReport& report) {
+  report.boundary_edges = topology.counts.boundary;
+  report.non_manifold_edges = topology.counts.non_manifold;
+  report.balanced_edges = topology.counts.balanced;
+  report.misoriented_edges = topology.counts.misoriented;
+  report.duplicate_faces = topology.duplicate_faces;
+  for (const Hole& hole : holes) {
+    report.holes.push_back({static_cast<std::int64_t>(hole.edges.size()), hole.box});
+  }
+}
+
+void report_components(std::vector<ComponentReport> components, MeshReport& report) {
+  std::stable_sort(components.begin(), components.end(),
+                   [](const ComponentReport& a, const ComponentReport& b) {
+                     return std::abs(a.volume) > std::abs(b.volume);
+                   });
+  report.turned =
+      !components.empty() && std::all_of(components.begin(), components.end(),
+                                         [](const ComponentReport& component) { return component.turned; });
+  report.components = std::move(components);
+}
+
+std::vector<std::int32_t> boundary_vertices(const MeshTopology& topology) {
+  std::vector<std::int32_t> vertices;
+  for (const Edge& edge : topology.boundary) vertices.push_back(edge[0]);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& name,
+                             const ValidationOptions& options) {
+  MeshValidation validation;
+  MeshReport& report = validation.report;
+  report.name = name;
+  report.source = imported.source;
+  report.vertices_stored = static_cast<std::int64_t>(imported.mesh.vertex_count());
+  report.triangles = static_cast<std::int64_t>(imported.mesh.triangles.size());
+  validation.refusal = refuse_non_finite(imported.mesh, name);
+  if (validation.refusal) return validation;
+
+  WeldedMesh welded = weld(imported.mesh);
+  report_weld(welded, report);
+  TriangleMesh& mesh = welded.mesh;
+  report_surface(mesh, report);
+  const MeshTopology topology = mesh_topology(mesh);
+  const std::vector<Hole> holes = find_holes(mesh, topology.boundary);
+  report_topology(topology, holes, report);
+  std::vector<ComponentReport> components = describe_components(mesh, topology);
+
+  validation.refusal = refuse_size(report);
+  if (!validation.refusal) validation.refusal = refuse_edges(mesh, topology, report, options.open);
+  if (!validation.refusal) {
+    double volume = 0.0;
+    if (holes.empty()) {
+      orient_closed(mesh, topology, components);
+      report_surface(mesh, report);
+      volume = report.volume;
+    } else {
+      volume = orient_open(mesh, holes, components);
+      report_surface(mesh, report);
+    }
+    validation.refusal = refuse_volume(volume, report);
+  }
+  report_components(std::move(components), report);
+  if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
+  return validation;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,202 @@
+#include "geometry/welding.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "geometry/disjoint_sets.h"
+#include "geometry/mesh_topology.h"
+
+namespace buoyancy {
+namespace {
+
+// A cluster of vertices may form a chain of close neighbours; beyond this many tolerances from end to end it
+// is no crack but a finely divided edge, and must not collapse.
+constexpr double kLongestChain = 2.0;
+
+bool names_a_vertex_twice(const Triangle& face) {
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+// The mesh with each vertex replaced by its representative, without the faces that then name a vertex twice
+// and without the vertices that no face uses.
+TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& representative) {
+  constexpr std::int32_t kUnused = -1;
+  constexpr std::int32_t kUsed = 0;
+  std::vector<std::int32_t> new_index(mesh.vertex_count(), kUnused);
+  TriangleMesh merged;
+  merged.triangles.reserve(mesh.triangles.size());
+  for (const Triangle& stored : mesh.triangles) {
+    Triangle face{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      face[corner] = representative[static_cast<std::size_t>(stored[corner])];
+    }
+    if (names_a_vertex_twice(face)) continue;
+    for (const std::int32_t vertex : face) new_index[static_cast<std::size_t>(vertex)] = kUsed;
+    merged.triangles.push_back(face);
+  }
+  for (std::size_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] == kUsed) new_index[v] = merged.add_vertex(mesh.vertex(static_cast<std::int32_t>(v)));
+  }
+  for (Triangle& face : merged.triangles) {
+    for (std::int32_t& vertex : face) vertex = new_index[static_cast<std::size_t>(vertex)];
+  }
+  return merged;
+}
+
+// Bits of the coordinates; adding 0 turns -0 into 0.
+std::array<std::uint64_t, 3> position_bits(const TriangleMesh& mesh, std::size_t v) {
+  return {std::bit_cast<std::uint64_t>(mesh.x[v] + 0.0), std::bit_cast<std::uint64_t>(mesh.y[v] + 0.0),
+          std::bit_cast<std::uint64_t>(mesh.z[v] + 0.0)};
+}
+
+std::uint64_t mix(std::uint64_t bits) {
+  bits ^= bits >> 32U;
+  bits *= 0xd6e8feb86659fd93ULL;
+  bits ^= bits >> 32U;
+  bits *= 0xd6e8feb86659fd93ULL;
+  return bits ^ (bits >> 32U);
+}
+
+// First vertex at the position of each vertex: an open-addressing hash table of vertex indices.
+std::vector<std::int32_t> first_at_same_position(const TriangleMesh& mesh) {
+  constexpr std::int32_t kEmpty = -1;
+  const std::size_t n = mesh.vertex_count();
+  const std::size_t mask = std::bit_ceil(2 * n + 1) - 1;
+  std::vector<std::int32_t> slots(mask + 1, kEmpty);
+  std::vector<std::int32_t> first(n);
+  for (std::size_t v = 0; v < n; ++v) {
+    const auto bits = position_bits(mesh, v);
+    std::size_t slot = mix(mix(mix(bits[0]) + bits[1]) + bits[2]) & mask;
+    while (slots[slot] != kEmpty && position_bits(mesh, static_cast<std::size_t>(slots[slot])) != bits) {
+      slot = (slot + 1) & mask;
+    }
+    if (slots[slot] == kEmpty) slots[slot] = static_cast<std::int32_t>(v);
+    first[v] = slots[slot];
+  }
+  return first;
+}
+
+// A cell of a grid so fine that whatever shares a cell is within tolerance of each other.
+struct Cell {
+  std::array<std::int32_t, 3> place;   // z, y, x
+  std::vector<std::int32_t> vertices;  // ascending
+};
+constexpr double kCellsPerTolerance = 1.7321;  // just above the square root of 3
+constexpr std::int32_t kReach = 2;             // pairs within tolerance are at most this many cells apart
+
+// Occupied cells in the order of their places.
+std::vector<Cell> sort_into_cells(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
+                                  double tolerance) {
+  const Vec3 corner_B = bounding_box(mesh).min_B;
+  std::vector<std::pair<std::array<std::int32_t, 3>, std::int32_t>> placed;
+  placed.reserve(vertices.size());
+  for (const std::int32_t v : vertices) {
+    const Vec3 place = (mesh.vertex(v) - corner_B) / tolerance * kCellsPerTolerance;
+    placed.push_back({{static_cast<std::int32_t>(place.z()), static_cast<std::int32_t>(place.y()),
+                       static_cast<std::int32_t>(place.x())},
+                      v});
+  }
+  std::sort(placed.begin(), placed.end());
+  std::vector<Cell> cells;
+  for (const auto& [place, v] : placed) {
+    if (cells.empty() || cells.back().place != place) cells.push_back({place, {}});
+    cells.back().vertices.push_back(v);
+  }
+  return cells;
+}
+
+void unite_cells(const TriangleMesh& mesh, const Cell& a, const Cell& b, double tolerance,
+                 DisjointSets& clusters) {
+  if (clusters.representative(a.vertices.front()) == clusters.representative(b.vertices.front())) return;
+  for (const std::int32_t v : a.vertices) {
+    for (const std::int32_t w : b.vertices) {
+      if ((mesh.vertex(v) - mesh.vertex(w)).norm() <= tolerance) {
+        clusters.unite(v, w);
+        return;
+      }
+    }
+  }
+}
+
+// Unites the given vertices within tolerance of each other. Of each cell's neighbours the rest of its own row
+// and the rows ahead are looked at; in the order of the cells a row's neighbours are contiguous and move
+// ahead with the cell.
+DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
+                                  double tolerance) {
+  DisjointSets clusters(mesh.vertex_count());
+  const std::vector<Cell> cells = sort_into_cells(mesh, vertices, tolerance);
+  for (const Cell& cell : cells) {
+    for (const std::int32_t v : cell.vertices) clusters.unite(cell.vertices.front(), v);
+  }
+  for (std::int32_t ahead_z = 0; ahead_z <= kReach; ++ahead_z) {
+    for (std::int32_t ahead_y = ahead_z == 0 ? 0 : -kReach; ahead_y <= kReach; ++ahead_y) {
+      std::size_t window = 0;
+      for (const Cell& cell : cells) {
+        const auto& [z, y, x] = cell.place;
+        const std::array<std::int32_t, 3> begin{z + ahead_z, y + ahead_y, x - kReach};
+        const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kReach};
+        while (window < cells.size() && cells[window].place < begin) ++window;
+        for (std::size_t i = window; i < cells.size() && cells[i].place <= end; ++i) {
+          unite_cells(mesh, cell, cells[i], tolerance, clusters);
+        }
+      }
+    }
+  }
+  return clusters;
+}
+
+// The vertices of edges that are not used as often one way as the other, ascending.
+std::vector<std::int32_t> vertices_beside_cracks(const MeshTopology& topology) {
+  std::vector<std::int32_t> vertices;
+  for (const auto* edges : {&topology.boundary, &topology.misoriented, &topology.non_manifold}) {
+    for (const Edge& edge : *edges) vertices.insert(vertices.end(), edge.begin(), edge.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+// Replaces the exact weld by a tolerance weld, if that leaves no edge without a partner.
+void close_cracks(WeldedMesh& welded) {
+  const MeshTopology topology = mesh_topology(welded.mesh);
+  if (topology.counts.all_matched()) return;
+  const double tolerance = kWeldTolerance * bounding_box(welded.mesh).diagonal();
+  if (!std::isnormal(tolerance)) return;
+
+  DisjointSets clusters = unite_close_vertices(welded.mesh, vertices_beside_cracks(topology), tolerance);
+  std::vector<std::int32_t> representative(welded.mesh.vertex_count());
+  double largest_move = 0.0;
+  for (std::size_t v = 0; v < representative.size(); ++v) {
+    const auto vertex = static_cast<std::int32_t>(v);
+    representative[v] = clusters.representative(vertex);
+    const double move = (welded.mesh.vertex(vertex) - welded.mesh.vertex(representative[v])).norm();
+    largest_move = std::max(largest_move, move);
+  }
+  if (largest_move == 0.0 || largest_move > kLongestChain * tolerance) return;
+
+  TriangleMesh closed = merge_vertices(welded.mesh, representative);
+  if (closed.triangles.empty() || !mesh_topology(closed).counts.all_matched()) return;
+  welded.faces_dropped += static_cast<std::int64_t>(welded.mesh.triangles.size() - closed.triangles.size());
+  welded.mesh = std::move(closed);
+  welded.kind = WeldKind::kTolerance;
+  welded.largest_move = largest_move;
+}
+
+}  // namespace
+
+WeldedMesh weld(const TriangleMesh& mesh) {
+  WeldedMesh welded;
+  welded.vertices_stored = static_cast<std::int64_t>(mesh.vertex_count());
+  welded.mesh = merge_vertices(mesh, first_at_same_position(mesh));
+  welded.faces_dropped = static_cast<std::int64_t>(mesh.triangles.size() - welded.mesh.triangles.size());
+  close_cracks(welded);
+  return welded;
+}
+
+}  // namespace buoyancy

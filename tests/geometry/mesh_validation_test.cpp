@@ -1,0 +1,181 @@
+#include "geometry/mesh_validation.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "geometry/welding.h"
+#include "tests/geometry/sample_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+MeshValidation validate(const TriangleMesh& mesh, OpenPolicy open = OpenPolicy::kRefuse) {
+  return validate_mesh({mesh, {}}, "hull.stl", {open, false});
+}
+
+void expect_refused(const MeshValidation& validation, const std::string& words) {
+  EXPECT_FALSE(validation.mesh);
+  ASSERT_TRUE(validation.refusal);
+  EXPECT_EQ(validation.refusal->subject, "hull.stl");
+  EXPECT_NE(validation.refusal->message().find(words), std::string::npos) << validation.refusal->message();
+  EXPECT_FALSE(validation.refusal->remedy.empty());
+}
+
+TEST(MeshValidation, AcceptsAClosedMeshAndMeasuresIt) {
+  const MeshValidation cube = validate(cube_mesh(2, Vec3(10, 0, 0)));
+  ASSERT_TRUE(cube.mesh);
+  EXPECT_FALSE(cube.refusal);
+  EXPECT_TRUE(cube.report.closed());
+  EXPECT_EQ(cube.report.name, "hull.stl");
+  EXPECT_EQ(cube.report.triangles, 12);
+  EXPECT_EQ(cube.report.vertices_welded, 8);
+  EXPECT_EQ(cube.report.box.min_B, Vec3(9, -1, -1));
+  EXPECT_DOUBLE_EQ(cube.report.diagonal, std::sqrt(12.0));
+  EXPECT_DOUBLE_EQ(cube.report.area, 24.0);
+  EXPECT_DOUBLE_EQ(cube.report.volume, 8.0);
+  EXPECT_EQ(cube.report.volume_by_axis, Vec3::Constant(8.0));
+  EXPECT_EQ(cube.report.area_vector, Vec3::Zero());
+  ASSERT_EQ(cube.report.components.size(), 1U);
+  EXPECT_TRUE(cube.report.components[0].closed);
+  EXPECT_FALSE(cube.report.turned);
+  EXPECT_TRUE(cube.mesh->boundary_vertices.empty());
+}
+
+TEST(MeshValidation, FindsTheSameInAMeshStoredFaceByFace) {
+  const TriangleMesh sphere = rock_mesh();
+  const MeshReport welded = validate(sphere).report;
+  const MeshReport soup = validate(unwelded(sphere)).report;
+  EXPECT_EQ(soup.vertices_stored, 3 * welded.triangles);
+  EXPECT_EQ(soup.vertices_welded, welded.vertices_welded);
+  EXPECT_EQ(soup.volume, welded.volume);
+  EXPECT_EQ(soup.area, welded.area);
+  EXPECT_TRUE(soup.closed());
+}
+
+TEST(MeshValidation, AcceptsBalancedEdges) {
+  const MeshValidation cubes =
+      validate(joined(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)), box_mesh(Vec3(1, 1, 0), Vec3(2, 2, 1))));
+  ASSERT_TRUE(cubes.mesh);
+  EXPECT_EQ(cubes.report.balanced_edges, 1);
+  EXPECT_DOUBLE_EQ(cubes.report.volume, 2.0);
+}
+
+TEST(MeshValidation, TurnsAMeshThatIsInsideOutAndSaysSo) {
+  const MeshValidation cube = validate(inside_out(cube_mesh()));
+  ASSERT_TRUE(cube.mesh);
+  EXPECT_TRUE(cube.report.turned);
+  EXPECT_TRUE(cube.report.components[0].turned);
+  EXPECT_DOUBLE_EQ(cube.report.volume, 1.0);
+  EXPECT_DOUBLE_EQ(cube.report.components[0].volume, 1.0);
+  EXPECT_DOUBLE_EQ(validate(cube.mesh->mesh).report.volume, 1.0);
+  EXPECT_FALSE(validate(cube.mesh->mesh).report.turned);
+}
+
+TEST(MeshValidation, RefusesAnOpenMeshAndSaysWhereItsHoleIs) {
+  const MeshValidation open = validate(without_face(cube_mesh(), 0));
+  expect_refused(open, "3 boundary edges in 1 hole (between (-0.5, -0.5, -0.5) and (0.5, 0.5, -0.5))");
+  expect_refused(open, "dry_boundary");
+  EXPECT_EQ(open.report.boundary_edges, 3);
+  ASSERT_EQ(open.report.holes.size(), 1U);
+  EXPECT_EQ(open.report.holes[0].edges, 3);
+  EXPECT_FALSE(open.report.components[0].closed);
+}
+
+TEST(MeshValidation, AcceptsAnOpenMeshWhoseBoundaryStaysDry) {
+  const MeshValidation open = validate(without_face(cube_mesh(), 2), OpenPolicy::kDryBoundary);  // 4 5 6
+  ASSERT_TRUE(open.mesh);
+  EXPECT_EQ(open.mesh->boundary_vertices, (std::vector<std::int32_t>{4, 5, 6}));
+  EXPECT_FALSE(open.report.turned);
+}
+
+TEST(MeshValidation, TurnsAnOpenMeshByTheVolumeOfItWithItsHolesClosed) {
+  TriangleMesh cup = cube_mesh();
+  cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);
+  const MeshValidation turned = validate(inside_out(cup), OpenPolicy::kDryBoundary);
+  ASSERT_TRUE(turned.mesh);
+  EXPECT_TRUE(turned.report.turned);
+  EXPECT_EQ(validate(turned.mesh->mesh, OpenPolicy::kDryBoundary).report.turned, false);
+}
+
+TEST(MeshValidation, RefusesMisorientedAndNonManifoldMeshesWithEitherPolicy) {
+  TriangleMesh misoriented = cube_mesh();
+  std::swap(misoriented.triangles[5][0], misoriented.triangles[5][1]);
+  TriangleMesh finned = cube_mesh();
+  const std::int32_t fin = finned.add_vertex({5, 5, 5});
+  finned.triangles.push_back({0, 1, fin});
+  for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
+    expect_refused(validate(misoriented, policy), "3 misoriented edges (one from");
+    expect_refused(validate(finned, policy), "1 non-manifold edge (one from");
+    expect_refused(validate(finned, policy), "2 boundary edges");
+  }
+}
+
+TEST(MeshValidation, RefusesVerticesThatAreNotFinite) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    TriangleMesh cube = cube_mesh();
+    cube.y[3] = value;
+    expect_refused(validate(cube), "vertex 3 (counted from 0) is (0.5, ");
+  }
+}
+
+TEST(MeshValidation, RefusesMeshesWithoutTriangles) {
+  expect_refused(validate(TriangleMesh{}), "has no triangles");
+  TriangleMesh line = tetrahedron_mesh();
+  line.triangles = {{0, 1, 0}, {2, 2, 2}};
+  expect_refused(validate(line), "2 faces named a vertex twice");
+}
+
+TEST(MeshValidation, RefusesWhatEnclosesNoVolume) {
+  TriangleMesh sheet = tetrahedron_mesh();
+  sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
+  expect_refused(validate(sheet), "not above the rounding error");
+  expect_refused(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-17))), "not above the rounding error");
+  expect_refused(validate(cube_mesh(0.0)), "has no triangles");
+}
+
+TEST(MeshValidation, AcceptsAPlateAsThinAsItsRoundingErrorAllows) {
+  EXPECT_TRUE(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-8))).mesh);
+}
+
+TEST(MeshValidation, RefusesExtentsThatOverflowOrVanish) {
+  expect_refused(validate(cube_mesh(1e300)), "too large to compute with");
+  expect_refused(validate(cube_mesh(1e-300)), "which squared is 0");
+  expect_refused(validate(cube_mesh(1e-120)), "not above the rounding error");
+}
+
+TEST(MeshValidation, KeepsAndReportsFacesOfZeroArea) {
+  // A cube's edge split on one side only: a sliver of zero area fills the gap.
+  TriangleMesh cube = cube_mesh();
+  const std::int32_t middle = cube.add_vertex({0, -0.5, -0.5});
+  cube.triangles[4] = {0, middle, 4};  // was 0 1 4
+  cube.triangles.push_back({middle, 1, 4});
+  cube.triangles.push_back({0, 1, middle});
+  const MeshValidation validation = validate(cube);
+  ASSERT_TRUE(validation.mesh);
+  EXPECT_EQ(validation.report.degenerate_faces, 1);
+  EXPECT_EQ(validation.report.triangles, 14);
+  EXPECT_DOUBLE_EQ(validation.report.volume, 1.0);
+}
+
+TEST(MeshValidation, DropsFacesThatNameAVertexTwiceAndReportsDuplicates) {
+  TriangleMesh cube = cube_mesh();
+  cube.triangles.push_back({1, 1, 2});
+  EXPECT_EQ(validate(cube).report.dropped_faces, 1);
+  EXPECT_TRUE(validate(cube).mesh);
+
+  TriangleMesh doubled = cube_mesh();
+  doubled.triangles.push_back(doubled.triangles[0]);
+  expect_refused(validate(doubled), "1 duplicate face");
+}
+
+TEST(MeshValidation, GivesAccurateVolumesFarFromTheOrigin) {
+  const Vec3 far(1e6, 2e6, -3e6);
+  const MeshReport report = validate(box_mesh(far, far + Vec3(1, 2, 4))).report;
+  EXPECT_DOUBLE_EQ(report.volume, 8.0);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,127 @@
+#include "geometry/welding.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "geometry/mesh_topology.h"
+#include "tests/geometry/sample_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+TEST(Welding, MergesVerticesOfEqualPositionAndKeepsTheirFirstOrder) {
+  const TriangleMesh cube = cube_mesh();
+  const WeldedMesh welded = weld(unwelded(cube));
+  EXPECT_EQ(welded.kind, WeldKind::kExact);
+  EXPECT_EQ(welded.vertices_stored, 36);
+  ASSERT_EQ(welded.mesh.vertex_count(), 8U);
+  ASSERT_EQ(welded.mesh.triangles.size(), 12U);
+  // The first face of the cube is 0, 2, 1: its corners come first in the soup.
+  EXPECT_EQ(welded.mesh.triangles.front(), (Triangle{0, 1, 2}));
+  for (std::size_t f = 0; f < cube.triangles.size(); ++f) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      EXPECT_EQ(welded.mesh.vertex(welded.mesh.triangles[f][corner]), cube.vertex(cube.triangles[f][corner]));
+    }
+  }
+}
+
+TEST(Welding, ChangesNothingInAWeldedMesh) {
+  const TriangleMesh sphere = rock_mesh();
+  const WeldedMesh welded = weld(sphere);
+  EXPECT_EQ(welded.mesh.x, sphere.x);
+  EXPECT_EQ(welded.mesh.y, sphere.y);
+  EXPECT_EQ(welded.mesh.z, sphere.z);
+  EXPECT_EQ(welded.mesh.triangles, sphere.triangles);
+}
+
+TEST(Welding, TakesMinusZeroForZero) {
+  TriangleMesh soup = unwelded(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)));
+  for (std::size_t v = 0; v < soup.vertex_count(); v += 2) {
+    if (soup.x[v] == 0.0) soup.x[v] = -0.0;
+  }
+  EXPECT_EQ(weld(soup).mesh.vertex_count(), 8U);
+}
+
+TEST(Welding, LeavesOutVerticesThatNoFaceUses) {
+  TriangleMesh mesh = cube_mesh();
+  mesh.x.insert(mesh.x.begin(), 100.0);
+  mesh.y.insert(mesh.y.begin(), 100.0);
+  mesh.z.insert(mesh.z.begin(), 100.0);
+  for (Triangle& face : mesh.triangles) {
+    for (std::int32_t& vertex : face) ++vertex;
+  }
+  const WeldedMesh welded = weld(mesh);
+  EXPECT_EQ(welded.vertices_stored, 9);
+  EXPECT_EQ(welded.mesh.vertex_count(), 8U);
+  EXPECT_EQ(welded.mesh.triangles, cube_mesh().triangles);
+}
+
+TEST(Welding, DropsAndCountsFacesThatNameAVertexTwiceBeforeOrAfter) {
+  TriangleMesh mesh = cube_mesh();
+  mesh.triangles.push_back({3, 3, 5});
+  const std::int32_t copy = mesh.add_vertex(mesh.vertex(7));
+  mesh.triangles.push_back({7, 2, copy});
+  const WeldedMesh welded = weld(mesh);
+  EXPECT_EQ(welded.faces_dropped, 2);
+  EXPECT_EQ(welded.mesh.triangles.size(), 12U);
+  EXPECT_EQ(welded.mesh.vertex_count(), 8U);
+}
+
+// A sphere as soup whose copies of a vertex are up to `jitter` apart along x.
+TriangleMesh cracked_sphere(double jitter) {
+  TriangleMesh soup = unwelded(sphere_mesh(10));
+  for (std::size_t v = 0; v < soup.vertex_count(); ++v)
+    soup.x[v] += jitter * static_cast<double>(v % 7) / 6.0;
+  return soup;
+}
+
+TEST(Welding, ClosesCracksNarrowerThanTheTolerance) {
+  const TriangleMesh soup = cracked_sphere(1e-6);  // the diagonal is 2 sqrt(3)
+  const WeldedMesh welded = weld(soup);
+  EXPECT_EQ(welded.kind, WeldKind::kTolerance);
+  EXPECT_TRUE(mesh_topology(welded.mesh).counts.all_matched());
+  EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count());
+  EXPECT_EQ(welded.mesh.triangles.size(), soup.triangles.size());
+  EXPECT_GT(welded.largest_move, 0.0);
+  EXPECT_LE(welded.largest_move, 1e-6 * (1.0 + 1e-9));
+}
+
+TEST(Welding, StaysExactWhereTheToleranceDoesNotCloseTheMesh) {
+  const TriangleMesh soup = cracked_sphere(1e-6);
+  const WeldedMesh welded = weld(without_face(soup, 17));
+  EXPECT_EQ(welded.kind, WeldKind::kExact);
+  EXPECT_EQ(welded.largest_move, 0.0);
+  EXPECT_EQ(weld(cracked_sphere(1e-4)).kind, WeldKind::kExact);
+}
+
+TEST(Welding, MovesNothingThatIsNotBesideACrack) {
+  // A closed tetrahedron far smaller than the tolerance stays beside the cracked sphere.
+  TriangleMesh tiny = tetrahedron_mesh();
+  for (auto* coordinates : {&tiny.x, &tiny.y, &tiny.z}) {
+    for (double& coordinate : *coordinates) coordinate *= 1e-8;
+  }
+  const WeldedMesh welded = weld(joined(cracked_sphere(1e-6), tiny));
+  EXPECT_EQ(welded.kind, WeldKind::kTolerance);
+  EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count() + 4);
+}
+
+TEST(Welding, DoesNotCollapseAChainOfCloseVertices) {
+  // A ring of 2000 vertices 0.3 tolerances apart around a hole: closing it would move vertices far.
+  TriangleMesh ring;
+  constexpr std::int32_t kVertices = 2000;
+  const double radius = 0.3e-6 * kVertices / 6.283;
+  const std::int32_t apex = ring.add_vertex({0, 0, 1});
+  for (std::int32_t i = 0; i < kVertices; ++i) {
+    const double angle = 6.283185307179586 * i / kVertices;
+    ring.add_vertex({radius * std::cos(angle), radius * std::sin(angle), 0});
+  }
+  for (std::int32_t i = 0; i < kVertices; ++i)
+    ring.triangles.push_back({apex, 1 + i, 1 + (i + 1) % kVertices});
+  const WeldedMesh welded = weld(joined(ring, cube_mesh(0.5, Vec3(0, 0, 2))));
+  EXPECT_EQ(welded.kind, WeldKind::kExact);
+  EXPECT_EQ(welded.mesh.vertex_count(), 2001U + 8U);
+}
+
+}  // namespace
+}  // namespace buoyancy
