@@ -7,12 +7,11 @@ namespace buoyancy {
 
 Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const Vec3 apex = apex_on_water(mesh.centroid, plane);
-  const auto o = Point<double>::from(apex);
   const auto sum = sum_over_wet_surface<VolumeElements, CutTriangles::kLeaveOut>(
-      mesh, plane, [o](VolumeElements& block, const auto& a, const auto& b, const auto& c) {
-        block.add(a.y, b.y, c.y, o);
+      mesh, plane, [&](VolumeElements& block, const auto& a, const auto& b, const auto& c) {
+        block.add(a.y - apex, b.y - apex, c.y - apex);
       });
-  return displacement_of_volume(sum.volume(), sum.moment(apex), plane);
+  return displacement_about_apex(sum, apex, plane);
 }
 
 }  // namespace buoyancy

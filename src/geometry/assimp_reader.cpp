@@ -1,0 +1,354 @@
+#include "geometry/assimp_reader.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <Eigen/LU>
+#include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+namespace buoyancy {
+namespace {
+
+// assimp's node transforms are single precision; their product along the tree is not.
+using Transform = Eigen::Matrix<double, 3, 4>;
+
+Transform to_transform(const aiMatrix4x4& m) {
+  Transform transform;
+  transform << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
+  return transform;
+}
+
+Transform compose(const Transform& outer, const Transform& inner) {
+  Transform product;
+  product.leftCols<3>() = outer.leftCols<3>() * inner.leftCols<3>();
+  product.col(3) = outer.leftCols<3>() * inner.col(3) + outer.col(3);
+  return product;
+}
+
+// A mesh file may name others (buffers, materials). What it names must be a regular file too: a device or a
+// pipe would never end.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit RegularFiles(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
+
+  bool Exists(const char* file) const override {
+    std::error_code error;
+    return std::filesystem::is_regular_file(file, error) &&
+           std::filesystem::file_size(file, error) <= most_bytes_ && !error;
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  std::uint64_t most_bytes_;
+};
+
+// assimp goes on after errors that change geometry (an index out of range, a polygon it cannot split) and
+// tells only its log.
+struct LoggedErrors {
+  std::string first;
+  std::int64_t count = 0;
+};
+
+class ErrorLog : public Assimp::LogStream {
+ public:
+  explicit ErrorLog(LoggedErrors& errors) : errors_(errors) {}
+
+  void write(const char* message) override {
+    std::string text = message;  // "Error, T0: OFF: Vertex index is out of range\n"
+    if (text.find("aterial") != std::string::npos) return;  // not about geometry
+    if (++errors_.count > 1) return;
+    if (const std::size_t colon = text.find(": "); colon != std::string::npos) text.erase(0, colon + 2);
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    errors_.first = text;
+  }
+
+ private:
+  LoggedErrors& errors_;
+};
+
+// Collects what assimp logs as an error from its making to its end.
+class ErrorLogging {
+ public:
+  ErrorLogging() {
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new ErrorLog(errors_), Assimp::Logger::Err);
+  }
+  ~ErrorLogging() { Assimp::DefaultLogger::kill(); }
+  ErrorLogging(const ErrorLogging&) = delete;
+  ErrorLogging& operator=(const ErrorLogging&) = delete;
+
+  const LoggedErrors& errors() const { return errors_; }
+
+ private:
+  LoggedErrors errors_;
+};
+
+// The importers that claim `extension` stay; all others go, so that content cannot lead to them.
+void keep_only(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* candidate = importer.GetImporter(i);
+    std::set<std::string> extensions;
+    candidate->GetExtensionList(extensions);
+    if (extensions.count(extension) > 0) continue;
+    importer.UnregisterLoader(candidate);
+    delete candidate;  // unregistering passes it back to us
+  }
+}
+
+struct PlacedNode {
+  const aiNode* node;
+  Transform x_BN;  // from the node's frame N to the file's
+};
+
+// Every node with its transform, in the file's order. No recursion: the depth is the file's to choose.
+std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
+  std::vector<PlacedNode> done;
+  std::vector<PlacedNode> open{{scene.mRootNode, to_transform(scene.mRootNode->mTransformation)}};
+  while (!open.empty()) {
+    const PlacedNode placed = open.back();
+    open.pop_back();
+    done.push_back(placed);
+    for (unsigned int i = placed.node->mNumChildren; i-- > 0;) {
+      const aiNode* child = placed.node->mChildren[i];
+      open.push_back({child, compose(placed.x_BN, to_transform(child->mTransformation))});
+    }
+  }
+  return done;
+}
+
+struct FaceCounts {
+  std::uint64_t triangles = 0;
+  std::uint64_t points_and_lines = 0;
+};
+
+FaceCounts count_faces(const aiMesh& mesh) {
+  FaceCounts counts;
+  for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
+    if (mesh.mFaces[f].mNumIndices == 3) ++counts.triangles;
+    if (mesh.mFaces[f].mNumIndices == 1 || mesh.mFaces[f].mNumIndices == 2) ++counts.points_and_lines;
+  }
+  return counts;
+}
+
+void append_instance(const aiMesh& part, const Transform& x_BN, TriangleMesh& mesh) {
+  const auto first = static_cast<std::int32_t>(mesh.vertex_count());
+  for (unsigned int v = 0; v < part.mNumVertices; ++v) {
+    const aiVector3D& vertex = part.mVertices[v];
+    const Vec3 vertex_N(vertex.x, vertex.y, vertex.z);
+    mesh.add_vertex(x_BN.leftCols<3>() * vertex_N + x_BN.col(3));
+  }
+  const bool mirrored = x_BN.leftCols<3>().determinant() < 0.0;
+  for (unsigned int f = 0; f < part.mNumFaces; ++f) {
+    const aiFace& face = part.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    Triangle triangle{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      triangle[corner] = first + static_cast<std::int32_t>(face.mIndices[corner]);
+    }
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    mesh.triangles.push_back(triangle);
+  }
+}
+
+Error over_limit(std::uint64_t found, const char* what, std::uint64_t limit, const char* key) {
+  return {"", std::to_string(found) + " " + what,
+          "at most " + std::to_string(limit) + " (limit '" + key + "')",
+          "the mesh is finer than this service is set up for, or one part is instanced very often",
+          std::string("Simplify the mesh, or raise '") + key + "' under [limits]"};
+}
+
+// Meshes that no node refers to are not part of the scene and stay out.
+Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits) {
+  std::vector<FaceCounts> counts;
+  for (unsigned int m = 0; m < scene.mNumMeshes; ++m) counts.push_back(count_faces(*scene.mMeshes[m]));
+
+  ImportedMesh imported;
+  const std::vector<PlacedNode> nodes = placed_nodes(scene);
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  for (const PlacedNode& placed : nodes) {
+    std::uint64_t triangles_here = 0;
+    for (unsigned int i = 0; i < placed.node->mNumMeshes; ++i) {
+      const unsigned int m = placed.node->mMeshes[i];
+      triangles_here += counts[m].triangles;
+      vertices += counts[m].triangles > 0 ? scene.mMeshes[m]->mNumVertices : 0;
+      imported.source.left_out += static_cast<std::int64_t>(counts[m].points_and_lines);
+    }
+    triangles += triangles_here;
+    if (triangles_here > 0) ++imported.source.nodes;
+  }
+  constexpr std::uint64_t kIndexable = 2'147'483'647;  // vertex indices are 32-bit
+  const std::uint64_t most_vertices = std::min(limits.vertices, kIndexable);
+  if (vertices > most_vertices) return failure(over_limit(vertices, "vertices", most_vertices, "vertices"));
+  if (triangles > limits.faces) return failure(over_limit(triangles, "triangles", limits.faces, "faces"));
+
+  imported.mesh.x.reserve(vertices);
+  imported.mesh.y.reserve(vertices);
+  imported.mesh.z.reserve(vertices);
+  imported.mesh.triangles.reserve(triangles);
+  for (const PlacedNode& placed : nodes) {
+    for (unsigned int i = 0; i < placed.node->mNumMeshes; ++i) {
+      const unsigned int m = placed.node->mMeshes[i];
+      if (counts[m].triangles > 0) append_instance(*scene.mMeshes[m], placed.x_BN, imported.mesh);
+    }
+  }
+  return imported;
+}
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+void add_note(MeshSource& source, const std::string& text) {
+  if (!source.note.empty()) source.note += "; ";
+  source.note += text;
+}
+
+// assimp puts the unit and the up axis of a Collada or 3DS file into the root's transform.
+double root_scale(const aiScene& scene) {
+  return to_transform(scene.mRootNode->mTransformation).col(0).norm();
+}
+
+bool states_up_axis(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(65'536, '\0');  // <asset> is a Collada file's first element
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find("up_axis>") != std::string::npos;
+}
+
+// "z", "x", "y" or "": what the importer did to the axes shows in the root's transform.
+std::string collada_up_axis(const aiScene& scene, const std::filesystem::path& path) {
+  const Transform root = to_transform(scene.mRootNode->mTransformation);
+  const double scale = root_scale(scene);
+  if (root(1, 2) > 0.5 * scale) return "z";
+  if (root(1, 0) > 0.5 * scale) return "x";
+  return states_up_axis(path) ? "y" : "";
+}
+
+std::string fbx_up_axis(const aiScene& scene) {
+  int axis = -1;
+  int sign = 1;
+  if (scene.mMetaData == nullptr || !scene.mMetaData->Get("UpAxis", axis) || axis < 0 || axis > 2) return "";
+  const std::string name(1, static_cast<char>('x' + axis));
+  return scene.mMetaData->Get("UpAxisSign", sign) && sign < 0 ? "-" + name : name;
+}
+
+std::string up_axis_of(const aiScene& scene, const std::filesystem::path& path, MeshFormat format) {
+  std::string axis;
+  if (format == MeshFormat::kGltf) return "y";  // by its specification
+  if (format == MeshFormat::kCollada) axis = collada_up_axis(scene, path);
+  if (format == MeshFormat::kFbx) axis = fbx_up_axis(scene);
+  return axis.empty() ? "not stated" : axis;
+}
+
+void note_collada(const aiScene& scene, MeshSource& source) {
+  if (source.up_axis == "z" || source.up_axis == "x") {
+    add_note(source, "turned from " + source.up_axis + "-up to y-up by the importer");
+  }
+  const double scale = root_scale(scene);
+  if (scale != 1.0) add_note(source, "scaled by " + number(scale) + " to metres by the importer");
+}
+
+void note_3ds(const aiScene& scene, MeshSource& source) {
+  add_note(source, "turned from z-up, the format's custom, to y-up by the importer");
+  const double scale = root_scale(scene);
+  if (std::abs(scale - 1.0) > 1e-6) {
+    add_note(source, "scaled by " + number(scale) + ", the file's master scale, by the importer");
+  }
+}
+
+void note_fbx(const aiScene& scene, MeshSource& source) {
+  float centimetres = 0.0F;
+  if (scene.mMetaData == nullptr || !scene.mMetaData->Get("UnitScaleFactor", centimetres)) return;
+  if (!(centimetres > 0.0F) || centimetres == 100.0F) return;
+  add_note(source, "neither scaled nor turned by the importer; by the file one unit is " +
+                       number(centimetres) + " cm, so that scale = " + number(centimetres / 100.0) +
+                       " makes metres of it");
+}
+
+void describe(const aiScene& scene, const std::filesystem::path& path, MeshFormat format,
+              const LoggedErrors& logged, MeshSource& source) {
+  source.format = name_of(format);
+  source.up_axis = up_axis_of(scene, path, format);
+  if (format == MeshFormat::kCollada) note_collada(scene, source);
+  if (format == MeshFormat::k3ds) note_3ds(scene, source);
+  if (format == MeshFormat::kFbx) note_fbx(scene, source);
+  if (logged.count > 0) {
+    add_note(source, "the importer reported " + std::to_string(logged.count) +
+                         (logged.count == 1 ? " error: " : " errors, the first: ") + logged.first);
+  }
+}
+
+Error unreadable(MeshFormat format, const std::string& complaint) {
+  const std::string name(name_of(format));
+  return {"", "not readable as " + name + (complaint.empty() ? "" : " (" + complaint + ")"),
+          "a complete " + name + " file", "the file is cut short, damaged or of another format",
+          "Open it in a mesh editor and export it anew"};
+}
+
+Error no_triangles(std::int64_t points_and_lines) {
+  return {"",
+          points_and_lines == 0
+              ? std::string("no triangles")
+              : "no triangles, but " + std::to_string(points_and_lines) + " points and lines",
+          "a mesh of triangles or polygons", "a point cloud, curves, or an export without its faces",
+          "Export the surface as polygons"};
+}
+
+}  // namespace
+
+Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshFormat format,
+                                        const ImportLimits& limits) {
+  const ErrorLogging logging;
+  Assimp::Importer importer;
+  importer.SetIOHandler(new RegularFiles(limits.mesh_bytes));  // the importer owns it
+  keep_only(importer, extension_of(path).substr(1));
+  // Nothing that edits geometry: assimp's other steps delete small triangles and move vertices.
+  const aiScene* scene =
+      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
+  if (scene == nullptr) {
+    if (const std::exception_ptr& exception = importer.GetException()) {
+      try {
+        std::rethrow_exception(exception);
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (...) {  // NOLINT(bugprone-empty-catch): its text is GetErrorString()
+      }
+    }
+    const std::string complaint = importer.GetErrorString();
+    if (complaint.find("contains no faces") != std::string::npos) return failure(no_triangles(0));
+    return failure(unreadable(format, complaint));
+  }
+  // The OFF importer logs a face it drops, a vertex it makes up or an index it bends, and calls it a success.
+  if (format == MeshFormat::kOff && logging.errors().count > 0) {
+    return failure(unreadable(format, logging.errors().first));
+  }
+  if (scene->mRootNode == nullptr) return failure(unreadable(format, "no scene in it"));
+
+  Expected<ImportedMesh> imported = flatten(*scene, limits);
+  if (imported && imported->mesh.triangles.empty()) return failure(no_triangles(imported->source.left_out));
+  if (imported) describe(*scene, path, format, logging.errors(), imported->source);
+  return imported;
+}
+
+}  // namespace buoyancy

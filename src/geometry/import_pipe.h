@@ -1,0 +1,30 @@
+// Internal to mesh import: the result of a child process, through a pipe.
+//
+// The writer may be broken by the file it reads, so the reader believes nothing: counts against limits before
+// memory is set aside for them, texts bounded and made printable, memory touched only for bytes that came.
+// What the numbers mean (indices in range, finite vertices) is for the caller to check.
+#pragma once
+
+#include <chrono>
+#include <variant>
+
+#include "geometry/error.h"
+#include "geometry/mesh_import.h"
+
+namespace buoyancy {
+
+using ImportDeadline = std::chrono::steady_clock::time_point;
+
+// False if the other end has gone.
+bool send_import(int pipe, const Expected<ImportedMesh>& result);
+
+enum class NoImport {
+  kTimedOut,  // the deadline passed first
+  kBroken,    // the pipe ended early, or what came makes no sense
+};
+
+// Waits for the whole result until the deadline. Throws std::bad_alloc where this process's memory ends.
+std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
+                                                              ImportDeadline deadline);
+
+}  // namespace buoyancy

@@ -1,0 +1,257 @@
+#include "geometry/import_process.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "geometry/assimp_reader.h"
+#include "geometry/import_pipe.h"
+
+namespace buoyancy {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kShadowMemory = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kShadowMemory = true;
+#else
+constexpr bool kShadowMemory = false;
+#endif
+#else
+constexpr bool kShadowMemory = false;
+#endif
+
+constexpr int kOutOfMemoryExit = 71;
+
+// ---- the child's side -------------------------------------------------------------------------------------
+
+void limit_resource(__rlimit_resource resource, std::uint64_t most) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min<rlim_t>(most, limit.rlim_max);
+  ::setrlimit(resource, &limit);
+}
+
+std::uint64_t address_space_in_use() {
+  unsigned long pages = 0;
+  if (std::FILE* statm = std::fopen("/proc/self/statm", "re")) {
+    if (std::fscanf(statm, "%lu", &pages) != 1) pages = 0;  // NOLINT(cert-err34-c): written by the kernel
+    std::fclose(statm);
+  }
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// Where the machine itself runs out of memory first, the kernel shall choose the child, not its parent.
+void volunteer_for_out_of_memory() {
+  if (std::FILE* score = std::fopen("/proc/self/oom_score_adj", "we")) {
+    std::fputs("1000", score);
+    std::fclose(score);
+  }
+}
+
+// A crash shall be a crash, as if no handler of the parent's existed, and leave no core file.
+void restore_signals() {
+  struct sigaction by_default {};
+  by_default.sa_handler = SIG_DFL;
+  for (int signal = 1; signal < NSIG; ++signal) ::sigaction(signal, &by_default, nullptr);
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
+}
+
+// Leaves standard input and outputs on /dev/null (assimp prints) and the pipe as descriptor 3. What stays
+// open here would stay open in the parent's name: sockets, and the pipes of other imports at the same time.
+int keep_only_pipe(int pipe) {
+  constexpr int kPipe = 3;
+  if (pipe != kPipe) ::dup2(pipe, kPipe);
+  const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  for (int standard = 0; standard < kPipe; ++standard) {
+    if (null >= 0) ::dup2(null, standard);
+  }
+  ::close_range(kPipe + 1, ~0U, 0);
+  return kPipe;
+}
+
+[[noreturn]] void run_child(int pipe, pid_t parent, const std::filesystem::path& path, MeshFormat format,
+                            const ImportLimits& limits) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
+  restore_signals();
+  if (!kShadowMemory) limit_resource(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
+  limit_resource(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.import_seconds)) + 1);
+  limit_resource(RLIMIT_CORE, 0);
+  volunteer_for_out_of_memory();
+  ::prctl(PR_SET_DUMPABLE, 0);  // no core through a core_pattern pipe either
+  pipe = keep_only_pipe(pipe);
+  std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
+  try {
+    const Expected<ImportedMesh> result = read_with_assimp(path, format, limits);
+    ::_exit(send_import(pipe, result) ? EXIT_SUCCESS : EXIT_FAILURE);
+  } catch (const std::bad_alloc&) {
+    ::_exit(kOutOfMemoryExit);
+  } catch (...) {
+    ::_exit(EXIT_FAILURE);
+  }
+}
+
+// ---- the parent's side ------------------------------------------------------------------------------------
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
+// A child that is killed and reaped at the latest when this object ends.
+class Child {
+ public:
+  explicit Child(pid_t pid) : pid_(pid) {}
+  ~Child() { end(); }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // The wait status of a child that ends on its own by `deadline`; nothing if it had to be killed, or if
+  // somebody else in this process has taken its status.
+  std::optional<int> status_by(ImportDeadline deadline) {
+    while (pid_ > 0) {
+      int status = 0;
+      const pid_t reaped = ::waitpid(pid_, &status, WNOHANG);
+      if (reaped == pid_) {
+        pid_ = 0;
+        return status;
+      }
+      if (reaped < 0 && errno != EINTR) pid_ = 0;
+      if (ImportDeadline::clock::now() >= deadline) end();
+      if (pid_ > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return std::nullopt;
+  }
+
+  void end() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = 0;
+  }
+
+ private:
+  pid_t pid_;
+};
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+Error timed_out(const ImportLimits& limits) {
+  return {"", "the importer had not finished after " + number(limits.import_seconds) + " s",
+          "an import within that time (limit 'import_seconds')",
+          "the file is damaged and keeps the importer busy for ever, or it is very large",
+          "Export the file anew, or raise 'import_seconds' under [limits]"};
+}
+
+Error out_of_memory(const ImportLimits& limits) {
+  return {"",
+          "the importer needed more than " + number(1e-9 * static_cast<double>(limits.memory_bytes)) + " GB",
+          "a file that can be read within that memory",
+          "the file is damaged and claims more data than it holds, or it is very large",
+          "Export the file anew, or simplify the mesh"};
+}
+
+Error killed() {
+  return {"", "the importer was killed while it read it (signal 9)",
+          "a file that can be read in the memory there is",
+          "the machine ran out of memory, so that the kernel ended it",
+          "Simplify the mesh, or use a larger machine"};
+}
+
+Error crashed(const std::string& how) {
+  return {"", "the importer " + how, "a file that can be read",
+          "the file is cut short, damaged or of another format",
+          "Open it in a mesh editor and export it anew"};
+}
+
+Error system_failure(const char* call) {
+  return {"", std::string(call) + " failed: " + std::generic_category().message(errno),
+          "a child process that reads the file", "this process or the machine is at a limit",
+          "Try again; see ulimit -a"};
+}
+
+Error explain(std::optional<int> status, const ImportLimits& limits) {
+  if (!status) return crashed("ended without an answer");
+  if (WIFSIGNALED(*status)) {
+    const int signal = WTERMSIG(*status);
+    if (signal == SIGXCPU) return timed_out(limits);
+    if (signal == SIGKILL) return killed();
+    const char* name = ::sigdescr_np(signal);
+    return crashed("crashed on it (signal " + std::to_string(signal) +
+                   (name ? std::string(", ") + name : "") + ")");
+  }
+  if (WEXITSTATUS(*status) == kOutOfMemoryExit) return out_of_memory(limits);
+  return crashed("gave up on it (exit code " + std::to_string(WEXITSTATUS(*status)) + ")");
+}
+
+}  // namespace
+
+Expected<ImportedMesh> import_in_child(const std::filesystem::path& path, MeshFormat format,
+                                       const ImportLimits& limits) {
+  assert(limits.import_seconds > 0.0);
+  constexpr double kLongest = 1e8;  // s, three years: what a clock's ticks can hold
+  const std::chrono::duration<double> allowed(std::min(limits.import_seconds, kLongest));
+  const ImportDeadline deadline =
+      ImportDeadline::clock::now() + std::chrono::duration_cast<ImportDeadline::clock::duration>(allowed);
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure(system_failure("pipe"));
+  const Descriptor read_end(ends[0]);
+  Descriptor write_end(ends[1]);
+
+  const pid_t parent = ::getpid();
+  const pid_t pid = ::fork();
+  if (pid < 0) return failure(system_failure("fork"));
+  if (pid == 0) run_child(write_end.number(), parent, path, format, limits);
+  Child child(pid);
+  write_end.close();  // so that the pipe ends with the child
+
+  auto answer = receive_import(read_end.number(), limits, deadline);
+  if (auto* result = std::get_if<Expected<ImportedMesh>>(&answer)) return std::move(*result);
+  if (std::get<NoImport>(answer) == NoImport::kTimedOut) return failure(timed_out(limits));
+  // The pipe has ended; the child ends at once, unless it is so broken that it merely closed the pipe.
+  return failure(explain(
+      child.status_by(std::min(deadline, ImportDeadline::clock::now() + std::chrono::seconds(5))), limits));
+}
+
+}  // namespace buoyancy

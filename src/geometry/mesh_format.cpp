@@ -1,0 +1,113 @@
+#include "geometry/mesh_format.h"
+
+#include <algorithm>
+#include <array>
+
+namespace buoyancy {
+namespace {
+
+struct AcceptedExtension {
+  std::string_view extension;
+  MeshFormat format;
+};
+
+constexpr std::array kAccepted{
+    AcceptedExtension{".obj", MeshFormat::kObj},     AcceptedExtension{".stl", MeshFormat::kStl},
+    AcceptedExtension{".ply", MeshFormat::kPly},     AcceptedExtension{".off", MeshFormat::kOff},
+    AcceptedExtension{".dae", MeshFormat::kCollada}, AcceptedExtension{".gltf", MeshFormat::kGltf},
+    AcceptedExtension{".glb", MeshFormat::kGltf},    AcceptedExtension{".fbx", MeshFormat::kFbx},
+    AcceptedExtension{".3ds", MeshFormat::k3ds},
+};
+
+}  // namespace
+
+std::string_view name_of(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::kObj:
+      return "Wavefront OBJ";
+    case MeshFormat::kStl:
+      return "STL";
+    case MeshFormat::kPly:
+      return "PLY";
+    case MeshFormat::kOff:
+      return "OFF";
+    case MeshFormat::kCollada:
+      return "Collada";
+    case MeshFormat::kGltf:
+      return "glTF";
+    case MeshFormat::kFbx:
+      return "FBX";
+    case MeshFormat::k3ds:
+      return "3DS";
+  }
+  return "";
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');  // std::tolower would follow the locale
+  }
+  return extension;
+}
+
+std::optional<MeshFormat> format_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  for (const AcceptedExtension& accepted : kAccepted) {
+    if (extension == accepted.extension) return accepted.format;
+  }
+  return std::nullopt;
+}
+
+std::string accepted_extensions() {
+  std::string list;
+  for (const AcceptedExtension& accepted : kAccepted) {
+    if (!list.empty()) list += ", ";
+    list += accepted.extension;
+  }
+  return list;
+}
+
+std::optional<ContentGuess> guess_content(std::string_view first_bytes) {
+  struct Signature {
+    std::string_view bytes;
+    ContentGuess guess;
+  };
+  static constexpr std::array kSignatures{
+      Signature{"ply\n", {"PLY", ".ply"}},
+      Signature{"ply\r", {"PLY", ".ply"}},
+      Signature{"OFF\n", {"OFF", ".off"}},
+      Signature{"OFF\r", {"OFF", ".off"}},
+      Signature{"OFF ", {"OFF", ".off"}},
+      Signature{"COFF", {"OFF", ".off"}},
+      Signature{"NOFF", {"OFF", ".off"}},
+      Signature{"solid", {"ASCII STL", ".stl"}},
+      Signature{"glTF", {"binary glTF (GLB)", ".glb"}},
+      Signature{"Kaydara FBX Binary", {"FBX", ".fbx"}},
+      Signature{"; FBX", {"FBX", ".fbx"}},
+      Signature{"MM", {"3DS", ".3ds"}},
+      Signature{"PK\x03\x04", {"a zip archive (3MF, ZAE and others)", ""}},
+      Signature{"BLENDER", {"Blender", ""}},
+      Signature{"xof ", {"DirectX X", ""}},
+      Signature{"ISO-10303-21", {"STEP", ""}},
+      Signature{"\x1f\x8b", {"gzip-compressed", ""}},
+      Signature{"version https://git-lfs", {"a Git LFS pointer, not the file itself", ""}},
+      Signature{"<!DOCTYPE html", {"an HTML page", ""}},
+      Signature{"<html", {"an HTML page", ""}},
+  };
+  for (const Signature& signature : kSignatures) {
+    if (first_bytes.substr(0, signature.bytes.size()) == signature.bytes) return signature.guess;
+  }
+  if (first_bytes.find("<COLLADA") != std::string_view::npos) return ContentGuess{"Collada", ".dae"};
+  const std::size_t text_start = first_bytes.find_first_not_of(" \t\r\n");
+  if (text_start != std::string_view::npos && first_bytes[text_start] == '{') {
+    return ContentGuess{"JSON (glTF)", ".gltf"};
+  }
+  const std::string lines = std::string(first_bytes).insert(0, 1, '\n');
+  if (lines.find("\nv ") != std::string::npos || lines.find("\nmtllib ") != std::string::npos) {
+    return ContentGuess{"Wavefront OBJ", ".obj"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,177 @@
+#include "geometry/mesh_import.h"
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "geometry/import_process.h"
+#include "geometry/mesh_format.h"
+
+namespace buoyancy {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string_view name_of(fs::file_type type) {
+  switch (type) {
+    case fs::file_type::directory:
+      return "a directory";
+    case fs::file_type::fifo:
+      return "a named pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::character:
+    case fs::file_type::block:
+      return "a device";
+    default:
+      return "no regular file";
+  }
+}
+
+// A PLY header whose end is missing makes the importer search for it until its time is up: such files are
+// found out here. Looks as far as any real header reaches.
+bool has_end_of_ply_header(std::ifstream& file) {
+  constexpr std::streamoff kMostHeaderBytes = 1'000'000;
+  file.clear();
+  file.seekg(0);
+  for (std::string line; file.tellg() < kMostHeaderBytes && std::getline(file, line);) {
+    if (line.rfind("end_header", 0) == 0) return true;
+  }
+  return false;
+}
+
+struct AcceptedFile {
+  MeshFormat format = MeshFormat::kObj;
+  std::optional<ContentGuess> content;
+};
+
+// All that can be told without running an importer.
+Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limits) {
+  const std::string mesh_file = "a mesh file (" + accepted_extensions() + ")";
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    return failure({"", "no such file", mesh_file, "the name is misspelt, or relative to another directory",
+                    "It was looked for as " + fs::absolute(path, error).string()});
+  }
+  if (status.type() == fs::file_type::none) {
+    return failure({"", "cannot be looked at: " + error.message(), mesh_file,
+                    "a directory on the way to it is closed to this user", "Mind the permissions"});
+  }
+  if (status.type() != fs::file_type::regular) {
+    return failure({"", "is " + std::string(name_of(status.type())), mesh_file,
+                    "the path names something else than the mesh", "Give the path of the mesh file itself"});
+  }
+
+  const std::optional<MeshFormat> format = format_of(path);
+  if (!format) {
+    const std::string extension = path.extension().string();
+    return failure({"",
+                    extension.empty() ? "a file name without an extension"
+                                      : "format '" + extension + "' is not accepted",
+                    "one of " + accepted_extensions(), "the mesh was saved in another format",
+                    "Export it as one of these, for instance binary .stl or .ply"});
+  }
+
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) return failure({"", "its size cannot be told: " + error.message(), mesh_file, "", ""});
+  if (bytes == 0) {
+    return failure({"", "the file is empty (0 bytes)", mesh_file, "an export or download that did not finish",
+                    "Export or fetch it anew"});
+  }
+  if (bytes > limits.mesh_bytes) {
+    return failure({"", std::to_string(bytes) + " bytes",
+                    "at most " + std::to_string(limits.mesh_bytes) + " (limit 'mesh_bytes')",
+                    "the mesh is finer than this service is set up for",
+                    "Simplify the mesh, or raise 'mesh_bytes' under [limits]"});
+  }
+
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string first_bytes(512, '\0');
+  file.read(first_bytes.data(), static_cast<std::streamsize>(first_bytes.size()));
+  if (file.gcount() <= 0) {
+    return failure({"", "cannot be read: " + std::generic_category().message(errno), "a readable file",
+                    "its permissions, or the medium it is on", "Make it readable to this user"});
+  }
+  first_bytes.resize(static_cast<std::size_t>(file.gcount()));
+  const std::optional<ContentGuess> content = guess_content(first_bytes);
+  if (content && content->extension == ".ply" && *format == MeshFormat::kPly &&
+      !has_end_of_ply_header(file)) {
+    return failure({"", "a PLY header without its 'end_header' line", "a complete PLY file",
+                    "the file is cut short or damaged", "Open it in a mesh editor and export it anew"});
+  }
+  return AcceptedFile{*format, content};
+}
+
+// A failure is best explained by content that does not fit the extension, where that is so.
+Error explained_by_content(Error error, const AcceptedFile& file, const std::string& extension) {
+  if (!file.content || file.content->extension == extension) return error;
+  error.cause = "the content looks like " + std::string(file.content->name) + ", which is not what " +
+                extension + " stands for";
+  error.remedy = file.content->extension.empty()
+                     ? "Export the mesh as one of " + accepted_extensions()
+                     : "If it is, give it the extension " + std::string(file.content->extension);
+  return error;
+}
+
+std::string coordinates(const TriangleMesh& mesh, std::size_t vertex) {
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(), "(%g, %g, %g)", mesh.x[vertex], mesh.y[vertex], mesh.z[vertex]);
+  return text.data();
+}
+
+// The importer may have been led astray by the file: nothing it made is taken on trust.
+std::optional<Error> unusable(const ImportedMesh& imported) {
+  const TriangleMesh& mesh = imported.mesh;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (!std::isfinite(mesh.x[v]) || !std::isfinite(mesh.y[v]) || !std::isfinite(mesh.z[v])) {
+      return Error{"",
+                   "vertex " + std::to_string(v) + " of " + std::to_string(mesh.vertex_count()) + " is " +
+                       coordinates(mesh, v),
+                   "finite coordinates", "a broken export, or numbers beyond single precision (3.4e38)",
+                   "Export the mesh anew"};
+    }
+  }
+  const auto vertices = static_cast<std::int64_t>(mesh.vertex_count());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::int32_t i : mesh.triangles[t]) {
+      if (i < 0 || i >= vertices) {
+        return Error{"", "triangle " + std::to_string(t) + " names vertex " + std::to_string(i),
+                     "0 to " + std::to_string(vertices - 1), "the file is damaged", "Export it anew"};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Expected<ImportedMesh> import_unnamed(const fs::path& path, const ImportLimits& limits) {
+  const Expected<AcceptedFile> file = check_file(path, limits);
+  if (!file) return failure(file.error());
+  Expected<ImportedMesh> imported = import_in_child(path, file->format, limits);
+  if (imported) {
+    if (std::optional<Error> error = unusable(*imported)) imported = failure(*std::move(error));
+  }
+  if (!imported) return failure(explained_by_content(imported.error(), *file, extension_of(path)));
+  return imported;
+}
+
+}  // namespace
+
+Expected<ImportedMesh> import_mesh(const fs::path& path, const ImportLimits& limits) try {
+  Expected<ImportedMesh> imported = import_unnamed(path, limits);
+  if (!imported) imported.error().subject = path.string();
+  return imported;
+} catch (const std::bad_alloc&) {
+  return failure({path.string(), "the mesh does not fit into this process's memory", "a smaller mesh",
+                  "the mesh is finer than this machine can hold", "Simplify the mesh"});
+}
+
+}  // namespace buoyancy

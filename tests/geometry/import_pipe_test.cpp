@@ -1,0 +1,173 @@
+#include "geometry/import_pipe.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace buoyancy {
+namespace {
+
+ImportDeadline in(std::chrono::milliseconds delay) {
+  return ImportDeadline::clock::now() + delay;
+}
+const auto kSoon = std::chrono::milliseconds(50);
+const auto kLate = std::chrono::seconds(60);
+
+class ImportPipe : public testing::Test {
+ protected:
+  ImportPipe() { EXPECT_EQ(::pipe(ends_.data()), 0); }
+  ~ImportPipe() override {
+    ::close(ends_[0]);
+    hang_up();
+  }
+
+  void hang_up() {
+    if (ends_[1] >= 0) ::close(ends_[1]);
+    ends_[1] = -1;
+  }
+  void write(const std::string& bytes) {
+    ASSERT_EQ(::write(ends_[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  auto receive(const ImportLimits& limits = {}) { return receive_import(ends_[0], limits, in(kLate)); }
+
+  std::array<int, 2> ends_{-1, -1};
+};
+
+ImportedMesh triangle() {
+  ImportedMesh imported;
+  imported.mesh.x = {0, 1, 0.1};
+  imported.mesh.y = {0, 0, 1e300};
+  imported.mesh.z = {-0.0, 2, 3};
+  imported.mesh.triangles = {{0, 1, 2}};
+  imported.source = {"PLY", "z", "a note", 3, 4};
+  return imported;
+}
+
+// What send_import writes, to be spoiled.
+std::string sent(const Expected<ImportedMesh>& result) {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(::pipe(ends.data()), 0);
+  EXPECT_TRUE(send_import(ends[1], result));
+  ::close(ends[1]);
+  std::string bytes(65'536, '\0');
+  const ssize_t got = ::read(ends[0], bytes.data(), bytes.size());
+  ::close(ends[0]);
+  bytes.resize(static_cast<std::size_t>(got));
+  return bytes;
+}
+
+bool broken(const std::variant<NoImport, Expected<ImportedMesh>>& answer) {
+  const NoImport* none = std::get_if<NoImport>(&answer);
+  return none != nullptr && *none == NoImport::kBroken;
+}
+
+TEST_F(ImportPipe, CarriesAMeshBitForBit) {
+  ASSERT_TRUE(send_import(ends_[1], triangle()));
+  const auto answer = receive();
+  const auto& result = std::get<Expected<ImportedMesh>>(answer);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->mesh.x, triangle().mesh.x);
+  EXPECT_EQ(result->mesh.y, triangle().mesh.y);
+  EXPECT_TRUE(std::signbit(result->mesh.z[0]));
+  EXPECT_EQ(result->mesh.triangles, triangle().mesh.triangles);
+  EXPECT_EQ(result->source.format, "PLY");
+  EXPECT_EQ(result->source.up_axis, "z");
+  EXPECT_EQ(result->source.note, "a note");
+  EXPECT_EQ(result->source.nodes, 3);
+  EXPECT_EQ(result->source.left_out, 4);
+}
+
+TEST_F(ImportPipe, CarriesMoreThanThePipeHolds) {
+  ImportedMesh large = triangle();
+  for (int i = 0; i < 300'000; ++i) large.mesh.add_vertex({1.0 * i, 2.0 * i, 3.0 * i});
+  std::thread sender([&] { EXPECT_TRUE(send_import(ends_[1], large)); });
+  const auto answer = receive();
+  sender.join();
+  EXPECT_EQ(std::get<Expected<ImportedMesh>>(answer)->mesh.z, large.mesh.z);
+}
+
+TEST_F(ImportPipe, CarriesAnErrorInPrintableCharacters) {
+  ASSERT_TRUE(send_import(ends_[1], failure({"", "a\nb\x1b[31m", "exp\xff", "", "do"})));
+  const auto answer = receive();
+  const Error& error = std::get<Expected<ImportedMesh>>(answer).error();
+  EXPECT_EQ(error.found, "a?b?[31m");
+  EXPECT_EQ(error.expectation, "exp?");
+  EXPECT_EQ(error.remedy, "do");
+}
+
+TEST_F(ImportPipe, TakesNothingThatEndsEarly) {
+  const std::string whole = sent(triangle());
+  for (std::size_t length = 0; length < whole.size(); length += 7) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    ASSERT_EQ(::write(ends[1], whole.data(), length), static_cast<ssize_t>(length));
+    ::close(ends[1]);
+    EXPECT_TRUE(broken(receive_import(ends[0], {}, in(kLate)))) << length;
+    ::close(ends[0]);
+  }
+}
+
+TEST_F(ImportPipe, GivesUpAtTheDeadline) {
+  write(sent(triangle()).substr(0, 20));
+  const auto answer = receive_import(ends_[0], {}, in(kSoon));
+  EXPECT_EQ(std::get<NoImport>(answer), NoImport::kTimedOut);
+}
+
+TEST_F(ImportPipe, BelievesNoCountAboveTheLimits) {
+  ImportLimits limits;
+  limits.vertices = 2;
+  write(sent(triangle()));
+  EXPECT_TRUE(broken(receive(limits)));
+}
+
+TEST_F(ImportPipe, BelievesNoFaceCountAboveTheLimits) {
+  ImportLimits limits;
+  limits.faces = 0;
+  write(sent(triangle()));
+  EXPECT_TRUE(broken(receive(limits)));
+}
+
+TEST_F(ImportPipe, SetsNoMemoryAsideForBytesThatDoNotCome) {
+  // Every eight bytes of the header in turn as the largest and as a large number: refused, or never followed
+  // by data.
+  const std::string whole = sent(triangle());
+  constexpr std::size_t kHeaderBytes = 72;
+  for (std::size_t at = 0; at < kHeaderBytes; at += 8) {
+    for (const std::uint64_t value :
+         {std::numeric_limits<std::uint64_t>::max(), std::uint64_t{150'000'000}}) {
+      if (at == 40 || at == 48) continue;  // nodes and left_out: any number from 0 is as good as another
+      std::string wrong = whole;
+      std::memcpy(wrong.data() + at, &value, sizeof(value));
+      std::array<int, 2> ends{};
+      ASSERT_EQ(::pipe(ends.data()), 0);
+      ASSERT_EQ(::write(ends[1], wrong.data(), wrong.size()), static_cast<ssize_t>(wrong.size()));
+      ::close(ends[1]);
+      const auto answer = receive_import(ends[0], {}, in(kLate));
+      ::close(ends[0]);
+      const auto* result = std::get_if<Expected<ImportedMesh>>(&answer);
+      EXPECT_TRUE(broken(answer) || (result != nullptr && !*result)) << at << ": " << value;
+    }
+  }
+}
+
+TEST_F(ImportPipe, SaysWhenNobodyListens) {
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
+  ::close(ends_[0]);
+  EXPECT_FALSE(send_import(ends_[1], triangle()));
+  ends_[0] = -1;
+  std::signal(SIGPIPE, before);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,262 @@
+#include "geometry/mesh_import.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "geometry/mesh_format.h"
+#include "tests/geometry/mesh_files.h"
+#include "tests/geometry/shared_mesh_files.h"
+
+namespace buoyancy {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kTestModels = "/usr/share/assimp/models";  // Debian's assimp-testmodels
+
+// m^3, signed: positive where triangles face outward.
+double volume(const TriangleMesh& mesh) {
+  double six_volumes = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    six_volumes += mesh.vertex(t[0]).dot(mesh.vertex(t[1]).cross(mesh.vertex(t[2])));
+  }
+  return six_volumes / 6.0;
+}
+
+ImportedMesh imported(const fs::path& file) {
+  Expected<ImportedMesh> result = import_mesh(file);
+  EXPECT_TRUE(result) << result.error().message();
+  return result ? *std::move(result) : ImportedMesh{};
+}
+
+class MeshImport : public testing::Test {
+ protected:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  for (const auto& [name, content] : tetrahedron_files()) {
+    SCOPED_TRACE(name);
+    const ImportedMesh found = imported(directory_.write(name, content));
+    EXPECT_EQ(found.mesh.triangles.size(), 4U);
+    EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+    EXPECT_EQ(found.source.nodes, 1);
+    EXPECT_EQ(found.source.left_out, 0);
+    EXPECT_EQ(found.source.format, name_of(*format_of(name)));
+  }
+}
+
+TEST_F(MeshImport, TakesExtensionsInAnyCase) {
+  EXPECT_EQ(imported(directory_.write("TETRAHEDRON.OFF", tetrahedron::off())).source.format, "OFF");
+  EXPECT_EQ(imported(directory_.write("Tetrahedron.Stl", tetrahedron::binary_stl())).source.format, "STL");
+}
+
+TEST_F(MeshImport, TakesFileNamesWithSpacesDotsAndOtherAlphabets) {
+  for (const char* name : {"a hull.off", "hull.v2.off", "bärenrumpf.off", "hull%20.off"}) {
+    EXPECT_EQ(imported(directory_.write(name, tetrahedron::off())).mesh.triangles.size(), 4U) << name;
+  }
+}
+
+TEST_F(MeshImport, LeavesVerticesUnweldedAndDegenerateTrianglesIn) {
+  const ImportedMesh stl = imported(directory_.write("soup.stl", tetrahedron::binary_stl()));
+  EXPECT_EQ(stl.mesh.vertex_count(), 12U);
+  // A cube of 1 um has faces whose areas assimp's own steps take for zero; the last triangle here is a line.
+  const ImportedMesh off = imported(directory_.write(
+      "small.off",
+      "OFF\n4 5 0\n0 0 0\n1e-6 0 0\n0 1e-6 0\n0 0 1e-6\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 1\n"));
+  EXPECT_EQ(off.mesh.triangles.size(), 5U);
+  EXPECT_NEAR(volume(off.mesh), 1e-18 / 6.0, 1e-24);
+}
+
+TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
+  // A pyramid over a pentagon with one corner pushed in: 5 sides and 3 triangles for its base.
+  const ImportedMesh found =
+      imported(directory_.write("pyramid.obj",
+                                "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nv 1 0.25 1\n"
+                                "f 5 4 3 2 1\nf 1 2 6\nf 2 3 6\nf 3 4 6\nf 4 5 6\nf 5 1 6\n"));
+  EXPECT_EQ(found.mesh.triangles.size(), 8U);
+  EXPECT_NEAR(volume(found.mesh), 2.5 / 3.0, 1e-12);  // base area 4 - 1.5, height 1
+}
+
+TEST_F(MeshImport, LeavesOutPointsAndLinesAndCountsThem) {
+  const ImportedMesh found =
+      imported(directory_.write("mixed.obj", tetrahedron::obj() + "l 1 2 3\np 1\np 2\n"));
+  EXPECT_EQ(found.mesh.triangles.size(), 4U);
+  EXPECT_EQ(found.source.left_out, 4);  // a line of three points is two lines
+  EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+}
+
+TEST_F(MeshImport, AppliesNodeTransformsInDouble) {
+  // 2^24 + 0.25 has no single-precision neighbour nearer than 0.25: a float product would lose the child's
+  // part.
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  const ImportedMesh found = imported(directory_.write(
+      "far.gltf", tetrahedron::gltf(R"([{"translation":[16777216,0,0],"children":[1]},)"
+                                    R"({"translation":[0.25,0,0],"scale":[2,2,2],"mesh":0}])")));
+  const BoundingBox box = bounding_box(found.mesh);
+  EXPECT_EQ(box.min_B.x(), 16777216.25);
+  EXPECT_EQ(box.max_B.x(), 16777218.25);
+  EXPECT_EQ(box.max_B.y(), 2.0);
+}
+
+TEST_F(MeshImport, PlacesEveryInstanceOfAMesh) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  const ImportedMesh found = imported(directory_.write(
+      "three.gltf",
+      tetrahedron::gltf(
+          R"([{"mesh":0,"children":[1,2,3]},{"translation":[5,0,0],"mesh":0},)"
+          R"({"translation":[0,5,0],"rotation":[0,0,0.70710678,0.70710678],"mesh":0},{"name":"empty"}])")));
+  EXPECT_EQ(found.source.nodes, 3);
+  EXPECT_EQ(found.mesh.triangles.size(), 12U);
+  EXPECT_EQ(found.mesh.vertex_count(), 12U);
+  EXPECT_NEAR(volume(found.mesh), 3.0 / 6.0, 1e-6);
+  const BoundingBox box = bounding_box(found.mesh);
+  EXPECT_EQ(box.max_B.x(), 6.0);
+  EXPECT_NEAR(box.min_B.x(), -1.0, 1e-6);  // the third is turned by 90 degrees about z
+}
+
+TEST_F(MeshImport, TurnsTheWindingOfMirroredNodes) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  const ImportedMesh once =
+      imported(directory_.write("mirrored.gltf", tetrahedron::gltf(R"([{"scale":[-1,1,1],"mesh":0}])")));
+  EXPECT_EQ(bounding_box(once.mesh).min_B.x(), -1.0);
+  EXPECT_NEAR(volume(once.mesh), 1.0 / 6.0, 1e-15);
+  const ImportedMesh twice = imported(directory_.write(
+      "twice.gltf", tetrahedron::gltf(R"([{"scale":[-1,1,1],"children":[1]},{"scale":[1,-3,1],"mesh":0}])")));
+  EXPECT_NEAR(volume(twice.mesh), 3.0 / 6.0, 1e-15);
+}
+
+TEST_F(MeshImport, LeavesOutMeshesThatNoNodeRefersTo) {
+  std::string two_meshes = tetrahedron::gltf();
+  const std::string mesh = R"({"primitives":[{"attributes":{"POSITION":0},"indices":1}]})";
+  two_meshes.insert(two_meshes.find(mesh), mesh + ",");
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  EXPECT_EQ(imported(directory_.write("two.gltf", two_meshes)).mesh.triangles.size(), 4U);
+}
+
+TEST_F(MeshImport, SaysHowAColladaFileWasTurnedAndScaled) {
+  struct Case {
+    const char* asset;
+    const char* up_axis;
+    const char* note;
+    Vec3 top_B;  // where the corner (0, 0, 1) of the file arrives
+  };
+  const std::vector<Case> cases{
+      {"", "not stated", "", {0, 0, 1}},
+      {"<up_axis>Y_UP</up_axis>", "y", "", {0, 0, 1}},
+      {"<up_axis>Z_UP</up_axis>", "z", "turned from z-up to y-up by the importer", {0, 1, 0}},
+      {"<up_axis>X_UP</up_axis>", "x", "turned from x-up to y-up by the importer", {0, 0, 1}},
+      {R"(<unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis>)",
+       "z",
+       "turned from z-up to y-up by the importer; scaled by 0.01 to metres by the importer",
+       {0, 0.01, 0}},
+      {R"(<unit name="inch" meter="0.0254"/>)",
+       "not stated",
+       "scaled by 0.0254 to metres by the importer",
+       {0, 0, 0.0254}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.asset);
+    const ImportedMesh found = imported(directory_.write("axes.dae", tetrahedron::collada(c.asset)));
+    EXPECT_EQ(found.source.up_axis, c.up_axis);
+    EXPECT_EQ(found.source.note, c.note);
+    bool there = false;
+    for (std::size_t v = 0; v < found.mesh.vertex_count(); ++v) {
+      there = there || (found.mesh.vertex(static_cast<std::int32_t>(v)) - c.top_B).norm() < 1e-8;
+    }
+    EXPECT_TRUE(there);
+    EXPECT_GT(volume(found.mesh), 0.0);
+  }
+}
+
+TEST_F(MeshImport, SaysThatAnFbxFileWasNeitherTurnedNorScaled) {
+  const ImportedMesh inches = imported(directory_.write(
+      "inches.fbx", tetrahedron::fbx("\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\",2\n"
+                                     "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",2.54\n")));
+  EXPECT_EQ(inches.source.up_axis, "z");
+  EXPECT_EQ(
+      inches.source.note,
+      "neither scaled nor turned by the importer; by the file one unit is 2.54 cm, so that scale = 0.0254 "
+      "makes metres of it");
+  EXPECT_EQ(bounding_box(inches.mesh).max_B, Vec3(1, 1, 1));
+  const ImportedMesh metres = imported(directory_.write(
+      "metres.fbx", tetrahedron::fbx("\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",100\n")));
+  EXPECT_EQ(metres.source.note, "");
+}
+
+TEST_F(MeshImport, SaysThatA3dsFileWasTurned) {
+  const ImportedMesh found = imported(directory_.write("hull.3ds", tetrahedron::file_3ds()));
+  EXPECT_EQ(found.source.up_axis, "not stated");
+  EXPECT_EQ(found.source.note, "turned from z-up, the format's custom, to y-up by the importer");
+  EXPECT_EQ(bounding_box(found.mesh).max_B.y(), 1.0);
+  EXPECT_EQ(bounding_box(found.mesh).min_B.z(), -1.0);
+}
+
+TEST_F(MeshImport, TellsNothingOfAxesWhereTheFormatDoesNot) {
+  for (const auto& [name, content] : tetrahedron_files()) {
+    const MeshFormat format = *format_of(name);
+    if (format != MeshFormat::kObj && format != MeshFormat::kPly && format != MeshFormat::kStl) continue;
+    const ImportedMesh found = imported(directory_.write(name, content));
+    EXPECT_EQ(found.source.up_axis, "not stated");
+    EXPECT_EQ(found.source.note, "");
+  }
+}
+
+TEST_F(MeshImport, HandsOnWhatTheImporterComplainsAbout) {
+  const ImportedMesh found = imported(directory_.write("odd.obj", tetrahedron::obj() + "f\n"));
+  EXPECT_NE(found.source.note.find("the importer reported 1 error: "), std::string::npos)
+      << found.source.note;
+  // Materials are nobody's business here.
+  const ImportedMesh plain =
+      imported(directory_.write("plain.obj", "mtllib none.mtl\n" + tetrahedron::obj()));
+  EXPECT_EQ(plain.source.note, "");
+}
+
+struct SharedMesh {
+  const char* name;
+  std::size_t triangles, vertices_stored;
+};
+
+// Counts as PROVENANCE.md beside the meshes has them.
+TEST(MeshImportOfRealFiles, StoresAsManyTrianglesAndVerticesAsMeasuredElsewhere) {
+  constexpr std::array kMeshes{
+      SharedMesh{"armadillo_30000.ply", 30'000, 15'002},
+      SharedMesh{"armadillo_86482.ply", 86'482, 43'243},
+      SharedMesh{"bunny_5002.ply", 5'002, 2'503},
+      SharedMesh{"bunny_69451_open.ply", 69'451, 35'947},
+      SharedMesh{"bunny_69664_closed.ply", 69'664, 34'834},
+      SharedMesh{"hull_boat_32416.obj", 32'416, 97'248},
+      SharedMesh{"hull_dtc_116062.stl", 116'062, 348'186},
+      SharedMesh{"rm3_float_tolweld.stl", 516, 1'548},
+      SharedMesh{"wamv_dirty.dae", 4'564, 13'692},
+      SharedMesh{"wheels_2comp_78164.obj", 78'164, 234'492},
+  };
+  if (!fs::exists(shared_mesh_file(kMeshes[0].name))) {
+    GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
+  }
+  for (const SharedMesh& expected : kMeshes) {
+    const ImportedMesh found = imported(shared_mesh_file(expected.name));
+    EXPECT_EQ(found.mesh.triangles.size(), expected.triangles) << expected.name;
+    EXPECT_EQ(found.mesh.vertex_count(), expected.vertices_stored) << expected.name;
+  }
+}
+
+TEST(MeshImportOfRealFiles, ReadsTheDuck) {
+  const fs::path duck = kTestModels / "Collada/duck.dae";
+  if (!fs::exists(duck)) GTEST_SKIP() << "package assimp-testmodels is not installed";
+  const ImportedMesh found = imported(duck);
+  EXPECT_EQ(found.mesh.triangles.size(), 4'212U);
+  EXPECT_EQ(found.source.format, "Collada");
+  EXPECT_EQ(found.source.up_axis, "y");
+  EXPECT_GT(volume(found.mesh), 0.0);
+}
+
+}  // namespace
+}  // namespace buoyancy
