@@ -1,11 +1,13 @@
 #include "geometry/mesh_orientation.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "geometry/component_nesting.h"
 #include "geometry/pairwise_sum.h"
 
 namespace buoyancy {
@@ -62,6 +64,33 @@ void turn(ComponentReport& component) {
   component.turned = !component.turned;
 }
 
+// around: by component, those around it. Turns what is inside out, marks cavities and nested solids.
+void judge_components(const std::vector<std::vector<std::int32_t>>& around,
+                      std::vector<ComponentReport>& components) {
+  const auto depth = [&around](std::size_t i) { return around[i].size(); };
+  std::vector<std::size_t> outermost_first(components.size());
+  std::iota(outermost_first.begin(), outermost_first.end(), std::size_t{0});
+  std::stable_sort(outermost_first.begin(), outermost_first.end(),
+                   [&depth](std::size_t i, std::size_t j) { return depth(i) < depth(j); });
+
+  std::vector<bool> root_is_turned(components.size(), false);
+  for (const std::size_t i : outermost_first) {
+    ComponentReport& component = components[i];
+    std::int64_t counted = 0;  // how often the space around it is
+    std::size_t root = i;
+    for (const std::int32_t j : around[i]) {
+      const auto outer = static_cast<std::size_t>(j);
+      counted += components[outer].volume > 0.0 ? 1 : -1;
+      if (depth(outer) < depth(root)) root = outer;
+    }
+    root_is_turned[i] = root == i ? component.volume < 0.0 : root_is_turned[root];
+    if (root_is_turned[i]) turn(component);
+    if (component.volume < 0.0 && counted <= 0) turn(component);
+    component.cavity = component.volume < 0.0;
+    component.nested = component.volume > 0.0 && counted > 0;
+  }
+}
+
 }  // namespace
 
 std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const MeshTopology& topology) {
@@ -86,11 +115,7 @@ std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const
 
 void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components) {
-  double volume = 0.0;
-  for (const ComponentReport& component : components) volume += component.volume;
-  if (volume < 0.0) {
-    for (ComponentReport& component : components) turn(component);
-  }
+  judge_components(components_around(mesh, topology), components);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (components[static_cast<std::size_t>(topology.component_of_face[f])].turned) {
       std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/exact_predicates.h"
 #include "geometry/mesh_orientation.h"
 #include "geometry/mesh_refusal.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/pairwise_sum.h"
+#include "geometry/self_intersection.h"
 #include "geometry/surface_moments.h"
 
 namespace buoyancy {
@@ -45,7 +47,8 @@ void report_surface(const TriangleMesh& mesh, MeshReport& report) {
     totals.moments = moments_of_triangle<double>(
         mesh.vertex(face[0]) - center_B, mesh.vertex(face[1]) - center_B, mesh.vertex(face[2]) - center_B);
     totals.area = totals.moments.S.norm();
-    totals.degenerate_faces = totals.area == 0.0 ? 1 : 0;
+    totals.degenerate_faces =
+        collinear(mesh.vertex(face[0]), mesh.vertex(face[1]), mesh.vertex(face[2])) ? 1 : 0;
     sum.add(totals);
   }
   const SurfaceTotals total = sum.total();
@@ -123,6 +126,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
     validation.refusal = refuse_volume(volume, report);
   }
   report_components(std::move(components), report);
+  if (options.count_intersecting_pairs) report.intersecting_pairs = count_intersecting_pairs(mesh);
   if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
   return validation;
 }

@@ -9,9 +9,9 @@
 namespace buoyancy {
 
 // Pairs of faces without a common vertex whose triangles have a point in common, plus pairs with common
-// vertices that have points in common besides those vertices and the edge between them. mesh: welded.
-// Complexity: O(n log n) for meshes whose faces are small against the whole. Decisions by exact orientation
-// predicates: touching counts.
+// vertices that have points in common besides those vertices and the edge between them. Faces of zero area
+// are left out. mesh: welded, finite. Complexity: O(n log n) for meshes whose faces are small against the
+// whole. Decisions by exact predicates (exact_predicates.h): touching counts.
 std::int64_t count_intersecting_pairs(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

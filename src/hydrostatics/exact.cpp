@@ -7,11 +7,12 @@ namespace buoyancy {
 
 Displacement exact(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const Vec3 apex = apex_on_water(mesh.centroid, plane);
+  const auto o = Point<double>::from(apex);
   const auto sum = sum_over_wet_surface<VolumeElements, CutTriangles::kClip>(
-      mesh, plane, [&](VolumeElements& block, const auto& a, const auto& b, const auto& c) {
-        block.add(a.y - apex, b.y - apex, c.y - apex);
+      mesh, plane, [o](VolumeElements& block, const auto& a, const auto& b, const auto& c) {
+        block.add(a.y, b.y, c.y, o);
       });
-  return displacement_about_apex(sum, apex, plane);
+  return displacement_of_volume(sum.volume(), sum.moment(apex), plane);
 }
 
 }  // namespace buoyancy

@@ -6,10 +6,10 @@
 namespace buoyancy {
 
 Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  const auto k = Point<double>::from(plane.up_B);
   const auto sum = sum_over_wet_surface<PressureElements, CutTriangles::kClip>(
-      mesh, plane, [&](PressureElements& block, const auto& a, const auto& b, const auto& c) {
-        block.add(a, b, c, plane.up_B);
-      });
+      mesh, plane,
+      [k](PressureElements& block, const auto& a, const auto& b, const auto& c) { block.add(a, b, c, k); });
   return sum.displacement(plane);
 }
 

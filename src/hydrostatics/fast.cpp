@@ -24,10 +24,9 @@ FastTable::FastTable(const HydrostaticMesh& mesh) {
   const Vec3 origin = -mesh.center_B;  // B's origin, about c
   for (const Triangle& triangle : mesh.triangles) {
     VolumeElements element;
-    element.add(mesh.vertex(triangle[0]) - origin, mesh.vertex(triangle[1]) - origin,
-                mesh.vertex(triangle[2]) - origin);
-    const double volume = element.volume6 / 6.0;
-    elements_.push_back({volume, element.moment24 / 24.0 + volume * origin});
+    element.add(mesh.point(triangle[0]), mesh.point(triangle[1]), mesh.point(triangle[2]),
+                Point<double>::from(origin));
+    elements_.push_back({element.volume(), element.moment(origin)});
   }
 }
 

@@ -69,19 +69,19 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated) {
 
   PairwiseSum<Totals> sum;
   for (const Triangle& triangle : mesh.triangles) {
-    const Vec3 a = mesh.vertex(triangle[0]);
-    const Vec3 b = mesh.vertex(triangle[1]);
-    const Vec3 c = mesh.vertex(triangle[2]);
+    const Point<double> a = mesh.point(triangle[0]);
+    const Point<double> b = mesh.point(triangle[1]);
+    const Point<double> c = mesh.point(triangle[2]);
     Totals term;
-    term.elements.add(a, b, c);
-    term.twice_area = (b - a).cross(c - a).norm();
+    term.elements.add(a, b, c, {0, 0, 0});
+    term.twice_area = cross(b - a, c - a).vec3().norm();
     sum.add(term);
   }
   const Totals totals = sum.total();
   mesh.area = 0.5 * totals.twice_area;
-  mesh.volume = totals.elements.volume6 / 6.0;
+  mesh.volume = totals.elements.volume();
   const bool has_centroid = !mesh.open() && std::abs(mesh.volume) > mesh.volume_gate();
-  mesh.centroid = has_centroid ? Vec3(totals.elements.moment24 / (4.0 * totals.elements.volume6))
+  mesh.centroid = has_centroid ? Vec3(totals.elements.moment(Vec3::Zero()) / mesh.volume)
                                : Vec3(0.5 * (mesh.box_min + mesh.box_max));
   return mesh;
 }

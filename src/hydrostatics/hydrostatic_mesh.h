@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/mesh_validation.h"
+#include "hydrostatics/point.h"
 
 namespace buoyancy {
 
@@ -22,12 +23,17 @@ struct HydrostaticMesh {
   Vec3 box_max = Vec3::Zero();   // m, about c
   double diagonal = 0.0;         // m: L
   double area = 0.0;             // m^2: A_s
-  double volume = 0.0;  // m^3: V_T; of an open mesh the sum about c, a scale and no more
+  double volume = 0.0;           // m^3: V_T; of an open mesh the sum about c, a scale and no more
   Vec3 centroid = Vec3::Zero();  // m, about c: centroid of the enclosed volume; box centre for open meshes
 
   bool open() const { return !boundary_vertices.empty(); }
 
   Vec3 vertex(std::int32_t i) const {
+    const auto n = static_cast<std::size_t>(i);
+    return {x[n], y[n], z[n]};
+  }
+
+  Point<double> point(std::int32_t i) const {
     const auto n = static_cast<std::size_t>(i);
     return {x[n], y[n], z[n]};
   }

@@ -16,9 +16,9 @@
 namespace buoyancy {
 
 struct PressureElements {
-  Vec3 force6 = Vec3::Zero();    // m^3: 6 F/(rho g)
-  Vec3 torque24 = Vec3::Zero();  // m^4: 24 tau_c/(rho g)
-  double height24 = 0.0;         // m^4: 24 H
+  Point<double> force6{0, 0, 0};    // m^3: 6 F/(rho g)
+  Point<double> torque24{0, 0, 0};  // m^4: 24 tau_c/(rho g)
+  double height24 = 0.0;            // m^4: 24 H
 
   PressureElements& operator+=(const PressureElements& other) {
     force6 += other.force6;
@@ -27,22 +27,26 @@ struct PressureElements {
     return *this;
   }
 
-  void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c, const Vec3& up_B) {
-    const Vec3 twice_area = (b.y - a.y).cross(c.y - a.y);
+  void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c,
+           const Point<double>& up_B) {
+    const Point<double> twice_area = cross(b.y - a.y, c.y - a.y);
     const double z_sum = a.z + b.z + c.z;
-    const Vec3 zy = z_sum * (a.y + b.y + c.y) + a.z * a.y + b.z * b.y + c.z * c.y;
-    const double zz = z_sum * z_sum + a.z * a.z + b.z * b.z + c.z * c.z;  // 2 (sum of squares and products)
-    force6 += z_sum * twice_area;
-    torque24 += zy.cross(twice_area);
-    height24 += 0.5 * zz * up_B.dot(twice_area);
+    const Point<double> force = z_sum * twice_area;
+    // sum z sum y + sum z_i y_i
+    const Point<double> zy = (z_sum + a.z) * a.y + (z_sum + b.z) * b.y + (z_sum + c.z) * c.y;
+    // half of (sum z)^2 + sum z_i^2: the sum of squares and products
+    const double zz = a.z * a.z + b.z * b.z + c.z * c.z + a.z * b.z + b.z * c.z + c.z * a.z;
+    force6 += force;
+    torque24 += cross(zy, twice_area);
+    height24 += zz * dot(up_B, twice_area);
   }
 
   // Volume and centre of buoyancy as the pressure implies them: V = k . F, horizontal part of V (c_B - c)
   // from the torque, vertical part from H.
   Displacement displacement(const WaterPlane& plane) const {
     Displacement result;
-    result.force = force6 / 6.0;
-    result.torque = torque24 / 24.0;
+    result.force = force6.vec3() / 6.0;
+    result.torque = torque24.vec3() / 24.0;
     result.volume = plane.up_B.dot(result.force);
     result.moment =
         plane.up_B.cross(result.torque) + (height24 / 24.0 + plane.h_c * result.volume) * plane.up_B;

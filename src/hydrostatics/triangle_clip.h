@@ -6,14 +6,14 @@
 // figure 3) or a quadrilateral (two), split into two triangles.
 #pragma once
 
-#include "geometry/vec3.h"
+#include "hydrostatics/point.h"
 
 namespace buoyancy {
 
 // A point of the surface about the mesh's centre, and its signed height over the water.
 template <typename T>
 struct Corner {
-  Vec3T<T> y;  // m
+  Point<T> y;  // m
   T z;         // m
 
   bool wet() const { return z < T(0); }
@@ -23,7 +23,7 @@ struct Corner {
 template <typename T>
 Corner<T> cut(const Corner<T>& wet, const Corner<T>& dry) {
   const T share = wet.z / (wet.z - dry.z);
-  return {Vec3T<T>(wet.y + (dry.y - wet.y) * share), T(0)};
+  return {wet.y + share * (dry.y - wet.y), T(0)};
 }
 
 // Calls visit(a, b, c) for the one or two wet triangles of a triangle that has both wet and dry corners.

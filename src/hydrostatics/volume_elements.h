@@ -11,23 +11,27 @@
 
 namespace buoyancy {
 
-// Sums about an apex o, positions relative to o.
+// Sums over triangles, for one apex o.
 struct VolumeElements {
-  double volume6 = 0.0;          // m^3: 6 sum V_i
-  Vec3 moment24 = Vec3::Zero();  // m^4: 24 sum V_i (C_i - o)
+  double volume6 = 0.0;            // m^3: 6 sum V_i(o)
+  Point<double> moment6{0, 0, 0};  // m^4: 6 sum V_i(o) (a + b + c)
 
   VolumeElements& operator+=(const VolumeElements& other) {
     volume6 += other.volume6;
-    moment24 += other.moment24;
+    moment6 += other.moment6;
     return *this;
   }
 
-  // Corners relative to o.
-  void add(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double v6 = a.dot((b - a).cross(c - a));
+  void add(const Point<double>& a, const Point<double>& b, const Point<double>& c,
+           const Point<double>& apex) {
+    const double v6 = dot(a - apex, cross(b - a, c - a));
     volume6 += v6;
-    moment24 += v6 * (a + b + c);
+    moment6 += v6 * (a + b + c);
   }
+
+  double volume() const { return volume6 / 6.0; }
+  // sum V_i C_i: the first moment of the enclosed volume about the origin of the corners' coordinates.
+  Vec3 moment(const Vec3& apex) const { return (moment6.vec3() + volume6 * apex) / 24.0; }
 };
 
 // The apex of `improved` and `exact`: the volume's centroid projected onto the water, so that the water's
@@ -39,13 +43,6 @@ inline Vec3 apex_on_water(const Vec3& centroid, const WaterPlane& plane) {
 // Displacement of a volume V with first moment M about c; the wrench is Archimedes': F = V k at the centroid.
 inline Displacement displacement_of_volume(double volume, const Vec3& moment, const WaterPlane& plane) {
   return {volume, moment, volume * plane.up_B, moment.cross(plane.up_B)};
-}
-
-// From sums about the apex to the displacement about c.
-inline Displacement displacement_about_apex(const VolumeElements& sum, const Vec3& apex,
-                                            const WaterPlane& plane) {
-  const double volume = sum.volume6 / 6.0;
-  return displacement_of_volume(volume, sum.moment24 / 24.0 + volume * apex, plane);
 }
 
 }  // namespace buoyancy

@@ -26,11 +26,11 @@ Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, c
   const double* const x = mesh.x.data();
   const double* const y = mesh.y.data();
   const double* const z = mesh.z.data();
-  const Vec3 k = plane.up_B;
+  const auto k = Point<double>::from(plane.up_B);
   const double h_c = plane.h_c;
   const auto corner = [=](std::int32_t i) {
-    const Vec3 at{x[i], y[i], z[i]};
-    return Corner<double>{at, k.dot(at) - h_c};
+    const Point<double> at{x[i], y[i], z[i]};
+    return Corner<double>{at, dot(k, at) - h_c};
   };
 
   PairwiseSum<Sum, kBlock> total;

@@ -40,21 +40,22 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
   result.up_B = exact_up_in_body<T>(pose, water);
   const Vec3T<T> k = result.up_B;
   const T h = T(water.level) - water.up_W.template cast<T>().dot(pose.p_WB.template cast<T>());
-  const Vec3T<T> apex = k * T(h / k.dot(k));
+  const Vec3T<T> apex_B = k * T(h / k.dot(k));
+  const auto apex = Point<T>::from(apex_B);
 
   const auto corner = [&](std::int32_t i) {
     const Vec3T<T> x = mesh.vertex(i).template cast<T>();
-    return Corner<T>{x, T(k.dot(x) - h)};
+    return Corner<T>{Point<T>::from(x), T(k.dot(x) - h)};
   };
   T volume6(0);
-  Vec3T<T> moment24 = Vec3T<T>::Constant(T(0));
+  Point<T> moment24{T(0), T(0), T(0)};  // about the apex
   const auto add = [&](const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
-    const Vec3T<T> p = a.y - apex;
-    const Vec3T<T> q = b.y - apex;
-    const Vec3T<T> r = c.y - apex;
-    const T v6 = p.dot(q.cross(r));
+    const Point<T> p = a.y - apex;
+    const Point<T> q = b.y - apex;
+    const Point<T> r = c.y - apex;
+    const T v6 = dot(p, cross(q, r));
     volume6 += v6;
-    moment24 += (p + q + r) * v6;
+    moment24 += v6 * (p + q + r);
   };
   for (const Triangle& triangle : mesh.triangles) {
     const Corner<T> a = corner(triangle[0]);
@@ -68,7 +69,7 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
     }
   }
   result.volume = volume6 / T(6);
-  result.moment = moment24 / T(24) + apex * result.volume;
+  result.moment = moment24.vec3() / T(24) + apex_B * result.volume;
   return result;
 }
 

@@ -23,7 +23,7 @@ Clipped<T> clip(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
   Clipped<T> clipped;
   visit_wet_part(a, b, c, [&](const Corner<T>& p, const Corner<T>& q, const Corner<T>& r) {
     clipped.triangles.push_back({p, q, r});
-    clipped.twice_area += (q.y - p.y).cross(r.y - p.y);
+    clipped.twice_area += cross(q.y - p.y, r.y - p.y).vec3();
   });
   return clipped;
 }
@@ -32,7 +32,7 @@ Clipped<T> clip(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
 Corner<Rational> random_corner(RandomPoses& random) {
   const auto coordinate = [&] { return Rational(static_cast<int>(random.pick(41)) - 20); };
   Corner<Rational> corner{{coordinate(), coordinate(), coordinate()}, Rational(0)};
-  corner.z = corner.y.z();
+  corner.z = corner.y.z;
   return corner;
 }
 
@@ -54,12 +54,12 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
     const auto above = clip(mirrored(a), mirrored(b), mirrored(c));
     EXPECT_EQ(below.triangles.size(), std::size_t(wet));
     EXPECT_EQ(above.triangles.size(), std::size_t(3 - wet));
-    const Vec3T<Rational> whole = (b.y - a.y).cross(c.y - a.y);
+    const Vec3T<Rational> whole = cross(b.y - a.y, c.y - a.y).vec3();
     EXPECT_EQ(Vec3T<Rational>(below.twice_area + above.twice_area), whole);
     for (const auto& triangle : below.triangles) {
       for (const Corner<Rational>& corner : triangle) {
         EXPECT_LE(corner.z, Rational(0));
-        EXPECT_EQ(corner.z, corner.y.z()) << "a cut point lies where the edge meets the water";
+        EXPECT_EQ(corner.z, corner.y.z) << "a cut point lies where the edge meets the water";
       }
     }
   }
@@ -69,13 +69,13 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
 TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
   RandomPoses random(6);
   for (int i = 0; i < 1000; ++i) {
-    const Corner<double> wet{random.direction(), random.uniform(-1, -1e-12)};
-    const Corner<double> dry{random.direction(), random.uniform(0, 1)};
-    const Corner<double> left{random.direction(), random.uniform(0, 1)};
-    const Corner<double> right{random.direction(), random.uniform(-1, -1e-12)};
+    const Corner<double> wet{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
+    const Corner<double> dry{Point<double>::from(random.direction()), random.uniform(0, 1)};
+    const Corner<double> left{Point<double>::from(random.direction()), random.uniform(0, 1)};
+    const Corner<double> right{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
     const auto one = clip(wet, dry, left);     // the edge runs wet to dry, one corner wet
     const auto other = clip(dry, wet, right);  // and dry to wet, two corners wet
-    EXPECT_EQ(one.triangles[0][1].y, other.triangles[0][0].y);
+    EXPECT_EQ(one.triangles[0][1].y.vec3(), other.triangles[0][0].y.vec3());
   }
 }
 

@@ -1,0 +1,190 @@
+#include "geometry/component_nesting.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "geometry/box_tree.h"
+#include "geometry/exact_predicates.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kSamplesPerComponent = 8;
+
+using ComponentLists = std::vector<std::vector<std::int32_t>>;
+
+std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const MeshTopology& topology) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const BoundingBox empty{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+  std::vector<BoundingBox> boxes(static_cast<std::size_t>(topology.components), empty);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    BoundingBox& box = boxes[static_cast<std::size_t>(topology.component_of_face[f])];
+    for (const std::int32_t v : mesh.triangles[f]) {
+      box.min_B = box.min_B.cwiseMin(mesh.vertex(v));
+      box.max_B = box.max_B.cwiseMax(mesh.vertex(v));
+    }
+  }
+  return boxes;
+}
+
+bool holds(const BoundingBox& outer, const BoundingBox& inner) {
+  return (outer.min_B.array() <= inner.min_B.array()).all() &&
+         (inner.max_B.array() <= outer.max_B.array()).all();
+}
+
+// By component: those whose boxes hold its own, ascending.
+ComponentLists boxes_around(const std::vector<BoundingBox>& boxes) {
+  ComponentLists around(boxes.size());
+  BoxTree(boxes).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
+    const auto a = static_cast<std::size_t>(i);
+    const auto b = static_cast<std::size_t>(j);
+    if (holds(boxes[b], boxes[a])) around[a].push_back(j);
+    if (holds(boxes[a], boxes[b])) around[b].push_back(i);
+  });
+  for (auto& list : around) std::sort(list.begin(), list.end());
+  return around;
+}
+
+// Up to kSamplesPerComponent first corners of faces, spread over each component.
+ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& topology) {
+  std::vector<std::size_t> faces(static_cast<std::size_t>(topology.components), 0);
+  for (const std::int32_t component : topology.component_of_face)
+    ++faces[static_cast<std::size_t>(component)];
+  std::vector<std::size_t> met(faces.size(), 0);
+  ComponentLists samples(faces.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
+    const std::size_t stride = (faces[component] + kSamplesPerComponent - 1) / kSamplesPerComponent;
+    if (met[component]++ % stride == 0) samples[component].push_back(mesh.triangles[f][0]);
+  }
+  return samples;
+}
+
+// On which side of the directed line uv the point lies in the plane seen along x, the point moved by (e, e^2)
+// for a vanishing e > 0, so that it lies on no line: a ray then meets faces, never edges. 0 only if u = v.
+int perturbed_side(const Vec3& u, const Vec3& v, const Vec3& point) {
+  const int side = orient_2d(seen_along(0, u), seen_along(0, v), seen_along(0, point));
+  if (side != 0) return side;
+  if (u.z() != v.z()) return v.z() < u.z() ? 1 : -1;
+  if (u.y() != v.y()) return v.y() > u.y() ? 1 : -1;
+  return 0;
+}
+
+struct Crossing {
+  int direction = 0;     // of the ray from the point along +x: 1 out through the face, -1 in, 0 missed
+  bool touches = false;  // the point lies on the face
+};
+
+Crossing cross(const TriangleMesh& mesh, const Triangle& face, const Vec3& point) {
+  const Vec3 a = mesh.vertex(face[0]);
+  const Vec3 b = mesh.vertex(face[1]);
+  const Vec3 c = mesh.vertex(face[2]);
+  const int side = perturbed_side(a, b, point);
+  if (side == 0 || perturbed_side(b, c, point) != side || perturbed_side(c, a, point) != side) return {};
+  const int in_front = orient_3d(a, b, c, point);
+  if (in_front == 0) return {0, true};
+  return {in_front == side ? 0 : side, false};
+}
+
+// The faces of the components that could hold others.
+class RayCaster {
+ public:
+  RayCaster(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<bool>& could_hold)
+      : mesh_(mesh),
+        topology_(topology),
+        faces_(faces_of(topology, could_hold)),
+        tree_(boxes_of(mesh, faces_)),
+        winding_(could_hold.size(), 0),
+        touched_(could_hold.size(), false) {}
+
+  // Afterwards winding(i) and touched(i) hold for the point.
+  void cast(const Vec3& point) {
+    for (const std::size_t component : met_) {
+      winding_[component] = 0;
+      touched_[component] = false;
+    }
+    met_.clear();
+    const auto meets_ray = [&point](const BoundingBox& box) {
+      return box.max_B.x() >= point.x() && box.min_B.y() <= point.y() && point.y() <= box.max_B.y() &&
+             box.min_B.z() <= point.z() && point.z() <= box.max_B.z();
+    };
+    tree_.for_each(meets_ray, [this, &point](std::int32_t item) {
+      const auto face = static_cast<std::size_t>(faces_[static_cast<std::size_t>(item)]);
+      const auto component = static_cast<std::size_t>(topology_.component_of_face[face]);
+      const Crossing crossing = cross(mesh_, mesh_.triangles[face], point);
+      if (crossing.direction != 0 || crossing.touches) met_.push_back(component);
+      winding_[component] += crossing.direction;
+      if (crossing.touches) touched_[component] = true;
+    });
+  }
+
+  int winding(std::int32_t component) const { return winding_[static_cast<std::size_t>(component)]; }
+  bool touched(std::int32_t component) const { return touched_[static_cast<std::size_t>(component)]; }
+
+ private:
+  static std::vector<std::int32_t> faces_of(const MeshTopology& topology,
+                                            const std::vector<bool>& could_hold) {
+    std::vector<std::int32_t> faces;
+    for (std::size_t f = 0; f < topology.component_of_face.size(); ++f) {
+      if (could_hold[static_cast<std::size_t>(topology.component_of_face[f])]) {
+        faces.push_back(static_cast<std::int32_t>(f));
+      }
+    }
+    return faces;
+  }
+
+  static std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
+    std::vector<BoundingBox> boxes;
+    boxes.reserve(faces.size());
+    for (const std::int32_t f : faces) {
+      boxes.push_back(box_of_face(mesh, mesh.triangles[static_cast<std::size_t>(f)]));
+    }
+    return boxes;
+  }
+
+  const TriangleMesh& mesh_;
+  const MeshTopology& topology_;
+  std::vector<std::int32_t> faces_;
+  BoxTree tree_;
+  std::vector<int> winding_;      // by component
+  std::vector<bool> touched_;     // by component
+  std::vector<std::size_t> met_;  // components for which these are set
+};
+
+}  // namespace
+
+std::vector<std::vector<std::int32_t>> components_around(const TriangleMesh& mesh,
+                                                         const MeshTopology& topology) {
+  ComponentLists around = boxes_around(component_boxes(mesh, topology));
+  std::vector<bool> could_hold(around.size(), false);
+  for (const auto& list : around) {
+    for (const std::int32_t outer : list) could_hold[static_cast<std::size_t>(outer)] = true;
+  }
+  if (std::find(could_hold.begin(), could_hold.end(), true) == could_hold.end()) return around;
+
+  RayCaster caster(mesh, topology, could_hold);
+  const ComponentLists samples = sample_vertices(mesh, topology);
+  for (std::size_t inner = 0; inner < around.size(); ++inner) {
+    auto& candidates = around[inner];
+    if (candidates.empty()) continue;
+    std::vector<std::size_t> inside(candidates.size(), 0);
+    std::vector<std::size_t> outside(candidates.size(), 0);
+    for (const std::int32_t v : samples[inner]) {
+      caster.cast(mesh.vertex(v));
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (caster.touched(candidates[i])) continue;
+        ++(caster.winding(candidates[i]) != 0 ? inside : outside)[i];
+      }
+    }
+    std::vector<std::int32_t> confirmed;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (inside[i] > 0 && outside[i] == 0) confirmed.push_back(candidates[i]);
+    }
+    candidates = std::move(confirmed);
+  }
+  return around;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,225 @@
+#include "geometry/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "geometry/box_tree.h"
+#include "geometry/exact_predicates.h"
+
+namespace buoyancy {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+using Point2 = Eigen::Vector2d;
+using Corners2 = std::array<Point2, 3>;
+
+int turn_of(const Corners2& t) {
+  return orient_2d(t[0], t[1], t[2]);
+}
+
+Corners2 corners_seen_along(int axis, const Corners& t) {
+  return {seen_along(axis, t[0]), seen_along(axis, t[1]), seen_along(axis, t[2])};
+}
+
+// The axis along which a triangle of non-zero area is seen largest, or at least not edge-on.
+int axis_of(const Corners& t) {
+  const Vec3 u = t[1] - t[0];
+  const Vec3 v = t[2] - t[0];
+  const Vec3 normal(u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(),
+                    u.x() * v.y() - u.y() * v.x());
+  Eigen::Index largest = 0;
+  normal.cwiseAbs().maxCoeff(&largest);
+  const int axis = static_cast<int>(largest);
+  for (int turn = 0; turn < 2; ++turn) {
+    const int candidate = (axis + turn) % 3;
+    if (turn_of(corners_seen_along(candidate, t)) != 0) return candidate;
+  }
+  return (axis + 2) % 3;
+}
+
+// Both points on one line with `from`: whether they lie on the same side of it.
+bool same_direction(const Point2& from, const Point2& a, const Point2& b) {
+  const int axis = a.x() != from.x() ? 0 : 1;
+  return (a(axis) > from(axis)) == (b(axis) > from(axis)) && b(axis) != from(axis);
+}
+
+bool in_box(const Point2& point, const Point2& a, const Point2& b) {
+  return std::min(a.x(), b.x()) <= point.x() && point.x() <= std::max(a.x(), b.x()) &&
+         std::min(a.y(), b.y()) <= point.y() && point.y() <= std::max(a.y(), b.y());
+}
+
+bool segments_meet(const Point2& p, const Point2& q, const Point2& a, const Point2& b) {
+  const int side_p = orient_2d(a, b, p);
+  const int side_q = orient_2d(a, b, q);
+  if (side_p == 0 && in_box(p, a, b)) return true;
+  if (side_q == 0 && in_box(q, a, b)) return true;
+  if (side_p * side_q > 0) return false;
+  const int side_a = orient_2d(p, q, a);
+  const int side_b = orient_2d(p, q, b);
+  if (side_a == 0 && in_box(a, p, q)) return true;
+  if (side_b == 0 && in_box(b, p, q)) return true;
+  return side_p * side_q < 0 && side_a * side_b < 0;
+}
+
+// t: of non-zero area.
+bool point_in_triangle(const Point2& point, const Corners2& t) {
+  const int turn = turn_of(t);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (orient_2d(t[i], t[(i + 1) % 3], point) * turn < 0) return false;
+  }
+  return true;
+}
+
+bool segment_meets_triangle_in_plane(const Point2& p, const Point2& q, const Corners2& t) {
+  if (point_in_triangle(p, t) || point_in_triangle(q, t)) return true;
+  return segments_meet(p, q, t[0], t[1]) || segments_meet(p, q, t[1], t[2]) ||
+         segments_meet(p, q, t[2], t[0]);
+}
+
+// Closed segment, closed triangle of non-zero area.
+bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
+  const int side_p = orient_3d(t[0], t[1], t[2], p);
+  const int side_q = orient_3d(t[0], t[1], t[2], q);
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 || side_q == 0) {
+    const int axis = axis_of(t);
+    const Corners2 flat = corners_seen_along(axis, t);
+    if (side_q != 0) return point_in_triangle(seen_along(axis, p), flat);
+    if (side_p != 0) return point_in_triangle(seen_along(axis, q), flat);
+    return segment_meets_triangle_in_plane(seen_along(axis, p), seen_along(axis, q), flat);
+  }
+  const int first = orient_3d(p, q, t[0], t[1]);
+  const int second = orient_3d(p, q, t[1], t[2]);
+  const int third = orient_3d(p, q, t[2], t[0]);
+  return (first >= 0 && second >= 0 && third >= 0) || (first <= 0 && second <= 0 && third <= 0);
+}
+
+bool all_clearly_on_one_side(const Corners& plane, const Vec3& p, const Vec3& q) {
+  const int side = orient_3d_if_clear(plane[0], plane[1], plane[2], p);
+  return side != 0 && orient_3d_if_clear(plane[0], plane[1], plane[2], q) == side;
+}
+
+// Seen along the axis along which s is not edge-on, one edge of either has the other wholly beyond it.
+bool separated_as_seen(const Corners& s, const Corners& t) {
+  const int axis = axis_of(s);
+  const std::array<Corners2, 2> flat{corners_seen_along(axis, s), corners_seen_along(axis, t)};
+  for (std::size_t which = 0; which < 2; ++which) {
+    const Corners2& one = flat[which];
+    const Corners2& other = flat[1 - which];
+    const int turn = turn_of(one);
+    for (std::size_t i = 0; turn != 0 && i < 3; ++i) {
+      const auto beyond = [&](const Point2& point) {
+        return orient_2d(one[i], one[(i + 1) % 3], point) * turn < 0;
+      };
+      if (beyond(other[0]) && beyond(other[1]) && beyond(other[2])) return true;
+    }
+  }
+  return false;
+}
+
+bool meet_without_common_vertex(const Corners& s, const Corners& t) {
+  const auto clear_of = [](const Corners& plane, const Corners& triangle) {
+    return all_clearly_on_one_side(plane, triangle[0], triangle[1]) &&
+           all_clearly_on_one_side(plane, triangle[1], triangle[2]);
+  };
+  if (clear_of(s, t) || clear_of(t, s) || separated_as_seen(s, t)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (segment_meets_triangle(s[i], s[(i + 1) % 3], t)) return true;
+    if (segment_meets_triangle(t[i], t[(i + 1) % 3], s)) return true;
+  }
+  return false;
+}
+
+// s[0] = t[0]. Seen along the axis along which s is not edge-on, a line through the common vertex and one
+// more has the triangles on different sides, and they do not run along it together.
+bool separated_at_vertex_as_seen(const Corners& s, const Corners& t) {
+  const int axis = axis_of(s);
+  const std::array<Corners2, 2> flat{corners_seen_along(axis, s), corners_seen_along(axis, t)};
+  const Point2& apex = flat[0][0];
+  for (std::size_t which = 0; which < 2; ++which) {
+    const Corners2& one = flat[which];
+    const Corners2& other = flat[1 - which];
+    for (std::size_t i = 1; i < 3; ++i) {
+      const int turn = orient_2d(apex, one[i], one[3 - i]);
+      if (turn == 0) continue;
+      const auto beyond = [&](const Point2& point) {
+        const int side = orient_2d(apex, one[i], point) * turn;
+        return side < 0 || (side == 0 && point != apex && !same_direction(apex, one[i], point));
+      };
+      if (beyond(other[1]) && beyond(other[2])) return true;
+    }
+  }
+  return false;
+}
+
+// s[0] = t[0]. If they have more points in common, then also one on an edge opposite the common vertex.
+bool meet_beyond_common_vertex(const Corners& s, const Corners& t) {
+  if (all_clearly_on_one_side(s, t[1], t[2]) || all_clearly_on_one_side(t, s[1], s[2])) return false;
+  if (separated_at_vertex_as_seen(s, t)) return false;
+  return segment_meets_triangle(s[1], s[2], t) || segment_meets_triangle(t[1], t[2], s);
+}
+
+// s[0] = t[0], s[1] = t[1]. They have more points in common only if one is folded flat onto the other.
+bool meet_beyond_common_edge(const Corners& s, const Corners& t) {
+  if (orient_3d_if_clear(s[0], s[1], s[2], t[2]) != 0) return false;
+  const int axis = axis_of(s);
+  const Corners2 flat = corners_seen_along(axis, s);
+  if (orient_2d(flat[0], flat[1], seen_along(axis, t[2])) != turn_of(flat)) return false;
+  return orient_3d(s[0], s[1], s[2], t[2]) == 0;
+}
+
+// Brings the vertices that two faces share to their fronts, in the same order. Returns how many.
+std::size_t bring_common_vertices_forward(Triangle& s, Triangle& t) {
+  std::size_t common = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto* const found = std::find(t.begin() + common, t.end(), s[i]);
+    if (found == t.end()) continue;
+    std::swap(s[common], s[i]);
+    std::swap(t[common], *found);
+    ++common;
+  }
+  return common;
+}
+
+Corners corners_of(const TriangleMesh& mesh, const Triangle& face) {
+  return {mesh.vertex(face[0]), mesh.vertex(face[1]), mesh.vertex(face[2])};
+}
+
+bool intersect(const TriangleMesh& mesh, Triangle s, Triangle t) {
+  const std::size_t common = bring_common_vertices_forward(s, t);
+  const Corners s_corners = corners_of(mesh, s);
+  const Corners t_corners = corners_of(mesh, t);
+  switch (common) {
+    case 0:
+      return meet_without_common_vertex(s_corners, t_corners);
+    case 1:
+      return meet_beyond_common_vertex(s_corners, t_corners);
+    case 2:
+      return meet_beyond_common_edge(s_corners, t_corners);
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+std::int64_t count_intersecting_pairs(const TriangleMesh& mesh) {
+  std::vector<Triangle> faces;
+  std::vector<BoundingBox> boxes;
+  for (const Triangle& face : mesh.triangles) {
+    if (collinear(mesh.vertex(face[0]), mesh.vertex(face[1]), mesh.vertex(face[2]))) continue;
+    faces.push_back(face);
+    boxes.push_back(box_of_face(mesh, face));
+  }
+  std::int64_t pairs = 0;
+  BoxTree(std::move(boxes)).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
+    if (intersect(mesh, faces[static_cast<std::size_t>(i)], faces[static_cast<std::size_t>(j)])) ++pairs;
+  });
+  return pairs;
+}
+
+}  // namespace buoyancy

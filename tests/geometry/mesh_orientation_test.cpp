@@ -1,0 +1,115 @@
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "geometry/mesh_validation.h"
+#include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+MeshReport report_of(const TriangleMesh& mesh) {
+  const MeshValidation validation = validate_mesh({mesh, {}}, "mesh", {});
+  EXPECT_TRUE(validation.mesh) << validation.refusal->message();
+  return validation.report;
+}
+
+TEST(MeshOrientation, TurnsTheOneComponentThatIsInsideOut) {
+  const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(9, 0, 0)))));
+  EXPECT_DOUBLE_EQ(report.volume, 9.0);
+  EXPECT_FALSE(report.turned);
+  ASSERT_EQ(report.components.size(), 2U);
+  EXPECT_FALSE(report.components[0].turned);
+  EXPECT_TRUE(report.components[1].turned);
+  EXPECT_DOUBLE_EQ(report.components[1].volume, 1.0);
+  EXPECT_FALSE(report.components[1].cavity);
+}
+
+TEST(MeshOrientation, TurnsTheLargeComponentThatIsInsideOutAndLeavesTheSmallOne) {
+  const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1, Vec3(9, 0, 0))));
+  EXPECT_DOUBLE_EQ(report.volume, 9.0);
+  EXPECT_TRUE(report.components[0].turned);
+  EXPECT_FALSE(report.components[1].turned);
+}
+
+TEST(MeshOrientation, KeepsACavity) {
+  const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(0.2, 0, 0)))));
+  EXPECT_DOUBLE_EQ(report.volume, 7.0);
+  EXPECT_TRUE(report.components[1].cavity);
+  EXPECT_FALSE(report.components[1].turned);
+  EXPECT_FALSE(report.components[1].nested);
+}
+
+TEST(MeshOrientation, TurnsAShellThatIsInsideOutTogetherWithItsCavity) {
+  const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1)));
+  EXPECT_DOUBLE_EQ(report.volume, 7.0);
+  EXPECT_TRUE(report.turned);
+  EXPECT_TRUE(report.components[1].cavity);
+}
+
+TEST(MeshOrientation, DoesNotTurnACavityBecauseAnotherSolidIsInsideOut) {
+  const MeshReport report = report_of(
+      joined(joined(cube_mesh(2), inside_out(cube_mesh(1))), inside_out(cube_mesh(3, Vec3(9, 0, 0)))));
+  EXPECT_DOUBLE_EQ(report.volume, 27.0 + 7.0);
+  EXPECT_TRUE(report.components[0].turned);
+  EXPECT_TRUE(report.components[2].cavity);
+  EXPECT_FALSE(report.turned);
+}
+
+TEST(MeshOrientation, ReportsASolidInsideASolid) {
+  const MeshReport report = report_of(joined(cube_mesh(2), cube_mesh(1)));
+  EXPECT_DOUBLE_EQ(report.volume, 9.0);
+  EXPECT_TRUE(report.components[1].nested);
+  EXPECT_FALSE(report.components[1].cavity);
+}
+
+TEST(MeshOrientation, TurnsAnInsideOutSolidInsideACavity) {
+  const TriangleMesh shell = joined(cube_mesh(3), inside_out(cube_mesh(2)));
+  EXPECT_DOUBLE_EQ(report_of(joined(shell, cube_mesh(1))).volume, 27.0 - 8.0 + 1.0);
+  const MeshReport report = report_of(joined(shell, inside_out(cube_mesh(1))));
+  EXPECT_DOUBLE_EQ(report.volume, 27.0 - 8.0 + 1.0);
+  EXPECT_TRUE(report.components[2].turned);
+  EXPECT_FALSE(report.components[2].nested);
+}
+
+TEST(MeshOrientation, IsNotFooledByBoxesThatHoldEachOther) {
+  // A small cube in the hole of a ring: inside the ring's box, outside the ring.
+  const TriangleMesh ring = make_shape(TorusKnotShape{1.0, 0.1, 1, 1, 60, 12});
+  const MeshReport outside = report_of(joined(ring, inside_out(cube_mesh(0.1))));
+  EXPECT_TRUE(outside.components[1].turned);
+  EXPECT_FALSE(outside.components[1].cavity);
+}
+
+TEST(MeshOrientation, JudgesVerticesThatSeeOnlyEdgesAndCornersAlongTheRay) {
+  // All vertices on one grid: every ray from an inner vertex meets edges and vertices of the outer mesh.
+  const TriangleMesh outer = make_shape(BoxShape{{4, 4, 4}, {8, 8, 8}});
+  const TriangleMesh inner = make_shape(BoxShape{{2, 2, 2}, {4, 4, 4}});
+  EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(inner))).volume, 64.0 - 8.0);
+  const TriangleMesh beside = moved_mesh(inner, Mat3::Identity(), {6, 0, 0});
+  EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(beside))).volume, 64.0 + 8.0);
+}
+
+TEST(MeshOrientation, CallsComponentsThatCrossNeitherCavityNorNested) {
+  const MeshReport report = report_of(joined(cube_mesh(2), cube_mesh(1, Vec3(0, 0, 0.9))));
+  EXPECT_FALSE(report.components[1].nested);
+  EXPECT_DOUBLE_EQ(report.volume, 9.0);
+}
+
+TEST(MeshOrientation, KeepsManyCavitiesApart) {
+  TriangleMesh sponge = cube_mesh(20);
+  int cavities = 0;
+  for (int x = -8; x <= 8; x += 2) {
+    for (int y = -8; y <= 8; y += 2) {
+      for (int z = -8; z <= 8; z += 2, ++cavities) {
+        sponge = joined(std::move(sponge), inside_out(cube_mesh(1, Vec3(x, y, z))));
+      }
+    }
+  }
+  const MeshReport report = report_of(sponge);
+  ASSERT_EQ(report.components.size(), static_cast<std::size_t>(cavities) + 1);
+  EXPECT_NEAR(report.volume, 8000.0 - cavities, 1e-9);
+  EXPECT_TRUE(report.components.back().cavity);
+}
+
+}  // namespace
+}  // namespace buoyancy
