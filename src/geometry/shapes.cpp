@@ -1,13 +1,12 @@
 #include "geometry/shapes.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "geometry/number_text.h"
 #include "geometry/shape_generators.h"
 
 namespace buoyancy {
@@ -21,15 +20,6 @@ constexpr double kLargestRoughness = 0.6;
 constexpr std::int32_t kLargestWinding = 32;
 constexpr std::int32_t kStepsPerWinding = 12;
 
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  for (int digits = 6; digits <= 17; ++digits) {
-    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-    if (std::strtod(text.data(), nullptr) == value) break;
-  }
-  return text.data();
-}
-
 // Collects the first thing that is wrong with a shape.
 class Check {
  public:
@@ -37,8 +27,8 @@ class Check {
 
   Check& size(const char* key, double value) {
     if (!(value >= kSmallestSize && value <= kLargestSize)) {
-      fail(std::string(key) + " = " + shortest(value),
-           "a length from " + shortest(kSmallestSize) + " to " + shortest(kLargestSize) + " (m)");
+      fail(std::string(key) + " = " + number_text(value),
+           "a length from " + number_text(kSmallestSize) + " to " + number_text(kLargestSize) + " (m)");
     }
     return *this;
   }
@@ -126,8 +116,8 @@ std::optional<Error> fault(const TorusKnotShape& knot) {
   if (check.passed()) check.triangles(2 * std::int64_t{knot.tubular} * knot.radial);
   if (check.passed()) {
     const double largest = 0.9 * largest_tube(knot);
-    check.that(knot.tube <= largest, "tube = " + shortest(knot.tube),
-               "at most " + shortest(largest) + " (m) for this radius, p and q",
+    check.that(knot.tube <= largest, "tube = " + number_text(knot.tube),
+               "at most " + number_text(largest) + " (m) for this radius, p and q",
                "the tube is wider than the knot's strands are apart");
   }
   return std::move(check).error();
@@ -150,7 +140,8 @@ std::optional<Error> fault(const RockShape& rock) {
   Check check("rock");
   check.size("radius", rock.radius).count("frequency", rock.frequency, 1);
   check.that(rock.roughness >= 0.0 && rock.roughness <= kLargestRoughness,
-             "roughness = " + shortest(rock.roughness), "a number from 0 to " + shortest(kLargestRoughness));
+             "roughness = " + number_text(rock.roughness),
+             "a number from 0 to " + number_text(kLargestRoughness));
   if (check.passed()) check.triangles(20 * std::int64_t{rock.frequency} * rock.frequency);
   return std::move(check).error();
 }

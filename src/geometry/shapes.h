@@ -19,6 +19,8 @@ namespace buoyancy {
 struct BoxShape {
   std::array<double, 3> size{1, 1, 1};
   std::array<std::int32_t, 3> segments{1, 1, 1};
+
+  bool operator==(const BoxShape&) const = default;
 };
 // n meridians and n + 1 bands of latitude between the poles along z: 2 n^2 triangles.
 // n = 50: 5,000 triangles, n = 200: 80,000, the two spheres of the paper, section 5. Vertices lie on the
@@ -26,6 +28,8 @@ struct BoxShape {
 struct SphereShape {
   double radius = 1;
   std::int32_t segments = 50;
+
+  bool operator==(const SphereShape&) const = default;
 };
 // Axis along z; regular prism of `segments` sides inscribed in the circle, `stacks` bands along the axis.
 struct CylinderShape {
@@ -33,6 +37,8 @@ struct CylinderShape {
   double height = 1;
   std::int32_t segments = 64;
   std::int32_t stacks = 1;
+
+  bool operator==(const CylinderShape&) const = default;
 };
 // Axis along z, base circle of `radius` at z = 0, apex at z = height.
 struct ConeShape {
@@ -40,6 +46,8 @@ struct ConeShape {
   double height = 1;
   std::int32_t segments = 64;
   std::int32_t stacks = 1;
+
+  bool operator==(const ConeShape&) const = default;
 };
 // Tube of radius `tube` around the (p, q) torus knot of radius `radius`: q turns about the z axis while p
 // about the ring: (radius (2 + cos p t)/3 cos q t, ..). 2 tubular radial triangles; 110 x 8 gives the paper's
@@ -51,6 +59,8 @@ struct TorusKnotShape {
   std::int32_t q = 2;
   std::int32_t tubular = 110;
   std::int32_t radial = 8;
+
+  bool operator==(const TorusKnotShape&) const = default;
 };
 // The Wigley hull, y = beam/2 (1 - (2x/length)^2) (1 - (z/draft)^2) for -draft <= z <= 0, wall-sided above to
 // z = freeboard, with a flat deck. Length along x, waterplane at z = 0.
@@ -61,6 +71,8 @@ struct WigleyShape {
   double freeboard = 0.3;
   std::int32_t segments = 64;  // along the length
   std::int32_t levels = 16;    // along the draft
+
+  bool operator==(const WigleyShape&) const = default;
 };
 // An icosphere of 20 frequency^2 triangles, its radius changed by smooth noise of relative height `roughness`
 // from `seed`: star-shaped, never self-intersecting. Made with +, -, *, / and sqrt alone: the same bits on
@@ -70,6 +82,8 @@ struct RockShape {
   std::int32_t frequency = 16;
   double roughness = 0.25;  // 0 to 0.6
   std::uint64_t seed = 1;
+
+  bool operator==(const RockShape&) const = default;
 };
 
 using Shape =

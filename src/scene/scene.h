@@ -17,6 +17,10 @@
 
 namespace buoyancy {
 
+struct PrepareOptions {
+  bool count_intersecting_pairs = false;  // for the report; several times the rest of the validation
+};
+
 // A mesh as several bodies may share it: one per source (file or shape), scale and open policy.
 struct PreparedMesh {
   MeshReport report;
@@ -36,13 +40,14 @@ struct Body {
 
 class Scene {
  public:
-  // Imports and prepares what the description names; each mesh once. The scene file's directory resolves
-  // relative mesh paths. Errors name the scene file, the line and the body.
-  static Expected<Scene> prepare(const SceneDescription& description);
+  // Imports and prepares what the description names; each mesh once. Scales are applied in double, before the
+  // mesh is looked at. Errors name the scene file, the line, the body and the mesh.
+  static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
   // Reads the file and prepares it.
-  static Expected<Scene> load(const std::filesystem::path& path);
+  static Expected<Scene> load(const std::filesystem::path& path, const PrepareOptions& options = {});
 
+  const std::string& name() const { return name_; }  // of the scene file, as named
   const Water& water() const { return water_; }
   const std::vector<Body>& bodies() const { return bodies_; }  // in the file's order
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
@@ -50,6 +55,7 @@ class Scene {
   std::optional<std::size_t> index_of(std::int32_t id) const;  // into bodies()
 
  private:
+  std::string name_;
   Water water_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;

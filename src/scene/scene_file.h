@@ -55,7 +55,7 @@ struct BodyDescription {
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // m
   ClientSpec client;
-  std::string where;  // "scene.toml:12", for errors
+  std::string where;  // "scene.toml:12", for errors; empty where there is no scene file
 };
 
 struct SceneDescription {

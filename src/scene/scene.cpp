@@ -1,0 +1,118 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace buoyancy {
+namespace {
+
+// What makes two bodies share a prepared mesh.
+struct MeshKey {
+  std::variant<std::filesystem::path, Shape> source;  // canonical path
+  double scale = 1.0;
+  OpenPolicy open = OpenPolicy::kRefuse;
+
+  bool operator==(const MeshKey&) const = default;
+};
+
+MeshKey key_of(const BodyDescription& body) {
+  MeshKey key{{}, body.scale, body.open};
+  if (const auto* file = std::get_if<MeshFile>(&body.source)) {
+    std::error_code code;
+    std::filesystem::path canonical = std::filesystem::weakly_canonical(file->path, code);
+    key.source = code ? file->path : std::move(canonical);
+  } else {
+    key.source = std::get<Shape>(body.source);
+  }
+  return key;
+}
+
+Error about(const BodyDescription& body, Error error) {
+  if (!body.where.empty()) {
+    error.subject = body.where + ": body " + std::to_string(body.id) + ", " + error.subject;
+  }
+  return error;
+}
+
+std::string source_name(const BodyDescription& body) {
+  if (const auto* file = std::get_if<MeshFile>(&body.source)) return file->path.string();
+  return std::string(type_name(std::get<Shape>(body.source)));
+}
+
+Expected<ImportedMesh> read_source(const BodyDescription& body, const ImportLimits& limits) {
+  if (const auto* file = std::get_if<MeshFile>(&body.source)) return import_mesh(file->path, limits);
+  ImportedMesh generated;
+  generated.mesh = make_shape(std::get<Shape>(body.source));
+  generated.source.format = "generated";
+  return generated;
+}
+
+void apply_scale(TriangleMesh& mesh, double scale) {
+  if (scale == 1.0) return;
+  for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (double& coordinate : *coordinates) coordinate *= scale;
+  }
+}
+
+Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body, const ImportLimits& limits,
+                                                     const PrepareOptions& options) {
+  Expected<ImportedMesh> imported = read_source(body, limits);
+  if (!imported) return failure(about(body, std::move(imported.error())));
+  apply_scale(imported->mesh, body.scale);
+
+  MeshValidation validation =
+      validate_mesh(*imported, source_name(body), {body.open, options.count_intersecting_pairs});
+  if (!validation.mesh) {
+    assert(validation.refusal);
+    return failure(about(body, *std::move(validation.refusal)));
+  }
+  return std::make_unique<PreparedMesh>(PreparedMesh{std::move(validation.report),
+                                                     make_hydrostatic_mesh(*validation.mesh),
+                                                     mass_properties(validation.mesh->mesh)});
+}
+
+}  // namespace
+
+Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
+  Scene scene;
+  scene.name_ = description.name;
+  scene.water_ = description.water;
+  std::vector<MeshKey> keys;  // of scene.meshes_
+  for (const BodyDescription& body : description.bodies) {
+    MeshKey key = key_of(body);
+    const auto known = std::find(keys.begin(), keys.end(), key);
+    const auto place = static_cast<std::size_t>(known - keys.begin());
+    if (known == keys.end()) {
+      Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_mesh(body, description.limits, options);
+      if (!prepared) return failure(std::move(prepared.error()));
+      scene.meshes_.push_back(*std::move(prepared));
+      keys.push_back(std::move(key));
+    }
+    const PreparedMesh& prepared = *scene.meshes_[place];
+    scene.index_.emplace_back(body.id, scene.bodies_.size());
+    scene.bodies_.push_back({body.id, body.name, &prepared, Solver(prepared.mesh, body.method),
+                             body.tolerance, body.reference_B, body.client});
+  }
+  std::sort(scene.index_.begin(), scene.index_.end());
+  return scene;
+}
+
+Expected<Scene> Scene::load(const std::filesystem::path& path, const PrepareOptions& options) {
+  Expected<SceneDescription> description = read_scene_file(path);
+  if (!description) return failure(std::move(description.error()));
+  return prepare(*description, options);
+}
+
+const Body* Scene::find(std::int32_t id) const {
+  const std::optional<std::size_t> index = index_of(id);
+  return index ? &bodies_[*index] : nullptr;
+}
+
+std::optional<std::size_t> Scene::index_of(std::int32_t id) const {
+  const auto entry = std::lower_bound(index_.begin(), index_.end(), std::pair{id, std::size_t{0}});
+  if (entry == index_.end() || entry->first != id) return std::nullopt;
+  return entry->second;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,278 @@
+#include "scene/scene_file.h"
+
+#include <array>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "scene/shape_table.h"
+#include "scene/toml_table.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::uintmax_t kLargestSceneFile = 64'000'000;  // bytes
+
+void read_world(TomlTable table, Water& water) {
+  table.read("gravity", water.gravity, NumberRange::from_zero("m/s^2"));
+  Vec3 up_W = water.up_W;
+  table.read("up", up_W, "");
+  const double largest = up_W.cwiseAbs().maxCoeff();
+  if (largest > 0.0) {
+    water.up_W = (up_W / largest).normalized();
+  } else {
+    table.fail_at("up", "a direction: three numbers, not all zero");
+  }
+  table.finish();
+}
+
+void read_water(TomlTable table, Water& water) {
+  table.read("level", water.level, NumberRange::any("m"));
+  table.read("density", water.density, NumberRange::from_zero("kg/m^3"));
+  table.finish();
+}
+
+void read_limits(TomlTable table, ImportLimits& limits) {
+  table.read("mesh_bytes", limits.mesh_bytes, 1);
+  table.read("vertices", limits.vertices, 1);
+  table.read("faces", limits.faces, 1);
+  table.read("import_seconds", limits.import_seconds, NumberRange::above_zero("s"));
+  table.finish();
+}
+
+void read_inertia(TomlTable& table, ClientSpec& client) {
+  constexpr std::array<std::size_t, 2> kCounts{3, 6};
+  std::vector<double> numbers = table.numbers("inertia", kCounts, "kg m^2");
+  if (numbers.empty()) return;
+  numbers.resize(6, 0.0);
+  Mat3 inertia_B;
+  inertia_B << numbers[0], numbers[3], numbers[4],  //
+      numbers[3], numbers[1], numbers[5],           //
+      numbers[4], numbers[5], numbers[2];
+  if (Eigen::LLT<Mat3>(inertia_B).info() == Eigen::Success) {
+    client.inertia_B = inertia_B;
+  } else {
+    table.fail_at("inertia",
+                  "a positive definite matrix, given as [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz after them",
+                  "a product of inertia is too large for its moments, or a moment is not above 0");
+  }
+}
+
+void read_client(TomlTable table, ClientSpec& client) {
+  client.given = true;
+  table.read("mass", client.mass, NumberRange::above_zero("kg"));
+  table.read("density", client.density, NumberRange::above_zero("kg/m^3"));
+  if (table.has("center_of_mass")) {
+    client.center_of_mass_B = Vec3::Zero();
+    table.read("center_of_mass", *client.center_of_mass_B, "m");
+  }
+  read_inertia(table, client);
+  table.read("position", client.position, "m");
+  table.read("linear_velocity", client.linear_velocity, "m/s");
+  table.read("angular_velocity", client.angular_velocity, "rad/s");
+  table.read("linear_damping", client.linear_damping, NumberRange::from_zero("N/(m/s)"));
+  table.read("linear_damping_quadratic", client.linear_damping_quadratic,
+             NumberRange::from_zero("N/(m/s)^2"));
+  table.read("angular_damping", client.angular_damping, NumberRange::from_zero("N m/(rad/s)"));
+  table.read("angular_damping_quadratic", client.angular_damping_quadratic,
+             NumberRange::from_zero("N m/(rad/s)^2"));
+
+  std::array<double, 4> wxyz{1.0, 0.0, 0.0, 0.0};
+  table.read("orientation", std::span<double>(wxyz), "w, x, y, z");
+  Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  const double largest = q.cwiseAbs().maxCoeff();
+  if (largest > 0.0) {
+    q = (q / largest).normalized();
+    client.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  } else {
+    table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is no rotation");
+  }
+
+  table.finish();
+  if (client.mass && client.density) {
+    table.fail("both 'mass' and 'density'", "one of them, or neither: half the water's density then", {},
+               "Remove one");
+  }
+}
+
+void read_method(TomlTable& table, Method& method) {
+  std::array<std::string_view, kAllMethods.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = name(kAllMethods[i]);
+  if (const auto chosen = table.choice("method", names)) method = kAllMethods[*chosen];
+}
+
+void read_open_policy(TomlTable& table, OpenPolicy& open) {
+  constexpr std::array<std::string_view, 2> kNames{"refuse", "dry_boundary"};
+  constexpr std::array kPolicies{OpenPolicy::kRefuse, OpenPolicy::kDryBoundary};
+  if (const auto chosen = table.choice("open", kNames)) open = kPolicies[*chosen];
+}
+
+// Wrenches are what every body answers with, so that there is nothing to keep.
+void check_outputs(TomlTable& table) {
+  const toml::node* outputs = table.node("outputs");
+  if (outputs == nullptr) return;
+  const toml::array* array = outputs->as_array();
+  const bool right =
+      array != nullptr && array->size() == 1 && array->get(0)->value_or<std::string_view>("") == "wrench";
+  if (!right) {
+    table.fail_at("outputs", "[\"wrench\"]", "this version computes wrenches and nothing else",
+                  "Write outputs = [\"wrench\"], or leave it out");
+  }
+}
+
+void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
+                 SceneReading& reading) {
+  std::string mesh;
+  table.read("mesh", mesh);
+  table.read("scale", body.scale, NumberRange::above_zero(""));
+  const bool has_mesh = table.has("mesh");
+  const bool has_shape = table.has("shape");
+  if (has_mesh && has_shape) {
+    table.fail("both 'mesh' and 'shape'", "one of them", {}, "Remove one");
+  } else if (has_shape && table.has("scale")) {
+    table.fail("'scale' beside 'shape'", "a scale only with a mesh file", {},
+               "Give the shape its sizes in metres");
+  }
+  if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};
+  if (const toml::table* shape = table.table("shape")) {
+    TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", reading);
+    if (std::optional<Shape> read = read_shape(shape_table)) body.source = *std::move(read);
+  }
+}
+
+BodyDescription read_body(const toml::table& toml, std::size_t number, const std::filesystem::path& directory,
+                          SceneReading& reading) {
+  TomlTable table(toml, "[[body]] number " + std::to_string(number), reading);
+  BodyDescription body;
+  table.read("id", body.id);
+  const bool has_id = table.has("id");
+  if (has_id) table.rename("body " + std::to_string(body.id));
+  body.name = "body " + std::to_string(body.id);
+  body.where = reading.at(toml.source());
+
+  table.read("name", body.name);
+  read_source(table, body, directory, reading);
+  read_method(table, body.method);
+  table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
+  read_open_policy(table, body.open);
+  table.read("reference_point", body.reference_B, "m");
+  check_outputs(table);
+  const toml::table* client = table.table("client");
+
+  // Last, so that a key that is missing because it is mistyped is reported as mistyped.
+  table.finish();
+  if (!has_id) table.fail_missing("id", "a whole number of its own for each body");
+  if (!table.has("mesh") && !table.has("shape")) {
+    table.fail("neither 'mesh' nor 'shape'", "one of them", {},
+               "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
+  }
+  if (client != nullptr) {
+    read_client(TomlTable(*client, "body " + std::to_string(body.id) + ", [body.client]", reading),
+                body.client);
+  }
+  return body;
+}
+
+void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem::path& directory,
+                 SceneReading& reading) {
+  const toml::node* bodies = top.node("body");
+  if (bodies == nullptr) return;
+  const toml::array* array = bodies->as_array();
+  if (array != nullptr && array->empty()) return;
+  if (array == nullptr || !array->is_homogeneous<toml::table>()) {
+    top.fail("'body' is not a list of tables", "a section [[body]] for each body",
+             bodies->is_table() ? "[body] in single brackets" : "", "Write [[body]] in double brackets");
+    return;
+  }
+  std::map<std::int32_t, std::string> places;  // by id
+  for (const toml::node& element : *array) {
+    const toml::table& toml = *element.as_table();
+    scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, directory, reading));
+    const BodyDescription& body = scene.bodies.back();
+    if (const auto [earlier, is_new] = places.emplace(body.id, body.where); !is_new) {
+      TomlTable(toml, "body " + std::to_string(body.id), reading)
+          .fail("id = " + std::to_string(body.id), "an id of its own for each body",
+                "the body at " + earlier->second + " has the same id");
+    }
+    if (reading.error) return;
+  }
+}
+
+}  // namespace
+
+Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
+                                       const std::filesystem::path& directory) {
+  toml::table root;
+  try {
+    root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position& place = error.source().begin;
+    return failure({name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column),
+                    std::string(error.description()),
+                    "TOML (https://toml.io)",
+                    {},
+                    {}});
+  }
+
+  SceneReading reading{name, std::nullopt};
+  SceneDescription scene;
+  scene.name = name;
+  TomlTable top(root, "the scene", reading);
+  if (const toml::table* world = top.table("world")) read_world({*world, "[world]", reading}, scene.water);
+  if (const toml::table* water = top.table("water")) read_water({*water, "[water]", reading}, scene.water);
+  if (const toml::table* limits = top.table("limits"))
+    read_limits({*limits, "[limits]", reading}, scene.limits);
+  read_bodies(top, scene, directory, reading);
+  top.finish();
+  if (scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
+  if (reading.error) return failure(*std::move(reading.error));
+  return scene;
+}
+
+Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const std::string expectation = "a scene file (TOML)";
+  std::error_code code;
+  const std::filesystem::file_status status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) {
+    return failure({name, "no such file", expectation, {}, "Check the path"});
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    const bool directory = std::filesystem::is_directory(status);
+    return failure({name, directory ? "is a directory" : "is not a regular file", expectation, {}, {}});
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(path, code);
+  if (!code && bytes > kLargestSceneFile) {
+    return failure({name,
+                    std::to_string(bytes) + " bytes",
+                    "a scene file of at most " + std::to_string(kLargestSceneFile) + " bytes",
+                    "this is another kind of file",
+                    {}});
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+  if (!file) {
+    return failure({name, "cannot be read", expectation, "no permission to read it", {}});
+  }
+  return parse_scene(text.str(), name, path.parent_path());
+}
+
+SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance) {
+  BodyDescription body;
+  body.id = 1;
+  body.name = mesh.filename().string();
+  body.source = MeshFile{mesh};
+  body.method = method;
+  body.tolerance = tolerance;
+
+  SceneDescription scene;
+  scene.name = mesh.string();
+  scene.bodies.push_back(std::move(body));
+  return scene;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,189 @@
+#include "scene/scene_report.h"
+
+#include <array>
+#include <cstdio>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+namespace buoyancy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What the simulator will use; nothing where it cannot know: an open mesh encloses no volume.
+std::optional<double> mass_of(const Body& body, const Water& water) {
+  if (body.client.mass) return body.client.mass;
+  if (body.prepared->mesh.open()) return std::nullopt;
+  return body.client.density.value_or(0.5 * water.density) * body.prepared->mass_properties.volume;
+}
+
+std::optional<double> density_of(const Body& body, const Water& water) {
+  if (body.client.density) return body.client.density;
+  if (!body.client.mass) return 0.5 * water.density;
+  if (body.prepared->mesh.open()) return std::nullopt;
+  return *body.client.mass / body.prepared->mass_properties.volume;
+}
+
+std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {
+  std::vector<const Body*> users;
+  for (const Body& body : scene.bodies()) {
+    if (body.prepared == &mesh) users.push_back(&body);
+  }
+  return users;
+}
+
+std::size_t number_of(const PreparedMesh& mesh, const Scene& scene) {
+  std::size_t number = 0;
+  while (scene.meshes()[number].get() != &mesh) ++number;
+  return number;
+}
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+std::string vector_text(const Vec3& v) {
+  std::string text = "[";
+  text += number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + "]";
+  return text;
+}
+
+std::string body_text(const Body& body, const Scene& scene) {
+  std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
+  text += "  mesh          " + body.prepared->report.name + "\n";
+  text += "  method        " + std::string(name(body.solver.method())) + ", tolerance " +
+          number(body.tolerance) + "\n";
+  text += "  torque about  " + vector_text(body.reference_B) + " m\n";
+  const std::optional<double> mass = mass_of(body, scene.water());
+  const std::optional<double> density = density_of(body, scene.water());
+  if (mass) {
+    text += "  mass          " + number(*mass) + " kg" +
+            (density ? ", " + number(*density) + " kg/m^3" : "") + "\n";
+  } else {
+    text += "  mass          not known: the mesh is open\n";
+  }
+  return text;
+}
+
+Json json_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json json_of(const BoundingBox& box) {
+  return {{"min", json_of(box.min_B)}, {"max", json_of(box.max_B)}};
+}
+
+template <typename T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const Water& water) {
+  return {{"up", json_of(water.up_W)},
+          {"level", water.level},
+          {"density", water.density},
+          {"gravity", water.gravity}};
+}
+
+Json json_of(const MeshSource& source) {
+  return {{"format", source.format},
+          {"up_axis", source.up_axis},
+          {"note", source.note},
+          {"nodes", source.nodes},
+          {"left_out", source.left_out}};
+}
+
+Json json_of(const ComponentReport& component) {
+  return {{"triangles", component.triangles}, {"volume", component.volume}, {"closed", component.closed},
+          {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.turned}};
+}
+
+Json json_of(const MeshReport& report) {
+  Json components = Json::array();
+  for (const ComponentReport& component : report.components) components.push_back(json_of(component));
+  Json holes = Json::array();
+  for (const HoleReport& hole : report.holes) {
+    holes.push_back({{"edges", hole.edges}, {"box", json_of(hole.box)}});
+  }
+  return {{"name", report.name},
+          {"source", json_of(report.source)},
+          {"triangles", report.triangles},
+          {"vertices_stored", report.vertices_stored},
+          {"vertices_welded", report.vertices_welded},
+          {"weld", report.weld == WeldKind::kExact ? "exact" : "tolerance"},
+          {"weld_largest_move", report.weld_largest_move},
+          {"box", json_of(report.box)},
+          {"diagonal", report.diagonal},
+          {"area", report.area},
+          {"volume", report.volume},
+          {"volume_by_axis", json_of(report.volume_by_axis)},
+          {"area_vector", json_of(report.area_vector)},
+          {"closed", report.closed()},
+          {"boundary_edges", report.boundary_edges},
+          {"non_manifold_edges", report.non_manifold_edges},
+          {"balanced_edges", report.balanced_edges},
+          {"misoriented_edges", report.misoriented_edges},
+          {"degenerate_faces", report.degenerate_faces},
+          {"dropped_faces", report.dropped_faces},
+          {"duplicate_faces", report.duplicate_faces},
+          {"intersecting_pairs", json_of(report.intersecting_pairs)},
+          {"components", std::move(components)},
+          {"holes", std::move(holes)},
+          {"turned", report.turned}};
+}
+
+Json json_of(const Body& body, const Scene& scene) {
+  return {{"id", body.id},
+          {"name", body.name},
+          {"mesh", number_of(*body.prepared, scene)},
+          {"method", name(body.solver.method())},
+          {"tolerance", body.tolerance},
+          {"reference_point", json_of(body.reference_B)},
+          {"mass", json_of(mass_of(body, scene.water()))},
+          {"density", json_of(density_of(body, scene.water()))}};
+}
+
+}  // namespace
+
+std::string scene_report_text(const Scene& scene) {
+  const Water& water = scene.water();
+  std::string text = scene.name() + "\n";
+  text += "  water         up . x < " + number(water.level) + " m, up " + vector_text(water.up_W) + ", " +
+          number(water.density) + " kg/m^3, gravity " + number(water.gravity) + " m/s^2\n";
+  for (const Body& body : scene.bodies()) {
+    text += '\n';
+    text += body_text(body, scene);
+  }
+  for (const auto& mesh : scene.meshes()) {
+    text += "\nmesh " + to_text(mesh->report) + "\n  used by       ";
+    const std::vector<const Body*> users = users_of(*mesh, scene);
+    for (std::size_t i = 0; i < users.size(); ++i) {
+      text += (i == 0 ? "body " : ", ") + std::to_string(users[i]->id);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string scene_report_json(const Scene& scene) {
+  Json bodies = Json::array();
+  for (const Body& body : scene.bodies()) bodies.push_back(json_of(body, scene));
+  Json meshes = Json::array();
+  for (const auto& mesh : scene.meshes()) {
+    Json report = json_of(mesh->report);
+    report["bodies"] = Json::array();
+    for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
+    meshes.push_back(std::move(report));
+  }
+  const Json report{{"scene", scene.name()},
+                    {"water", json_of(scene.water())},
+                    {"bodies", std::move(bodies)},
+                    {"meshes", std::move(meshes)}};
+  // Numbers that are not finite come out as null; file names that are not UTF-8 with replacement characters.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace buoyancy

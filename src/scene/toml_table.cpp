@@ -1,0 +1,271 @@
+#include "scene/toml_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+
+#include "geometry/number_text.h"
+#include "scene/nearest_word.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kLongestQuotation = 60;
+
+bool is_printable(char c) {
+  return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+}
+
+std::string quoted(std::string_view word) {
+  std::string text(1, '\'');
+  text += word;
+  text += '\'';
+  return text;
+}
+
+// A value as the file may have it.
+std::string written(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) {
+    const std::string text = number_text(number->get());
+    // A whole number written as 1.0 stays one that is not whole.
+    return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+  }
+  if (const auto* text = node.as_string()) {
+    std::ostringstream quoted_text;
+    quoted_text << std::quoted(text->get());
+    return quoted_text.str();
+  }
+  if (const auto* array = node.as_array()) {
+    std::string text = "[";
+    for (const toml::node& element : *array) {
+      if (text.size() > 1) text += ", ";
+      text += written(element);
+    }
+    return text += "]";
+  }
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
+
+// On one line, cut short, without control characters.
+std::string quotation(const toml::node& node) {
+  std::string line = written(node);
+  if (line.size() > kLongestQuotation) line = line.substr(0, kLongestQuotation) + "...";
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return !is_printable(c); }, '?');
+  return line;
+}
+
+std::string in_unit(std::string_view unit) {
+  return unit.empty() ? "" : " (" + std::string(unit) + ")";
+}
+
+// A finite number, whole or not.
+std::optional<double> number_of(const toml::node& node) {
+  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
+  if (const auto* number = node.as_floating_point()) return number->get();
+  return std::nullopt;
+}
+
+std::string list(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) {
+    if (!text.empty()) text += ", ";
+    text += word;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string SceneReading::at(const toml::source_region& place) const {
+  return file + ":" + std::to_string(place.begin.line);
+}
+
+bool NumberRange::contains(double value) const {
+  return std::isfinite(value) && value <= most && (least_allowed ? value >= least : value > least);
+}
+
+std::string NumberRange::describe() const {
+  std::string text = "a finite number";
+  if (std::isfinite(least) && std::isfinite(most)) {
+    text = "a number from " + number_text(least) + " to " + number_text(most);
+  } else if (std::isfinite(least)) {
+    text = (least_allowed ? "a finite number of at least " : "a finite number above ") + number_text(least);
+  }
+  return text + in_unit(unit);
+}
+
+const toml::node* TomlTable::node(std::string_view key) {
+  known_.push_back(key);
+  return table_->get(key);
+}
+
+bool TomlTable::has(std::string_view key) {
+  return node(key) != nullptr;
+}
+
+void TomlTable::read(std::string_view key, double& value, const NumberRange& range) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const std::optional<double> number = number_of(*found);
+  if (number && range.contains(*number)) {
+    value = *number;
+  } else {
+    fail_at(key, range.describe());
+  }
+}
+
+void TomlTable::read(std::string_view key, std::optional<double>& value, const NumberRange& range) {
+  double number = 0.0;
+  read(key, number, range);
+  if (table_->contains(key)) value = number;
+}
+
+std::optional<std::vector<double>> TomlTable::numbers_of(const toml::node& node) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return std::nullopt;
+  std::vector<double> numbers;
+  for (const toml::node& element : *array) {
+    const std::optional<double> number = number_of(element);
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, std::span<const std::size_t> counts,
+                                       std::string_view unit) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return {};
+  std::optional<std::vector<double>> numbers = numbers_of(*found);
+  if (numbers && std::find(counts.begin(), counts.end(), numbers->size()) != counts.end()) {
+    return *std::move(numbers);
+  }
+  std::string expectation = "an array of ";
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    expectation += (i == 0 ? "" : " or ") + std::to_string(counts[i]);
+  }
+  fail_at(key, expectation + " finite numbers" + in_unit(unit));
+  return {};
+}
+
+void TomlTable::read(std::string_view key, std::span<double> values, std::string_view unit) {
+  const std::array counts{values.size()};
+  const std::vector<double> found = numbers(key, counts, unit);
+  std::copy(found.begin(), found.end(), values.begin());
+}
+
+void TomlTable::read(std::string_view key, Vec3& value, std::string_view unit) {
+  read(key, std::span<double>(value.data(), 3), unit);
+}
+
+void TomlTable::read(std::string_view key, std::span<std::int32_t> values) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const toml::array* array = found->as_array();
+  bool right = array != nullptr && array->size() == values.size();
+  for (std::size_t i = 0; right && i < values.size(); ++i) {
+    const auto* whole = array->get(i)->as_integer();
+    right = whole != nullptr && std::in_range<std::int32_t>(whole->get());
+    if (right) values[i] = static_cast<std::int32_t>(whole->get());
+  }
+  if (!right) fail_at(key, "an array of " + std::to_string(values.size()) + " whole numbers");
+}
+
+void TomlTable::read(std::string_view key, std::int32_t& value) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const auto* whole = found->as_integer();
+  if (whole != nullptr && std::in_range<std::int32_t>(whole->get())) {
+    value = static_cast<std::int32_t>(whole->get());
+  } else {
+    fail_at(key, "a whole number of 32 bits");
+  }
+}
+
+void TomlTable::read(std::string_view key, std::uint64_t& value, std::uint64_t least) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const auto* whole = found->as_integer();
+  if (whole != nullptr && std::cmp_greater_equal(whole->get(), least)) {
+    value = static_cast<std::uint64_t>(whole->get());
+  } else {
+    fail_at(key, "a whole number of at least " + std::to_string(least));
+  }
+}
+
+void TomlTable::read(std::string_view key, std::string& value) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const auto* text = found->as_string();
+  if (text != nullptr && !text->get().empty() &&
+      std::all_of(text->get().begin(), text->get().end(), is_printable)) {
+    value = text->get();
+  } else {
+    fail_at(key, "a text in quotation marks, not empty and without control characters");
+  }
+}
+
+std::optional<std::size_t> TomlTable::choice(std::string_view key, std::span<const std::string_view> words) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return std::nullopt;
+  const auto* text = found->as_string();
+  if (text == nullptr) {
+    fail_at(key, "one of " + list(words));
+    return std::nullopt;
+  }
+  const auto word = std::find(words.begin(), words.end(), text->get());
+  if (word == words.end()) {
+    fail_at(key, "one of " + list(words), {}, "The nearest is " + quoted(nearest_word(text->get(), words)));
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(word - words.begin());
+}
+
+const toml::table* TomlTable::table(std::string_view key) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return nullptr;
+  if (found->as_table() == nullptr) fail_at(key, "a table");
+  return found->as_table();
+}
+
+void TomlTable::finish() {
+  for (const auto& [key, value] : *table_) {
+    if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    set_error(key.source(), "unknown key " + quoted(key.str()), "one of " + list(known_), {},
+              "The nearest known key is " + quoted(nearest_word(key.str(), known_)));
+    return;
+  }
+}
+
+std::string TomlTable::place() const {
+  return reading_->at(table_->source()) + ": " + what_;
+}
+
+void TomlTable::fail(std::string found, std::string expectation, std::string cause, std::string remedy) {
+  set_error(table_->source(), std::move(found), std::move(expectation), std::move(cause), std::move(remedy));
+}
+
+void TomlTable::fail_at(std::string_view key, std::string expectation, std::string cause,
+                        std::string remedy) {
+  const toml::node* found = table_->get(key);
+  set_error(found->source(), std::string(key) + " = " + quotation(*found), std::move(expectation),
+            std::move(cause), std::move(remedy));
+}
+
+void TomlTable::fail_missing(std::string_view key, std::string expectation) {
+  fail("no key " + quoted(key), std::move(expectation));
+}
+
+void TomlTable::set_error(const toml::source_region& source, std::string found, std::string expectation,
+                          std::string cause, std::string remedy) {
+  if (reading_->error) return;
+  reading_->error = Error{reading_->at(source) + ": " + what_, std::move(found), std::move(expectation),
+                          std::move(cause), std::move(remedy)};
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,115 @@
+// One table of a scene file, read key by key; what is wrong with it becomes an Error that names file, line,
+// key, value and range. For scene_file.cpp and shape_table.cpp only.
+//
+// A key that is read is a known key; finish() reports the ones nobody asked for. The first error stands, and
+// reading goes on with defaults: callers look at the error once, at the end.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "geometry/error.h"
+#include "geometry/vec3.h"
+
+namespace buoyancy {
+
+// The file being read, and the first thing found wrong with it.
+struct SceneReading {
+  std::string file;
+  std::optional<Error> error;
+
+  std::string at(const toml::source_region& place) const;  // "scene.toml:12"
+};
+
+struct NumberRange {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool least_allowed = true;
+  std::string_view unit;  // "kg"; empty for pure numbers
+
+  static NumberRange any(std::string_view unit) {
+    NumberRange range;
+    range.unit = unit;
+    return range;
+  }
+  static NumberRange from_zero(std::string_view unit) {
+    NumberRange range = any(unit);
+    range.least = 0.0;
+    return range;
+  }
+  static NumberRange above_zero(std::string_view unit) {
+    NumberRange range = from_zero(unit);
+    range.least_allowed = false;
+    return range;
+  }
+  static NumberRange from_zero_to(double most) {
+    NumberRange range = from_zero("");
+    range.most = most;
+    return range;
+  }
+
+  bool contains(double value) const;
+  std::string describe() const;  // "a number above 0 (kg)"
+};
+
+class TomlTable {
+ public:
+  // what: as errors call the table, "body 3", "[water]". table and reading must outlive this.
+  TomlTable(const toml::table& table, std::string what, SceneReading& reading)
+      : table_(&table), what_(std::move(what)), reading_(&reading) {}
+
+  void rename(std::string what) { what_ = std::move(what); }
+  bool has(std::string_view key);
+
+  // Each leaves the value as it is where the key is absent. Whole numbers are welcome where numbers are.
+  void read(std::string_view key, double& value, const NumberRange& range);
+  void read(std::string_view key, std::optional<double>& value, const NumberRange& range);
+  void read(std::string_view key, Vec3& value, std::string_view unit);
+  void read(std::string_view key, std::span<double> values, std::string_view unit);
+  void read(std::string_view key, std::span<std::int32_t> values);
+  void read(std::string_view key, std::int32_t& value);
+  void read(std::string_view key, std::uint64_t& value, std::uint64_t least);
+  void read(std::string_view key, std::string& value);
+
+  // As many finite numbers as one of `counts` says; empty: absent or wrong.
+  std::vector<double> numbers(std::string_view key, std::span<const std::size_t> counts,
+                              std::string_view unit);
+  // One of the words: its place among them; nullopt: absent or wrong.
+  std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
+  const toml::table* table(std::string_view key);  // nullptr: absent or wrong
+  const toml::node* node(std::string_view key);    // nullptr: absent
+
+  // Reports the first key that was not asked for.
+  void finish();
+
+  bool failed() const { return reading_->error.has_value(); }  // here or before
+  std::string place() const;                                   // "scene.toml:12: body 3"
+  int line() const { return static_cast<int>(table_->source().begin.line); }
+
+  // Error about the table as a whole, about a key's value, about a key that is missing.
+  void fail(std::string found, std::string expectation, std::string cause = {}, std::string remedy = {});
+  void fail_at(std::string_view key, std::string expectation, std::string cause = {},
+               std::string remedy = {});
+  void fail_missing(std::string_view key, std::string expectation);
+
+ private:
+  void set_error(const toml::source_region& source, std::string found, std::string expectation,
+                 std::string cause, std::string remedy);
+  // The numbers of an array; nullopt: something in it is no number.
+  static std::optional<std::vector<double>> numbers_of(const toml::node& node);
+
+  const toml::table* table_;
+  std::string what_;
+  SceneReading* reading_;
+  std::vector<std::string_view> known_;
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,179 @@
+#include "scene/scene.h"
+
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "tests/geometry/mesh_files.h"
+#include "tests/scene/scene_texts.h"
+
+namespace buoyancy {
+namespace {
+
+Expected<Scene> loaded(const TemporaryDirectory& directory, const std::string& text,
+                       const PrepareOptions& options = {}) {
+  return Scene::load(directory.write("pool.toml", text), options);
+}
+
+std::string body_with(int id, const std::string& keys) {
+  return "[[body]]\nid = " + std::to_string(id) + "\n" + keys + "\n";
+}
+
+TEST(Scene, PreparesGeneratedShapes) {
+  const TemporaryDirectory directory;
+  const auto scene = loaded(directory, body_with(4, "shape = { type = \"box\", size = [1, 2, 3] }"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->name(), (directory.path() / "pool.toml").string());
+  ASSERT_EQ(scene->meshes().size(), 1U);
+  const PreparedMesh& mesh = *scene->meshes()[0];
+  EXPECT_EQ(mesh.report.name, "box");
+  EXPECT_EQ(mesh.report.triangles, 12);
+  EXPECT_NEAR(mesh.mesh.volume, 6.0, 1e-14);
+  EXPECT_NEAR(mesh.mass_properties.volume, 6.0, 1e-14);
+  ASSERT_EQ(scene->bodies().size(), 1U);
+  const Body& body = scene->bodies()[0];
+  EXPECT_EQ(body.prepared, &mesh);
+  EXPECT_EQ(&body.solver.mesh(), &mesh.mesh);
+  EXPECT_EQ(body.solver.method(), Method::kExact);
+}
+
+TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
+  const TemporaryDirectory directory;
+  const auto scene =
+      loaded(directory,
+             "[water]\nlevel = 3\n" + body_with(4,
+                                                "name = \"crate\"\nshape = { type = \"box\" }\nmethod = "
+                                                "\"fast\"\ntolerance = 0.25\nreference_point = [1, 2, 3]\n"
+                                                "[body.client]\nmass = 9"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->water().level, 3.0);
+  const Body& body = scene->bodies()[0];
+  EXPECT_EQ(body.id, 4);
+  EXPECT_EQ(body.name, "crate");
+  EXPECT_EQ(body.solver.method(), Method::kFast);
+  EXPECT_EQ(body.tolerance, 0.25);
+  EXPECT_EQ(body.reference_B, Vec3(1, 2, 3));
+  EXPECT_EQ(body.client.mass, 9.0);
+}
+
+TEST(Scene, LoadsAMeshUsedTwiceOnce) {
+  const TemporaryDirectory directory;
+  directory.write("tetrahedron.obj", tetrahedron::obj());
+  std::filesystem::create_symlink(directory.path() / "tetrahedron.obj", directory.path() / "alias.obj");
+  const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
+                                           body_with(2, "mesh = \"./tetrahedron.obj\"\nmethod = \"fast\"") +
+                                           body_with(3, "mesh = \"alias.obj\""));
+  ASSERT_TRUE(scene) << scene.error().message();
+  ASSERT_EQ(scene->meshes().size(), 1U);
+  for (const Body& body : scene->bodies()) EXPECT_EQ(body.prepared, scene->meshes()[0].get());
+}
+
+TEST(Scene, PreparesAMeshAgainForAnotherScaleOrOpenPolicy) {
+  const TemporaryDirectory directory;
+  directory.write("tetrahedron.obj", tetrahedron::obj());
+  const auto scene =
+      loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
+                            body_with(2, "mesh = \"tetrahedron.obj\"\nscale = 2") +
+                            body_with(3, "mesh = \"tetrahedron.obj\"\nopen = \"dry_boundary\""));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->meshes().size(), 3U);
+}
+
+TEST(Scene, SharesEqualShapesOnly) {
+  const TemporaryDirectory directory;
+  const auto scene = loaded(directory, body_with(1, "shape = { type = \"rock\", seed = 1 }") +
+                                           body_with(2, "shape = { type = \"rock\", seed = 2 }") +
+                                           body_with(3, "shape = { type = \"rock\" }"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->meshes().size(), 2U);
+  EXPECT_EQ(scene->bodies()[0].prepared, scene->bodies()[2].prepared);
+}
+
+TEST(Scene, ScalesMeshesInDouble) {
+  const TemporaryDirectory directory;
+  directory.write("tetrahedron.ply", tetrahedron::binary_ply());
+  const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.ply\"\nscale = 0.1"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->meshes()[0]->report.box.max_B, Vec3(0.1, 0.1, 0.1));
+  EXPECT_NEAR(scene->meshes()[0]->mass_properties.volume, 1e-3 / 6.0, 1e-18);
+}
+
+TEST(Scene, FindsBodiesByTheirId) {
+  const TemporaryDirectory directory;
+  const auto scene = loaded(directory, body_with(9, "shape = { type = \"box\" }") +
+                                           body_with(-5, "shape = { type = \"box\" }") +
+                                           body_with(2, "shape = { type = \"box\" }"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->index_of(9), 0U);
+  EXPECT_EQ(scene->index_of(-5), 1U);
+  EXPECT_EQ(scene->index_of(2), 2U);
+  EXPECT_EQ(scene->find(2), &scene->bodies()[2]);
+  EXPECT_EQ(scene->index_of(3), std::nullopt);
+  EXPECT_EQ(scene->index_of(10), std::nullopt);
+  EXPECT_EQ(scene->find(3), nullptr);
+}
+
+TEST(Scene, AnswersAfterItHasBeenMoved) {
+  const TemporaryDirectory directory;
+  auto scene = loaded(directory, body_with(1, "shape = { type = \"box\" }\nmethod = \"fast\""));
+  ASSERT_TRUE(scene) << scene.error().message();
+  const WaterPlane all_wet{Vec3::UnitZ(), 10.0};
+  const Displacement before = scene->bodies()[0].solver.displacement(all_wet);
+  const Scene moved = *std::move(scene);
+  EXPECT_EQ(moved.bodies()[0].solver.displacement(all_wet).volume, before.volume);
+  EXPECT_NEAR(before.volume, 1.0, 1e-15);
+}
+
+TEST(Scene, CountsIntersectionsOnRequestOnly) {
+  const TemporaryDirectory directory;
+  const std::string text = body_with(1, "shape = { type = \"box\" }");
+  const auto plain = loaded(directory, text);
+  ASSERT_TRUE(plain) << plain.error().message();
+  EXPECT_FALSE(plain->meshes()[0]->report.intersecting_pairs);
+  const auto counted = loaded(directory, text, {.count_intersecting_pairs = true});
+  ASSERT_TRUE(counted) << counted.error().message();
+  EXPECT_EQ(counted->meshes()[0]->report.intersecting_pairs, 0);
+}
+
+std::string refusal(const Expected<Scene>& scene) {
+  return scene ? "accepted" : scene.error().message();
+}
+
+TEST(Scene, NamesFileLineBodyAndMeshWhereAMeshCannotBeUsed) {
+  const TemporaryDirectory directory;
+  directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  for (const std::string mesh : {"missing.obj", "open.obj"}) {
+    const std::string message = refusal(loaded(
+        directory, body_with(1, "shape = { type = \"box\" }") + body_with(22, "mesh = \"" + mesh + "\"")));
+    const std::string start = (directory.path() / "pool.toml").string() + ":4: body 22, ";
+    EXPECT_EQ(message.rfind(start, 0), 0U) << message;
+    EXPECT_NE(message.find((directory.path() / mesh).string()), std::string::npos) << message;
+  }
+}
+
+TEST(Scene, TakesOpenMeshesWhereTheFileSaysSo) {
+  const TemporaryDirectory directory;
+  directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const auto scene = loaded(directory, body_with(1, "mesh = \"open.obj\"\nopen = \"dry_boundary\""));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_TRUE(scene->bodies()[0].prepared->mesh.open());
+}
+
+TEST(Scene, RefusesMeshesBeyondItsLimits) {
+  const TemporaryDirectory directory;
+  directory.write("tetrahedron.obj", tetrahedron::obj());
+  const std::string message =
+      refusal(loaded(directory, "[limits]\nfaces = 3\n" + body_with(1, "mesh = \"tetrahedron.obj\"")));
+  EXPECT_NE(message.find("body 1, "), std::string::npos) << message;
+}
+
+TEST(Scene, NamesOnlyTheMeshWhereThereIsNoSceneFile) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path mesh = directory.path() / "missing.obj";
+  const std::string message = refusal(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0)));
+  EXPECT_EQ(message.rfind(mesh.string() + ": ", 0), 0U) << message;
+}
+
+}  // namespace
+}  // namespace buoyancy
