@@ -1,27 +1,25 @@
 #include "geometry/mesh_refusal.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
+
+#include "geometry/wording.h"
 
 namespace buoyancy {
 namespace {
 
+// Digits that a person needs to find a place in a mesh editor.
+constexpr int kDigits = 6;
+
 std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
+  return number_text(value, kDigits);
 }
 
 std::string point(const Vec3& point_B) {
   std::string text = "(";
-  text += number(point_B.x()) + ", " + number(point_B.y()) + ", " + number(point_B.z());
+  text += vector_text(point_B, kDigits);
   return text + ")";
-}
-
-std::string counted(std::int64_t count, const std::string& singular, const std::string& plural) {
-  return std::to_string(count) + " " + (count == 1 ? singular : plural);
 }
 
 std::string edges_of_kind(const TriangleMesh& mesh, const std::vector<Edge>& edges, const std::string& kind) {

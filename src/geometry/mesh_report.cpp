@@ -1,27 +1,14 @@
 #include "geometry/mesh_report.h"
 
-#include <array>
-#include <cstdio>
+#include <algorithm>
 #include <string_view>
+
+#include "geometry/wording.h"
 
 namespace buoyancy {
 namespace {
 
 constexpr std::size_t kListed = 8;  // of components and of holes
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return text.data();
-}
-
-std::string point(const Vec3& point_B) {
-  return number(point_B.x()) + ", " + number(point_B.y()) + ", " + number(point_B.z());
-}
-
-std::string counted(std::int64_t count, const std::string& singular, const std::string& plural) {
-  return std::to_string(count) + " " + (count == 1 ? singular : plural);
-}
 
 // "a, b, c", or `otherwise` if there is nothing to say.
 class Listing {
@@ -68,7 +55,7 @@ std::string vertices_text(const MeshReport& report) {
   std::string text = std::to_string(report.vertices_stored) + " stored, " +
                      std::to_string(report.vertices_welded) + " after welding";
   if (report.weld == WeldKind::kTolerance) {
-    text += "; cracks closed by moving vertices up to " + number(report.weld_largest_move) + " m";
+    text += "; cracks closed by moving vertices up to " + number_text(report.weld_largest_move) + " m";
   }
   return text;
 }
@@ -85,7 +72,7 @@ std::string edges_text(const MeshReport& report) {
 }
 
 std::string state_text(const MeshReport& report) {
-  if (report.triangles == 0) return "empty";
+  if (report.triangles == 0) return "none";
   if (report.closed()) return report.balanced_edges == 0 ? "closed" : "balanced";
   return report.non_manifold_edges == 0 && report.misoriented_edges == 0 ? "open" : "open or inconsistent";
 }
@@ -102,7 +89,7 @@ std::string faces_text(const MeshReport& report) {
 
 std::string component_text(const ComponentReport& component) {
   std::string text =
-      counted(component.triangles, "triangle", "triangles") + ", " + number(component.volume) + " m^3";
+      counted(component.triangles, "triangle", "triangles") + ", " + number_text(component.volume) + " m^3";
   if (!component.closed) text += ", open";
   if (component.cavity) text += ", a cavity";
   if (component.nested) text += ", inside another: its volume counts twice";
@@ -111,13 +98,26 @@ std::string component_text(const ComponentReport& component) {
 }
 
 std::string hole_text(const HoleReport& hole) {
-  return counted(hole.edges, "edge", "edges") + ", from " + point(hole.box.min_B) + " to " +
-         point(hole.box.max_B);
+  return counted(hole.edges, "edge", "edges") + ", from " + vector_text(hole.box.min_B) + " to " +
+         vector_text(hole.box.max_B);
+}
+
+std::int64_t count_components(const MeshReport& report, bool ComponentReport::*flag) {
+  return std::count_if(report.components.begin(), report.components.end(),
+                       [flag](const ComponentReport& component) { return component.*flag; });
 }
 
 void add_components(const MeshReport& report, AlignedLines& lines) {
-  if (report.components.size() == 1) return;
-  lines.add("components", std::to_string(report.components.size()));
+  if (report.components.size() < 2) return;
+  const std::int64_t cavities = count_components(report, &ComponentReport::cavity);
+  const std::int64_t nested = count_components(report, &ComponentReport::nested);
+  const std::int64_t turned = count_components(report, &ComponentReport::turned);
+  Listing listing;
+  listing.add_if(true, std::to_string(report.components.size()));
+  listing.add_if(cavities > 0, counted(cavities, "cavity", "cavities"));
+  listing.add_if(nested > 0, std::to_string(nested) + " inside another");
+  listing.add_if(turned > 0, std::to_string(turned) + " turned");
+  lines.add("components", listing.text(""));
   for (std::size_t i = 0; i < report.components.size() && i < kListed; ++i) {
     lines.add("", component_text(report.components[i]));
   }
@@ -146,21 +146,24 @@ std::string to_text(const MeshReport& report) {
   lines.add("surface", state_text(report));
   lines.add("triangles", std::to_string(report.triangles));
   lines.add("vertices", vertices_text(report));
-  lines.add("edges", edges_text(report));
   const std::string faces = faces_text(report);
   if (!faces.empty()) lines.add("faces", faces);
-  lines.add("box", "from " + point(report.box.min_B) + " to " + point(report.box.max_B) + " m, diagonal " +
-                       number(report.diagonal) + " m");
-  lines.add("area", number(report.area) + " m^2");
+  if (report.triangles == 0) return report.name + "\n" + lines.text();
+  lines.add("edges", edges_text(report));
+  lines.add("box", "from " + vector_text(report.box.min_B) + " to " + vector_text(report.box.max_B) +
+                       " m, diagonal " + number_text(report.diagonal) + " m");
+  lines.add("area", number_text(report.area) + " m^2");
   lines.add("volume",
-            number(report.volume) + " m^3" +
+            number_text(report.volume) + " m^3" +
                 (report.closed() ? "" : " about the box's centre, which means nothing while it is open"));
-  lines.add("", "from x, y, z: " + point(report.volume_by_axis) + " m^3");
-  lines.add("", "integral of n dA: " + point(report.area_vector) + " m^2");
+  lines.add("", "from x, y, z: " + vector_text(report.volume_by_axis) + " m^3");
+  lines.add("", "integral of n dA: " + vector_text(report.area_vector) + " m^2");
   add_components(report, lines);
   add_holes(report, lines);
   if (report.intersecting_pairs) {
-    lines.add("intersecting", counted(*report.intersecting_pairs, "pair of faces", "pairs of faces"));
+    lines.add("intersecting",
+              counted(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
+                  (*report.intersecting_pairs == 0 ? "" : ": what overlaps there counts twice"));
   }
   if (report.turned) lines.add("turned", "was inside out: all faces have been turned");
   return report.name + "\n" + lines.text();

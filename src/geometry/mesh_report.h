@@ -32,7 +32,7 @@ struct MeshReport {
   std::string name;  // file or shape
   MeshSource source;
 
-  std::int64_t triangles = 0;  // kept
+  std::int64_t triangles = 0;  // kept; 0 also where vertices were not finite, and nothing else was looked at
   std::int64_t vertices_stored = 0;
   std::int64_t vertices_welded = 0;
   WeldKind weld = WeldKind::kExact;

@@ -98,7 +98,6 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report.name = name;
   report.source = imported.source;
   report.vertices_stored = static_cast<std::int64_t>(imported.mesh.vertex_count());
-  report.triangles = static_cast<std::int64_t>(imported.mesh.triangles.size());
   validation.refusal = refuse_non_finite(imported.mesh, name);
   if (validation.refusal) return validation;
 

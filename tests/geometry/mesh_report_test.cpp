@@ -1,0 +1,90 @@
+#include "geometry/mesh_report.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "geometry/mesh_validation.h"
+#include "tests/geometry/sample_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+std::string text_of(const TriangleMesh& mesh) {
+  const MeshSource source{"STL", "not stated", "", 1, 2};
+  return to_text(validate_mesh({mesh, source}, "hull.stl", {OpenPolicy::kRefuse, true}).report);
+}
+
+void expect_line(const std::string& text, const std::string& line) {
+  EXPECT_NE(("\n" + text + "\n").find("\n" + line + "\n"), std::string::npos) << text << "\nhas no line\n"
+                                                                              << line;
+}
+
+TEST(MeshReport, ReadsAsAlignedLinesUnderTheMeshsName) {
+  EXPECT_EQ(text_of(cube_mesh(2)),
+            "hull.stl\n"
+            "  source        STL, up axis not stated, 2 points and lines left out\n"
+            "  surface       closed\n"
+            "  triangles     12\n"
+            "  vertices      8 stored, 8 after welding\n"
+            "  edges         each used once each way\n"
+            "  box           from -1, -1, -1 to 1, 1, 1 m, diagonal 3.46410162 m\n"
+            "  area          24 m^2\n"
+            "  volume        8 m^3\n"
+            "                from x, y, z: 8, 8, 8 m^3\n"
+            "                integral of n dA: 0, 0, 0 m^2\n"
+            "  intersecting  0 pairs of faces");
+}
+
+TEST(MeshReport, SaysWhatIsWrongWithARefusedMesh) {
+  TriangleMesh mesh = without_face(cube_mesh(), 0);
+  mesh.triangles.push_back(mesh.triangles.back());
+  mesh.triangles.push_back({1, 1, 2});
+  const std::string text = text_of(mesh);
+  expect_line(text, "  surface       open or inconsistent");
+  expect_line(text, "  edges         3 boundary, 3 non-manifold");
+  expect_line(text, "  faces         1 dropped for naming a vertex twice, 1 duplicate of an earlier face");
+  expect_line(text, "  holes         1");
+  expect_line(text, "                3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5");
+  expect_line(text, "  intersecting  1 pair of faces: what overlaps there counts twice");
+}
+
+TEST(MeshReport, SaysOfEveryComponentWhatItIs) {
+  const TriangleMesh shell = joined(cube_mesh(4), inside_out(cube_mesh(3)));
+  const TriangleMesh filled = joined(shell, inside_out(cube_mesh(2)));
+  const std::string text = text_of(joined(filled, cube_mesh(1)));
+  expect_line(text, "  components    4, 1 cavity, 1 inside another, 1 turned");
+  expect_line(text, "                12 triangles, 64 m^3");
+  expect_line(text, "                12 triangles, -27 m^3, a cavity");
+  expect_line(text, "                12 triangles, 8 m^3, was inside out and has been turned");
+  expect_line(text, "                12 triangles, 1 m^3, inside another: its volume counts twice");
+  EXPECT_EQ(text.find("all faces have been turned"), std::string::npos);
+}
+
+TEST(MeshReport, SaysThatAMeshWasInsideOut) {
+  expect_line(text_of(inside_out(cube_mesh())), "  turned        was inside out: all faces have been turned");
+}
+
+TEST(MeshReport, KeepsLongListsShort) {
+  TriangleMesh many;
+  for (int i = 0; i < 30; ++i)
+    many = joined(std::move(many), without_face(cube_mesh(1, Vec3(2.0 * i, 0, 0)), 0));
+  const std::string text = text_of(many);
+  expect_line(text, "  components    30");
+  expect_line(text, "  holes         30");
+  expect_line(text, "                and 22 smaller ones");
+}
+
+TEST(MeshReport, ClaimsNothingOfAMeshThatWasNotLookedAt) {
+  TriangleMesh broken = cube_mesh();
+  broken.x[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(text_of(broken),
+            "hull.stl\n"
+            "  source        STL, up axis not stated, 2 points and lines left out\n"
+            "  surface       none\n"
+            "  triangles     0\n"
+            "  vertices      8 stored, 0 after welding");
+}
+
+}  // namespace
+}  // namespace buoyancy
