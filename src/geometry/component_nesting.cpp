@@ -47,17 +47,21 @@ ComponentLists boxes_around(const std::vector<BoundingBox>& boxes) {
   return around;
 }
 
-// Up to kSamplesPerComponent first corners of faces, spread over each component.
+// Up to kSamplesPerComponent corners of faces, spread over each component's faces and over their corners.
 ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& topology) {
-  std::vector<std::size_t> faces(static_cast<std::size_t>(topology.components), 0);
-  for (const std::int32_t component : topology.component_of_face)
-    ++faces[static_cast<std::size_t>(component)];
-  std::vector<std::size_t> met(faces.size(), 0);
-  ComponentLists samples(faces.size());
+  std::vector<std::size_t> corners(static_cast<std::size_t>(topology.components), 0);
+  for (const std::int32_t component : topology.component_of_face) {
+    corners[static_cast<std::size_t>(component)] += 3;
+  }
+  std::vector<std::size_t> met(corners.size(), 0);
+  ComponentLists samples(corners.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
-    const std::size_t stride = (faces[component] + kSamplesPerComponent - 1) / kSamplesPerComponent;
-    if (met[component]++ % stride == 0) samples[component].push_back(mesh.triangles[f][0]);
+    std::size_t stride = (corners[component] + kSamplesPerComponent - 1) / kSamplesPerComponent;
+    if (stride % 3 == 0) ++stride;  // else it would always be the same corner
+    for (const std::int32_t v : mesh.triangles[f]) {
+      if (met[component]++ % stride == 0) samples[component].push_back(v);
+    }
   }
   return samples;
 }

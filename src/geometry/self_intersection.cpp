@@ -52,11 +52,10 @@ bool in_box(const Point2& point, const Point2& a, const Point2& b) {
          std::min(a.y(), b.y()) <= point.y() && point.y() <= std::max(a.y(), b.y());
 }
 
+// p and q: not on ab.
 bool segments_meet(const Point2& p, const Point2& q, const Point2& a, const Point2& b) {
   const int side_p = orient_2d(a, b, p);
   const int side_q = orient_2d(a, b, q);
-  if (side_p == 0 && in_box(p, a, b)) return true;
-  if (side_q == 0 && in_box(q, a, b)) return true;
   if (side_p * side_q > 0) return false;
   const int side_a = orient_2d(p, q, a);
   const int side_b = orient_2d(p, q, b);

@@ -80,6 +80,15 @@ TEST(MeshOrientation, IsNotFooledByBoxesThatHoldEachOther) {
   EXPECT_FALSE(outside.components[1].cavity);
 }
 
+TEST(MeshOrientation, CountsOnlyWhatLiesAheadOnTheRay) {
+  // Beyond the slanted face, whose box holds everything.
+  TriangleMesh corner = tetrahedron_mesh();
+  corner = moved_mesh(corner, 10.0 * Mat3::Identity(), Vec3::Zero());
+  const MeshReport report = report_of(joined(corner, inside_out(cube_mesh(1, Vec3(6, 3, 3)))));
+  EXPECT_TRUE(report.components[1].turned);
+  EXPECT_FALSE(report.components[1].cavity);
+}
+
 TEST(MeshOrientation, JudgesVerticesThatSeeOnlyEdgesAndCornersAlongTheRay) {
   // All vertices on one grid: every ray from an inner vertex meets edges and vertices of the outer mesh.
   const TriangleMesh outer = make_shape(BoxShape{{4, 4, 4}, {8, 8, 8}});
@@ -93,6 +102,12 @@ TEST(MeshOrientation, CallsComponentsThatCrossNeitherCavityNorNested) {
   const MeshReport report = report_of(joined(cube_mesh(2), cube_mesh(1, Vec3(0, 0, 0.9))));
   EXPECT_FALSE(report.components[1].nested);
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
+}
+
+TEST(MeshOrientation, CallsAComponentThatCrossesTheOneWhoseBoxHoldsItNotNested) {
+  const TriangleMesh corner = moved_mesh(tetrahedron_mesh(), 10.0 * Mat3::Identity(), Vec3::Zero());
+  EXPECT_TRUE(report_of(joined(corner, cube_mesh(1, Vec3(2, 2, 2)))).components[1].nested);
+  EXPECT_FALSE(report_of(joined(corner, cube_mesh(2, Vec3(3.4, 3.4, 3.4)))).components[1].nested);
 }
 
 TEST(MeshOrientation, KeepsManyCavitiesApart) {

@@ -1,5 +1,6 @@
 #include "geometry/mesh_validation.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -97,6 +98,29 @@ TEST(MeshValidation, TurnsAnOpenMeshByTheVolumeOfItWithItsHolesClosed) {
   ASSERT_TRUE(turned.mesh);
   EXPECT_TRUE(turned.report.turned);
   EXPECT_EQ(validate(turned.mesh->mesh, OpenPolicy::kDryBoundary).report.turned, false);
+}
+
+// A basin of 1 m by 1 m by 1 m, open at the top, with a flange of 10 m by 10 m around its rim.
+TriangleMesh flanged_basin() {
+  TriangleMesh basin = box_mesh(Vec3(-0.5, -0.5, -1), Vec3(0.5, 0.5, 0));
+  basin.triangles.erase(basin.triangles.begin() + 2, basin.triangles.begin() + 4);
+  const std::array<std::int32_t, 4> rim{4, 5, 7, 6};
+  std::array<std::int32_t, 4> outer{};
+  for (std::size_t i = 0; i < 4; ++i) outer[i] = basin.add_vertex(10.0 * basin.vertex(rim[i]));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t next = (i + 1) % 4;
+    basin.triangles.push_back({rim[i], rim[next], outer[next]});
+    basin.triangles.push_back({rim[i], outer[next], outer[i]});
+  }
+  return basin;
+}
+
+TEST(MeshValidation, JudgesAnOpenMeshByItsHolesClosedWhereItsOwnVolumeMisleads) {
+  const MeshValidation basin = validate(flanged_basin(), OpenPolicy::kDryBoundary);
+  ASSERT_TRUE(basin.mesh);
+  EXPECT_LT(basin.report.volume, 0.0);
+  EXPECT_FALSE(basin.report.turned);
+  EXPECT_TRUE(validate(inside_out(flanged_basin()), OpenPolicy::kDryBoundary).report.turned);
 }
 
 TEST(MeshValidation, RefusesMisorientedAndNonManifoldMeshesWithEitherPolicy) {
