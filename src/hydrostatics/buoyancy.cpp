@@ -7,27 +7,6 @@
 namespace buoyancy {
 namespace {
 
-// Lowest and highest signed height of the mesh's bounding box.
-struct HeightRange {
-  double lowest, highest;  // m
-};
-
-HeightRange height_range(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  const Vec3 at_min = plane.up_B.cwiseProduct(mesh.box_min);
-  const Vec3 at_max = plane.up_B.cwiseProduct(mesh.box_max);
-  return {at_min.cwiseMin(at_max).sum() - plane.h_c, at_min.cwiseMax(at_max).sum() - plane.h_c};
-}
-
-// Decided by bounds with a margin for rounding: kDry and kWet are certain, for the solvers' own heights too.
-Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  const HeightRange range = height_range(mesh, plane);
-  const double margin = 8.0 * kEpsilon * (mesh.diagonal + std::abs(plane.h_c));
-  if (range.lowest > margin) return Immersion::kDry;
-  if (range.highest < -margin) return Immersion::kWet;
-  return Immersion::kCrossing;
-}
-
 bool boundary_is_dry(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   return std::none_of(mesh.boundary_vertices.begin(), mesh.boundary_vertices.end(),
                       [&](std::int32_t i) { return plane.height(mesh.vertex(i)) < 0.0; });
@@ -49,9 +28,10 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Ve
     return {kNone, kNone};
   }
   const HydrostaticMesh& mesh = solver.mesh();
+  double force = mesh.volume_gate();
+  // The paper's exact methods lose digits with depth: the apex, or the pressure, is far from the body's size.
   const double depth = std::abs(plane.h_c);
-  const double deep = depth > mesh.diagonal ? 1.0 + depth / mesh.diagonal : 1.0;
-  const double force = deep * mesh.volume_gate();
+  if (solver.method() != Method::kHierarchical && depth > mesh.diagonal) force *= 1.0 + depth / mesh.diagonal;
   return {force, force * mesh.largest_lever(reference_B)};
 }
 

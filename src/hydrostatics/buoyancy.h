@@ -8,10 +8,6 @@ namespace buoyancy {
 
 enum class BuoyancyStatus { kOk, kOpenEdgeWet, kOutOfRange };
 
-// How the body lies in the water, by its bounding box: all of it above, all of it below, or cut by the
-// surface.
-enum class Immersion { kDry, kWet, kCrossing };
-
 struct BuoyancyAnswer {
   BuoyancyStatus status = BuoyancyStatus::kOk;
   Immersion immersion = Immersion::kCrossing;
@@ -31,8 +27,8 @@ struct BuoyancyAnswer {
 // Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing.
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
-// health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate), times 1 +
-// depth/L for bodies deeper than L.
+// health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate); of `exact` and
+// `exact_surface` times 1 + depth/L for bodies deeper than L.
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
 }  // namespace buoyancy

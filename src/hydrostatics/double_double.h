@@ -12,8 +12,6 @@ namespace buoyancy {
 struct DoubleDouble {
   double hi = 0.0;
   double lo = 0.0;
-
-  double rounded() const { return hi + lo; }
 };
 
 // a + b exactly.

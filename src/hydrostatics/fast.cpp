@@ -20,9 +20,9 @@ struct ElementSum {
 }  // namespace
 
 FastTable::FastTable(const HydrostaticMesh& mesh) {
-  elements_.reserve(mesh.triangles.size());
+  elements_.reserve(mesh.surface.triangles.size());
   const Vec3 origin = -mesh.center_B;  // B's origin, about c
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const Triangle& triangle : mesh.surface.triangles) {
     VolumeElements element;
     element.add(mesh.point(triangle[0]), mesh.point(triangle[1]), mesh.point(triangle[2]),
                 Point<double>::from(origin));
@@ -33,7 +33,7 @@ FastTable::FastTable(const HydrostaticMesh& mesh) {
 Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const {
   PairwiseSum<ElementSum> sum;
   for (std::size_t i = 0; i < elements_.size(); ++i) {
-    const Triangle& triangle = mesh.triangles[i];
+    const Triangle& triangle = mesh.surface.triangles[i];
     const bool wet = plane.height(mesh.vertex(triangle[0])) < 0.0 &&
                      plane.height(mesh.vertex(triangle[1])) < 0.0 &&
                      plane.height(mesh.vertex(triangle[2])) < 0.0;

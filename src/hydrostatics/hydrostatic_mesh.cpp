@@ -46,7 +46,7 @@ double HydrostaticMesh::largest_lever(const Vec3& reference_B) const {
   return (box_min - reference).cwiseAbs().cwiseMax((box_max - reference).cwiseAbs()).norm();
 }
 
-HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated) {
+HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree) {
   const TriangleMesh& source = validated.mesh;
   const BoundingBox box = bounding_box(source);
   HydrostaticMesh mesh;
@@ -55,7 +55,7 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated) {
   mesh.box_min = box.min_B - mesh.center_B;
   mesh.box_max = box.max_B - mesh.center_B;
   mesh.diagonal = box.diagonal();
-  mesh.triangles = source.triangles;
+  mesh.surface.triangles = source.triangles;
   mesh.boundary_vertices = validated.boundary_vertices;
 
   const auto recentre = [](const std::vector<double>& from, double center) {
@@ -63,12 +63,12 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated) {
     std::transform(from.begin(), from.end(), to.begin(), [center](double value) { return value - center; });
     return to;
   };
-  mesh.x = recentre(source.x, mesh.center_B.x());
-  mesh.y = recentre(source.y, mesh.center_B.y());
-  mesh.z = recentre(source.z, mesh.center_B.z());
+  mesh.surface.x = recentre(source.x, mesh.center_B.x());
+  mesh.surface.y = recentre(source.y, mesh.center_B.y());
+  mesh.surface.z = recentre(source.z, mesh.center_B.z());
 
   PairwiseSum<Totals> sum;
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const Triangle& triangle : mesh.surface.triangles) {
     const Point<double> a = mesh.point(triangle[0]);
     const Point<double> b = mesh.point(triangle[1]);
     const Point<double> c = mesh.point(triangle[2]);
@@ -83,7 +83,20 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated) {
   const bool has_centroid = !mesh.open() && std::abs(mesh.volume) > mesh.volume_gate();
   mesh.centroid = has_centroid ? Vec3(totals.elements.moment(Vec3::Zero()) / mesh.volume)
                                : Vec3(0.5 * (mesh.box_min + mesh.box_max));
+  if (with_tree == WithTree::kYes) mesh.tree = build_moment_tree(mesh.surface);
   return mesh;
+}
+
+Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  const Vec3 at_min = plane.up_B.cwiseProduct(mesh.box_min);
+  const Vec3 at_max = plane.up_B.cwiseProduct(mesh.box_max);
+  const double lowest = at_min.cwiseMin(at_max).sum() - plane.h_c;
+  const double highest = at_min.cwiseMax(at_max).sum() - plane.h_c;
+  const double margin = 8.0 * kEpsilon * (mesh.diagonal + std::abs(plane.h_c));
+  if (lowest > margin) return Immersion::kDry;
+  if (highest < -margin && !mesh.open()) return Immersion::kWet;
+  return Immersion::kCrossing;
 }
 
 }  // namespace buoyancy

@@ -6,16 +6,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geometry/mesh_validation.h"
+#include "geometry/moment_tree.h"
 #include "hydrostatics/point.h"
+#include "hydrostatics/water_plane.h"
 
 namespace buoyancy {
 
 struct HydrostaticMesh {
-  std::vector<double> x, y, z;  // m, B axes, about center_B
-  std::vector<Triangle> triangles;
+  TriangleMesh surface;                         // vertices in m, B axes, about center_B
+  std::optional<MomentTree> tree;               // where asked for; `hierarchical` needs it
   std::vector<std::int32_t> boundary_vertices;  // of an accepted open mesh: all must be dry
 
   Vec3 center_B = Vec3::Zero();  // m: c
@@ -28,14 +31,10 @@ struct HydrostaticMesh {
 
   bool open() const { return !boundary_vertices.empty(); }
 
-  Vec3 vertex(std::int32_t i) const {
-    const auto n = static_cast<std::size_t>(i);
-    return {x[n], y[n], z[n]};
-  }
-
+  Vec3 vertex(std::int32_t i) const { return surface.vertex(i); }
   Point<double> point(std::int32_t i) const {
     const auto n = static_cast<std::size_t>(i);
-    return {x[n], y[n], z[n]};
+    return {surface.x[n], surface.y[n], surface.z[n]};
   }
 
   // The accuracy that the exact solvers hold in volume and force/(rho g), m^3: G_V = eps (64 V_T + L A_s).
@@ -45,6 +44,15 @@ struct HydrostaticMesh {
   double largest_lever(const Vec3& reference_B) const;
 };
 
-HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated);
+enum class WithTree { kNo, kYes };
+
+HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree = WithTree::kYes);
+
+// How a body lies in the water: above it, below it, or so near the surface that it has to be looked at.
+enum class Immersion { kDry, kWet, kCrossing };
+
+// By the bounding box, with a margin for rounding: kDry and kWet are certain. An open mesh is never kWet.
+// O(1).
+Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 }  // namespace buoyancy

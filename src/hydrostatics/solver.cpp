@@ -3,6 +3,7 @@
 #include "hydrostatics/exact.h"
 #include "hydrostatics/exact_surface.h"
 #include "hydrostatics/fast_surface.h"
+#include "hydrostatics/hierarchical.h"
 #include "hydrostatics/improved.h"
 
 namespace buoyancy {
@@ -19,6 +20,8 @@ std::string_view name(Method method) {
       return "fast_surface";
     case Method::kExactSurface:
       return "exact_surface";
+    case Method::kHierarchical:
+      return "hierarchical";
   }
   return "";
 }
@@ -31,7 +34,7 @@ std::optional<Method> method_from_name(std::string_view text) {
 }
 
 bool is_exact(Method method) {
-  return method == Method::kExact || method == Method::kExactSurface;
+  return method == Method::kExact || method == Method::kExactSurface || method == Method::kHierarchical;
 }
 
 Solver::Solver(const HydrostaticMesh& mesh, Method method) : mesh_(&mesh), method_(method) {
@@ -50,6 +53,8 @@ Displacement Solver::displacement(const WaterPlane& plane) const {
       return fast_surface(*mesh_, plane);
     case Method::kExactSurface:
       return exact_surface(*mesh_, plane);
+    case Method::kHierarchical:
+      return hierarchical(*mesh_, plane);
   }
   return {};
 }

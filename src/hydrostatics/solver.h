@@ -7,6 +7,9 @@
 //   exact          4.3  the same, and the wet parts of the triangles that the water cuts
 //   fast_surface   4.4  pressure on wholly wet triangles
 //   exact_surface  4.4  pressure on the whole wet surface
+// and beyond the paper
+//   hierarchical        a descent of the mesh's moment tree: exact, at the cost of the waterline
+//   (hierarchical.h)
 // A triangle is wholly wet if its three vertices are below the water (z < 0).
 //
 // A Solver is immutable after construction: any number of threads may ask it at once. A query allocates
@@ -24,10 +27,10 @@
 
 namespace buoyancy {
 
-enum class Method { kFast, kImproved, kExact, kFastSurface, kExactSurface };
+enum class Method { kFast, kImproved, kExact, kFastSurface, kExactSurface, kHierarchical };
 
-inline constexpr std::array kAllMethods{Method::kFast, Method::kImproved, Method::kExact,
-                                        Method::kFastSurface, Method::kExactSurface};
+inline constexpr std::array kAllMethods{Method::kFast,        Method::kImproved,     Method::kExact,
+                                        Method::kFastSurface, Method::kExactSurface, Method::kHierarchical};
 
 std::string_view name(Method method);                           // "exact_surface"
 std::optional<Method> method_from_name(std::string_view name);  // nullopt: no such method

@@ -49,7 +49,7 @@ WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3&
   const DoubleDouble3 k = rotate_into_body(pose.q_WB, water.up_W);
   const DoubleDouble k_dot_c = k[0] * c_B.x() + k[1] * c_B.y() + k[2] * c_B.z();
   const DoubleDouble h_c = DoubleDouble{water.level, 0.0} - dot(water.up_W, pose.p_WB) - k_dot_c;
-  return {{k[0].rounded(), k[1].rounded(), k[2].rounded()}, h_c.rounded()};
+  return {{k[0].hi, k[1].hi, k[2].hi}, h_c.hi, {k[0].lo, k[1].lo, k[2].lo}, h_c.lo};
 }
 
 }  // namespace buoyancy

@@ -34,6 +34,10 @@ struct Pose {
 struct WaterPlane {
   Vec3 up_B = Vec3::UnitZ();  // k
   double h_c = 0.0;           // m
+  // What rounding took from them: k = up_B + up_B_rest and h_c + h_c_rest to double-double. Only
+  // `hierarchical` asks.
+  Vec3 up_B_rest = Vec3::Zero();
+  double h_c_rest = 0.0;  // m
 
   double height(const Vec3& y) const { return up_B.dot(y) - h_c; }
 };

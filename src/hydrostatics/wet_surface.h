@@ -23,9 +23,9 @@ enum class CutTriangles { kLeaveOut, kClip };
 template <typename Sum, CutTriangles kCut, typename Accumulate>
 Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Accumulate& accumulate) {
   constexpr std::size_t kBlock = 256;
-  const double* const x = mesh.x.data();
-  const double* const y = mesh.y.data();
-  const double* const z = mesh.z.data();
+  const double* const x = mesh.surface.x.data();
+  const double* const y = mesh.surface.y.data();
+  const double* const z = mesh.surface.z.data();
   const auto k = Point<double>::from(plane.up_B);
   const double h_c = plane.h_c;
   const auto corner = [=](std::int32_t i) {
@@ -34,12 +34,12 @@ Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, c
   };
 
   PairwiseSum<Sum, kBlock> total;
-  const std::size_t count = mesh.triangles.size();
+  const std::size_t count = mesh.surface.triangles.size();
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, count);
     Sum block{};
     for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& triangle = mesh.triangles[i];
+      const Triangle& triangle = mesh.surface.triangles[i];
       const Corner<double> a = corner(triangle[0]);
       const Corner<double> b = corner(triangle[1]);
       const Corner<double> c = corner(triangle[2]);

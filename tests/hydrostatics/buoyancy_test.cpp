@@ -33,7 +33,7 @@ TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
 
 TEST(Buoyancy, CallsAFaceOnTheWaterDry) {
   // The box stands on the water, and just sunk below it.
-  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     EXPECT_EQ(buoyancy(Solver(unit_box(), method), at_height(0.5), {}, Vec3::Zero()).volume, 0.0);
     EXPECT_NEAR(buoyancy(Solver(unit_box(), method), at_height(-0.5), {}, Vec3::Zero()).volume, 1.0, 1e-15);
   }
@@ -90,7 +90,7 @@ HydrostaticMesh open_box() {
 TEST(Buoyancy, OfAnOpenMeshIsExactWhileItsBoundaryIsDryAndRefusedOtherwise) {
   const HydrostaticMesh mesh = open_box();
   ASSERT_TRUE(mesh.open());
-  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     const Solver solver(mesh, method);
     const BuoyancyAnswer floating = buoyancy(solver, at_height(0.2), {}, Vec3::Zero());
     EXPECT_EQ(floating.status, BuoyancyStatus::kOk);

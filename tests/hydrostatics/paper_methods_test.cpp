@@ -64,7 +64,7 @@ TEST(PaperMethods, RefiningShrinksTheErrorOfImprovedAndFastSurfaceButNotThatOfFa
 TEST(PaperMethods, OnSpheresTheExactOnesErrByTheMeshAlone) {
   const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
   const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
-  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     const double error = largest_error(coarse, method, 1.0, sphere_force);
     const double fine_error = largest_error(fine, method, 1.0, sphere_force);
     EXPECT_LT(error, 4e-3 * 4.19);
@@ -81,7 +81,7 @@ TEST(PaperMethods, NeverLeaveOutACutTriangleOfTheExactOnesWhereverTheWaterIs) {
       water.level = level;
       water.up_W = up;
       const Pose pose{up * (level + 0.23), Eigen::Quaterniond::Identity()};
-      for (const Method method : {Method::kExact, Method::kExactSurface}) {
+      for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
         EXPECT_NEAR(buoyancy(Solver(mesh, method), pose, water, Vec3::Zero()).volume, 0.27, 1e-12);
       }
     }
@@ -93,7 +93,7 @@ TEST(PaperMethods, DoNotTreatSmallVolumesAsZero) {
   const TriangleMesh tiny = moved_and_scaled(cube(10), Vec3::Zero(), 1e-3);
   const HydrostaticMesh mesh = make_hydrostatic_mesh({tiny, {}});
   const Pose pose{Vec3(0, 0, 0.25e-3), Eigen::Quaterniond::Identity()};
-  for (const Method method : {Method::kExact, Method::kExactSurface}) {
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     EXPECT_NEAR(buoyancy(Solver(mesh, method), pose, kPaperWater, Vec3::Zero()).volume, 0.25e-9, 1e-22);
   }
 }

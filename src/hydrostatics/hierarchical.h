@@ -1,0 +1,24 @@
+// `hierarchical`: exact to rounding, at the cost of the waterline instead of the mesh.
+//
+// A descent of the moment tree (moment_tree.h): a wholly wet node adds its surface moments, a dry one
+// nothing, and the triangles of the leaves that the water crosses are clipped, many at a time. The read-out
+// is that of design (docs/mathematics.md, "Read-out"), of the sum of all wet pieces:
+//   V = k^T N k + z_c k . S,  U = k_i k_k P_ijk + z_c N k,  H = (k_i k_j k_k P_ijk + 2 z_c k^T N k + z_c^2 k
+//   . S) / 2, moment = U - k H,  F/(rho g) = V k,  torque_c/(rho g) = U x k,   z_c = -h_c.
+// A body above the water or below it is answered from its bounds and its constants.
+//
+// Error: within G_V and G_V L_r (HydrostaticMesh::volume_gate) at every depth. A leaf's heights are rounded
+// relative to the leaf's size, its centre's height being taken from an exact product: a cap of 1e-6 V_T keeps
+// 9 digits. Complexity: O(triangles the water cuts + log n); no heap.
+#pragma once
+
+#include "hydrostatics/displacement.h"
+#include "hydrostatics/hydrostatic_mesh.h"
+#include "hydrostatics/water_plane.h"
+
+namespace buoyancy {
+
+// mesh: with its tree.
+Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane);
+
+}  // namespace buoyancy

@@ -1,0 +1,49 @@
+// The loops of `hierarchical` that run per node and per leaf of the moment tree: plain types here, SIMD
+// behind it.
+//
+// One source, compiled for every instruction set that the processor may have (Highway, run-time dispatch):
+// AVX-512, AVX2, SSE4, SSSE3, NEON, and the scalar twin that every other target is tested against. A target
+// can be forced, for tests and benchmarks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/moment_tree.h"
+
+namespace buoyancy {
+
+// A water plane, split so that the height of a leaf's centre is computed without rounding its large parts:
+// k = k_high + k_low with k_high of 26 bits, h = h_high + h_low with h_high a multiple of grid 2^-26.
+struct TreeQuery {
+  std::array<double, 3> k, k_high, k_low;  // up in B
+  std::array<double, 3> u, v;              // horizontal axes in B: (u, v, k) orthonormal and right-handed
+  double h_high, h_low;                    // m
+};
+
+// Integrals over the wet surface, in two parts that the read-out adds.
+struct WetTreeSum {
+  NodeMoments wet_nodes;  // surface moments about c of the wholly wet nodes
+
+  // Of the triangles of crossing leaves, with z the height and y about c:
+  double volume6 = 0.0;     // m^3: 6 int z n_k dA
+  double moment_u24 = 0.0;  // m^4: 24 int z y_u n_k dA
+  double moment_v24 = 0.0;  // m^4: 24 int z y_v n_k dA
+  double height24 = 0.0;    // m^4: 24 H = 12 int z^2 n_k dA
+
+  std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0;
+};
+
+// Descends from the root. Exact: nothing is left undecided. No heap.
+WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query);
+
+std::vector<std::string>
+simd_targets();             // that this processor can run, the best first; "SCALAR" is always among them
+std::string simd_target();  // the one in use
+// Uses this target from now on, in all threads; "" for the best. False: not one of simd_targets().
+bool force_simd_target(std::string_view name);
+
+}  // namespace buoyancy
