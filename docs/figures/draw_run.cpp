@@ -1,0 +1,248 @@
+// Draws a scene's bodies in the water as an SVG strip, one picture for each time asked for, from the poses of
+// a run that buoyancy-client --csv wrote.
+//
+//   draw_run SCENE RUN_CSV OUTPUT.svg SECONDS...
+//
+// Orthographic, seen from above the water: what is above it can hide, but never be hidden by, what is below,
+// so the two are painted one after the other, each back to front. The triangles are cut at the water by the
+// very clip that the solvers use.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hydrostatics/triangle_clip.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kPanel = 300.0;   // width and height of one picture, in SVG units
+constexpr double kHeight = 0.84;   // of the panel, as a share of its width
+constexpr double kHorizon = 0.57;  // where the water's middle is, likewise
+constexpr double kCaption = 26.0;
+
+struct Row {
+  double seconds = 0.0;
+  std::int32_t body_id = 0;
+  Pose pose;
+};
+
+std::vector<Row> read_run(const char* path) {
+  std::ifstream file(path);
+  std::map<std::string, std::size_t> column;
+  std::vector<Row> rows;
+  std::string line;
+  while (std::getline(file, line)) {
+    std::istringstream stream(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    if (column.empty()) {
+      for (std::size_t i = 0; i < cells.size(); ++i) column[cells[i]] = i;
+      continue;
+    }
+    const auto number = [&](const char* name) {
+      return std::strtod(cells.at(column.at(name)).c_str(), nullptr);
+    };
+    rows.push_back(Row{number("utime") * 1e-6, static_cast<std::int32_t>(number("body_id")),
+                       Pose{Vec3(number("px"), number("py"), number("pz")),
+                            Eigen::Quaterniond(number("qw"), number("qx"), number("qy"), number("qz"))}});
+  }
+  return rows;
+}
+
+// World to picture: x to the right, y up the picture, z towards the eye.
+Mat3 camera() {
+  const double azimuth = -0.6;
+  const double elevation = 0.33;
+  return (Eigen::AngleAxisd(elevation - EIGEN_PI / 2, Vec3::UnitX()) *
+          Eigen::AngleAxisd(azimuth, Vec3::UnitZ()))
+      .toRotationMatrix();
+}
+
+struct Facet {
+  std::array<Vec3, 3> corners;  // in the picture's axes
+  double shade = 0.0;           // 0 to 1
+};
+
+// What is to be painted, in the picture's axes: facets that face the eye, and where the water's surface meets
+// the bodies.
+struct Layers {
+  std::vector<Facet> below, above;
+  std::vector<std::pair<Vec3, Vec3>> waterline;
+};
+
+void add_facet(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c,
+               std::vector<Facet>& layer) {
+  Facet facet{{a.y.vec3(), b.y.vec3(), c.y.vec3()}, 0.0};
+  const Vec3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
+  if (normal.z() <= 0.0) return;  // turned away from the eye
+  const Vec3 light = Vec3(-0.45, 0.65, 0.62).normalized();
+  facet.shade = 0.35 + 0.65 * std::max(0.0, normal.normalized().dot(light));
+  layer.push_back(facet);
+}
+
+// Adds the part of a triangle that is wet by its corners' heights; all of it, some or nothing.
+void add_wet_part(const std::array<Corner<double>, 3>& corner, std::vector<Facet>& layer) {
+  const auto wet = std::count_if(corner.begin(), corner.end(), [](const auto& c) { return c.wet(); });
+  if (wet == 3) add_facet(corner[0], corner[1], corner[2], layer);
+  if (wet == 0 || wet == 3) return;
+  visit_wet_part(corner[0], corner[1], corner[2],
+                 [&](const auto& a, const auto& b, const auto& c) { add_facet(a, b, c, layer); });
+}
+
+void add_body(const Body& body, const Pose& pose, const Water& water, Layers& layers) {
+  const HydrostaticMesh& mesh = body.prepared->mesh;
+  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+  const Mat3 R = camera() * pose.q_WB.normalized().toRotationMatrix();
+  const Vec3 p = camera() * pose.p_WB + R * mesh.center_B;
+  for (const Triangle& triangle : mesh.triangles) {
+    std::array<Corner<double>, 3> corner;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 y = mesh.vertex(triangle[i]);
+      corner[i] = {Point<double>::from(R * y + p), plane.height(y)};
+    }
+    add_wet_part(corner, layers.below);
+    std::vector<Vec3> cut_points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Corner<double>& from = corner[i];
+      const Corner<double>& to = corner[(i + 1) % 3];
+      if (from.wet() != to.wet()) cut_points.push_back((from.wet() ? cut(from, to) : cut(to, from)).y.vec3());
+    }
+    if (cut_points.size() == 2) layers.waterline.emplace_back(cut_points[0], cut_points[1]);
+    for (Corner<double>& c : corner)
+      c.z = -c.z;  // the part above the water is the wet part of the mirrored world
+    add_wet_part(corner, layers.above);
+  }
+}
+
+void sort_back_to_front(std::vector<Facet>& facets) {
+  const auto depth = [](const Facet& f) { return f.corners[0].z() + f.corners[1].z() + f.corners[2].z(); };
+  std::sort(facets.begin(), facets.end(),
+            [&](const Facet& a, const Facet& b) { return depth(a) < depth(b); });
+}
+
+// One picture: the camera's axes scaled to the panel, in tenths of an SVG unit so that coordinates are short.
+class Panel {
+ public:
+  Panel(std::FILE* file, double scale, const Vec3& water) : file_(file), scale_(scale), water_(water) {}
+
+  void facets(const std::vector<Facet>& facets, const std::array<double, 3>& colour) const {
+    for (const Facet& f : facets) {
+      std::array<int, 3> c{};
+      for (std::size_t i = 0; i < 3; ++i)
+        c[i] = static_cast<int>(std::lround(255.0 * std::min(1.0, colour[i] * f.shade)));
+      const auto& [p, q, r] = f.corners;
+      std::fprintf(file_, "<path color=\"#%02x%02x%02x\" d=\"M%d %dL%d %d %d %dz\"/>\n", c[0], c[1], c[2],
+                   x(p), y(p), x(q), y(q), x(r), y(r));
+    }
+  }
+  void lines(const std::vector<std::pair<Vec3, Vec3>>& lines) const {
+    for (const auto& [from, to] : lines) {
+      std::fprintf(file_, "<path d=\"M%d %dL%d %d\"/>\n", x(from), y(from), x(to), y(to));
+    }
+  }
+  int x(const Vec3& point) const { return tenths(0.5 * kPanel + scale_ * (point.x() - water_.x())); }
+  int y(const Vec3& point) const { return tenths(kHorizon * kPanel - scale_ * (point.y() - water_.y())); }
+
+ private:
+  static int tenths(double value) { return static_cast<int>(std::lround(10.0 * value)); }
+
+  std::FILE* file_;
+  double scale_;
+  Vec3 water_;  // the point of the water that is drawn in the middle
+};
+
+// A thin stroke in the facet's own colour closes the seams that anti-aliasing leaves between neighbours.
+const char* const kFacets =
+    "<g fill=\"currentColor\" stroke=\"currentColor\" stroke-width=\"5\" stroke-linejoin=\"round\">\n";
+
+// The state of every body at the last row not later than `seconds`.
+std::map<std::int32_t, Row> rows_at(const std::vector<Row>& rows, double seconds) {
+  std::map<std::int32_t, Row> at;
+  for (const Row& row : rows) {
+    if (row.seconds <= seconds || at.count(row.body_id) == 0) at[row.body_id] = row;
+  }
+  return at;
+}
+
+void draw_panel(std::FILE* file, const Scene& scene, const std::map<std::int32_t, Row>& at,
+                const Panel& panel, double extent) {
+  Layers layers;
+  for (const auto& [id, row] : at) {
+    if (const Body* body = scene.find(id)) add_body(*body, row.pose, scene.water(), layers);
+  }
+  sort_back_to_front(layers.below);
+  sort_back_to_front(layers.above);
+
+  std::fputs("<path fill=\"#a9cfe3\" d=\"M", file);
+  const Vec3 up = scene.water().up_W;
+  const Vec3 along = up.unitOrthogonal();
+  const Vec3 across = up.cross(along);
+  for (int i = 0; i < 64; ++i) {
+    const double angle = 2.0 * EIGEN_PI * i / 64;
+    const Vec3 rim =
+        camera() * (scene.water().level * up + extent * (std::cos(angle) * along + std::sin(angle) * across));
+    std::fprintf(file, "%d %d ", panel.x(rim), panel.y(rim));
+  }
+  std::fputs("z\"/>\n", file);
+  std::fputs(kFacets, file);
+  panel.facets(layers.below, {0.44, 0.65, 0.62});
+  std::fputs("</g>\n<g stroke=\"#eaf6fb\" stroke-width=\"14\" stroke-linecap=\"round\">\n", file);
+  panel.lines(layers.waterline);
+  std::fputs("</g>\n", file);
+  std::fputs(kFacets, file);
+  panel.facets(layers.above, {1.0, 0.80, 0.16});
+  std::fputs("</g>\n", file);
+}
+
+int draw(const Scene& scene, const std::vector<Row>& rows, const char* path,
+         const std::vector<double>& times) {
+  double largest = 0.0;
+  for (const Body& body : scene.bodies()) largest = std::max(largest, body.prepared->mesh.diagonal);
+  const double scale = 0.56 * kPanel / largest;
+
+  std::FILE* file = std::fopen(path, "w");
+  if (file == nullptr) return std::perror(path), 1;
+  const double width = kPanel * static_cast<double>(times.size());
+  const double height = kHeight * kPanel;
+  std::fprintf(
+      file,
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\" "
+      "font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" "
+      "fill=\"#fff\"/>\n",
+      width, height + kCaption, width, height + kCaption);
+  const Panel panel(file, scale, camera() * (scene.water().level * scene.water().up_W));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double left = kPanel * static_cast<double>(i);
+    std::fprintf(file, "<svg x=\"%g\" width=\"%g\" height=\"%g\" viewBox=\"0 0 %g %g\">\n", left, kPanel,
+                 height, 10.0 * kPanel, 10.0 * height);
+    draw_panel(file, scene, rows_at(rows, times[i]), panel, 0.85 * largest);
+    std::fprintf(file, "</svg>\n<text x=\"%g\" y=\"%g\" text-anchor=\"middle\" fill=\"#444\">%g s</text>\n",
+                 left + 0.5 * kPanel, height + 0.6 * kCaption, times[i]);
+  }
+  std::fputs("</svg>\n", file);
+  if (std::fclose(file) != 0) return std::perror(path), 1;
+  return 0;
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  if (argc < 5) return std::fputs("usage: draw_run SCENE RUN_CSV OUTPUT.svg SECONDS...\n", stderr), 2;
+  const auto scene = buoyancy::Scene::load(argv[1]);
+  if (!scene) return std::fprintf(stderr, "draw_run: %s\n", scene.error().message().c_str()), 2;
+  const auto rows = buoyancy::read_run(argv[2]);
+  if (rows.empty()) return std::fprintf(stderr, "draw_run: %s: no rows\n", argv[2]), 2;
+  std::vector<double> times;
+  for (int i = 4; i < argc; ++i) times.push_back(std::strtod(argv[i], nullptr));
+  return buoyancy::draw(*scene, rows, argv[3], times);
+}
