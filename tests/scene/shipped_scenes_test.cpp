@@ -55,8 +55,8 @@ TEST(ShippedScenes, LetADuckOfSensibleSizeFallIntoTheWater) {
   double lowest = 1e9;
   double highest = -1e9;
   const HydrostaticMesh& mesh = duck.prepared->mesh;
-  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
-    const Vec3 vertex_B = mesh.center_B + Vec3(mesh.x[i], mesh.y[i], mesh.z[i]);
+  for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
+    const Vec3 vertex_B = mesh.center_B + Vec3(mesh.surface.x[i], mesh.surface.y[i], mesh.surface.z[i]);
     const Vec3 vertex_W = duck.client.position + duck.client.orientation * vertex_B;
     lowest = std::min(lowest, vertex_W.z());
     highest = std::max(highest, vertex_W.z());
