@@ -47,13 +47,15 @@ class Exchange {
   struct Session {
     std::int64_t id = 0;
     std::int64_t newest_seq = 0;
+    std::int64_t last_seq = 0;
     std::uint64_t last_use = 0;  // of use_; least: forgotten first
-    QuestionKey last_key;
     std::vector<std::uint8_t> last_question;
     std::vector<std::uint8_t> last_answer;
   };
 
-  Session& session(std::int64_t id, bool& is_new);
+  void count_rejection(Rejection rejection);
+  Session& start_session(const QuestionKey& first);  // in place of the least recently used one, if need be
+  void compute(Bytes question, Session& session);
 
   const Scene* scene_;
   std::size_t max_sessions_;

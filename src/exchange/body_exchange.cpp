@@ -1,0 +1,118 @@
+#include "exchange/body_exchange.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hydrostatics/buoyancy.h"
+
+namespace buoyancy {
+namespace {
+
+template <std::size_t kSize>
+bool all_finite(const std::array<double, kSize>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+bool all_finite(const Pose& pose) {
+  return pose.p_WB.allFinite() && pose.q_WB.coeffs().allFinite();
+}
+
+Vec3 as_vec3(const std::array<double, 3>& values) {
+  return {values[0], values[1], values[2]};
+}
+
+std::array<double, 3> as_array(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Pose as_pose(const BodyState& state) {
+  const auto& [w, x, y, z] = state.quaternion_wxyz;
+  return {.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+}
+
+// abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.
+double norm_defect(const std::array<double, 4>& q) {
+  return std::abs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1.0);
+}
+
+BodyStatus as_body_status(BuoyancyStatus status) {
+  switch (status) {
+    case BuoyancyStatus::kOk:
+      return BodyStatus::kOk;
+    case BuoyancyStatus::kOpenEdgeWet:
+      return BodyStatus::kOpenEdgeWet;
+    case BuoyancyStatus::kOutOfRange:
+      return BodyStatus::kOutOfRange;
+  }
+  return BodyStatus::kOutOfRange;
+}
+
+void count_answer(const BuoyancyAnswer& answer, Counters& counters) {
+  switch (answer.immersion) {
+    case Immersion::kDry:
+      ++counters.bodies_dry;
+      break;
+    case Immersion::kWet:
+      ++counters.bodies_wet;
+      break;
+    case Immersion::kCrossing:
+      ++counters.bodies_crossing;
+      break;
+  }
+  counters.largest_dropped_force = std::max(counters.largest_dropped_force, answer.dropped_force);
+  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, answer.dropped_torque);
+}
+
+// Fills wrench where the status it returns is kOk, and leaves it as it is otherwise.
+BodyStatus evaluate(const Scene& scene, const BodyState& state, double lead_time, Counters& counters,
+                    BodyWrench& wrench) {
+  const Body* body = scene.find(state.body_id);
+  if (body == nullptr) return BodyStatus::kUnknownBody;
+  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz)) return BodyStatus::kNonFinitePose;
+  const double defect = norm_defect(state.quaternion_wxyz);
+  if (defect > kQuaternionTolerance) return BodyStatus::kBadQuaternion;
+  if (defect > kQuaternionNoteworthy) ++counters.quaternions_normalised;
+  if (!std::isfinite(lead_time)) return BodyStatus::kBadLeadTime;
+
+  Pose pose = as_pose(state);
+  if (lead_time != 0.0) {
+    if (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity)) {
+      return BodyStatus::kNonFiniteTwist;
+    }
+    pose = extrapolate(pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
+    if (!all_finite(pose)) return BodyStatus::kOutOfRange;
+  }
+
+  const BuoyancyAnswer answer = buoyancy(body->solver, pose, scene.water(), body->reference_B);
+  if (answer.status != BuoyancyStatus::kOk) return as_body_status(answer.status);
+  count_answer(answer, counters);
+  wrench.force = as_array(answer.force_W);
+  wrench.torque = as_array(answer.torque_W);
+  wrench.submerged_volume = answer.volume;
+  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
+  wrench.force_error_bound = answer.force_error_bound;
+  wrench.torque_error_bound = answer.torque_error_bound;
+  return BodyStatus::kOk;
+}
+
+}  // namespace
+
+BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters) {
+  BodyWrench wrench;
+  wrench.body_id = state.body_id;
+  wrench.status = evaluate(scene, state, lead_time, counters, wrench);
+  ++counters.bodies[static_cast<std::size_t>(wrench.status)];
+  return wrench;
+}
+
+Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& angular_velocity_W,
+                 double seconds) {
+  const Vec3 rotation_W = angular_velocity_W * seconds;
+  const double angle = std::hypot(rotation_W.x(), rotation_W.y(), rotation_W.z());
+  const double sine_per_angle = angle > 0.0 ? std::sin(0.5 * angle) / angle : 0.5;
+  const Vec3 axis_sine = sine_per_angle * rotation_W;
+  const Eigen::Quaterniond turn{std::cos(0.5 * angle), axis_sine.x(), axis_sine.y(), axis_sine.z()};
+  return {.p_WB = pose.p_WB + seconds * linear_velocity_W, .q_WB = turn * pose.q_WB};
+}
+
+}  // namespace buoyancy

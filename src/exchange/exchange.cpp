@@ -1,0 +1,102 @@
+#include "exchange/exchange.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "exchange/body_exchange.h"
+
+namespace buoyancy {
+namespace {
+
+bool same_bytes(Bytes a, Bytes b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+}  // namespace
+
+Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
+    : scene_(&scene), max_sessions_(options.max_sessions) {
+  assert(max_sessions_ >= 1);
+}
+
+Bytes Exchange::answer(Bytes question) {
+  ++counters_.questions;
+  const auto key = peek_key(question);
+  if (!key) {
+    count_rejection(key.error());
+    return {};
+  }
+
+  const auto known = std::ranges::find(sessions_, key->session_id, &Session::id);
+  const bool is_new = known == sessions_.end();
+  Session& session = is_new ? start_session(*key) : *known;
+  session.last_use = ++use_;
+  if (!is_new) {
+    if (same_bytes(session.last_question, question)) {
+      ++counters_.repeated;
+      return session.last_answer;
+    }
+    if (key->seq == session.last_seq) ++counters_.changed_repeats;
+    if (key->seq < session.newest_seq) ++counters_.stale;
+  }
+  session.last_seq = key->seq;
+  session.newest_seq = std::max(session.newest_seq, key->seq);
+  compute(question, session);
+  ++counters_.answered;
+  return session.last_answer;
+}
+
+std::optional<std::int64_t> Exchange::newest_seq(std::int64_t session_id) const {
+  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+  if (known == sessions_.end()) return std::nullopt;
+  return known->newest_seq;
+}
+
+void Exchange::count_rejection(Rejection rejection) {
+  switch (rejection) {
+    case Rejection::kTruncated:
+      ++counters_.rejected_truncated;
+      break;
+    case Rejection::kFingerprint:
+      ++counters_.rejected_fingerprint;
+      break;
+    case Rejection::kCount:
+      ++counters_.rejected_count;
+      break;
+    case Rejection::kLength:
+      ++counters_.rejected_length;
+      break;
+  }
+}
+
+Exchange::Session& Exchange::start_session(const QuestionKey& first) {
+  Session* session = nullptr;
+  if (sessions_.size() < max_sessions_) {
+    session = &sessions_.emplace_back();
+    counters_.sessions = static_cast<std::int64_t>(sessions_.size());
+  } else {
+    session = &*std::ranges::min_element(sessions_, {}, &Session::last_use);
+    ++counters_.sessions_forgotten;
+  }
+  session->id = first.session_id;
+  session->newest_seq = first.seq;
+  return *session;
+}
+
+void Exchange::compute(Bytes question, Session& session) {
+  // No question is kept until its answer stands: should memory run out in between, a repeat of the old one
+  // would else be answered with what is left of the new answer.
+  session.last_question.clear();
+  [[maybe_unused]] const auto rejection = decode(question, question_);
+  assert(!rejection);  // peek_key() made the same checks
+  answer_.key = question_.key;
+  answer_.bodies.clear();
+  for (const BodyState& state : question_.bodies) {
+    answer_.bodies.push_back(answer_body(*scene_, state, question_.lead_time, counters_));
+  }
+  encode(answer_, session.last_answer);
+  session.last_question.assign(question.begin(), question.end());
+}
+
+}  // namespace buoyancy

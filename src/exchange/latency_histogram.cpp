@@ -1,0 +1,39 @@
+#include "exchange/latency_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace buoyancy {
+namespace {
+
+constexpr double kShortest = 1e-9;  // s
+
+}  // namespace
+
+void LatencyHistogram::add(double seconds) {
+  if (!(seconds > 0.0)) seconds = 0.0;  // NaN too
+  const double octaves = std::log2(std::max(seconds, kShortest) / kShortest);
+  const double bucket = std::min(octaves * kPerOctave, kBuckets - 1.0);
+  ++buckets_[static_cast<std::size_t>(bucket)];
+  ++count_;
+  max_ = std::max(max_, seconds);
+}
+
+double LatencyHistogram::value_at(std::int64_t rank) const {
+  std::int64_t seen = 0;
+  for (int bucket = 0; bucket < kBuckets - 1; ++bucket) {
+    seen += buckets_[static_cast<std::size_t>(bucket)];
+    if (seen >= rank) return std::min(kShortest * std::exp2((bucket + 1.0) / kPerOctave), max_);
+  }
+  return max_;
+}
+
+LatencyPercentiles LatencyHistogram::percentiles() const {
+  // The rank in whole numbers: 0.99 * count may round up to the next one.
+  const auto rank = [&](std::int64_t per_mille) {
+    return count_ / 1000 * per_mille + (count_ % 1000 * per_mille + 999) / 1000;
+  };
+  return {.p50 = value_at(rank(500)), .p99 = value_at(rank(990)), .p999 = value_at(rank(999)), .max = max_};
+}
+
+}  // namespace buoyancy

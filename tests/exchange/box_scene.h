@@ -1,0 +1,67 @@
+// The scene that the exchange is tested with, and questions about it.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "messages/wire.h"
+#include "scene/scene.h"
+#include "scene/scene_file.h"
+
+namespace buoyancy {
+
+inline constexpr double kWeight = 1000.0 * 10.0;  // N/m^3: density times gravity of box_scene()
+inline constexpr std::int32_t kBox = 1;           // unit box about B's origin
+inline constexpr std::int32_t kOffsetBox = 2;     // the same, torque about a corner
+inline constexpr std::int32_t kFastBox = -3;      // the same, by a method without error bound
+inline constexpr std::int32_t kNoBody = 4;
+
+inline Scene scene_of(std::string_view text, const std::filesystem::path& directory = {}) {
+  const auto description = parse_scene(text, "test scene", directory);
+  if (!description) throw std::runtime_error(description.error().message());
+  auto scene = Scene::prepare(*description);
+  if (!scene) throw std::runtime_error(scene.error().message());
+  return std::move(*scene);
+}
+
+inline Scene box_scene() {
+  return scene_of(R"(
+    [world]
+    gravity = 10.0
+    [water]
+    density = 1000.0
+    [[body]]
+    id = 1
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    method = "exact"
+    [[body]]
+    id = 2
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    method = "exact"
+    reference_point = [0.5, 0.5, -0.5]
+    [[body]]
+    id = -3
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    method = "fast"
+  )");
+}
+
+// At rest, upright, its middle at the given height over the water.
+inline BodyState upright(std::int32_t id, double height) {
+  BodyState state;
+  state.body_id = id;
+  state.position = {3.0, -2.0, height};
+  state.quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
+  return state;
+}
+
+inline std::vector<std::uint8_t> question_bytes(const QuestionKey& key, std::vector<BodyState> bodies,
+                                                double lead_time = 0.0) {
+  std::vector<std::uint8_t> bytes;
+  encode(Question{.key = key, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
+  return bytes;
+}
+
+}  // namespace buoyancy
