@@ -108,7 +108,7 @@ BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_t
 Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& angular_velocity_W,
                  double seconds) {
   const Vec3 rotation_W = angular_velocity_W * seconds;
-  const double angle = std::hypot(rotation_W.x(), rotation_W.y(), rotation_W.z());
+  const double angle = rotation_W.norm();
   const double sine_per_angle = angle > 0.0 ? std::sin(0.5 * angle) / angle : 0.5;
   const Vec3 axis_sine = sine_per_angle * rotation_W;
   const Eigen::Quaterniond turn{std::cos(0.5 * angle), axis_sine.x(), axis_sine.y(), axis_sine.z()};

@@ -17,7 +17,8 @@ inline constexpr double kQuaternionNoteworthy = 1e-6;
 // kOk leaves zeros. Counts into counters what it met. Allocates nothing.
 BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters);
 
-// The pose after `seconds` of the constant twist (v of B's origin and w, in W).
+// The pose after `seconds` of the constant twist: p + v t, and q turned by w t about W's axes. The quaternion
+// keeps its norm. Not finite where the result, or an angle of more than 1e154, is beyond double.
 Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& angular_velocity_W,
                  double seconds);
 

@@ -20,7 +20,7 @@
 namespace buoyancy {
 
 struct ExchangeOptions {
-  std::size_t max_sessions = 64;  // >= 1
+  std::size_t max_sessions = 64;  // >= 1; looked up one after another
 };
 
 class Exchange {
@@ -29,7 +29,8 @@ class Exchange {
   explicit Exchange(const Scene& scene, const ExchangeOptions& options = {});
 
   // The answer's bytes, valid until the next call; empty if the question was rejected (and counted by cause).
-  // No heap once the session's buffers are as large as its largest message.
+  // No heap once the session's buffers are as large as its largest message; a session keeps the bytes of its
+  // last question and answer. O(sessions + bytes) beside the bodies' queries.
   Bytes answer(Bytes question);
 
   // For mode latest: counts a question that was superseded before it was answered.

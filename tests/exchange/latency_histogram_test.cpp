@@ -103,6 +103,7 @@ TEST(LatencyHistogram, CountsNegativeAndNaNAsZero) {
 TEST(LatencyHistogram, ReadsWhatIsBeyondItsRangeAsTheMaximum) {
   LatencyHistogram histogram;
   histogram.add(1e6);
+  EXPECT_EQ(histogram.count(), 1);
   EXPECT_EQ(histogram.percentiles().p50, 1e6);
   histogram.add(std::numeric_limits<double>::infinity());
   EXPECT_EQ(histogram.percentiles().max, std::numeric_limits<double>::infinity());
