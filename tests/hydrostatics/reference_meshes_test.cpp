@@ -1,0 +1,131 @@
+// Real meshes against reference values that others computed: volume and centre of buoyancy below given
+// planes, to the references' own accuracy. The meshes are not part of the project; where they are absent
+// these tests say so.
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/mesh_import.h"
+#include "geometry/mesh_validation.h"
+#include "hydrostatics/buoyancy.h"
+
+namespace buoyancy {
+namespace {
+
+std::filesystem::path mesh_directory() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests have one thread
+  const char* const named = std::getenv("BUOYANCY_MESHES");
+  return named != nullptr ? named : BUOYANCY_SOURCE_DIR "/../shared/meshes";
+}
+
+MeshValidation load(const std::string& file, OpenPolicy open = OpenPolicy::kRefuse) {
+  const auto imported = import_mesh(mesh_directory() / file);
+  EXPECT_TRUE(imported) << imported.error().message();
+  if (!imported) return {};
+  return validate_mesh(*imported, file, {.open = open});
+}
+
+Vec3 vec3(const nlohmann::json& array) {
+  return Vec3(array.at(0).get<double>(), array.at(1).get<double>(), array.at(2).get<double>());
+}
+
+Water water_below(const Vec3& normal, double offset) {
+  return {.up_W = normal.normalized(), .level = offset / normal.norm(), .density = 1.0, .gravity = 1.0};
+}
+
+class ReferenceMeshes : public testing::Test {
+ protected:
+  void SetUp() override {
+    // The reference meshes have licences of their own and are kept outside the project.
+    if (!std::filesystem::exists(mesh_directory() / "oracles.json")) {
+      GTEST_SKIP() << "no reference meshes in " << mesh_directory()
+                   << "; set BUOYANCY_MESHES to a folder that has them";
+    }
+  }
+};
+
+TEST_F(ReferenceMeshes, GiveTheReferenceVolumesAndCentresBelowEveryPlane) {
+  const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
+  int planes = 0;
+  for (const auto& [file, oracle] : oracles.items()) {
+    if (oracle.at("status") == "open") continue;
+    const bool cracked = oracle.at("status") != "closed";  // closed by a tolerance weld only
+    const MeshValidation validation = load(file);
+    ASSERT_TRUE(validation.mesh) << file << ": " << validation.refusal->message();
+    EXPECT_EQ(validation.report.triangles, oracle.at("triangles").get<std::int64_t>()) << file;
+    const HydrostaticMesh mesh = make_hydrostatic_mesh(*validation.mesh);
+    for (const auto& plane : oracle.at("planes")) {
+      ++planes;
+      const Water water = water_below(vec3(plane.at("normal")), plane.at("offset"));
+      for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
+        const BuoyancyAnswer answer = buoyancy(Solver(mesh, method), {}, water, Vec3::Zero());
+        const std::string where =
+            file + " " + plane.at("name").get<std::string>() + " " + std::string(name(method));
+        const double expected = plane.at("volume_below");
+        EXPECT_NEAR(answer.volume, expected, (cracked ? 1e-5 : 1e-11) * mesh.volume) << where;
+        EXPECT_LE((answer.center_of_buoyancy_W - vec3(plane.at("cb"))).norm(),
+                  (cracked ? 1e-5 : 1e-9) * std::cbrt(mesh.volume))
+            << where;
+      }
+    }
+  }
+  EXPECT_GE(planes, 40);
+}
+
+TEST_F(ReferenceMeshes, DtcHullDisplacesItsPublishedVolumeAtItsWaterline) {
+  const MeshValidation validation = load("hull_dtc_116062.stl");
+  ASSERT_TRUE(validation.mesh);
+  const HydrostaticMesh mesh = make_hydrostatic_mesh(*validation.mesh);
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
+    EXPECT_NEAR(buoyancy(Solver(mesh, method), {}, {.level = 0.244}, Vec3::Zero()).volume, 0.8267, 5e-5);
+  }
+}
+
+TEST_F(ReferenceMeshes, OpenBunnyIsRefusedOrAnsweredWhereverItsHolesAreDry) {
+  EXPECT_TRUE(load("bunny_69451_open.ply").refusal);
+  const MeshValidation open = load("bunny_69451_open.ply", OpenPolicy::kDryBoundary);
+  const MeshValidation closed = load("bunny_69664_closed.ply");
+  ASSERT_TRUE(open.mesh && closed.mesh) << open.refusal->message();
+  const HydrostaticMesh open_mesh = make_hydrostatic_mesh(*open.mesh);
+  const HydrostaticMesh closed_mesh = make_hydrostatic_mesh(*closed.mesh);
+  int answered = 0;
+  int refused = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 0.1 * i;
+    const Vec3 up = Vec3(std::sin(angle), -std::cos(angle), 0.3 * std::cos(7 * angle)).normalized();
+    const Vec3 middle = closed_mesh.center_B;
+    const Water water = water_below(up, up.dot(middle) + 0.3 * closed_mesh.diagonal * std::sin(3.7 * i));
+    for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
+      const BuoyancyAnswer answer = buoyancy(Solver(open_mesh, method), {}, water, Vec3::Zero());
+      const BuoyancyAnswer expected = buoyancy(Solver(closed_mesh, method), {}, water, Vec3::Zero());
+      if (answer.status == BuoyancyStatus::kOpenEdgeWet) {
+        ++refused;
+        continue;
+      }
+      ++answered;
+      EXPECT_NEAR(answer.volume, expected.volume, 1e-11 * closed_mesh.volume) << name(method);
+      EXPECT_LE((answer.torque_W - expected.torque_W).norm(), 1e-11 * closed_mesh.volume) << name(method);
+    }
+  }
+  EXPECT_GT(answered, 30);
+  EXPECT_GT(refused, 30);
+}
+
+TEST_F(ReferenceMeshes, DirtyWamVIsRefusedWithWhatIsWrongWithIt) {
+  for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
+    const MeshValidation validation = load("wamv_dirty.dae", policy);
+    ASSERT_TRUE(validation.refusal);
+    EXPECT_GT(validation.report.boundary_edges, 0);
+    EXPECT_GT(validation.report.balanced_edges, 0);
+    EXPECT_GT(validation.report.misoriented_edges, 0);
+    EXPECT_NE(validation.refusal->message().find("wamv_dirty.dae"), std::string::npos);
+    EXPECT_FALSE(validation.refusal->remedy.empty());
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
