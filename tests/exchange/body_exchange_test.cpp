@@ -50,9 +50,12 @@ std::int64_t total(const Counters& counters) {
   return sum;
 }
 
-TEST(BodyExchange, AHalfSubmergedUnitBoxDisplacesHalfACubicMetre) {
-  const BodyWrench wrench = answer(upright(kBox, 0.0));
-  EXPECT_EQ(wrench.body_id, kBox);
+class HalfSubmergedBox : public testing::TestWithParam<std::int32_t> {};
+INSTANTIATE_TEST_SUITE_P(BodyExchange, HalfSubmergedBox, testing::Values(kBox, kHierarchicalBox));
+
+TEST_P(HalfSubmergedBox, DisplacesHalfACubicMetre) {
+  const BodyWrench wrench = answer(upright(GetParam(), 0.0));
+  EXPECT_EQ(wrench.body_id, GetParam());
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_GT(wrench.force_error_bound, 0.0);
   EXPECT_LT(wrench.force_error_bound, 1e-9);
@@ -274,7 +277,7 @@ TEST(BodyExchange, NeverAnswersOkWithSomethingThatIsNotFinite) {
   for (const double far : {1e10, 1e100, 1e200, 1e300, kLargest}) {
     for (const double sign : {1.0, -1.0}) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (const std::int32_t id : {kBox, kOffsetBox, kFastBox}) {
+        for (const std::int32_t id : {kBox, kOffsetBox, kFastBox, kHierarchicalBox}) {
           BodyState state = upright(id, 0.0);
           state.position[axis] = sign * far;
           const BodyWrench wrench = answer(state);

@@ -12,10 +12,11 @@
 
 namespace buoyancy {
 
-inline constexpr double kWeight = 1000.0 * 10.0;  // N/m^3: density times gravity of box_scene()
-inline constexpr std::int32_t kBox = 1;           // unit box about B's origin
-inline constexpr std::int32_t kOffsetBox = 2;     // the same, torque about a corner
-inline constexpr std::int32_t kFastBox = -3;      // the same, by a method without error bound
+inline constexpr double kWeight = 1000.0 * 10.0;     // N/m^3: density times gravity of box_scene()
+inline constexpr std::int32_t kBox = 1;              // unit box about B's origin
+inline constexpr std::int32_t kOffsetBox = 2;        // the same, torque about a corner
+inline constexpr std::int32_t kFastBox = -3;         // the same, by a method without error bound
+inline constexpr std::int32_t kHierarchicalBox = 5;  // the same, by the default method
 inline constexpr std::int32_t kNoBody = 4;
 
 inline Scene scene_of(std::string_view text, const std::filesystem::path& directory = {}) {
@@ -45,6 +46,9 @@ inline Scene box_scene() {
     id = -3
     shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
     method = "fast"
+    [[body]]
+    id = 5
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
   )");
 }
 

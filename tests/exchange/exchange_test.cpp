@@ -294,7 +294,7 @@ TEST(Exchange, TakesNothingFromTheHeapAfterWarmUp) {
   // Two sessions that take turns, with small and large messages and bodies of every method and status.
   std::vector<BodyState> many(300, upright(kBox, 0.1));
   for (std::size_t i = 0; i < many.size(); ++i) {
-    many[i].body_id = std::array{kBox, kOffsetBox, kFastBox, kNoBody}[i % 4];
+    many[i].body_id = std::array{kBox, kOffsetBox, kFastBox, kHierarchicalBox, kNoBody}[i % 5];
     many[i].angular_velocity = {0.1, 0.2, 0.3};
   }
   const auto asked = [&](std::int64_t session_id, std::int64_t seq, bool large) {
