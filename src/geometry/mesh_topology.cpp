@@ -89,7 +89,7 @@ std::int64_t count_duplicates(const EdgeUse* begin, const EdgeUse* end) {
 }  // namespace
 
 MeshTopology mesh_topology(const TriangleMesh& mesh) {
-  assert(mesh.triangles.size() < (std::size_t{1} << 30U));
+  assert(mesh.triangles.size() <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
   MeshTopology topology;
   const EdgeUses edges = collect_edge_uses(mesh);
   DisjointSets connected(mesh.triangles.size());

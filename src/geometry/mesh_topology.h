@@ -44,7 +44,7 @@ struct MeshTopology {
   std::int32_t components = 0;
 };
 
-// mesh: indices in range, no face names a vertex twice, less than 2^30 faces.
+// mesh: indices in range, no face names a vertex twice, less than 2^31 faces.
 MeshTopology mesh_topology(const TriangleMesh& mesh);
 
 // Boundary edges that hang together through their vertices. Where the only fault of a mesh is its boundary,
