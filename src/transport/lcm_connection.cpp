@@ -34,14 +34,6 @@ std::string literal(const std::string& channel) {
   return escaped;
 }
 
-Expected<void> check_channel(const std::string& channel) {
-  if (channel.empty() || channel.size() > kLongestChannel) {
-    return failure({"LCM channel '" + channel + "'", std::to_string(channel.size()) + " characters",
-                    "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
-  }
-  return {};
-}
-
 struct Subscription {
   LcmConnection::Handler handler;
 };
@@ -59,6 +51,22 @@ std::string effective_lcm_url(const std::string& url) {
   const char* from_environment =
       std::getenv("LCM_DEFAULT_URL");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : kDefaultUrl;
+}
+
+Expected<void> check_lcm_url(const std::string& url) {
+  const std::string shown = effective_lcm_url(url);
+  if (is_memq(shown)) return {};
+  const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+  if (!parsed) return tl::unexpected(parsed.error());
+  return {};
+}
+
+Expected<void> check_channel(const std::string& channel) {
+  if (channel.empty() || channel.size() > kLongestChannel) {
+    return failure({"LCM channel '" + channel + "'", std::to_string(channel.size()) + " characters",
+                    "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
+  }
+  return {};
 }
 
 struct LcmConnection::Impl {

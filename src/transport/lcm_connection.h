@@ -20,6 +20,12 @@ namespace buoyancy {
 // The URL that LCM's own tools would use: url if not empty, else $LCM_DEFAULT_URL, else LCM's default.
 std::string effective_lcm_url(const std::string& url);
 
+// Is url (after effective_lcm_url) one that LcmConnection::open takes? Opens nothing.
+Expected<void> check_lcm_url(const std::string& url);
+
+// Is channel a name that LCM can carry: 1 to 63 characters?
+Expected<void> check_channel(const std::string& channel);
+
 class LcmConnection {
  public:
   // Called for every message: bytes are valid during the call only. Must not throw.

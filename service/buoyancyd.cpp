@@ -1,0 +1,56 @@
+// buoyancyd: the program around Daemon.
+#include <CLI/App.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "scene/scene.h"
+#include "scene/scene_report.h"
+#include "service/command_line.h"
+#include "service/daemon.h"
+#include "service/daemon_options.h"
+#include "service/termination_signals.h"
+
+namespace {
+
+using namespace buoyancy;
+
+int serve(const CLI::App& app, const DaemonOptions& options, const Scene& scene) {
+  TerminationSignals signals;  // before the connection, whose thread must not get them
+  Expected<LcmConnection> connection = LcmConnection::open(options.lcm_url);
+  if (!connection) {
+    print_error(app, connection.error());
+    return kFailed;
+  }
+  Daemon daemon(scene, std::move(*connection), options.mode, options.channels);
+  if (const Expected<void> ended = daemon.run(signals); !ended) {
+    print_error(app, ended.error());
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("", "buoyancyd");
+  DaemonOptions options;
+  declare_options(app, options);
+  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  if (const Expected<void> checked = check_options(options); !checked) {
+    print_error(app, checked.error());
+    return kWrongInput;
+  }
+  spdlog::set_default_logger(spdlog::stderr_color_st("buoyancyd"));
+  spdlog::set_level(spdlog::level::from_str(options.log_level));
+
+  const Expected<Scene> scene = Scene::load(options.scene);
+  if (!scene) {
+    print_error(app, scene.error());
+    return kWrongInput;
+  }
+  if (options.check) {
+    const std::string report = options.json ? scene_report_json(*scene) + "\n" : scene_report_text(*scene);
+    return print_output(app, report) ? kDone : kFailed;
+  }
+  return serve(app, options, *scene);
+}

@@ -1,0 +1,43 @@
+#include "service/command_line.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <system_error>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+namespace buoyancy {
+
+std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& parse_error) {
+    if (parse_error.get_exit_code() == 0) {  // --help, --version
+      app.exit(parse_error, std::cout, std::cerr);
+      return kDone;
+    }
+    print_error(app, std::string(parse_error.what()) + "; see " + app.get_name() + " --help");
+    return kWrongInput;
+  }
+}
+
+void print_error(const CLI::App& app, const std::string& message) {
+  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), message.c_str());
+}
+
+void print_error(const CLI::App& app, const Error& error) {
+  print_error(app, error.message());
+}
+
+bool print_output(const CLI::App& app, const std::string& text) {
+  errno = 0;
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return true;
+  print_error(app, "standard output: " + std::generic_category().message(errno));
+  return false;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,31 @@
+// buoyancyd's command line.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "geometry/error.h"
+#include "service/daemon.h"
+
+namespace buoyancy {
+
+struct DaemonOptions {
+  std::filesystem::path scene;
+  std::string lcm_url;  // empty: LCM's default
+  Mode mode = Mode::kLockstep;
+  ChannelNames channels;
+  std::string log_level = "info";  // as spdlog names them
+  bool check = false;              // print the scene's report and end
+  bool json = false;               // with check
+};
+
+// Declares the options on app; parsing fills options, which must live as long.
+void declare_options(CLI::App& app, DaemonOptions& options);
+
+// What no single option shows. Errors: an LCM URL that is none, channels that are the same or too long,
+// --json without --check.
+Expected<void> check_options(const DaemonOptions& options);
+
+}  // namespace buoyancy

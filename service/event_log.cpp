@@ -1,0 +1,121 @@
+#include "service/event_log.h"
+
+#include <algorithm>
+#include <array>
+
+#include "messages/layout.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
+constexpr std::size_t kHeaderSize = 28;
+constexpr std::int32_t kLongestChannel = 999;              // liblcm's own bound for logs
+constexpr std::int32_t kLargestQuestion = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
+
+bool starts_with_magic(Bytes bytes) {
+  return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+}
+
+}  // namespace
+
+Expected<EventLogReader> EventLogReader::open(const std::filesystem::path& path,
+                                              const std::string& states_channel) {
+  Expected<InputWindow> file = InputWindow::open(path);
+  if (!file) return tl::unexpected(file.error());
+  return EventLogReader(std::move(*file), states_channel);
+}
+
+EventLogReader::EventLogReader(InputWindow file, std::string states_channel)
+    : file_(std::move(file)), states_channel_(std::move(states_channel)) {}
+
+InputItem EventLogReader::next() {
+  while (offset_ < size()) {
+    const tl::expected<Frame, std::string> frame = frame_at(offset_);
+    if (!frame) return skip_damage(frame.error());
+    const std::int64_t start = offset_;
+    if (!frame->ours) {
+      if (!header_or_end_at(frame->next)) return skip_damage("no event follows where one should");
+      offset_ = frame->next;
+      continue;
+    }
+    const std::size_t event_size = frame->data_start + frame->data_size;
+    const Bytes event = file_.at(start, event_size + kMagic.size());
+    if (event.size() < event_size) break;  // a read error
+    const Bytes data = event.subspan(frame->data_start, frame->data_size);
+    const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
+    if (!followed && !peek_key(data)) return skip_damage("no event follows where one should");
+    offset_ = frame->next;
+    return RecordedQuestion{frame->timestamp, data};
+  }
+  if (file_.read_error()) {
+    offset_ = size();
+    const Damage damage{file_.read_error()->message()};
+    return damage;
+  }
+  return EndOfInput{};
+}
+
+tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::int64_t offset) {
+  using Reason = tl::unexpected<std::string>;
+  const Bytes header = file_.at(offset, kHeaderSize + kLongestChannel);
+  if (!starts_with_magic(header)) return Reason("no event's header");
+  if (header.size() < kHeaderSize) return Reason("the file ends within an event's header");
+  std::int64_t number = 0;
+  std::int32_t channel_size = 0;
+  std::int32_t data_size = 0;
+  Frame frame;
+  BigEndianReader reader(header.data() + kMagic.size());
+  reader(number, frame.timestamp, channel_size, data_size);
+  if (channel_size <= 0 || channel_size > kLongestChannel) {
+    return Reason("a channel's length of " + std::to_string(channel_size));
+  }
+  if (data_size < 0) return Reason("a data length of " + std::to_string(data_size));
+  frame.data_start = kHeaderSize + static_cast<std::size_t>(channel_size);
+  frame.data_size = static_cast<std::size_t>(data_size);
+  frame.next = offset + static_cast<std::int64_t>(frame.data_start + frame.data_size);
+  if (frame.next > size()) {
+    return Reason("the file ends within an event: " + std::to_string(frame.next - size()) +
+                  " bytes are missing");
+  }
+  const Bytes channel = header.subspan(kHeaderSize, static_cast<std::size_t>(channel_size));
+  frame.ours = std::equal(channel.begin(), channel.end(), states_channel_.begin(), states_channel_.end());
+  if (frame.ours && data_size > kLargestQuestion) {
+    return Reason("a question of " + std::to_string(data_size) + " bytes");
+  }
+  return frame;
+}
+
+bool EventLogReader::header_or_end_at(std::int64_t offset) {
+  return offset == size() || starts_with_magic(file_.at(offset, kMagic.size()));
+}
+
+Damage EventLogReader::skip_damage(const std::string& reason) {
+  const std::int64_t start = offset_;
+  for (++offset_; offset_ < size();) {
+    const Bytes window = file_.at(offset_, kMagic.size());
+    const auto found = std::search(window.begin(), window.end(), kMagic.begin(), kMagic.end());
+    offset_ += found - window.begin();
+    if (found != window.end()) break;
+    // The window may end within a header's first bytes: look at those again. It is shorter than them at the
+    // end of the file only, or where reading failed.
+    const bool more = offset_ < size() && window.size() >= kMagic.size();
+    offset_ = more ? offset_ - static_cast<std::int64_t>(kMagic.size()) + 1 : size();
+  }
+  return {"damaged at byte " + std::to_string(start) + ": " + reason + "; " +
+          std::to_string(offset_ - start) + " bytes skipped"};
+}
+
+void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view channel, Bytes data,
+                  std::vector<std::uint8_t>& bytes) {
+  bytes.resize(kHeaderSize + channel.size() + data.size());
+  std::copy(kMagic.begin(), kMagic.end(), bytes.begin());
+  BigEndianWriter writer(bytes.data() + kMagic.size());
+  writer(number, timestamp, static_cast<std::int32_t>(channel.size()),
+         static_cast<std::int32_t>(data.size()));
+  const auto after_header = bytes.begin() + static_cast<std::ptrdiff_t>(kHeaderSize);
+  const auto after_channel = std::copy(channel.begin(), channel.end(), after_header);
+  std::copy(data.begin(), data.end(), after_channel);
+}
+
+}  // namespace buoyancy

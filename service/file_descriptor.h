@@ -1,0 +1,31 @@
+// A file descriptor that closes itself.
+#pragma once
+
+#include <utility>
+
+#include <unistd.h>
+
+namespace buoyancy {
+
+class FileDescriptor {
+ public:
+  FileDescriptor() = default;
+  explicit FileDescriptor(int value) : value_(value) {}  // takes it over; negative: none
+  FileDescriptor(FileDescriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~FileDescriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+
+  int value() const { return value_; }
+  bool valid() const { return value_ >= 0; }
+  bool close() { return ::close(std::exchange(value_, -1)) == 0; }  // false: errno says what went wrong
+
+ private:
+  int value_ = -1;
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,41 @@
+// What a replay reads: questions, as bytes, from an LCM log or from CSV, and word of what could not be read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "geometry/error.h"
+#include "messages/wire.h"
+#include "service/event_log.h"
+#include "service/state_csv.h"
+
+namespace buoyancy {
+
+enum class FileFormat { kCsv, kLcmLog };
+
+class ReplayInput {
+ public:
+  // states_channel: of the events that are questions, in a log. Errors: not readable, a CSV header that is
+  // none.
+  static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
+                                    const std::string& states_channel);
+
+  InputItem next() {
+    return std::visit([](auto& reader) { return reader.next(); }, reader_);
+  }
+  std::int64_t offset() const {
+    return std::visit([](const auto& reader) { return reader.offset(); }, reader_);
+  }
+  std::int64_t size() const {
+    return std::visit([](const auto& reader) { return reader.size(); }, reader_);
+  }
+
+ private:
+  using Reader = std::variant<EventLogReader, StateCsvReader>;
+  explicit ReplayInput(Reader reader) : reader_(std::move(reader)) {}
+  Reader reader_;
+};
+
+}  // namespace buoyancy

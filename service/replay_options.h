@@ -1,0 +1,43 @@
+// buoyancy-replay's command line.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "geometry/error.h"
+#include "messages/wire.h"
+#include "scene/scene_file.h"
+#include "service/replay_input.h"
+
+namespace buoyancy {
+
+struct ReplayOptions {
+  std::filesystem::path scene;  // this
+  std::filesystem::path mesh;   // or this, then with
+  std::string method;           // empty: the default of a scene's body
+  double tolerance = 0.0;
+  std::filesystem::path input;
+  std::filesystem::path output;
+  std::string states_channel{kStatesChannel};
+  std::string wrenches_channel{kWrenchesChannel};
+  bool json = false;
+};
+
+// Declares the options on app; parsing fills options, which must live as long.
+void declare_options(CLI::App& app, ReplayOptions& options);
+
+// What the options come to.
+struct ReplayPlan {
+  std::optional<SceneDescription> single_mesh;  // nullopt: the scene file
+  FileFormat input_format = FileFormat::kCsv;
+  FileFormat output_format = FileFormat::kCsv;
+};
+
+// Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
+// carry, an unknown method.
+Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
+
+}  // namespace buoyancy

@@ -1,0 +1,177 @@
+#include "service/state_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::string_view kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz";
+constexpr std::string_view kTwistHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz";
+constexpr std::size_t kPoseColumns = 9;
+constexpr std::size_t kTwistColumns = 15;
+constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kShownOfALine = 60;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r";
+  const std::size_t first = text.find_first_not_of(kSpace);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+std::string shown(std::string_view text) {
+  std::string copy(text.substr(0, kShownOfALine));
+  for (char& c : copy) {
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7F) c = '?';
+  }
+  return "'" + copy + (text.size() > kShownOfALine ? "...'" : "'");
+}
+
+template <typename Number>
+bool parse_number(std::string_view text, Number& number) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+}  // namespace
+
+Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path) {
+  Expected<InputWindow> file = InputWindow::open(path);
+  if (!file) return tl::unexpected(file.error());
+  StateCsvReader reader(std::move(*file));
+  const std::optional<std::string_view> header = reader.line();
+  if (!header) return reader;
+  const Expected<std::size_t> columns = reader.parse_header(*header, path);
+  if (!columns) return tl::unexpected(columns.error());
+  reader.columns_ = *columns;
+  return reader;
+}
+
+Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const std::filesystem::path& path) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::string names;  // without the spaces around them
+  for (const char c : text) {
+    if (c != ' ' && c != '\t' && c != '\r') names += c;
+  }
+  if (names == kPoseHeader) return kPoseColumns;
+  if (names == kTwistHeader) return kTwistColumns;
+  return failure({path.string() + ":1", "header " + shown(text),
+                  "'" + std::string(kPoseHeader) + "', where ',vx,vy,vz,wx,wy,wz' may follow",
+                  "the file has no header, or its columns are in another order", ""});
+}
+
+InputItem StateCsvReader::next() {
+  if (damage_) {
+    Damage damage = std::move(*damage_);
+    damage_.reset();
+    return damage;
+  }
+  question_.bodies.clear();
+  const auto take = [this](const Row& row) {
+    question_.key.utime = row.utime;
+    question_.bodies.push_back(row.state);
+  };
+  if (pending_) take(*pending_);
+  pending_.reset();
+  while (question_.bodies.size() < kMostRowsPerQuestion) {
+    const std::optional<std::string_view> text = line();
+    if (!text) break;
+    if (trimmed(*text).empty() && !line_too_long_) continue;
+    const tl::expected<Row, std::string> row = parse_row(*text);
+    if (!row) {
+      damage_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; left out"};
+      break;
+    }
+    if (!question_.bodies.empty() && row->utime != question_.key.utime) {
+      pending_ = *row;
+      break;
+    }
+    take(*row);
+  }
+  if (!question_.bodies.empty()) {
+    encode(question_, bytes_);
+    ++question_.key.seq;
+    return RecordedQuestion{question_.key.utime, bytes_};
+  }
+  if (damage_) return next();
+  if (file_.read_error() && offset_ < size()) {
+    offset_ = size();
+    return Damage{file_.read_error()->message()};
+  }
+  return EndOfInput{};
+}
+
+std::optional<std::string_view> StateCsvReader::line() {
+  const Bytes window = file_.at(offset_, kLongestLine + 1);
+  if (window.empty()) return std::nullopt;
+  ++line_number_;
+  const auto longest = window.subspan(0, std::min(window.size(), kLongestLine + 1));
+  const auto newline = std::find(longest.begin(), longest.end(), '\n');
+  const std::string_view text(reinterpret_cast<const char*>(window.data()),
+                              static_cast<std::size_t>(newline - longest.begin()));
+  line_too_long_ = text.size() > kLongestLine;
+  offset_ += static_cast<std::int64_t>(text.size());
+  if (line_too_long_) {
+    skip_to_newline();
+    return std::string_view();
+  }
+  if (newline != longest.end()) ++offset_;
+  return text;
+}
+
+void StateCsvReader::skip_to_newline() {
+  while (true) {
+    const Bytes window = file_.at(offset_, 1);
+    if (window.empty()) return;
+    const auto newline = std::find(window.begin(), window.end(), '\n');
+    offset_ += newline - window.begin();
+    if (newline != window.end()) {
+      ++offset_;
+      return;
+    }
+  }
+}
+
+tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::string_view text) const {
+  if (line_too_long_) return tl::unexpected("more than " + std::to_string(kLongestLine) + " characters");
+  Row row;
+  std::array<double, kTwistColumns - 2> numbers{};
+  std::size_t column = 0;
+  for (std::string_view rest = text;; ++column) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view field = trimmed(rest.substr(0, comma));
+    bool good = true;
+    if (column == 0) {
+      good = parse_number(field, row.utime);
+    } else if (column == 1) {
+      good = parse_number(field, row.state.body_id);
+    } else if (column < columns_) {
+      good = parse_number(field, numbers[column - 2]);
+    }
+    if (!good) {
+      return tl::unexpected(shown(field) + " in column " + std::to_string(column + 1) + " is not a " +
+                            (column < 2 ? "whole number" : "number") + " in range");
+    }
+    if (comma == rest.npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (column + 1 != columns_) {
+    return tl::unexpected(std::to_string(column + 1) + " columns where the header has " +
+                          std::to_string(columns_));
+  }
+  const double* number = numbers.data();
+  for (auto* field : {row.state.position.data(), row.state.quaternion_wxyz.data(),
+                      row.state.linear_velocity.data(), row.state.angular_velocity.data()}) {
+    const std::ptrdiff_t count = field == row.state.quaternion_wxyz.data() ? 4 : 3;
+    std::copy(number, number + count, field);
+    number += count;
+  }
+  return row;
+}
+
+}  // namespace buoyancy

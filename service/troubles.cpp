@@ -1,0 +1,48 @@
+#include "service/troubles.h"
+
+#include <array>
+
+#include <spdlog/fmt/fmt.h>
+
+namespace buoyancy {
+
+std::vector<std::string> describe_troubles(const Counters& before, const Counters& now) {
+  struct Cause {
+    Rejection rejection;
+    std::int64_t Counters::*counter;
+  };
+  constexpr std::array kCauses{Cause{Rejection::kTruncated, &Counters::rejected_truncated},
+                               Cause{Rejection::kFingerprint, &Counters::rejected_fingerprint},
+                               Cause{Rejection::kCount, &Counters::rejected_count},
+                               Cause{Rejection::kLength, &Counters::rejected_length}};
+  std::vector<std::string> lines;
+  for (const Cause& cause : kCauses) {
+    const std::int64_t grown = now.*cause.counter - before.*cause.counter;
+    if (grown > 0)
+      lines.push_back(fmt::format("messages rejected: {}, {}", grown, describe(cause.rejection)));
+  }
+  for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+    const auto status = static_cast<BodyStatus>(i);
+    const std::int64_t grown = now.bodies[i] - before.bodies[i];
+    if (status != BodyStatus::kOk && grown > 0) {
+      lines.push_back(fmt::format("bodies answered with {}: {}", name(status), grown));
+    }
+  }
+  return lines;
+}
+
+std::string describe_totals(const Counters& counters, const LatencyPercentiles& latency) {
+  std::int64_t bodies = 0;
+  for (const std::int64_t count : counters.bodies) bodies += count;
+  const std::int64_t ok = counters.bodies[static_cast<std::size_t>(BodyStatus::kOk)];
+  constexpr double kMicrosecondsPerSecond = 1e6;
+  return fmt::format(
+      "{} questions: {} answered, {} repeated, {} stale, {} overtaken, {} rejected; {} bodies, {} of them "
+      "OK; "
+      "latency p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us",
+      counters.questions, counters.answered, counters.repeated, counters.stale, counters.overtaken,
+      counters.rejected(), bodies, ok, latency.p50 * kMicrosecondsPerSecond,
+      latency.p99 * kMicrosecondsPerSecond, latency.max * kMicrosecondsPerSecond);
+}
+
+}  // namespace buoyancy

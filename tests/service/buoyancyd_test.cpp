@@ -1,0 +1,123 @@
+// buoyancyd as a program: arguments, exit codes, signals, what it says where.
+#include <algorithm>
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/service/running_service.h"
+
+namespace buoyancy {
+namespace {
+
+FinishedProcess run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BUOYANCYD);
+  return run_to_end(command_of(std::move(arguments)), kPatience);
+}
+
+// Exit code, nothing on stdout, one line on stderr that says `text`.
+void expect_refusal(const FinishedProcess& finished, int exit_code, const std::string& text) {
+  EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error;
+  EXPECT_EQ(finished.standard_output, "");
+  const std::string& error = finished.standard_error;
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+  EXPECT_EQ(error.rfind("buoyancyd: ", 0), 0U) << error;
+  EXPECT_NE(error.find(text), std::string::npos) << error;
+}
+
+class Ended : public testing::TestWithParam<int> {};
+
+TEST_P(Ended, BySignalItSaysWhatItDidAndExitsWith0) {
+  RunningService service;
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 1, 0.0));
+  hear(socket);
+  service.child().send_signal(GetParam());
+  EXPECT_EQ(service.child().wait(kPatience), 0);
+  const std::string log = service.log();
+  EXPECT_NE(log.find(GetParam() == SIGINT ? "ended by SIGINT" : "ended by SIGTERM"), std::string::npos)
+      << log;
+  EXPECT_NE(log.find("1 questions: 1 answered"), std::string::npos) << log;
+  EXPECT_EQ(service.child().standard_output(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Buoyancyd, Ended, testing::Values(SIGINT, SIGTERM));
+
+TEST(Buoyancyd, SaysWhatItListensToWhenItIsReady) {
+  RunningService service({"-l", "udpm://239.255.76.67:7667?ttl=0", "--mode", "latest"});
+  const std::string log = service.log();
+  for (const char* text : {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_STATUS",
+                           "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
+    EXPECT_NE(log.find(text), std::string::npos) << text << " is missing from " << log;
+  }
+}
+
+TEST(Buoyancyd, RefusesWrongArgumentsWithOneLineAnd2) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  expect_refusal(run({}), 2, "--scene");
+  expect_refusal(run({"--scene"}), 2, "--scene");
+  expect_refusal(run({"--scene", scene, "--no-such-option"}), 2, "--no-such-option");
+  expect_refusal(run({"--scene", scene, "more"}), 2, "more");
+  expect_refusal(run({"--scene", scene, "--mode", "fast"}), 2, "--mode");
+  expect_refusal(run({"--scene", scene, "--log-level", "loud"}), 2, "--log-level");
+  expect_refusal(run({"--scene", scene, "--json"}), 2, "--check");
+  expect_refusal(run({"--scene", scene, "-l", "tcpq://127.0.0.1:7700"}), 2, "tcpq://");
+  expect_refusal(run({"--scene", scene, "-l", "udpm://1.2.3.4:7667"}), 2, "1.2.3.4");
+  expect_refusal(run({"--scene", scene, "--states-channel", ""}), 2, "0 characters");
+  expect_refusal(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
+  expect_refusal(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "same");
+}
+
+TEST(Buoyancyd, RefusesScenesAndMeshesItCannotUseWithOneLineAnd2) {
+  const ScratchDirectory directory;
+  expect_refusal(run({"--scene", directory.path("missing.toml")}), 2, "missing.toml");
+  expect_refusal(run({"--scene", directory.path(".")}), 2, directory.path("."));
+  expect_refusal(run({"--scene", directory.write("bad.toml", "[[body]]\nid = ")}), 2, "bad.toml");
+  directory.write("bad.stl", "solid nothing at all");
+  expect_refusal(run({"--scene", directory.write("scene.toml", "[[body]]\nid = 1\nmesh = \"bad.stl\"\n")}), 2,
+                 "bad.stl");
+  expect_refusal(
+      run({"--scene", directory.write("scene.toml", "[[body]]\nid = 1\nmesh = \"gone.stl\"\n"), "--check"}),
+      2, "gone.stl");
+}
+
+TEST(Buoyancyd, SaysWithinSecondsWhatMendsAMissingMulticastRoute) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  const FinishedProcess finished =
+      run_to_end(command_of({"unshare", "-n", "sh", "-c", "ip link set lo up && exec \"$0\" --scene \"$1\"",
+                             BUOYANCYD, scene}),
+                 3.0);
+  expect_refusal(finished, 1, "ip route add 224.0.0.0/4 dev lo");
+}
+
+TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  const FinishedProcess text = run({"--scene", scene, "--check"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_EQ(text.standard_error, "");
+  EXPECT_NE(text.standard_output.find("volume"), std::string::npos) << text.standard_output;
+  const FinishedProcess json = run({"--scene", scene, "--check", "--json"});
+  EXPECT_EQ(json.exit_code, 0);
+  EXPECT_TRUE(nlohmann::json::parse(json.standard_output).is_object());
+}
+
+TEST(Buoyancyd, FailsWhereItsReportCannotBeWritten) {
+  const ScratchDirectory directory;
+  ChildCommand command =
+      command_of({BUOYANCYD, "--scene", directory.write("scene.toml", kBoxScene), "--check"});
+  command.standard_output = "/dev/full";
+  expect_refusal(run_to_end(command, kPatience), 1, "standard output");
+}
+
+TEST(Buoyancyd, TellsItsVersion) {
+  const FinishedProcess finished = run({"--version"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_EQ(finished.standard_output, "buoyancyd " BUOYANCY_VERSION "\n");
+  EXPECT_EQ(run({"--help"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,205 @@
+#include "service/event_log.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <lcm/eventlog.h>
+
+#include "messages/wire.h"
+#include "tests/service/scratch_directory.h"
+
+namespace buoyancy {
+namespace {
+
+std::vector<std::uint8_t> question(std::int64_t seq, std::size_t bodies = 1) {
+  Question question;
+  question.key = {1'000 + seq, 7, seq};
+  question.bodies.resize(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) question.bodies[i].body_id = static_cast<std::int32_t>(i);
+  std::vector<std::uint8_t> bytes;
+  encode(question, bytes);
+  return bytes;
+}
+
+// Events as bytes, and where each starts.
+struct Log {
+  std::string bytes;
+  std::vector<std::size_t> starts;
+
+  void add(const std::string& channel, const std::vector<std::uint8_t>& data) {
+    std::vector<std::uint8_t> event;
+    const auto number = static_cast<std::int64_t>(starts.size());
+    encode_event(number, 1'000'000 + number, channel, data, event);
+    starts.push_back(bytes.size());
+    bytes.append(event.begin(), event.end());
+  }
+};
+
+Log log_of_questions(int count) {
+  Log log;
+  for (int i = 0; i < count; ++i) log.add("BUOYANCY_STATES", question(i));
+  return log;
+}
+
+struct Found {
+  std::vector<std::int64_t> seqs;
+  std::vector<std::string> damages;
+};
+
+Found read_all(const std::string& contents) {
+  const ScratchDirectory directory;
+  auto reader = EventLogReader::open(directory.write("x.lcmlog", contents), "BUOYANCY_STATES");
+  if (!reader) throw std::runtime_error(reader.error().message());
+  Found found;
+  while (true) {
+    const InputItem item = reader->next();
+    if (std::holds_alternative<EndOfInput>(item)) break;
+    if (const auto* damage = std::get_if<Damage>(&item)) {
+      found.damages.push_back(damage->description);
+    } else {
+      const auto key = peek_key(std::get<RecordedQuestion>(item).bytes);
+      found.seqs.push_back(key ? key->seq : -1);
+    }
+  }
+  EXPECT_EQ(reader->offset(), reader->size());
+  return found;
+}
+
+using Seqs = std::vector<std::int64_t>;
+
+TEST(EventLog, WritesWhatLcmReads) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("x.lcmlog", log_of_questions(2).bytes);
+  lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "r");
+  ASSERT_NE(log, nullptr);
+  for (int i = 0; i < 2; ++i) {
+    lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(log);
+    ASSERT_NE(event, nullptr);
+    EXPECT_EQ(event->eventnum, i);
+    EXPECT_EQ(event->timestamp, 1'000'000 + i);
+    EXPECT_STREQ(event->channel, "BUOYANCY_STATES");
+    const auto* data = static_cast<const std::uint8_t*>(event->data);
+    EXPECT_EQ(std::vector<std::uint8_t>(data, data + event->datalen), question(i));
+    lcm_eventlog_free_event(event);
+  }
+  EXPECT_EQ(lcm_eventlog_read_next_event(log), nullptr);
+  lcm_eventlog_destroy(log);
+}
+
+TEST(EventLog, ReadsWhatLcmWrites) {
+  const ScratchDirectory directory;
+  const std::string path = directory.path("x.lcmlog");
+  lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "w");
+  ASSERT_NE(log, nullptr);
+  std::string channel = "BUOYANCY_STATES";
+  std::vector<std::uint8_t> data = question(5);
+  lcm_eventlog_event_t event{};
+  event.timestamp = 77;
+  event.channellen = static_cast<std::int32_t>(channel.size());
+  event.channel = channel.data();
+  event.datalen = static_cast<std::int32_t>(data.size());
+  event.data = data.data();
+  ASSERT_EQ(lcm_eventlog_write_event(log, &event), 0);
+  lcm_eventlog_destroy(log);
+
+  auto reader = EventLogReader::open(path, "BUOYANCY_STATES");
+  ASSERT_TRUE(reader);
+  const InputItem item = reader->next();
+  const auto& found = std::get<RecordedQuestion>(item);
+  EXPECT_EQ(found.timestamp, 77);
+  EXPECT_EQ(std::vector<std::uint8_t>(found.bytes.begin(), found.bytes.end()), data);
+  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
+}
+
+TEST(EventLog, PassesOverOtherChannelsWhateverTheirSize) {
+  Log log;
+  log.add("OTHER", std::vector<std::uint8_t>(5'000'000, 0xED));
+  log.add("BUOYANCY_STATES", question(1));
+  log.add("BUOYANCY_STATES_2", question(2));
+  log.add("BUOYANCY_STATE", question(3));
+  log.add("BUOYANCY_STATES", question(4, 100'000));
+  log.add("OTHER", {});
+  const Found found = read_all(log.bytes);
+  EXPECT_EQ(found.seqs, (Seqs{1, 4}));
+  EXPECT_TRUE(found.damages.empty());
+}
+
+TEST(EventLog, FindsNothingInAnEmptyFile) {
+  const Found found = read_all("");
+  EXPECT_TRUE(found.seqs.empty());
+  EXPECT_TRUE(found.damages.empty());
+}
+
+TEST(EventLog, AnswersEveryGoodEventAroundGarbage) {
+  Log log = log_of_questions(4);
+  for (const std::size_t length : {1U, 3U, 4U, 27U, 100'000U, 3'000'000U}) {
+    std::string bytes = log.bytes;
+    bytes.insert(log.starts[2], std::string(length, '\xED'));
+    const Found found = read_all(bytes);
+    EXPECT_EQ(found.seqs, (Seqs{0, 1, 2, 3})) << length;
+    ASSERT_EQ(found.damages.size(), 1U) << length;
+    EXPECT_NE(found.damages[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
+        << found.damages[0];
+    EXPECT_NE(found.damages[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
+        << found.damages[0];
+  }
+}
+
+TEST(EventLog, LosesOnlyTheEventWhoseHeaderIsDamaged) {
+  constexpr std::size_t kChannelLength = 20;
+  constexpr std::size_t kDataLength = 24;
+  const Log log = log_of_questions(4);
+  for (const std::size_t field : {std::size_t{0}, kChannelLength, kDataLength}) {
+    for (const char value : {'\x00', '\x01', '\x7F', '\xFF'}) {
+      for (const std::size_t byte : {std::size_t{0}, std::size_t{3}}) {
+        std::string bytes = log.bytes;
+        char& changed = bytes[log.starts[1] + field + byte];
+        if (changed == value) continue;
+        changed = value;
+        const Found found = read_all(bytes);
+        EXPECT_EQ(found.seqs, (Seqs{0, 2, 3})) << field + byte << " = " << int{value};
+        EXPECT_EQ(found.damages.size(), 1U) << field + byte << " = " << int{value};
+      }
+    }
+  }
+}
+
+TEST(EventLog, ReportsATailThatWasCutOffAndKeepsWhatStandsBeforeIt) {
+  const Log log = log_of_questions(3);
+  for (std::size_t length = log.starts[2] + 1; length < log.bytes.size(); ++length) {
+    const Found found = read_all(log.bytes.substr(0, length));
+    EXPECT_EQ(found.seqs, (Seqs{0, 1})) << length;
+    ASSERT_EQ(found.damages.size(), 1U) << length;
+    EXPECT_NE(found.damages[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
+        << found.damages[0];
+  }
+}
+
+TEST(EventLog, IsNotMisledByHeadersWithinTheData) {
+  Log log;
+  Log inner = log_of_questions(1);
+  std::vector<std::uint8_t> data(inner.bytes.begin(), inner.bytes.end());
+  log.add("OTHER", data);
+  log.add("BUOYANCY_STATES", question(9));
+  EXPECT_EQ(read_all(log.bytes).seqs, Seqs{9});
+}
+
+TEST(EventLog, HandsOnBytesThatAreNoQuestionForTheExchangeToReject) {
+  Log log;
+  log.add("BUOYANCY_STATES", {1, 2, 3});
+  log.add("BUOYANCY_STATES", question(1));
+  EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 1}));
+}
+
+TEST(EventLog, RefusesWhatIsNoRegularFile) {
+  const ScratchDirectory directory;
+  EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), "A"));
+  EXPECT_FALSE(EventLogReader::open(directory.path("."), "A"));
+  EXPECT_FALSE(EventLogReader::open("/dev/null", "A"));
+}
+
+}  // namespace
+}  // namespace buoyancy

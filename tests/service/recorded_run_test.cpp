@@ -1,0 +1,74 @@
+// A live run, recorded by LCM's own logger and replayed.
+#include <csignal>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "service/event_log.h"
+#include "tests/service/running_service.h"
+
+namespace buoyancy {
+namespace {
+
+// Of a log that may be being written: what is not whole yet is left out.
+std::vector<RawBytes> events(const std::string& path, const std::string& channel) {
+  auto reader = EventLogReader::open(path, channel);
+  if (!reader) throw std::runtime_error(reader.error().message());
+  std::vector<RawBytes> found;
+  while (true) {
+    const InputItem item = reader->next();
+    if (std::holds_alternative<EndOfInput>(item)) return found;
+    const auto* event = std::get_if<RecordedQuestion>(&item);
+    if (event != nullptr) found.emplace_back(event->bytes.begin(), event->bytes.end());
+  }
+}
+
+TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
+  const ScratchDirectory directory;
+  const std::string recorded = directory.path("live.lcmlog");
+  const std::string replayed = directory.path("replayed.lcmlog");
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  RawLcmSocket socket;
+  const RunningService service;
+  ChildProcess logger(command_of({"lcm-logger", "-q", "-f", "--flush-interval=1", recorded}));
+  std::error_code not_there_yet;
+  while (std::filesystem::file_size(recorded, not_there_yet) + 1 <= 1) {
+    socket.send("IS_THE_LOGGER_THERE", {1});
+    ASSERT_FALSE(logger.wait(0.01)) << logger.standard_error();
+  }
+
+  // lcm-logger drops messages when more than 30 wait for it: it is waited for.
+  constexpr std::int64_t kCheckpoint = 5;
+  for (std::int64_t seq = 0; seq < 300; ++seq) {
+    if (seq % kCheckpoint == 0) {
+      socket.send("CHECKPOINT", {1});
+      const auto checkpoints = static_cast<std::size_t>(seq / kCheckpoint + 1);
+      while (events(recorded, "CHECKPOINT").size() < checkpoints) ASSERT_FALSE(logger.wait(0.002));
+    }
+    RawStates states = one_body(seq / 100, seq, 0.01 * static_cast<double>(seq) - 1.0);
+    states.bodies.resize(static_cast<std::size_t>(1 + seq % 7), states.bodies[0]);
+    states.bodies.back().body_id = static_cast<std::int32_t>(seq % 4);  // unknown ones among them
+    states.bodies.back().quaternion_wxyz = {0.8, 0.36, 0.48, 0.0};
+    states.lead_time = seq % 5 == 0 ? 0.01 : 0.0;
+    states.bodies.back().linear_velocity = {0.1, 0.2, -0.3};
+    const int repeats = seq % 10 == 3 ? 2 : 1;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      ask(socket, states);
+      ASSERT_EQ(hear(socket).seq, seq);
+    }
+  }
+  socket.send("THE_END", {1});
+  while (events(recorded, "THE_END").empty()) ASSERT_FALSE(logger.wait(0.01));
+  logger.send_signal(SIGINT);
+  ASSERT_TRUE(logger.wait(kPatience));
+
+  const FinishedProcess finished =
+      run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene, recorded, replayed}), kPatience);
+  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");
+  EXPECT_EQ(live.size(), 330U);
+  EXPECT_EQ(events(replayed, "BUOYANCY_WRENCHES"), live);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,342 @@
+// buoyancy-replay as a program, on files made here.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "messages/wire.h"
+#include "service/event_log.h"
+#include "tests/child_process.h"
+#include "tests/service/scratch_directory.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kPatience = 60.0;
+constexpr const char* kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
+constexpr const char* kWrenchHeader =
+    "utime,body_id,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,force_error_bound,torque_error_bound\n";
+
+// A box of 2 x 3 x 4 m about its origin, in water of 1000 kg/m^3 and 10 m/s^2.
+constexpr const char* kScene = R"(
+[world]
+gravity = 10.0
+[water]
+density = 1000.0
+[[body]]
+id = 1
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+method = "exact"
+)";
+
+// A unit cube about its origin, as OBJ.
+constexpr const char* kCube =
+    "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5\n"
+    "v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+class Replay : public testing::Test {
+ protected:
+  static ChildCommand command(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BUOYANCY_REPLAY);
+    ChildCommand command;
+    command.arguments = std::move(arguments);
+    return command;
+  }
+  FinishedProcess run(std::vector<std::string> arguments) const {
+    return run_to_end(command(std::move(arguments)), kPatience);
+  }
+  FinishedProcess replay(const std::string& input, const std::string& output,
+                         const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments{"--scene", scene_, input, output};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(std::move(arguments));
+  }
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  std::string write(const std::string& name, const std::string& contents) const {
+    return directory_.write(name, contents);
+  }
+
+  ScratchDirectory directory_;
+  std::string scene_ = directory_.write("scene.toml", kScene);
+};
+
+using Row = std::vector<std::string>;
+
+std::vector<Row> rows(const std::string& csv) {
+  std::vector<Row> result;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    Row& row = result.emplace_back();
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+  }
+  return result;
+}
+
+std::string pose_row(int utime, double height) {
+  std::ostringstream row;
+  row << utime << ",1,7,8," << height << ",1,0,0,0\n";
+  return row.str();
+}
+
+std::vector<std::uint8_t> question(std::int64_t utime, double height) {
+  Question question;
+  question.key = {utime, 0, utime};
+  question.bodies.resize(1);
+  question.bodies[0].body_id = 1;
+  question.bodies[0].position = {7.0, 8.0, height};
+  question.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
+  std::vector<std::uint8_t> bytes;
+  encode(question, bytes);
+  return bytes;
+}
+
+std::string event(const std::string& channel, std::int64_t timestamp, const std::vector<std::uint8_t>& data) {
+  std::vector<std::uint8_t> bytes;
+  encode_event(0, timestamp, channel, data, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+std::string log_of_questions(int count) {
+  std::string log;
+  for (int i = 0; i < count; ++i) log += event("BUOYANCY_STATES", 500 + i, question(i, 0.125 * i));
+  return log;
+}
+
+TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
+  std::string poses = kPoseHeader;
+  for (int i = 0; i < 50; ++i) poses += pose_row(i / 2, 0.1 * i - 2.5);
+  poses += "99,77,0,0,0,1,0,0,0\n99,1,nan,0,0,1,0,0,0\n";
+  const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"));
+  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  EXPECT_EQ(finished.standard_error, "");
+  const std::string csv = contents_of(path("out.csv"));
+  EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U) << csv;
+  const std::vector<Row> answers = rows(csv);
+  ASSERT_EQ(answers.size(), 53U);
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Row& row = answers[i + 1];
+    ASSERT_EQ(row.size(), 15U);
+    const double depth = std::clamp(2.0 - (0.1 * static_cast<double>(i) - 2.5), 0.0, 4.0);
+    EXPECT_EQ(row[0], std::to_string(i / 2));
+    EXPECT_EQ(row[1], "1");
+    EXPECT_EQ(row[2], "0");
+    EXPECT_NEAR(std::stod(row[5]), 10'000.0 * 6.0 * depth, 1e-7) << i;
+    EXPECT_NEAR(std::stod(row[9]), 6.0 * depth, 1e-12) << i;
+  }
+  EXPECT_EQ(answers[51][2], "1") << "unknown body";
+  EXPECT_EQ(answers[52][2], "2") << "pose not finite";
+  EXPECT_EQ(std::stod(answers[52][5]), 0.0);
+}
+
+TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
+  replay(write("in.csv", std::string(kPoseHeader) + "0,1,0,0,0.1,0.9998,0.02,0,0\n"), path("out.csv"));
+  replay(path("in.csv"), path("out.lcmlog"));
+  auto reader = EventLogReader::open(path("out.lcmlog"), "BUOYANCY_WRENCHES");
+  ASSERT_TRUE(reader);
+  const InputItem item = reader->next();
+  Answer answer;
+  ASSERT_FALSE(decode(std::get<RecordedQuestion>(item).bytes, answer));
+  const Row row = rows(contents_of(path("out.csv"))).at(1);
+  const BodyWrench& wrench = answer.bodies.at(0);
+  EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
+  EXPECT_EQ(std::stod(row[6]), wrench.torque[0]);
+  EXPECT_NE(wrench.torque[0], 0.0);
+  EXPECT_EQ(std::stod(row[9]), wrench.submerged_volume);
+  EXPECT_EQ(std::stod(row[12]), wrench.center_of_buoyancy[2]);
+  EXPECT_EQ(std::stod(row[13]), wrench.force_error_bound);
+}
+
+TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
+  const std::string log = event("OTHER", 1, {1, 2}) + event("BUOYANCY_STATES", 2, question(20, 0.0)) +
+                          event("BUOYANCY_WRENCHES", 3, {3}) + event("BUOYANCY_STATES", 4, question(40, 1.0));
+  ASSERT_EQ(replay(write("in.lcmlog", log), path("out.lcmlog")).exit_code, 0);
+  auto reader = EventLogReader::open(path("out.lcmlog"), "BUOYANCY_WRENCHES");
+  ASSERT_TRUE(reader);
+  for (const std::int64_t timestamp : {2, 4}) {
+    const InputItem item = reader->next();
+    const auto* found = std::get_if<RecordedQuestion>(&item);
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->timestamp, timestamp);
+    Answer answer;
+    ASSERT_FALSE(decode(found->bytes, answer));
+    EXPECT_EQ(answer.key.utime, 10 * timestamp);
+    EXPECT_DOUBLE_EQ(answer.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
+  }
+  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
+}
+
+TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
+  std::string poses = kPoseHeader;
+  for (int i = 0; i < 20; ++i) poses += pose_row(i, 0.125 * i);
+  ASSERT_EQ(replay(write("in.csv", poses), path("from_csv.csv")).exit_code, 0);
+  ASSERT_EQ(replay(write("in.lcmlog", log_of_questions(20)), path("from_log.csv")).exit_code, 0);
+  EXPECT_EQ(contents_of(path("from_csv.csv")), contents_of(path("from_log.csv")));
+}
+
+TEST_F(Replay, GivesTheSameBytesEveryTime) {
+  write("in.lcmlog", log_of_questions(100));
+  ASSERT_EQ(replay(path("in.lcmlog"), path("a.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog")).exit_code, 0);
+  EXPECT_EQ(contents_of(path("a.lcmlog")), contents_of(path("b.lcmlog")));
+  EXPECT_GT(contents_of(path("a.lcmlog")).size(), 10'000U);
+}
+
+TEST_F(Replay, AnswersWhatIsGoodInADamagedLogAndExitsWith1) {
+  std::string log = log_of_questions(10);
+  const std::size_t middle = log.size() / 2;
+  log.insert(middle, "garbage");
+  log.resize(log.size() - 3);
+  const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"));
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("damaged at byte " + std::to_string(middle)), std::string::npos)
+      << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("the file ends within an event"), std::string::npos)
+      << finished.standard_error;
+  EXPECT_EQ(rows(contents_of(path("out.csv"))).size(), 1U + 9U);
+}
+
+TEST_F(Replay, ReportsAndCountsMessagesThatAreNoQuestion) {
+  const std::string log = event("BUOYANCY_STATES", 1, {1, 2, 3}) + log_of_questions(2);
+  const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"), {"--json"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("shorter than the fixed fields"), std::string::npos)
+      << finished.standard_error;
+  const auto summary = nlohmann::json::parse(finished.standard_output);
+  EXPECT_EQ(summary["questions"], 3);
+  EXPECT_EQ(summary["answered"], 2);
+  EXPECT_EQ(summary["rejected"]["truncated"], 1);
+  EXPECT_EQ(summary["bodies"]["OK"], 2);
+  EXPECT_EQ(summary["complete"], false);
+}
+
+TEST_F(Replay, ReportsMalformedRowsByLineAndExitsWith1) {
+  const std::string poses = kPoseHeader + pose_row(1, 0.0) + "2,1,zero,0,0,1,0,0,0\n" + pose_row(3, 0.0);
+  const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"));
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("line 3: 'zero' in column 3"), std::string::npos)
+      << finished.standard_error;
+  EXPECT_EQ(rows(contents_of(path("out.csv"))).size(), 3U);
+}
+
+TEST_F(Replay, ShowsTheFirstTroublesAndCountsTheRest) {
+  std::string poses = kPoseHeader;
+  for (int i = 0; i < 1000; ++i) poses += "x\n";
+  const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"), {"--json"});
+  EXPECT_EQ(finished.exit_code, 1);
+  const std::string& error = finished.standard_error;
+  EXPECT_LT(std::count(error.begin(), error.end(), '\n'), 30) << error;
+  EXPECT_EQ(nlohmann::json::parse(finished.standard_output)["damaged_places"], 1000);
+}
+
+TEST_F(Replay, GivesAnEmptyOutputForAnEmptyInput) {
+  EXPECT_EQ(replay(write("in.csv", ""), path("out.csv")).exit_code, 0);
+  EXPECT_EQ(contents_of(path("out.csv")), kWrenchHeader);
+  EXPECT_EQ(replay(write("in.lcmlog", ""), path("out.lcmlog")).exit_code, 0);
+  EXPECT_EQ(contents_of(path("out.lcmlog")), "");
+}
+
+TEST_F(Replay, TakesOneMeshInPlaceOfAScene) {
+  write("cube.obj", kCube);
+  write("in.csv", kPoseHeader + pose_row(0, 0.25));
+  const FinishedProcess finished = run({"--mesh", path("cube.obj"), path("in.csv"), path("out.csv")});
+  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  const Row row = rows(contents_of(path("out.csv"))).at(1);
+  EXPECT_NEAR(std::stod(row[5]), 0.25 * 1025.0 * 9.80665, 1e-9);
+  const FinishedProcess fast =
+      run({"--mesh", path("cube.obj"), "--method", "fast", path("in.csv"), path("fast.csv")});
+  ASSERT_EQ(fast.exit_code, 0) << fast.standard_error;
+  EXPECT_NE(contents_of(path("fast.csv")), contents_of(path("out.csv")));
+}
+
+TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
+  const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
+  const std::string out = path("out.csv");
+  const std::string cube = write("cube.obj", kCube);
+  const std::string wrong_header = write("header.csv", "a,b\n1,2\n");
+  const std::string untouched = contents_of(in);
+  const std::vector<std::vector<std::string>> wrong{
+      {},
+      {in, out},
+      {"--scene", scene_, in},
+      {"--scene", scene_, "--mesh", cube, in, out},
+      {"--scene", scene_, "--method", "fast", in, out},
+      {"--scene", scene_, "--tolerance", "0.1", in, out},
+      {"--mesh", cube, "--method", "slow", in, out},
+      {"--mesh", cube, "--tolerance", "2", in, out},
+      {"--mesh", path("gone.obj"), in, out},
+      {"--mesh", in, in, out},
+      {"--scene", path("gone.toml"), in, out},
+      {"--scene", scene_, path("gone.csv"), out},
+      {"--scene", scene_, path("gone.lcmlog"), out},
+      {"--scene", scene_, in, path("out.txt")},
+      {"--scene", scene_, write("in.txt", ""), out},
+      {"--scene", scene_, in, in},
+      {"--scene", scene_, in, path("./in.csv")},
+      {"--scene", scene_, wrong_header, out},
+      {"--scene", scene_, in, out, "--states-channel", std::string(64, 'a')},
+      {"--scene", scene_, in, out, "--no-such-option"},
+  };
+  for (const std::vector<std::string>& arguments : wrong) {
+    const FinishedProcess finished = run(arguments);
+    std::string shown;
+    for (const std::string& argument : arguments) shown += argument + " ";
+    EXPECT_EQ(finished.exit_code, 2) << shown << ": " << finished.standard_error;
+    EXPECT_EQ(finished.standard_output, "") << shown;
+    const std::string& error = finished.standard_error;
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << shown << ": " << error;
+    EXPECT_EQ(error.rfind("buoyancy-replay: ", 0), 0U) << shown << ": " << error;
+  }
+  EXPECT_EQ(contents_of(in), untouched);
+  EXPECT_EQ(contents_of(out), "") << "no output where nothing ran";
+}
+
+TEST_F(Replay, FailsWith1WhereTheOutputCannotBeWritten) {
+  const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
+  std::filesystem::create_symlink("/dev/full", path("full.csv"));
+  for (const std::string& out :
+       {std::string("/dev/full"), path("full.csv"), path("gone/out.csv"), path(".") + "/"}) {
+    const FinishedProcess finished = replay(in, out);
+    const bool no_extension = out.back() == '/';
+    EXPECT_EQ(finished.exit_code, no_extension ? 2 : 1) << out << ": " << finished.standard_error;
+    EXPECT_EQ(std::count(finished.standard_error.begin(), finished.standard_error.end(), '\n'), 1)
+        << finished.standard_error;
+  }
+}
+
+TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
+  write("scene.toml",
+        "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [100, 100, 100] }\n"
+        "method = \"exact\"\n");
+  std::string poses = kPoseHeader;
+  for (int i = 0; i < 200'000; ++i) poses += pose_row(i, 1e-5 * i);
+  ChildProcess child(command({"--scene", scene_, write("in.csv", poses), path("out.csv")}));
+  std::error_code not_there_yet;
+  while (std::filesystem::file_size(path("out.csv"), not_there_yet) + 1 <= 1) {
+    ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
+  }
+  child.send_signal(SIGTERM);
+  EXPECT_EQ(child.wait(kPatience), 1);
+  EXPECT_NE(child.standard_error().find("ended by SIGTERM"), std::string::npos) << child.standard_error();
+  const std::string csv = contents_of(path("out.csv"));
+  EXPECT_EQ(csv.back(), '\n');
+  const std::vector<Row> answers = rows(csv);
+  EXPECT_GT(answers.size(), 1U);
+  EXPECT_LT(answers.size(), 200'001U);
+  EXPECT_EQ(answers.back().size(), 15U);
+}
+
+TEST_F(Replay, TellsItsVersion) {
+  const FinishedProcess finished = run({"--version"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_EQ(finished.standard_output, "buoyancy-replay " BUOYANCY_VERSION "\n");
+}
+
+}  // namespace
+}  // namespace buoyancy

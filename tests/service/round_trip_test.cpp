@@ -1,0 +1,250 @@
+// Questions over real UDP by a client written from the message definitions, answers against closed forms.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/service/raw_lcm.h"
+#include "tests/service/running_service.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kRelative = 1e-13;
+
+struct Expected3 {
+  double force_z = 0.0;
+  std::array<double, 3> torque{};
+  double volume = 0.0;
+  std::array<double, 3> center{};
+};
+
+// A box of 2 x 3 x 4 m, turned about the vertical by yaw, then, if lying, put on its side.
+Expected3 box_in_water(const RawState& state, double yaw, bool lying) {
+  const double height = lying ? 3.0 : 4.0;
+  const double area = 24.0 / height;
+  const double depth = std::clamp(height / 2 - state.position[2], 0.0, height);
+  Expected3 expected;
+  expected.volume = area * depth;
+  expected.force_z = kDensity * kGravity * expected.volume;
+  if (depth > 0.0) expected.center[2] = -height / 2 + depth / 2;
+  if (state.body_id == 2) {
+    const double x = std::cos(yaw) * kReference_B[0] - std::sin(yaw) * kReference_B[1];
+    const double y = std::sin(yaw) * kReference_B[0] + std::cos(yaw) * kReference_B[1];
+    expected.torque = {-y * expected.force_z, x * expected.force_z, 0.0};
+  }
+  return expected;
+}
+
+struct Pose {
+  RawState state;
+  double yaw = 0.0;
+  bool lying = false;
+};
+
+std::vector<Pose> poses(std::size_t count) {
+  std::vector<Pose> result(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Pose& pose = result[i];
+    const double t = static_cast<double>(i);
+    pose.state.body_id = i % 3 == 1 ? 2 : 1;
+    pose.lying = i % 3 == 2;
+    pose.state.position = {10.0 * std::sin(t), -5.0 * std::cos(t), 2.5 * std::sin(1.7 * t)};
+    if (pose.lying) {
+      pose.state.quaternion_wxyz = {std::sqrt(0.5), std::sqrt(0.5), 0.0, 0.0};
+    } else {
+      pose.yaw = 0.3 * t;
+      pose.state.quaternion_wxyz = {std::cos(pose.yaw / 2), 0.0, 0.0, std::sin(pose.yaw / 2)};
+    }
+  }
+  return result;
+}
+
+class RoundTrip : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
+  const RunningService service;
+  RawLcmSocket socket;
+  const std::vector<Pose> asked = poses(GetParam());
+  RawStates states;
+  states.utime = -123'456'789;
+  states.session_id = 0x0123'4567'89AB'CDEF;
+  states.seq = 42;
+  for (const Pose& pose : asked) states.bodies.push_back(pose.state);
+  ask(socket, states);
+  const RawWrenches answer = hear(socket);
+  EXPECT_EQ(answer.utime, states.utime);
+  EXPECT_EQ(answer.session_id, states.session_id);
+  EXPECT_EQ(answer.seq, states.seq);
+  ASSERT_EQ(answer.bodies.size(), asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const RawWrench& wrench = answer.bodies[i];
+    const Expected3 expected = box_in_water(asked[i].state, asked[i].yaw, asked[i].lying);
+    const double whole_force = kDensity * kGravity * 24.0;
+    EXPECT_EQ(wrench.body_id, asked[i].state.body_id) << i;
+    EXPECT_EQ(wrench.status, 0) << i;
+    EXPECT_EQ(wrench.force[0], 0.0) << i;
+    EXPECT_EQ(wrench.force[1], 0.0) << i;
+    EXPECT_NEAR(wrench.force[2], expected.force_z, kRelative * whole_force) << i;
+    EXPECT_NEAR(wrench.submerged_volume, expected.volume, kRelative * 24.0) << i;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(wrench.torque[axis], expected.torque[axis], kRelative * whole_force * 4.0) << i;
+      if (expected.volume > 0.01) {
+        EXPECT_NEAR(wrench.center_of_buoyancy[axis], expected.center[axis], 1e-10) << i;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
+
+TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
+  const RunningService service;
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 5, 0.3));
+  const auto first = hear_bytes(socket);
+  ASSERT_TRUE(first);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    ask(socket, one_body(1, 5, 0.3));
+    EXPECT_EQ(hear_bytes(socket), first);
+  }
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.answered == 1 && status.counters.repeated == 3 && status.counters.questions == 4;
+  }));
+}
+
+TEST(Lockstep, ComputesAnewWhatChangedUnderTheSameSeq) {
+  const RunningService service;
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 5, 1.0));
+  EXPECT_DOUBLE_EQ(hear(socket).bodies[0].submerged_volume, 6.0);
+  ask(socket, one_body(1, 5, 0.0));
+  EXPECT_DOUBLE_EQ(hear(socket).bodies[0].submerged_volume, 12.0);
+  EXPECT_TRUE(
+      hear_status(socket, [](const ServiceStatus& status) { return status.counters.changed_repeats == 1; }));
+}
+
+TEST(Lockstep, AnswersEveryQuestionOfABurstInOrder) {
+  const RunningService service;
+  RawLcmSocket socket;
+  for (std::int64_t seq = 0; seq < 200; ++seq) ask(socket, one_body(1, seq, 0.01 * static_cast<double>(seq)));
+  for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(hear(socket).seq, seq);
+}
+
+TEST(Lockstep, AnswersAClientThatStartedOverAtOnce) {
+  const RunningService service;
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 1'000'000, 0.0));
+  EXPECT_EQ(hear(socket).seq, 1'000'000);
+  ask(socket, one_body(2, 0, 1.0));
+  const RawWrenches other_session = hear(socket);
+  EXPECT_EQ(other_session.session_id, 2);
+  EXPECT_DOUBLE_EQ(other_session.bodies[0].submerged_volume, 6.0);
+  ask(socket, one_body(1, 0, -1.0));
+  const RawWrenches same_session = hear(socket);
+  EXPECT_EQ(same_session.seq, 0);
+  EXPECT_DOUBLE_EQ(same_session.bodies[0].submerged_volume, 18.0);
+}
+
+TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
+  RawLcmSocket socket;
+  std::optional<RawBytes> before;
+  std::optional<ServiceStatus> status_before;
+  {
+    RunningService service;
+    ask(socket, one_body(1, 5, 0.3));
+    before = hear_bytes(socket);
+    status_before = hear_status(socket, [](const ServiceStatus&) { return true; });
+    service.child().send_signal(SIGKILL);
+    EXPECT_EQ(service.child().wait(kPatience), 128 + SIGKILL);
+  }
+  ask(socket, one_body(1, 6, 0.3));  // nobody hears it
+  const RunningService service;
+  ask(socket, one_body(1, 5, 0.3));
+  ASSERT_TRUE(before);
+  EXPECT_EQ(hear_bytes(socket), before);
+  ASSERT_TRUE(status_before);
+  const std::int64_t first_instance = status_before->instance_id;
+  EXPECT_TRUE(hear_status(socket, [first_instance](const ServiceStatus& status) {
+    return status.instance_id != first_instance && status.counters.questions == 1;
+  }));
+}
+
+TEST(Lockstep, GivesEachFaultOfABodyItsOwnStatusAndZeros) {
+  const RunningService service;
+  RawLcmSocket socket;
+  RawStates states = one_body(1, 1, 0.0);
+  states.bodies.resize(5, states.bodies[0]);
+  states.bodies[1].body_id = 77;
+  states.bodies[2].position[1] = NAN;
+  states.bodies[3].quaternion_wxyz = {1.1, 0.0, 0.0, 0.0};
+  states.bodies[4].quaternion_wxyz = {1.0005, 0.0, 0.0, 0.0};
+  ask(socket, states);
+  const RawWrenches answer = hear(socket);
+  ASSERT_EQ(answer.bodies.size(), 5U);
+  const std::array<std::int32_t, 5> statuses{0, 1, 2, 3, 0};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(answer.bodies[i].status, statuses[i]) << i;
+    EXPECT_NEAR(answer.bodies[i].force[2], statuses[i] == 0 ? 120'000.0 : 0.0, 1e-6) << i;
+  }
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.bodies[0] == 2 && status.counters.bodies[1] == 1 &&
+           status.counters.bodies[2] == 1 && status.counters.bodies[3] == 1 &&
+           status.counters.quaternions_normalised == 1;
+  }));
+}
+
+TEST(Latest, AnswersTheNewestOfWhatWaitsInEachSession) {
+  RunningService service({"--mode", "latest"});
+  RawLcmSocket socket;
+  constexpr std::int64_t kQuestions = 50;
+  service.child().send_signal(SIGSTOP);
+  for (std::int64_t seq = 1; seq <= kQuestions; ++seq) {
+    for (const std::int64_t session : {7, 8}) ask(socket, one_body(session, seq, 0.1));
+  }
+  service.child().send_signal(SIGCONT);
+  std::map<std::int64_t, std::int64_t> newest;
+  while (newest[7] < kQuestions || newest[8] < kQuestions) {
+    const RawWrenches answer = hear(socket);
+    EXPECT_GT(answer.seq, newest[answer.session_id]) << "never back to an older one";
+    newest[answer.session_id] = answer.seq;
+  }
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    const Counters& counters = status.counters;
+    return counters.questions == 2 * kQuestions && counters.answered + counters.overtaken == 2 * kQuestions;
+  }));
+}
+
+TEST(Latest, LeavesStaleQuestionsUnansweredAndAnswersAnAskerThatStartsOver) {
+  const RunningService service({"--mode", "latest"});
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 100, 0.0));
+  EXPECT_EQ(hear(socket).seq, 100);
+  ask(socket, one_body(1, 99, 0.0));
+  ask(socket, one_body(2, 1, 0.0));
+  const RawWrenches next = hear(socket);
+  EXPECT_EQ(next.session_id, 2) << "99 is stale";
+  for (const std::int64_t seq : {0, 1, 2}) {
+    ask(socket, one_body(1, seq, 0.0));
+    EXPECT_EQ(hear(socket).seq, seq);
+  }
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
+}
+
+TEST(Channels, CanBeNamedAndAreTakenLiterally) {
+  const RunningService service(
+      {"--states-channel", "a.b", "--wrenches-channel", "w(1|2)", "--status-channel", "s"});
+  RawLcmSocket socket;
+  socket.send("BUOYANCY_STATES", encode_states(one_body(1, 1, 0.0)));
+  socket.send("axb", encode_states(one_body(1, 2, 0.0)));
+  socket.send("a.b", encode_states(one_body(1, 3, 0.0)));
+  const auto bytes = socket.receive("w(1|2)", kPatience);
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(decode_wrenches(*bytes).seq, 3);
+  EXPECT_TRUE(socket.receive("s", kPatience));
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,108 @@
+// buoyancyd as a process of its own, over the real UDP multicast of the test's network namespace, and what
+// the tests ask it.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "messages/status.h"
+#include "tests/child_process.h"
+#include "tests/service/raw_lcm.h"
+#include "tests/service/scratch_directory.h"
+
+namespace buoyancy {
+
+inline constexpr double kPatience = 60.0;  // s; nothing here takes long, but the machine may be busy
+
+inline constexpr double kDensity = 1000.0;
+inline constexpr double kGravity = 10.0;
+
+// Body 1: a box of 2 x 3 x 4 m about B's origin; body 2: the same, torque about kReference_B.
+inline constexpr std::array<double, 3> kReference_B{0.5, -0.25, 0.0};
+inline constexpr const char* kBoxScene = R"(
+[world]
+gravity = 10.0
+[water]
+density = 1000.0
+[[body]]
+id = 1
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+method = "exact"
+[[body]]
+id = 2
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+method = "exact"
+reference_point = [0.5, -0.25, 0.0]
+)";
+
+inline ChildCommand command_of(std::vector<std::string> arguments) {
+  ChildCommand command;
+  command.arguments = std::move(arguments);
+  return command;
+}
+
+// Ready when constructed.
+class RunningService {
+ public:
+  explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene)
+      : child_(command(std::move(options), directory_.write("scene.toml", scene))) {
+    if (!child_.wait_for_text("ready:", kPatience)) {
+      throw std::runtime_error("buoyancyd did not get ready: " + child_.standard_error());
+    }
+  }
+
+  ChildProcess& child() { return child_; }
+  std::string log() const { return child_.standard_error(); }
+
+ private:
+  static ChildCommand command(std::vector<std::string> options, const std::string& scene) {
+    options.insert(options.begin(), {BUOYANCYD, "--scene", scene});
+    return command_of(std::move(options));
+  }
+
+  ScratchDirectory directory_;
+  ChildProcess child_;
+};
+
+inline RawStates one_body(std::int64_t session_id, std::int64_t seq, double height) {
+  RawStates states;
+  states.utime = 1'000 * seq;
+  states.session_id = session_id;
+  states.seq = seq;
+  states.bodies.resize(1);
+  states.bodies[0].position = {1.0, 2.0, height};
+  return states;
+}
+
+inline void ask(RawLcmSocket& socket, const RawStates& states) {
+  socket.send("BUOYANCY_STATES", encode_states(states));
+}
+
+inline std::optional<RawBytes> hear_bytes(RawLcmSocket& socket, double seconds = kPatience) {
+  return socket.receive("BUOYANCY_WRENCHES", seconds);
+}
+
+// Throws where no answer comes.
+inline RawWrenches hear(RawLcmSocket& socket) {
+  const std::optional<RawBytes> bytes = hear_bytes(socket);
+  if (!bytes) throw std::runtime_error("no answer");
+  return decode_wrenches(*bytes);
+}
+
+// The first status that satisfies `wanted`; nullopt: none within kPatience.
+template <typename Wanted>
+std::optional<ServiceStatus> hear_status(RawLcmSocket& socket, Wanted&& wanted) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  while (std::chrono::steady_clock::now() < limit) {
+    const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_STATUS", kPatience);
+    if (!bytes) return std::nullopt;
+    ServiceStatus status;
+    if (!decode(*bytes, status) && wanted(status)) return status;
+  }
+  return std::nullopt;
+}
+
+}  // namespace buoyancy
