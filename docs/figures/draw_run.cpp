@@ -103,7 +103,7 @@ void add_body(const Body& body, const Pose& pose, const Water& water, Layers& la
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
   const Mat3 R = camera() * pose.q_WB.normalized().toRotationMatrix();
   const Vec3 p = camera() * pose.p_WB + R * mesh.center_B;
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const Triangle& triangle : mesh.surface.triangles) {
     std::array<Corner<double>, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 y = mesh.vertex(triangle[i]);
