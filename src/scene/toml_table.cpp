@@ -63,11 +63,24 @@ std::string in_unit(std::string_view unit) {
   return unit.empty() ? "" : " (" + std::string(unit) + ")";
 }
 
-// A finite number, whole or not.
+// A number, whole or not; nullopt: something else.
 std::optional<double> number_of(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
   if (const auto* number = node.as_floating_point()) return number->get();
   return std::nullopt;
+}
+
+// All finite, or nullopt.
+std::optional<std::vector<double>> numbers_of(const toml::node& node) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return std::nullopt;
+  std::vector<double> numbers;
+  for (const toml::node& element : *array) {
+    const std::optional<double> number = number_of(element);
+    if (!number || !std::isfinite(*number)) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
 }
 
 std::string list(std::span<const std::string_view> words) {
@@ -100,7 +113,7 @@ std::string NumberRange::describe() const {
 }
 
 const toml::node* TomlTable::node(std::string_view key) {
-  known_.push_back(key);
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   return table_->get(key);
 }
 
@@ -123,18 +136,6 @@ void TomlTable::read(std::string_view key, std::optional<double>& value, const N
   double number = 0.0;
   read(key, number, range);
   if (table_->contains(key)) value = number;
-}
-
-std::optional<std::vector<double>> TomlTable::numbers_of(const toml::node& node) {
-  const toml::array* array = node.as_array();
-  if (array == nullptr) return std::nullopt;
-  std::vector<double> numbers;
-  for (const toml::node& element : *array) {
-    const std::optional<double> number = number_of(element);
-    if (!number || !std::isfinite(*number)) return std::nullopt;
-    numbers.push_back(*number);
-  }
-  return numbers;
 }
 
 std::vector<double> TomlTable::numbers(std::string_view key, std::span<const std::size_t> counts,
@@ -240,10 +241,6 @@ void TomlTable::finish() {
               "The nearest known key is " + quoted(nearest_word(key.str(), known_)));
     return;
   }
-}
-
-std::string TomlTable::place() const {
-  return reading_->at(table_->source()) + ": " + what_;
 }
 
 void TomlTable::fail(std::string found, std::string expectation, std::string cause, std::string remedy) {

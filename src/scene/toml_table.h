@@ -91,8 +91,6 @@ class TomlTable {
   void finish();
 
   bool failed() const { return reading_->error.has_value(); }  // here or before
-  std::string place() const;                                   // "scene.toml:12: body 3"
-  int line() const { return static_cast<int>(table_->source().begin.line); }
 
   // Error about the table as a whole, about a key's value, about a key that is missing.
   void fail(std::string found, std::string expectation, std::string cause = {}, std::string remedy = {});
@@ -103,13 +101,11 @@ class TomlTable {
  private:
   void set_error(const toml::source_region& source, std::string found, std::string expectation,
                  std::string cause, std::string remedy);
-  // The numbers of an array; nullopt: something in it is no number.
-  static std::optional<std::vector<double>> numbers_of(const toml::node& node);
 
   const toml::table* table_;
   std::string what_;
   SceneReading* reading_;
-  std::vector<std::string_view> known_;
+  std::vector<std::string_view> known_;  // each once, in the order asked
 };
 
 }  // namespace buoyancy

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "geometry/self_intersection.h"
+
 namespace buoyancy {
 namespace {
 
@@ -314,38 +316,54 @@ double some_size() {
   return std::exp2(*rc::gen::inRange(-400, 400) / 20.0);
 }
 
-RC_GTEST_PROP(EveryShape, IsClosedAndOutwardOriented, ()) {
+// Of any type; check_shape may refuse it for its knot's tube alone.
+Shape some_shape() {
   const auto count = [](int least, int most) { return *rc::gen::inRange<std::int32_t>(least, most); };
-  Shape shape;
   switch (*rc::gen::inRange(0, 7)) {
     case 0:
-      shape = BoxShape{{some_size(), some_size(), some_size()}, {count(1, 9), count(1, 9), count(1, 9)}};
-      break;
+      return BoxShape{{some_size(), some_size(), some_size()}, {count(1, 9), count(1, 9), count(1, 9)}};
     case 1:
-      shape = SphereShape{some_size(), count(3, 40)};
-      break;
+      return SphereShape{some_size(), count(3, 40)};
     case 2:
-      shape = CylinderShape{some_size(), some_size(), count(3, 40), count(1, 9)};
-      break;
+      return CylinderShape{some_size(), some_size(), count(3, 40), count(1, 9)};
     case 3:
-      shape = ConeShape{some_size(), some_size(), count(3, 40), count(1, 9)};
-      break;
+      return ConeShape{some_size(), some_size(), count(3, 40), count(1, 9)};
     case 4: {
       const double radius = some_size();
-      shape = TorusKnotShape{radius, 0.05 * radius, count(1, 5), 1, count(60, 150), count(3, 12)};
-      break;
+      return TorusKnotShape{radius,         *rc::gen::inRange(1, 40) / 100.0 * radius,
+                            count(1, 5),    count(1, 5),
+                            count(60, 150), count(3, 12)};
     }
     case 5:
-      shape = WigleyShape{some_size(), some_size(), some_size(), some_size(), count(2, 30), count(1, 9)};
-      break;
+      return WigleyShape{some_size(), some_size(), some_size(), some_size(), count(2, 30), count(1, 9)};
     default:
-      shape = RockShape{some_size(), count(1, 20), *rc::gen::inRange(0, 61) / 100.0,
-                        *rc::gen::arbitrary<std::uint64_t>()};
-      break;
+      return RockShape{some_size(), count(1, 20), *rc::gen::inRange(0, 61) / 100.0,
+                       *rc::gen::arbitrary<std::uint64_t>()};
   }
-  const Expected<Shape> checked = check_shape(shape);
-  if (!checked) RC_FAIL(checked.error().message());
-  RC_ASSERT(what_is_wrong_with(make_shape(*checked)) == std::string());
+}
+
+RC_GTEST_PROP(EveryShape, IsClosedAndOutwardOriented, ()) {
+  const Shape shape = some_shape();
+  RC_PRE(check_shape(shape).has_value());
+  RC_ASSERT(what_is_wrong_with(make_shape(shape)) == std::string());
+}
+
+RC_GTEST_PROP(EveryShape, DoesNotCrossItself, ()) {
+  const Shape shape = some_shape();
+  RC_PRE(check_shape(shape).has_value());
+  RC_ASSERT(count_intersecting_pairs(make_shape(shape)) == 0);
+}
+
+RC_GTEST_PROP(EveryKnotOfTheWidestTube, DoesNotCrossItself, ()) {
+  const auto [p, q] = *rc::gen::element(std::pair(1, 1), std::pair(2, 3), std::pair(3, 2), std::pair(1, 4),
+                                        std::pair(5, 1), std::pair(5, 2), std::pair(3, 7), std::pair(8, 3));
+  TorusKnotShape knot{
+      1, 0.001, p, q, 12 * std::max(p, q) + *rc::gen::inRange(0, 50), *rc::gen::inRange(3, 12)};
+  const Expected<Shape> too_wide = check_shape(TorusKnotShape{1, 1, p, q, knot.tubular, knot.radial});
+  RC_ASSERT(!too_wide.has_value());
+  knot.tube = std::stod(too_wide.error().expectation.substr(std::string("at most ").size()));
+  RC_ASSERT(check_shape(knot).has_value());
+  RC_ASSERT(count_intersecting_pairs(make_shape(knot)) == 0);
 }
 
 RC_GTEST_PROP(EveryRock, StaysWithinItsRoughness, ()) {

@@ -159,6 +159,9 @@ TEST(SceneFile, NamesTheNearestKeyOfAnUnknownOneInEveryTable) {
       {crate_and("[limits]\nmemory_bytes = 3\n"), "unknown key 'memory_bytes'"},
       {crate_and("metod = \"exact\"\n"), "pool.toml:4: body 7: unknown key 'metod'"},
       {crate_and("metod = \"exact\"\n"), "nearest known key is 'method'"},
+      {crate_and("metod = \"exact\"\n"),
+       "expected one of id, name, mesh, scale, shape, method, tolerance, open, reference_point, outputs, "
+       "client."},
       {crate_and("[body.clinet]\n"), "nearest known key is 'client'"},
       {crate_and("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
       {crate_and("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},
