@@ -120,6 +120,18 @@ TEST(SphereShapes, HaveTheirVerticesOnTheSphere) {
   }
 }
 
+TEST(SphereShapes, HaveBandsOfEqualLatitude) {
+  constexpr std::int32_t kSegments = 12;
+  const TriangleMesh mesh = made(SphereShape{1, kSegments});
+  std::set<double> heights(mesh.z.begin(), mesh.z.end());
+  ASSERT_EQ(heights.size(), kSegments + 2U);
+  double latitude = -0.5 * std::numbers::pi;
+  for (const double height : heights) {
+    EXPECT_NEAR(height, std::sin(latitude), 1e-15);
+    latitude += std::numbers::pi / (kSegments + 1);
+  }
+}
+
 TEST(SphereShapes, ApproachTheBallWithTheSquareOfTheSegments) {
   const double ball = 4.0 / 3.0 * std::numbers::pi;
   const double coarse = ball - volume_of(made(SphereShape{1, 25}));
