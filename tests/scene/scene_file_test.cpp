@@ -188,8 +188,9 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
       {crate_and("name = 3\n"), "name = 3; expected a text"},
       {crate_and("name = \"\"\n"), "name = \"\"; expected a text"},
       {crate_and("name = \"a\\u001bb\"\n"), "without control characters"},
-      {crate_and("method = \"hierarchical\"\n"),
-       "expected one of fast, improved, exact, fast_surface, exact_surface."},
+      {crate_and("method = \"exakt\"\n"),
+       "expected one of fast, improved, exact, fast_surface, exact_surface, hierarchical. The nearest is "
+       "'exact'."},
       {crate_and("method = \"a\\u001b[31m\"\n"), "method = \"a?[31m\"; expected"},
       {crate_and("method = \"exat\"\n"), "The nearest is 'exact'."},
       {crate_and("method = 3\n"), "method = 3; expected one of fast"},
