@@ -39,7 +39,7 @@ set style line 2 linecolor "#c0562f" linewidth 1.8
 set multiplot layout 3,1 title ARG3 font ",15" textcolor "#222222" margins 0.115,0.97,0.075,0.93 spacing 0,0.055
 set format x ""
 
-set ylabel "heave (m)" textcolor "#222222"
+set ylabel "heave of the mesh's origin (m)" textcolor "#222222"
 plot csv every stride using (seconds(column("utime"))):(column("pz")) with lines linestyle 1
 
 set ylabel "from upright (degrees)"

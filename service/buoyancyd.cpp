@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_st("buoyancyd"));
   spdlog::set_level(spdlog::level::from_str(options.log_level));
 
-  const Expected<Scene> scene = Scene::load(options.scene);
+  const Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
   if (!scene) {
     print_error(app, scene.error());
     return kWrongInput;
