@@ -1,8 +1,10 @@
 // Turns what is inside out, so that the volume of a solid is positive and that of a cavity in it negative.
 //
-// A component that lies inside no other is a solid: of negative volume it is inside out, and is turned with
-// everything inside it. Of those inside, at odd depth a negative component is a cavity, a positive one a
-// solid counted twice, which stays and is reported; at even depth a negative one is inside out and turned.
+// A component inside no other is a solid: of negative volume it is inside out, and is turned with everything
+// inside it. A component inside others is judged by how often the space around it is counted, outermost
+// components first. Not at all, as in a cavity: it is a solid, and turned if negative. Once or more: if
+// negative it is a cavity; if positive its volume is counted once more than it should, which stays and is
+// reported. Solids that share an edge are one component, turned together or not at all.
 #pragma once
 
 #include <vector>
