@@ -44,7 +44,7 @@ set yrange [1e-17:1]
 set xlabel "height of the centre over the water" textcolor "#444444"
 set ylabel "error relative to the whole" textcolor "#444444"
 set title "solid: 1,200 triangles; dashed: 120,000"
-set key at screen 0.5,0.045 center horizontal maxcolumns 6 samplen 2.5 textcolor "#222222" noautotitle
+set key noenhanced at screen 0.5,0.045 center horizontal maxrows 1 samplen 2.5 textcolor "#222222" noautotitle
 plot for [m=1:6] rows("cube", 1200, m) using 4:(size_of(column(7))) with lines linestyle m title word(methods, m), \
      for [m=1:6] rows("cube", 120000, m) using 4:(size_of(column(7))) with lines linestyle m dashtype 2
 set key off
