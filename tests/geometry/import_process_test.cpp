@@ -20,6 +20,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -383,6 +384,18 @@ bool becomes_true(Condition condition) {
   return false;
 }
 
+// The importer that this thread of this process has started, once it has done its set-up; 0 if that never
+// comes.
+pid_t importer_of(pid_t process, pid_t thread) {
+  const std::string children =
+      "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread) + "/children";
+  pid_t importer = 0;
+  const bool started =
+      becomes_true([&] { return static_cast<bool>(std::ifstream(children) >> importer) && importer > 0; });
+  const std::string score = "/proc/" + std::to_string(importer) + "/oom_score_adj";
+  return started && becomes_true([&] { return read_bytes(score) == "1000\n"; }) ? importer : 0;
+}
+
 TEST_F(MeshImportRefusal, LeavesNoImporterBehindWhenTheProgramIsKilled) {
   const fs::path endless = directory_.write("endless.obj", endless_obj());
   const pid_t program = ::fork();
@@ -391,21 +404,32 @@ TEST_F(MeshImportRefusal, LeavesNoImporterBehindWhenTheProgramIsKilled) {
     (void)import_mesh(endless);
     ::_exit(0);
   }
-  const std::string children =
-      "/proc/" + std::to_string(program) + "/task/" + std::to_string(program) + "/children";
-  pid_t importer = 0;
-  const bool started =
-      becomes_true([&] { return static_cast<bool>(std::ifstream(children) >> importer) && importer > 0; });
-  // Long enough for the importer to be past its first instructions: it runs in assimp, not in our set-up.
-  const bool importing =
-      started && becomes_true([&] {
-        return fs::exists("/proc/" + std::to_string(importer)) &&
-               read_bytes("/proc/" + std::to_string(importer) + "/oom_score_adj") == "1000\n";
-      });
+  const pid_t importer = importer_of(program, program);
   ::kill(program, SIGKILL);
   ASSERT_EQ(::waitpid(program, nullptr, 0), program);
-  ASSERT_TRUE(importing);
+  ASSERT_GT(importer, 0);
   EXPECT_TRUE(becomes_true([&] { return process_state(importer).value_or('Z') == 'Z'; }));
+}
+
+TEST_F(MeshImportRefusal, KeepsNoDescriptorOfTheProgramOpen) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  std::promise<pid_t> thread;
+  const fs::path endless = directory_.write("endless.obj", endless_obj());
+  auto import = std::async(std::launch::async, [&] {
+    thread.set_value(::gettid());
+    return import_mesh(endless);
+  });
+  const pid_t importer = importer_of(::getpid(), thread.get_future().get());
+  ::close(ends[1]);
+  pollfd end{ends[0], POLLIN, 0};  // it ends when nobody holds the other end
+  EXPECT_EQ(::poll(&end, 1, 10'000), 1);
+  ::close(ends[0]);
+  ASSERT_GT(importer, 0);
+  ::kill(importer, SIGKILL);
+  const Expected<ImportedMesh> result = import.get();
+  ASSERT_FALSE(result);
+  EXPECT_TRUE(contains(result.error().message(), "was killed while it read it (signal 9)"));
 }
 
 }  // namespace
