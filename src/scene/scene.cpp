@@ -68,7 +68,7 @@ Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body
     return failure(about(body, *std::move(validation.refusal)));
   }
   return std::make_unique<PreparedMesh>(PreparedMesh{std::move(validation.report),
-                                                     make_hydrostatic_mesh(*validation.mesh),
+                                                     make_hydrostatic_mesh(*validation.mesh, WithTree::kNo),
                                                      mass_properties(validation.mesh->mesh)});
 }
 
@@ -89,7 +89,10 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       scene.meshes_.push_back(*std::move(prepared));
       keys.push_back(std::move(key));
     }
-    const PreparedMesh& prepared = *scene.meshes_[place];
+    PreparedMesh& prepared = *scene.meshes_[place];
+    if (body.method == Method::kHierarchical && !prepared.mesh.tree) {
+      prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
+    }
     scene.index_.emplace_back(body.id, scene.bodies_.size());
     scene.bodies_.push_back({body.id, body.name, &prepared, Solver(prepared.mesh, body.method),
                              body.tolerance, body.reference_B, body.client});

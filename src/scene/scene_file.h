@@ -50,7 +50,7 @@ struct BodyDescription {
   std::string name;  // default: "body <id>"
   std::variant<MeshFile, Shape> source;
   double scale = 1.0;  // > 0, of the mesh's coordinates; meshes only
-  Method method = Method::kExact;
+  Method method = Method::kHierarchical;
   double tolerance = 0.0;  // 0 to 1, relative to the whole displacement's weight
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // m

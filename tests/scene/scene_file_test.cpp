@@ -28,7 +28,7 @@ TEST(SceneFile, TakesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(body.name, "body 7");
   EXPECT_EQ(std::get<Shape>(body.source), Shape(BoxShape{}));
   EXPECT_EQ(body.scale, 1.0);
-  EXPECT_EQ(body.method, Method::kExact);
+  EXPECT_EQ(body.method, Method::kHierarchical);
   EXPECT_EQ(body.tolerance, 0.0);
   EXPECT_EQ(body.open, OpenPolicy::kRefuse);
   EXPECT_EQ(body.reference_B, Vec3::Zero());

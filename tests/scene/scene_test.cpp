@@ -35,7 +35,7 @@ TEST(Scene, PreparesGeneratedShapes) {
   const Body& body = scene->bodies()[0];
   EXPECT_EQ(body.prepared, &mesh);
   EXPECT_EQ(&body.solver.mesh(), &mesh.mesh);
-  EXPECT_EQ(body.solver.method(), Method::kExact);
+  EXPECT_EQ(body.solver.method(), Method::kHierarchical);
 }
 
 TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
