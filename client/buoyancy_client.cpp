@@ -1,0 +1,237 @@
+// buoyancy-client: simulates the bodies of a scene that have a [body.client] and asks a buoyancy service, or
+// the same exchange in its own process, for the wrenches on them. Exit codes: 0 the run is complete, 1 it
+// failed or was interrupted, 2 wrong arguments, scene or mesh.
+
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <random>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <signal.h>
+
+#include "client/progress_bar.h"
+#include "client/run_csv.h"
+#include "client/run_summary.h"
+#include "client/simulation.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongInput = 2;
+
+constexpr double kMostSteps = 1e15;  // whole numbers up to here are exact as doubles
+constexpr std::int64_t kMostCount = std::int64_t{1} << 40U;
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+void request_stop(int /*signal*/) {
+  stop_requested.store(true);
+}
+
+struct Arguments {
+  std::string scene;
+  LinkOptions link;
+  Patience patience;
+  bool embedded = false;
+  double duration = 10.0;  // s
+  std::optional<double> step;
+  std::optional<double> rate;  // Hz
+  std::string csv;
+  std::int64_t csv_every = 1;
+  std::string integrator{name(Integrator::kVelocityVerlet)};
+  double lead_time = 0.0;
+  std::optional<std::int64_t> session;
+  bool json = false;
+};
+
+// A number above `low` and at most `high`; CLI::Range would let NaN pass.
+CLI::Validator number_in(double low, double high, const std::string& unit) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc{} && end == text.data() + text.size();
+    if (is_number && value > low && value <= high) return "";
+    std::array<char, 128> wrong{};
+    std::snprintf(wrong.data(), wrong.size(), "%.40s is not a number above %g and at most %g", text.c_str(),
+                  low, high);
+    return wrong.data();
+  };
+  return {check, unit};
+}
+
+void define_arguments(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version", "buoyancy-client " BUOYANCY_VERSION);
+  app.add_option("--scene", arguments.scene, "Scene file")->required();
+  auto* url = app.add_option("-l,--lcm-url", arguments.link.lcm_url,
+                             "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
+  auto* embedded = app.add_flag("--embedded", arguments.embedded,
+                                "Answer in this process, without a network and without buoyancyd");
+  embedded->excludes(url);
+  app.add_option("--duration", arguments.duration, "Simulated time, s")
+      ->check(number_in(0.0, 1e9, "S"))
+      ->capture_default_str();
+  app.add_option("--step", arguments.step, "Time step, s (default: 0.001; with --rate: its inverse)")
+      ->check(number_in(0.0, 1e6, "S"));
+  app.add_option(
+         "--rate", arguments.rate,
+         "Run freely at this many steps per second of wall-clock time, with the newest answer there is "
+         "(default: lock-step, as fast as answers come)")
+      ->check(number_in(0.0, 1e6, "HZ"))
+      ->excludes(embedded);
+  app.add_option("--csv", arguments.csv, "Write states and wrenches to this file");
+  app.add_option("--csv-every", arguments.csv_every, "Write only every Nth step")
+      ->check(CLI::Range(std::int64_t{1}, kMostCount, "N"))
+      ->capture_default_str();
+  app.add_option("--integrator", arguments.integrator, "How bodies are moved")
+      ->check(CLI::IsMember({std::string(name(Integrator::kSemiImplicitEuler)),
+                             std::string(name(Integrator::kVelocityVerlet))}))
+      ->capture_default_str();
+  app.add_option("--lead-time", arguments.lead_time,
+                 "Have the wrench evaluated at the pose extrapolated by this many seconds")
+      ->check(number_in(-1e3, 1e3, "S"))
+      ->capture_default_str();
+  app.add_option("--timeout", arguments.patience.timeout, "Ask again after this many seconds")
+      ->check(number_in(0.0, 1e6, "S"))
+      ->capture_default_str();
+  app.add_option("--retries", arguments.patience.retries, "Ask again at most this often before giving up")
+      ->check(CLI::Range(std::int64_t{0}, kMostCount, "N"))
+      ->capture_default_str();
+  app.add_option("--states-channel", arguments.link.states_channel, "Channel of the questions")
+      ->capture_default_str();
+  app.add_option("--wrenches-channel", arguments.link.wrenches_channel, "Channel of the answers")
+      ->capture_default_str();
+  app.add_option("--session", arguments.session, "Session id (default: drawn anew by every run)");
+  app.add_flag("--json", arguments.json, "Print the table at the end as JSON");
+}
+
+// What no single option shows.
+Expected<void> check_arguments(const Arguments& arguments, double steps) {
+  if (steps > kMostSteps) {
+    return failure({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
+  }
+  const LinkOptions& link = arguments.link;
+  for (const std::string& channel : {link.states_channel, link.wrenches_channel}) {
+    if (Expected<void> checked = check_channel(channel); !checked) return checked;
+  }
+  if (link.states_channel == link.wrenches_channel) {
+    return failure({"channels", "both are " + link.states_channel, "two different names",
+                    "questions would be taken for answers", ""});
+  }
+  return check_lcm_url(link.lcm_url);
+}
+
+std::int64_t draw_session_id() {
+  std::random_device device;
+  const std::uint64_t bits = (std::uint64_t{device()} << 32U) | device();
+  return static_cast<std::int64_t>(bits >> 1U);
+}
+
+int report(const Error& error, int exit_code) {
+  std::fprintf(stderr, "buoyancy-client: %s\n", error.message().c_str());
+  return exit_code;
+}
+
+Expected<Asker> make_asker(const Arguments& arguments, const Scene& scene) {
+  if (arguments.embedded) return Asker(EmbeddedAsker(scene));
+  Expected<AnswerLink> link = AnswerLink::open(arguments.link);
+  if (!link) return failure(link.error());
+  if (!arguments.rate) return Asker(LockstepAsker(std::move(*link), arguments.patience));
+  return Asker(FreeRunningAsker(std::move(*link), arguments.patience, 1.0 / *arguments.rate));
+}
+
+int simulate(Arguments arguments) {
+  arguments.link.stop = &stop_requested;
+  SimulationOptions options;
+  options.step = arguments.step.value_or(arguments.rate ? 1.0 / *arguments.rate : options.step);
+  options.integrator = *integrator_from_name(arguments.integrator);
+  options.lead_time = arguments.lead_time;
+  options.session_id = arguments.session.value_or(draw_session_id());
+  const double steps_asked = std::round(arguments.duration / options.step);
+  if (const Expected<void> checked = check_arguments(arguments, steps_asked); !checked) {
+    return report(checked.error(), kWrongInput);
+  }
+  const auto steps = static_cast<std::int64_t>(steps_asked);
+
+  const Expected<Scene> scene = Scene::load(arguments.scene);
+  if (!scene) return report(scene.error(), kWrongInput);
+  Expected<Simulation> simulation = Simulation::make(*scene, options);
+  if (!simulation) return report(simulation.error(), kWrongInput);
+  std::optional<RunCsv> csv;
+  if (!arguments.csv.empty()) {
+    Expected<RunCsv> created = RunCsv::create(arguments.csv, arguments.csv_every);
+    if (!created) return report(created.error(), kFailed);
+    csv = std::move(*created);
+  }
+  Expected<Asker> asker = make_asker(arguments, *scene);
+  if (!asker) return report(asker.error(), kFailed);
+
+  const Clock::time_point start = Clock::now();
+  Expected<RunEnd> end = RunEnd::kDone;
+  {
+    ProgressBar progress(steps);
+    end = run(*simulation, *asker, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
+      progress.show(now.step_number());
+      return csv ? csv->write(now) : Expected<void>{};
+    });
+  }
+  const double wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+  const Expected<void> closed = csv ? csv->close() : Expected<void>{};
+  if (!end) return report(end.error(), kFailed);
+  if (!closed) return report(closed.error(), kFailed);
+
+  RunSummary summary;
+  summary.steps = simulation->completed_steps();
+  summary.steps_asked = steps;
+  summary.interrupted = *end == RunEnd::kInterrupted;
+  summary.time = static_cast<double>(summary.steps) * options.step;
+  summary.wall_time = wall_time;
+  summary.options = options;
+  for (const SimulatedBody& body : simulation->bodies()) {
+    summary.bodies.push_back(summarize(body, simulation->water()));
+  }
+  summary.asker = statistics(*asker);
+  const std::string text = arguments.json ? to_json(summary) : to_text(summary);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    return report({"standard output", "cannot be written", "a place for the table", "", ""}, kFailed);
+  }
+  return summary.interrupted ? kFailed : kDone;
+}
+
+int client_main(int argc, char** argv) {
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+
+  CLI::App app(
+      "Simulates the bodies of a scene that have a [body.client] and asks buoyancyd for the wrenches on "
+      "them.\n"
+      "Exit codes: 0 done, 1 it ran and failed or was interrupted (SIGINT, SIGTERM: the table and the CSV "
+      "are of\n"
+      "the steps done), 2 wrong arguments, scene or mesh.",
+      "buoyancy-client");
+  Arguments arguments;
+  define_arguments(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongInput;
+  }
+  return simulate(std::move(arguments));
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  return buoyancy::client_main(argc, argv);
+}
