@@ -1,0 +1,175 @@
+// Lock-step and free running over UDP multicast, on a good network and on bad ones, each test in a network
+// namespace of its own: what the network does may cost time, and in lock-step nothing else.
+#include <filesystem>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/client/closed_loop.h"
+#include "tests/client/lossy_relay.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr const char* kScene = R"(
+[[body]]
+id = 7
+name = "rock"
+shape = { type = "rock", frequency = 4 }
+reference_point = [0.3, 0, 0.1]
+[body.client]
+density = 500
+position = [0, 0, 0.8]
+orientation = [0.9, 0.3, 0.2, 0.1]
+angular_velocity = [0.1, 2, 0]
+linear_damping_quadratic = 300
+[[body]]
+id = 8
+name = "crate"
+shape = { type = "box" }
+[body.client]
+density = 400
+position = [4, 0, 0.3]
+orientation = [0.9, 0.3, 0.2, 0.1]
+)";
+
+class Lockstep : public testing::Test {
+ protected:
+  std::string csv_of_run(const std::string& name, Options options) {
+    const std::string csv = directory_.path(name);
+    options.insert(options.end(), {"--step", "0.002", "--csv", csv});
+    summary_ = simulate(scene_, options);
+    return read_file(csv);
+  }
+
+  // Waits until the program has written this much of its CSV, or ended.
+  static void wait_for_rows(const std::string& csv, std::uintmax_t bytes, ChildProcess& client) {
+    const auto written = [&] { return std::filesystem::exists(csv) ? std::filesystem::file_size(csv) : 0; };
+    while (written() < bytes && !client.wait(0.001)) {
+    }
+  }
+
+  TemporaryDirectory directory_;
+  std::string scene_ = directory_.write("scene.toml", kScene);
+  nlohmann::json summary_;
+};
+
+TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLosesOneInTwenty) {
+  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "6"});
+  ASSERT_GT(embedded.size(), 6000U * 300U);
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "6"}) == embedded);
+
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
+  const Options impatient = {"-l", kClientUrl, "--duration", "6", "--timeout", "0.005", "--retries", "10000"};
+  EXPECT_TRUE(csv_of_run("lossy.csv", impatient) == embedded);
+  EXPECT_GT(relay.lost_questions(), 50);
+  EXPECT_GT(relay.lost_answers(), 50);
+  EXPECT_GE(summary_["retries"], relay.lost_questions() + relay.lost_answers());
+  EXPECT_EQ(summary_["lost"], 0);
+}
+
+TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
+  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "20"});
+  auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
+  const std::string csv = directory_.path("udp.csv");
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--duration", "20", "--step", "0.002",
+                                              "--csv", csv, "--timeout", "0.05", "--retries", "10000"}));
+  wait_for_rows(csv, 500'000, client);
+  EXPECT_EQ(client.wait(0.0), std::nullopt) << "the run was over before the service could be killed";
+  service.reset();
+  service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
+  EXPECT_EQ(client.wait(250.0), 0) << client.standard_error();
+  EXPECT_TRUE(read_file(csv) == embedded);
+}
+
+TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
+  const FinishedProcess finished = run_to_end(
+      client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.01", "--retries", "3", "--states-channel",
+                              "SOME_STATES", "--wrenches-channel", "SOME_WRENCHES"}),
+      60.0);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_EQ(finished.standard_output, "");
+  for (const char* word :
+       {"question 0", "no answer", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
+    EXPECT_NE(finished.standard_error.find(word), std::string::npos)
+        << word << ": " << finished.standard_error;
+  }
+}
+
+TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) {
+  const std::string other = directory_.write("other.toml", "[[body]]\nid = 7\nshape = { type = \"box\" }\n");
+  ChildProcess service(service_command(other, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), 60.0);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("body 8 (crate)"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("UNKNOWN_BODY"), std::string::npos) << finished.standard_error;
+}
+
+TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  const std::string csv = directory_.path("interrupted.csv");
+  ChildProcess client(
+      client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--csv", csv, "--json"}));
+  wait_for_rows(csv, 100'000, client);
+  client.send_signal(SIGINT);
+  EXPECT_EQ(client.wait(60.0), 1);
+  const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
+  EXPECT_EQ(summary["interrupted"], true);
+  EXPECT_EQ(csv_column(read_file(csv), "energy").size(), 2 * (std::size_t{summary["steps"]} + 1));
+}
+
+TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1000"}));
+  EXPECT_EQ(client.wait(0.5), std::nullopt);
+  client.send_signal(SIGTERM);
+  EXPECT_EQ(client.wait(60.0), 1);
+}
+
+using FreeRunning = Lockstep;
+
+TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  // Answers take eight intervals or more.
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
+  const nlohmann::json summary = simulate(scene_, {"-l", kClientUrl, "--rate", "200", "--duration", "2"});
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_EQ(summary["step"], 0.005);
+  EXPECT_EQ(summary["steps"], 400);
+  EXPECT_EQ(summary["questions"], 401);
+  EXPECT_GE(summary["late"], 300);
+  EXPECT_GE(summary["late_by_at_most"], 8);
+  EXPECT_GE(summary["round_trip"]["p50"], 0.04);
+  EXPECT_GE(summary["wall_time"], 1.9);
+}
+
+TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
+  const nlohmann::json summary = simulate(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "2"});
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_EQ(summary["steps"], 1000);
+  EXPECT_GE(summary["lost"], 100);
+  EXPECT_GE(summary["late"], summary["lost"]);
+}
+
+TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  const std::string csv = directory_.path("free.csv");
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1000",
+                                              "--timeout", "0.1", "--retries", "4", "--csv", csv}));
+  wait_for_rows(csv, 20'000, client);
+  service.send_signal(SIGKILL);
+  EXPECT_EQ(client.wait(60.0), 1);
+  EXPECT_NE(client.standard_error().find("no answer for"), std::string::npos) << client.standard_error();
+}
+
+}  // namespace
+}  // namespace buoyancy

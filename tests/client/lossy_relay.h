@@ -1,0 +1,40 @@
+// A bad network between client and service: carries the questions of one bus to another and the answers back,
+// loses some of each, and can be slow with the answers. Seeded: it loses the same messages of a sequence
+// every time.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+
+namespace buoyancy {
+
+struct RelayOptions {
+  std::string client_url;
+  std::string service_url;
+  double loss = 0.0;          // probability, of questions and of answers
+  double answer_delay = 0.0;  // s
+  std::uint64_t seed = 1;
+};
+
+class LossyRelay {
+ public:
+  explicit LossyRelay(const RelayOptions& options);  // carries as soon as it is constructed
+  LossyRelay(const LossyRelay&) = delete;
+  LossyRelay& operator=(const LossyRelay&) = delete;
+  ~LossyRelay();
+
+  std::int64_t lost_questions() const { return lost_questions_; }
+  std::int64_t lost_answers() const { return lost_answers_; }
+
+ private:
+  struct Carrier;
+
+  std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> lost_questions_{0};
+  std::atomic<std::int64_t> lost_answers_{0};
+  std::thread thread_;
+};
+
+}  // namespace buoyancy
