@@ -111,6 +111,14 @@ class PipeReader {
   bool timed_out_ = false;
 };
 
+bool indices_in_range(const TriangleMesh& mesh) {
+  const auto vertices = static_cast<std::int64_t>(mesh.vertex_count());
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [vertices](const Triangle& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [vertices](std::int32_t i) { return i >= 0 && i < vertices; });
+  });
+}
+
 }  // namespace
 
 bool send_import(int pipe, const Expected<ImportedMesh>& result) {
@@ -161,7 +169,8 @@ std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const Im
       !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles)) {
     return reader.why_not();
   }
-  return imported;
+  return indices_in_range(mesh) ? std::variant<NoImport, Expected<ImportedMesh>>(std::move(imported))
+                                : NoImport::kBroken;
 }
 
 }  // namespace buoyancy

@@ -1,8 +1,8 @@
 // Internal to mesh import: the result of a child process, through a pipe.
 //
 // The writer may be broken by the file it reads, so the reader believes nothing: counts against limits before
-// memory is set aside for them, texts bounded and made printable, memory touched only for bytes that came.
-// What the numbers mean (indices in range, finite vertices) is for the caller to check.
+// memory is set aside for them, texts bounded and made printable, memory touched only for bytes that came,
+// vertex indices within the vertices. Coordinates may be anything: the caller checks them.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ bool send_import(int pipe, const Expected<ImportedMesh>& result);
 
 enum class NoImport {
   kTimedOut,  // the deadline passed first
-  kBroken,    // the pipe ended early, or what came makes no sense
+  kBroken,    // the pipe ended early, or what came is no mesh and no error
 };
 
 // Waits for the whole result until the deadline. Throws std::bad_alloc where this process's memory ends.

@@ -128,9 +128,7 @@ std::string coordinates(const TriangleMesh& mesh, std::size_t vertex) {
   return text.data();
 }
 
-// The importer may have been led astray by the file: nothing it made is taken on trust.
-std::optional<Error> unusable(const ImportedMesh& imported) {
-  const TriangleMesh& mesh = imported.mesh;
+std::optional<Error> not_finite(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (!std::isfinite(mesh.x[v]) || !std::isfinite(mesh.y[v]) || !std::isfinite(mesh.z[v])) {
       return Error{"",
@@ -138,15 +136,6 @@ std::optional<Error> unusable(const ImportedMesh& imported) {
                        coordinates(mesh, v),
                    "finite coordinates", "a broken export, or numbers beyond single precision (3.4e38)",
                    "Export the mesh anew"};
-    }
-  }
-  const auto vertices = static_cast<std::int64_t>(mesh.vertex_count());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::int32_t i : mesh.triangles[t]) {
-      if (i < 0 || i >= vertices) {
-        return Error{"", "triangle " + std::to_string(t) + " names vertex " + std::to_string(i),
-                     "0 to " + std::to_string(vertices - 1), "the file is damaged", "Export it anew"};
-      }
     }
   }
   return std::nullopt;
@@ -157,7 +146,7 @@ Expected<ImportedMesh> import_unnamed(const fs::path& path, const ImportLimits& 
   if (!file) return failure(file.error());
   Expected<ImportedMesh> imported = import_in_child(path, file->format, limits);
   if (imported) {
-    if (std::optional<Error> error = unusable(*imported)) imported = failure(*std::move(error));
+    if (std::optional<Error> error = not_finite(imported->mesh)) imported = failure(*std::move(error));
   }
   if (!imported) return failure(explained_by_content(imported.error(), *file, extension_of(path)));
   return imported;

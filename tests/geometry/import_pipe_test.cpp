@@ -138,6 +138,22 @@ TEST_F(ImportPipe, BelievesNoFaceCountAboveTheLimits) {
   EXPECT_TRUE(broken(receive(limits)));
 }
 
+TEST_F(ImportPipe, TakesNoMeshWithoutTriangles) {
+  ImportedMesh empty = triangle();
+  empty.mesh.triangles.clear();
+  write(sent(empty));
+  EXPECT_TRUE(broken(receive()));
+}
+
+TEST_F(ImportPipe, TakesNoIndexOutsideTheVertices) {
+  for (const std::int32_t outside : {-1, 3, std::numeric_limits<std::int32_t>::max()}) {
+    ImportedMesh wrong = triangle();
+    wrong.mesh.triangles[0][2] = outside;
+    write(sent(wrong));
+    EXPECT_TRUE(broken(receive())) << outside;
+  }
+}
+
 TEST_F(ImportPipe, SetsNoMemoryAsideForBytesThatDoNotCome) {
   // Every eight bytes of the header in turn as the largest and as a large number: refused, or never followed
   // by data.

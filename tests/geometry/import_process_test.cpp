@@ -401,7 +401,9 @@ TEST_F(MeshImportRefusal, LeavesNoImporterBehindWhenTheProgramIsKilled) {
   const pid_t program = ::fork();
   ASSERT_GE(program, 0);
   if (program == 0) {
-    (void)import_mesh(endless);
+    ImportLimits limits;
+    limits.import_seconds = 30.0;
+    (void)import_mesh(endless, limits);
     ::_exit(0);
   }
   const pid_t importer = importer_of(program, program);
@@ -418,7 +420,9 @@ TEST_F(MeshImportRefusal, KeepsNoDescriptorOfTheProgramOpen) {
   const fs::path endless = directory_.write("endless.obj", endless_obj());
   auto import = std::async(std::launch::async, [&] {
     thread.set_value(::gettid());
-    return import_mesh(endless);
+    ImportLimits limits;
+    limits.import_seconds = 30.0;
+    return import_mesh(endless, limits);
   });
   const pid_t importer = importer_of(::getpid(), thread.get_future().get());
   ::close(ends[1]);
