@@ -213,7 +213,8 @@ Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits)
   return imported;
 }
 
-std::string number(double value) {
+// What went through single precision has six digits to show: 0.01, not 0.009999999776.
+std::string six_digits(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);
   return text.data();
@@ -266,14 +267,14 @@ void note_collada(const aiScene& scene, MeshSource& source) {
     add_note(source, "turned from " + source.up_axis + "-up to y-up by the importer");
   }
   const double scale = root_scale(scene);
-  if (scale != 1.0) add_note(source, "scaled by " + number(scale) + " to metres by the importer");
+  if (scale != 1.0) add_note(source, "scaled by " + six_digits(scale) + " to metres by the importer");
 }
 
 void note_3ds(const aiScene& scene, MeshSource& source) {
   add_note(source, "turned from z-up, the format's custom, to y-up by the importer");
   const double scale = root_scale(scene);
   if (std::abs(scale - 1.0) > 1e-6) {
-    add_note(source, "scaled by " + number(scale) + ", the file's master scale, by the importer");
+    add_note(source, "scaled by " + six_digits(scale) + ", the file's master scale, by the importer");
   }
 }
 
@@ -282,7 +283,7 @@ void note_fbx(const aiScene& scene, MeshSource& source) {
   if (scene.mMetaData == nullptr || !scene.mMetaData->Get("UnitScaleFactor", centimetres)) return;
   if (!(centimetres > 0.0F) || centimetres == 100.0F) return;
   add_note(source, "neither scaled nor turned by the importer; by the file one unit is " +
-                       number(centimetres) + " cm, so that scale = " + number(centimetres / 100.0) +
+                       six_digits(centimetres) + " cm, so that scale = " + six_digits(centimetres / 100.0) +
                        " makes metres of it");
 }
 

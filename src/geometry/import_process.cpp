@@ -27,6 +27,7 @@
 
 #include "geometry/assimp_reader.h"
 #include "geometry/import_pipe.h"
+#include "geometry/number_text.h"
 
 namespace buoyancy {
 namespace {
@@ -171,25 +172,20 @@ class Child {
   pid_t pid_;
 };
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
-
 Error timed_out(const ImportLimits& limits) {
-  return {"", "the importer had not finished after " + number(limits.import_seconds) + " s",
+  return {"", "the importer had not finished after " + number_text(limits.import_seconds) + " s",
           "an import within that time (limit 'import_seconds')",
           "the file is damaged and keeps the importer busy for ever, or it is very large",
           "Export the file anew, or raise 'import_seconds' under [limits]"};
 }
 
 Error out_of_memory(const ImportLimits& limits) {
-  return {"",
-          "the importer needed more than " + number(1e-9 * static_cast<double>(limits.memory_bytes)) + " GB",
-          "a file that can be read within that memory",
-          "the file is damaged and claims more data than it holds, or it is very large",
-          "Export the file anew, or simplify the mesh"};
+  return {
+      "",
+      "the importer needed more than " + number_text(static_cast<double>(limits.memory_bytes) / 1e9) + " GB",
+      "a file that can be read within that memory",
+      "the file is damaged and claims more data than it holds, or it is very large",
+      "Export the file anew, or simplify the mesh"};
 }
 
 Error killed() {
