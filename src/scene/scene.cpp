@@ -21,7 +21,8 @@ MeshKey key_of(const BodyDescription& body) {
   if (const auto* file = std::get_if<MeshFile>(&body.source)) {
     std::error_code code;
     std::filesystem::path canonical = std::filesystem::weakly_canonical(file->path, code);
-    key.source = code ? file->path : std::move(canonical);
+    if (code) canonical = file->path;
+    key.source = std::move(canonical);
   } else {
     key.source = std::get<Shape>(body.source);
   }
