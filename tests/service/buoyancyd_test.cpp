@@ -92,6 +92,20 @@ TEST(Buoyancyd, SaysWithinSecondsWhatMendsAMissingMulticastRoute) {
   expect_refusal(finished, 1, "ip route add 224.0.0.0/4 dev lo");
 }
 
+TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
+  RunningService service;
+  const std::vector<std::string> route{"224.0.0.0/4", "dev", "lo"};
+  ASSERT_EQ(run_to_end(command_of({"ip", "route", "del", route[0], route[1], route[2]}), kPatience).exit_code,
+            0);
+  EXPECT_TRUE(service.child().wait_for_text("was not sent (Network is unreachable)", kPatience))
+      << service.log();
+  ASSERT_EQ(run_to_end(command_of({"ip", "route", "add", route[0], route[1], route[2]}), kPatience).exit_code,
+            0);
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 1, 0.0));
+  EXPECT_EQ(hear(socket).seq, 1);
+}
+
 TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
   const ScratchDirectory directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);

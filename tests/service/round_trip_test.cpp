@@ -111,7 +111,10 @@ TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
     EXPECT_EQ(hear_bytes(socket), first);
   }
   EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    return status.counters.answered == 1 && status.counters.repeated == 3 && status.counters.questions == 4;
+    const LatencyPercentiles& latency = status.latency;
+    const bool measured = 0.0 < latency.p50 && latency.p50 <= latency.p99 && latency.max < kPatience;
+    return status.counters.answered == 1 && status.counters.repeated == 3 && status.counters.questions == 4 &&
+           measured;
   }));
 }
 
