@@ -1,0 +1,77 @@
+// What every refusal of a mesh file has to be, and a fixture that sees what an import leaves behind.
+#pragma once
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "geometry/mesh_import.h"
+#include "tests/geometry/mesh_files.h"
+
+namespace buoyancy {
+
+// One line that names the file, what was found and what was expected, in printable characters.
+inline void expect_clear(const Error& error, const std::filesystem::path& file) {
+  const std::string message = error.message();
+  EXPECT_EQ(error.subject, file.string());
+  EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0U) << message;
+  EXPECT_FALSE(error.found.empty()) << message;
+  EXPECT_FALSE(error.expectation.empty()) << message;
+  for (const char c : error.found + error.expectation + error.cause + error.remedy) {
+    EXPECT_TRUE(c >= ' ' && c <= '~') << message;
+  }
+}
+
+// The error's message; a failure of the test if there is a mesh.
+inline std::string refusal(const std::filesystem::path& file, const ImportLimits& limits = {}) {
+  const Expected<ImportedMesh> result = import_mesh(file, limits);
+  if (result) {
+    ADD_FAILURE() << file << " gave " << result->mesh.triangles.size() << " triangles";
+    return "";
+  }
+  expect_clear(result.error(), file);
+  return result.error().message();
+}
+
+inline void expect_usable_or_clear(const std::filesystem::path& file, const ImportLimits& limits) {
+  const Expected<ImportedMesh> result = import_mesh(file, limits);
+  if (!result) return expect_clear(result.error(), file);
+  EXPECT_FALSE(result->mesh.triangles.empty()) << file;
+  const auto vertices = static_cast<std::int32_t>(result->mesh.vertex_count());
+  for (const Triangle& triangle : result->mesh.triangles) {
+    for (const std::int32_t i : triangle) ASSERT_TRUE(i >= 0 && i < vertices) << file;
+  }
+}
+
+inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "no '" << part << "' in: " << text;
+}
+
+inline std::size_t open_descriptors() {
+  const std::filesystem::directory_iterator descriptors("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(descriptors), end(descriptors)));
+}
+
+// No descriptor and no child of an import outlives it.
+class ImportTest : public testing::Test {
+ protected:
+  ~ImportTest() override {
+    EXPECT_EQ(open_descriptors(), descriptors_before_);
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was left behind";
+    EXPECT_EQ(errno, ECHILD);
+  }
+
+  TemporaryDirectory directory_;
+
+ private:
+  std::size_t descriptors_before_ = open_descriptors();
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,210 @@
+// What import_mesh() refuses, and in which words. mesh_import_test.cpp holds what it reads.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "geometry/mesh_import.h"
+#include "tests/geometry/import_checks.h"
+#include "tests/geometry/mesh_files.h"
+#include "tests/geometry/shared_mesh_files.h"
+
+namespace buoyancy {
+namespace {
+
+namespace fs = std::filesystem;
+
+using MeshImportRefusal = ImportTest;
+
+TEST_F(MeshImportRefusal, NamesAFileThatIsNotThere) {
+  const std::string message = refusal(directory_.path() / "none.ply");
+  EXPECT_TRUE(contains(message, "no such file"));
+}
+
+TEST_F(MeshImportRefusal, TakesNothingButRegularFiles) {
+  EXPECT_TRUE(contains(refusal(directory_.path()), "is a directory"));
+  EXPECT_TRUE(contains(refusal("/dev/zero"), "is a device"));
+  const fs::path pipe = directory_.path() / "pipe.stl";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_TRUE(contains(refusal(pipe), "is a named pipe"));
+  fs::create_directory(directory_.path() / "folder.obj");
+  EXPECT_TRUE(contains(refusal(directory_.path() / "folder.obj"), "is a directory"));
+}
+
+TEST_F(MeshImportRefusal, TakesNothingEmptyTooLargeOrUnreadable) {
+  EXPECT_TRUE(contains(refusal(directory_.write("empty.obj", "")), "0 bytes"));
+
+  ImportLimits small;
+  small.mesh_bytes = 100;
+  const std::string large = refusal(directory_.write("large.ply", tetrahedron::ascii_ply()), small);
+  EXPECT_TRUE(contains(large, std::to_string(tetrahedron::ascii_ply().size()) + " bytes"));
+  EXPECT_TRUE(contains(large, "at most 100 (limit 'mesh_bytes')"));
+
+  const fs::path closed = directory_.write("closed.obj", tetrahedron::obj());
+  fs::permissions(closed, fs::perms::none);
+  if (::geteuid() != 0) {  // nothing is closed to root
+    EXPECT_TRUE(contains(refusal(closed), "Permission denied"));
+  }
+}
+
+TEST_F(MeshImportRefusal, NamesTheAcceptedExtensions) {
+  for (const char* name :
+       {"mesh.3mf", "mesh.blend", "mesh.x", "mesh.zae", "mesh.xml", "mesh.stl.gz", "mesh"}) {
+    const std::string message = refusal(directory_.write(name, tetrahedron::obj()));
+    EXPECT_TRUE(contains(message, ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds"));
+  }
+  EXPECT_TRUE(contains(refusal(directory_.write("m.3MF", "PK\x03\x04")), "format '.3MF' is not accepted"));
+}
+
+// Every format under the extension of every other: never a mesh made of something else, and the content
+// named.
+TEST_F(MeshImportRefusal, SaysWhatTheContentLooksLikeWhereTheExtensionIsWrong) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  for (const auto& [name, content] : tetrahedron_files()) {
+    const std::string own = fs::path(name).extension();
+    for (const std::string other :
+         {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds"}) {
+      if (other == own) continue;
+      SCOPED_TRACE(std::string(name).append(" as ").append(other));
+      const std::string message = refusal(directory_.write("disguised" + other, content));
+      if (name == "binary.stl") continue;  // its first bytes are free text
+      EXPECT_TRUE(contains(message, "the content looks like"));
+      EXPECT_TRUE(contains(message, "give it the extension " + own));
+    }
+  }
+}
+
+TEST_F(MeshImportRefusal, CannotBeLedToOtherImportersByContent) {
+  const std::string x = "xof 0303txt 0032\nMesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; }\n";
+  for (const char* name :
+       {"x.obj", "x.stl", "x.ply", "x.off", "x.dae", "x.gltf", "x.glb", "x.fbx", "x.3ds"}) {
+    EXPECT_TRUE(contains(refusal(directory_.write(name, x)), "the content looks like DirectX X")) << name;
+  }
+}
+
+TEST_F(MeshImportRefusal, TakesNoMeshWithoutTriangles) {
+  const std::string no_faces =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 0\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0\n";
+  EXPECT_TRUE(contains(refusal(directory_.write("none.ply", no_faces)), "no triangles"));
+  EXPECT_TRUE(contains(refusal(directory_.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), "triangles"));
+  EXPECT_TRUE(contains(refusal(directory_.write("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n")),
+                       "no triangles, but 2 points and lines"));
+  refusal(directory_.write("none.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"));
+  refusal(directory_.write("none.stl", "solid\nendsolid\n"));
+}
+
+TEST_F(MeshImportRefusal, NamesTheFirstVertexThatIsNotFinite) {
+  std::string stl = tetrahedron::binary_stl();
+  const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(stl.data() + 84 + 12 + 12, &not_a_number,
+              sizeof(not_a_number));  // first facet, second corner, x
+  EXPECT_TRUE(contains(refusal(directory_.write("nan.stl", stl)), "vertex 1 of 12 is (nan, "));
+  EXPECT_TRUE(
+      contains(refusal(directory_.write("large.obj", "v 1e39 0 0\n" + tetrahedron::obj())), "finite"));
+}
+
+TEST_F(MeshImportRefusal, HoldsTheLimitsOnVerticesAndFaces) {
+  ImportLimits limits;
+  limits.faces = 3;
+  const fs::path file = directory_.write("t.off", tetrahedron::off());
+  EXPECT_TRUE(contains(refusal(file, limits), "4 triangles; expected at most 3 (limit 'faces')"));
+  limits.faces = 4;
+  limits.vertices = 3;
+  EXPECT_TRUE(contains(refusal(file, limits), "4 vertices; expected at most 3 (limit 'vertices')"));
+  limits.vertices = 4;
+  EXPECT_TRUE(import_mesh(file, limits));
+}
+
+TEST_F(MeshImportRefusal, CountsInstancesAgainstTheLimits) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  const fs::path file =
+      directory_.write("two.gltf", tetrahedron::gltf(R"([{"mesh":0,"children":[1]},{"mesh":0}])"));
+  ImportLimits limits;
+  limits.faces = 7;
+  EXPECT_TRUE(contains(refusal(file, limits), "8 triangles"));
+}
+
+TEST_F(MeshImportRefusal, TakesNoOffFileThatTheImporterHadToMend) {
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  EXPECT_TRUE(contains(refusal(directory_.write("index.off", "OFF\n4 1 0\n" + corners + "3 0 1 9\n")),
+                       "Vertex index is out of range"));
+  refusal(directory_.write("short.off", "OFF\n9 4 0\n" + corners + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
+}
+
+TEST_F(MeshImportRefusal, ReadsNothingButRegularFilesThatAMeshFileNames) {
+  const fs::path pipe = directory_.path() / "pipe.bin";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const char* buffer : {R"("uri":"pipe.bin",)", R"("uri":"/dev/zero",)", R"("uri":"missing.bin",)"}) {
+    refusal(directory_.write("linked.gltf", tetrahedron::gltf(R"([{"mesh":0}])", buffer)));
+  }
+  const Expected<ImportedMesh> endless_material =
+      import_mesh(directory_.write("linked.obj", "mtllib /dev/zero\n" + tetrahedron::obj()));
+  EXPECT_TRUE(endless_material);
+}
+
+TEST_F(MeshImportRefusal, FindsAPlyHeaderWithoutItsEndAtOnce) {
+  std::string content = tetrahedron::ascii_ply();
+  content.replace(content.find("end_header"), 10, "end_heaber");
+  EXPECT_TRUE(contains(refusal(directory_.write("endless.ply", content)), "without its 'end_header' line"));
+}
+
+TEST_F(MeshImportRefusal, GivesAMeshOrOneClearErrorForEveryTruncation) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  std::vector<NamedContent> files = tetrahedron_files();
+  const fs::path models =
+      "/usr/share/assimp/models";  // Debian's assimp-testmodels; absent, the files above do
+  for (const char* name : {"OBJ/spider.obj", "STL/Spider_ascii.stl", "STL/Spider_binary.stl", "PLY/Wuson.ply",
+                           "PLY/cube_binary.ply", "OFF/Wuson.off", "Collada/duck.dae",
+                           "glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf",
+                           "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", "FBX/spider.fbx",
+                           "FBX/box.fbx", "3DS/fels.3ds"}) {
+    if (fs::exists(models / name)) {
+      files.push_back({"model" + fs::path(name).extension().string(), read_bytes(models / name)});
+    }
+  }
+  ImportLimits limits;
+  limits.import_seconds = 2.0;
+  for (const auto& [name, content] : files) {
+    for (std::size_t tenth = 0; tenth < 10; ++tenth) {
+      SCOPED_TRACE(name + " cut at " + std::to_string(tenth) + "0 %");
+      expect_usable_or_clear(directory_.write(name, content.substr(0, content.size() * tenth / 10)), limits);
+    }
+  }
+}
+
+TEST_F(MeshImportRefusal, GivesAMeshOrOneClearErrorForFilesWithWrongBytes) {
+  directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
+  ImportLimits limits;
+  limits.import_seconds = 0.2;
+  std::uint32_t state = 1;
+  const auto random = [&state] { return (state = state * 1664525U + 1013904223U) >> 8; };
+  for (const auto& [name, content] : tetrahedron_files()) {
+    for (int round = 0; round < 20; ++round) {
+      std::string wrong = content;
+      for (int i = 0; i < 1 + round % 4; ++i) wrong[random() % wrong.size()] = static_cast<char>(random());
+      SCOPED_TRACE(name + " round " + std::to_string(round));
+      expect_usable_or_clear(directory_.write(name, wrong), limits);
+    }
+  }
+}
+
+TEST_F(MeshImportRefusal, RefusesTheMalformedFilesBesideTheProject) {
+  const fs::path malformed = shared_mesh_file("malformed");
+  if (!fs::exists(malformed)) {
+    GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(malformed)) refusal(entry.path());
+}
+
+}  // namespace
+}  // namespace buoyancy
