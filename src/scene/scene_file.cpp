@@ -139,7 +139,7 @@ void read_source(TomlTable& table, BodyDescription& body, const std::filesystem:
   if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};
   if (const toml::table* shape = table.table("shape")) {
     TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", reading);
-    if (std::optional<Shape> read = read_shape(shape_table)) body.source = *std::move(read);
+    if (std::optional<Shape> read = read_shape(shape_table)) body.source = *read;
   }
 }
 
