@@ -31,8 +31,8 @@ Expected3 box_in_water(const RawState& state, double yaw, bool lying) {
   expected.force_z = kDensity * kGravity * expected.volume;
   if (depth > 0.0) expected.center[2] = -height / 2 + depth / 2;
   if (state.body_id == 2) {
-    const double x = std::cos(yaw) * kReference_B[0] - std::sin(yaw) * kReference_B[1];
-    const double y = std::sin(yaw) * kReference_B[0] + std::cos(yaw) * kReference_B[1];
+    const double x = std::cos(yaw) * kReferenceInB[0] - std::sin(yaw) * kReferenceInB[1];
+    const double y = std::sin(yaw) * kReferenceInB[0] + std::cos(yaw) * kReferenceInB[1];
     expected.torque = {-y * expected.force_z, x * expected.force_z, 0.0};
   }
   return expected;

@@ -20,8 +20,8 @@ inline constexpr double kPatience = 60.0;  // s; nothing here takes long, but th
 inline constexpr double kDensity = 1000.0;
 inline constexpr double kGravity = 10.0;
 
-// Body 1: a box of 2 x 3 x 4 m about B's origin; body 2: the same, torque about kReference_B.
-inline constexpr std::array<double, 3> kReference_B{0.5, -0.25, 0.0};
+// Body 1: a box of 2 x 3 x 4 m about B's origin; body 2: the same, torque about kReferenceInB.
+inline constexpr std::array<double, 3> kReferenceInB{0.5, -0.25, 0.0};
 inline constexpr const char* kBoxScene = R"(
 [world]
 gravity = 10.0

@@ -109,7 +109,11 @@ TEST(StateCsv, ReportsMalformedRowsWithTheirLineAndReadsOn) {
         "1,2147483648,0,0,0,1,0,0,0", "1,1,0,0,0,1,0,0", "1,1,0,0,0,1,0,0,0,0", "1,1,0,0,0,1,0,0,",
         "1,1,0x1,0,0,1,0,0,0", "1,1,1e999,0,0,1,0,0,0", "1,1,0;0;0;1;0;0;0", "1,1,0 0,0,0,1,0,0,0",
         ",,,,,,,,", "1,1,+-1,0,0,1,0,0,0", "\x01\x02"}) {
-    const Found found = read_all(kHeader + good + bad + "\n" + good);
+    std::string rows = kHeader + good;
+    rows += bad;
+    rows += "\n";
+    rows += good;
+    const Found found = read_all(rows);
     EXPECT_EQ(found.questions.size(), 2U) << bad;
     ASSERT_EQ(found.damages.size(), 1U) << bad;
     EXPECT_EQ(found.damages[0].rfind("line 3: ", 0), 0U) << found.damages[0];
