@@ -81,6 +81,8 @@ int run(int argc, char** argv) {
   const std::vector<BenchmarkMesh> models = paper_meshes();
   std::vector<std::vector<Pose>> sweeps;
   std::vector<Solver> solvers;
+  sweeps.reserve(models.size());
+  solvers.reserve(models.size() * kAllMethods.size());
   for (const BenchmarkMesh& model : models) sweeps.push_back(sweep_of_poses(model.source));
   for (const BenchmarkMesh& model : models) {
     for (const Method method : kAllMethods) solvers.emplace_back(model.mesh, method);
