@@ -1,7 +1,7 @@
 #include "hydrostatics/fast.h"
 
-#include "geometry/pairwise_sum.h"
 #include "hydrostatics/volume_elements.h"
+#include "hydrostatics/wet_surface.h"
 
 namespace buoyancy {
 namespace {
@@ -31,15 +31,11 @@ FastTable::FastTable(const HydrostaticMesh& mesh) {
 }
 
 Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const {
-  PairwiseSum<ElementSum> sum;
-  for (std::size_t i = 0; i < elements_.size(); ++i) {
-    const Triangle& triangle = mesh.surface.triangles[i];
-    const bool wet = plane.height(mesh.vertex(triangle[0])) < 0.0 &&
-                     plane.height(mesh.vertex(triangle[1])) < 0.0 &&
-                     plane.height(mesh.vertex(triangle[2])) < 0.0;
-    if (wet) sum.add({elements_[i].volume, elements_[i].moment});
-  }
-  const ElementSum total = sum.total();
+  const VertexHeights heights = vertex_heights(mesh.surface, plane);
+  const auto total = sum_over_blocks<ElementSum>(
+      mesh.surface, heights, [this](ElementSum& sum, TriangleList wet, TriangleList /*cut*/) {
+        for (const std::uint32_t i : wet) sum += {elements_[i].volume, elements_[i].moment};
+      });
   return displacement_of_volume(total.volume, total.moment, plane);
 }
 

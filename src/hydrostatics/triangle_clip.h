@@ -6,6 +6,10 @@
 // figure 3) or a quadrilateral (two), split into two triangles.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "hydrostatics/point.h"
 
 namespace buoyancy {
@@ -29,12 +33,16 @@ Corner<T> cut(const Corner<T>& wet, const Corner<T>& dry) {
 // Calls visit(a, b, c) for the one or two wet triangles of a triangle that has both wet and dry corners.
 template <typename T, typename Visit>
 void visit_wet_part(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c, Visit&& visit) {
-  // Rotate so that p is the corner that differs from the two others.
-  const bool b_differs = b.wet() != a.wet() && b.wet() != c.wet();
-  const bool c_differs = c.wet() != a.wet() && c.wet() != b.wet();
-  const Corner<T>& p = b_differs ? b : (c_differs ? c : a);
-  const Corner<T>& q = b_differs ? c : (c_differs ? a : b);
-  const Corner<T>& r = b_differs ? a : (c_differs ? b : c);
+  // Rotate so that p is the corner that differs from the two others: looked up, since which one it is cannot
+  // be predicted.
+  constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
+  const auto mask = static_cast<unsigned>(a.wet()) + 2 * static_cast<unsigned>(b.wet()) +
+                    4 * static_cast<unsigned>(c.wet());
+  const std::array<const Corner<T>*, 5> corners{&a, &b, &c, &a, &b};
+  const std::size_t first = kOddOneOut[mask];
+  const Corner<T>& p = *corners[first];
+  const Corner<T>& q = *corners[first + 1];
+  const Corner<T>& r = *corners[first + 2];
   if (p.wet()) {
     visit(p, cut(p, q), cut(p, r));
   } else {

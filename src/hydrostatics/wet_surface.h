@@ -6,7 +6,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "geometry/pairwise_sum.h"
 #include "hydrostatics/hydrostatic_mesh.h"
@@ -15,46 +18,76 @@
 
 namespace buoyancy {
 
-enum class CutTriangles { kLeaveOut, kClip };
+// Of every vertex, computed once per vertex and not once per corner.
+struct VertexHeights {
+  const double* height;     // m, over the water
+  const std::uint8_t* wet;  // 1 where height < 0, else 0
+};
 
-// Sum: zero by default, with operator+=. accumulate(sum, a, b, c) adds one wet triangle with corners
-// Corner<double>. kClip also hands over the wet parts of the triangles that the water cuts. O(triangles), no
-// heap.
-template <typename Sum, CutTriangles kCut, typename Accumulate>
-Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Accumulate& accumulate) {
+// Valid until the same thread's next call: the tables are the thread's own and grow to the largest mesh that
+// it has seen.
+VertexHeights vertex_heights(const TriangleMesh& surface, const WaterPlane& plane);
+
+// Indices of triangles, in ascending order.
+using TriangleList = std::span<const std::uint32_t>;
+
+// Sum: zero by default, with operator+=. add_block(sum, wet, cut) adds those of a block's triangles that have
+// three wet corners, and those that have one or two. O(triangles).
+//
+// A block is sorted before anything is computed: no branch then depends on the order in which the mesh
+// happens to store its triangles.
+template <typename Sum, typename AddBlock>
+Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, const AddBlock& add_block) {
   constexpr std::size_t kBlock = 256;
-  const double* const x = mesh.surface.x.data();
-  const double* const y = mesh.surface.y.data();
-  const double* const z = mesh.surface.z.data();
-  const auto k = Point<double>::from(plane.up_B);
-  const double h_c = plane.h_c;
-  const auto corner = [=](std::int32_t i) {
-    const Point<double> at{x[i], y[i], z[i]};
-    return Corner<double>{at, dot(k, at) - h_c};
-  };
+  std::array<std::uint32_t, kBlock> wet;
+  std::array<std::uint32_t, kBlock> cut;
+  const std::uint8_t* const is_wet = heights.wet;
 
   PairwiseSum<Sum, kBlock> total;
-  const std::size_t count = mesh.surface.triangles.size();
+  const std::size_t count = surface.triangles.size();
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, count);
-    Sum block{};
+    std::size_t wets = 0;
+    std::size_t cuts = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const Triangle& triangle = mesh.surface.triangles[i];
-      const Corner<double> a = corner(triangle[0]);
-      const Corner<double> b = corner(triangle[1]);
-      const Corner<double> c = corner(triangle[2]);
-      const int wet = static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
-      if (wet == 0) continue;
-      if (wet == 3) {
-        accumulate(block, a, b, c);
-      } else if constexpr (kCut == CutTriangles::kClip) {
-        visit_wet_part(a, b, c,
-                       [&](const auto& p, const auto& q, const auto& r) { accumulate(block, p, q, r); });
-      }
+      const Triangle& triangle = surface.triangles[i];
+      const unsigned corners = 0U + is_wet[triangle[0]] + is_wet[triangle[1]] + is_wet[triangle[2]];
+      wet[wets] = static_cast<std::uint32_t>(i);
+      cut[cuts] = static_cast<std::uint32_t>(i);
+      wets += static_cast<std::size_t>(corners == 3);
+      cuts += static_cast<std::size_t>(corners - 1 < 2);
     }
+    Sum block{};
+    add_block(block, TriangleList(wet.data(), wets), TriangleList(cut.data(), cuts));
     total.add_block(block);
   }
   return total.total();
+}
+
+enum class CutTriangles { kLeaveOut, kClip };
+
+// accumulate(sum, a, b, c) adds one wet triangle with corners Corner<double>. kClip also hands over the wet
+// parts of the triangles that the water cuts. O(vertices + triangles).
+template <typename Sum, CutTriangles kCut, typename Accumulate>
+Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Accumulate& accumulate) {
+  const double* const x = mesh.surface.x.data();
+  const double* const y = mesh.surface.y.data();
+  const double* const z = mesh.surface.z.data();
+  const VertexHeights heights = vertex_heights(mesh.surface, plane);
+  const auto corner = [=](std::int32_t i) { return Corner<double>{{x[i], y[i], z[i]}, heights.height[i]}; };
+  return sum_over_blocks<Sum>(mesh.surface, heights, [&](Sum& sum, TriangleList wet, TriangleList cut) {
+    for (const std::uint32_t i : wet) {
+      const Triangle& triangle = mesh.surface.triangles[i];
+      accumulate(sum, corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
+    }
+    if constexpr (kCut == CutTriangles::kClip) {
+      for (const std::uint32_t i : cut) {
+        const Triangle& triangle = mesh.surface.triangles[i];
+        visit_wet_part(corner(triangle[0]), corner(triangle[1]), corner(triangle[2]),
+                       [&](const auto& a, const auto& b, const auto& c) { accumulate(sum, a, b, c); });
+      }
+    }
+  });
 }
 
 }  // namespace buoyancy
