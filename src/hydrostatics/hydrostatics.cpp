@@ -1,0 +1,128 @@
+#include "hydrostatics/hydrostatics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hydrostatics/floating_moments.h"
+#include "hydrostatics/wet_moments.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+// The displaced volume and the waterplane about a point of the body, B axes.
+struct Immersed {
+  FloatingMoments<double> moments;
+  Vec3 point = Vec3::Zero();  // m, from c
+  double wetted_area = 0.0;   // m^2
+};
+
+Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  Immersed part;
+  switch (immersion(mesh, plane)) {
+    case Immersion::kDry:
+      break;
+    case Immersion::kWet:
+      part.moments.volume = mesh.volume;
+      part.point = mesh.centroid;
+      part.wetted_area = mesh.area;
+      break;
+    case Immersion::kCrossing: {
+      const WetMoments wet = wet_moments(*mesh.tree, plane);
+      part.moments = read_out(wet.moments, wet.height, plane.up_B);
+      part.point = wet.point;
+      part.wetted_area = wet.area;
+      const double area_gate = 64.0 * std::numeric_limits<double>::epsilon() * mesh.area;
+      if (!wet.cut || !(part.moments.waterplane_area > area_gate)) {
+        part.moments.waterplane_area = 0.0;
+        part.moments.waterplane_moment.setZero();
+        part.moments.waterplane_second_moments.setZero();
+      }
+      break;
+    }
+  }
+  return part;
+}
+
+struct PrincipalMoments {
+  std::array<double, 2> moments{};  // ascending
+  std::array<Vec3, 2> axes;         // about which; right-handed with up
+};
+
+// second_moments: about the centroid; only what is horizontal counts.
+PrincipalMoments principal_moments(const Mat3& second_moments, const Vec3& up) {
+  const Vec3 u = up.unitOrthogonal();
+  const Vec3 v = up.cross(u);
+  const double uu = u.dot(second_moments * u);
+  const double vv = v.dot(second_moments * v);
+  const double uv = 0.5 * (u.dot(second_moments * v) + v.dot(second_moments * u));
+  const double half_difference = 0.5 * (uu - vv);
+  const double radius = std::sqrt(half_difference * half_difference + uv * uv);
+  const double mean = 0.5 * (uu + vv);
+  // The direction in which the waterplane reaches farthest: the moment about it is the smaller one.
+  Vec3 longest = half_difference >= 0.0 ? Vec3((half_difference + radius) * u + uv * v)
+                                        : Vec3(uv * u + (radius - half_difference) * v);
+  const double length = longest.norm();
+  longest = length > 0.0 ? Vec3(longest / length) : u;
+  return {{std::max(0.0, mean - radius), mean + radius}, {longest, up.cross(longest)}};
+}
+
+bool finite(const Hydrostatics& result) {
+  return std::isfinite(result.volume) && std::isfinite(result.wetted_area) &&
+         std::isfinite(result.waterplane_area) && std::isfinite(result.waterplane_second_moments[1]) &&
+         result.stiffness.allFinite();
+}
+
+}  // namespace
+
+std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+                                         const Vec3& reference_B,
+                                         const std::optional<Vec3>& center_of_mass_B) {
+  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+  const Immersed part = immersed_part(mesh, plane);
+  const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
+  const FloatingMoments<double> moments_W = part.moments.rotated(R_WB);
+  const Vec3 point_W = R_WB * (mesh.center_B + part.point);  // from p_WB
+
+  Hydrostatics result;
+  result.volume = moments_W.volume;
+  result.wetted_area = part.wetted_area;
+  result.waterplane_area = moments_W.waterplane_area;
+  const Vec3 to_reference_W = R_WB * ((reference_B - mesh.center_B) - part.point);
+  result.stiffness = water.density * water.gravity * stiffness(moments_W.moved(to_reference_W), water.up_W);
+
+  result.waterplane_centroid_W.setConstant(kUndefined);
+  for (Vec3& axis : result.waterplane_axes_W) axis.setConstant(kUndefined);
+  if (result.waterplane_area > 0.0) {
+    const Vec3 to_centroid_W = moments_W.waterplane_moment / result.waterplane_area;
+    result.waterplane_centroid_W = point_W + to_centroid_W;
+    const PrincipalMoments principal =
+        principal_moments(moments_W.moved(to_centroid_W).waterplane_second_moments, water.up_W);
+    result.waterplane_second_moments = principal.moments;
+    result.waterplane_axes_W = principal.axes;
+  }
+
+  result.center_of_buoyancy_W.setConstant(kUndefined);
+  for (Vec3& metacenter : result.metacenters_W) metacenter.setConstant(kUndefined);
+  result.metacentric_radii.fill(kUndefined);
+  result.metacentric_heights.fill(kUndefined);
+  if (result.volume > mesh.volume_gate()) {
+    const Vec3 to_buoyancy_W = moments_W.moment / result.volume;
+    result.center_of_buoyancy_W = point_W + to_buoyancy_W;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double radius = result.waterplane_second_moments[i] / result.volume;
+      result.metacentric_radii[i] = radius;
+      result.metacenters_W[i] = result.center_of_buoyancy_W + radius * water.up_W;
+      if (center_of_mass_B) {
+        const Vec3 from_mass_W = R_WB * (part.point - (*center_of_mass_B - mesh.center_B)) + to_buoyancy_W;
+        result.metacentric_heights[i] = water.up_W.dot(from_mass_W) + radius;
+      }
+    }
+  }
+  if (!finite(result)) return std::nullopt;
+  return result;
+}
+
+}  // namespace buoyancy
