@@ -12,6 +12,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "messages/hydrostatics.h"
 #include "messages/question.h"
 #include "messages/status.h"
 
@@ -37,6 +38,14 @@ void visit_fields(Wrench& wrench, Visitor& visitor) {
           wrench.center_of_buoyancy, wrench.force_error_bound, wrench.torque_error_bound);
 }
 
+template <MaybeConst<BodyHydrostatics> Body, typename Visitor>
+void visit_fields(Body& body, Visitor& visitor) {
+  visitor(body.body_id, body.status, body.submerged_volume, body.center_of_buoyancy, body.wetted_area,
+          body.waterplane_area, body.waterplane_centroid, body.waterplane_second_moments,
+          body.waterplane_axes, body.metacentric_radii, body.metacenters, body.metacentric_heights,
+          body.stiffness);
+}
+
 // What stands before the number of bodies.
 template <MaybeConst<Question> Q, typename Visitor>
 void visit_head(Q& question, Visitor& visitor) {
@@ -47,6 +56,11 @@ void visit_head(Q& question, Visitor& visitor) {
 template <MaybeConst<Answer> A, typename Visitor>
 void visit_head(A& answer, Visitor& visitor) {
   visit_fields(answer.key, visitor);
+}
+
+template <MaybeConst<BodiesHydrostatics> H, typename Visitor>
+void visit_head(H& hydrostatics, Visitor& visitor) {
+  visit_fields(hydrostatics.key, visitor);
 }
 
 // What stands before and after the version.
@@ -62,7 +76,7 @@ void visit_tail(Status& status, Visitor& visitor) {
           c.sessions_forgotten);
   visitor(c.rejected_truncated, c.rejected_fingerprint, c.rejected_count, c.rejected_length);
   visitor(c.bodies, c.quaternions_normalised);
-  visitor(c.bodies_dry, c.bodies_wet, c.bodies_crossing, c.bodies_unchanged);
+  visitor(c.bodies_dry, c.bodies_wet, c.bodies_crossing, c.bodies_unchanged, c.hydrostatics);
   visitor(c.largest_dropped_force, c.largest_dropped_torque);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
 }

@@ -31,6 +31,7 @@ struct Counters {
   std::int64_t bodies_wet = 0;
   std::int64_t bodies_crossing = 0;
   std::int64_t bodies_unchanged = 0;
+  std::int64_t hydrostatics = 0;
   double largest_dropped_force = 0.0;
   double largest_dropped_torque = 0.0;
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <type_traits>
 
+#include <buoyancy/bodies_hydrostatics_t.hpp>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 
@@ -17,6 +18,7 @@ template <typename Message>
 std::int64_t fingerprint() {
   if constexpr (std::is_same_v<Message, Question>) return body_states_t::getHash();
   if constexpr (std::is_same_v<Message, Answer>) return body_wrenches_t::getHash();
+  if constexpr (std::is_same_v<Message, BodiesHydrostatics>) return bodies_hydrostatics_t::getHash();
 }
 
 // Bytes before the first body: fingerprint, head, number of bodies.
@@ -101,6 +103,9 @@ std::optional<Rejection> decode(Bytes bytes, Question& question) {
 std::optional<Rejection> decode(Bytes bytes, Answer& answer) {
   return decode_message(bytes, answer);
 }
+std::optional<Rejection> decode(Bytes bytes, BodiesHydrostatics& hydrostatics) {
+  return decode_message(bytes, hydrostatics);
+}
 
 tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes) {
   const auto bodies = validate<Question>(bytes);
@@ -116,6 +121,9 @@ void encode(const Question& question, std::vector<std::uint8_t>& bytes) {
 }
 void encode(const Answer& answer, std::vector<std::uint8_t>& bytes) {
   encode_message(answer, bytes);
+}
+void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes) {
+  encode_message(hydrostatics, bytes);
 }
 
 }  // namespace buoyancy

@@ -10,12 +10,14 @@
 
 #include <tl/expected.hpp>
 
+#include "messages/hydrostatics.h"
 #include "messages/question.h"
 
 namespace buoyancy {
 
 inline constexpr std::string_view kStatesChannel = "BUOYANCY_STATES";
 inline constexpr std::string_view kWrenchesChannel = "BUOYANCY_WRENCHES";
+inline constexpr std::string_view kHydrostaticsChannel = "BUOYANCY_HYDROSTATICS";
 inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 
 using Bytes = std::span<const std::uint8_t>;
@@ -30,10 +32,11 @@ enum class Rejection {
 const char* describe(Rejection rejection);  // for logs: "shorter than the fixed fields"
 
 // Decodes into question, whose vector is reused: no heap once it is as large as the largest message.
-// On rejection question is unchanged. Values are not judged: numbers may be NaN, an answer's status may be
-// one that this version does not know. O(length).
+// On rejection question is unchanged. The same of the others. Values are not judged: numbers may be NaN, an
+// answer's status may be one that this version does not know. O(length).
 std::optional<Rejection> decode(Bytes bytes, Question& question);
 std::optional<Rejection> decode(Bytes bytes, Answer& answer);
+std::optional<Rejection> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
 
 // A question's key alone, after the same checks; O(1).
 tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes);
@@ -41,5 +44,6 @@ tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes);
 // Encodes into bytes, which is resized: no heap once it is as large as the largest message.
 void encode(const Question& question, std::vector<std::uint8_t>& bytes);
 void encode(const Answer& answer, std::vector<std::uint8_t>& bytes);
+void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);
 
 }  // namespace buoyancy

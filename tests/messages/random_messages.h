@@ -7,6 +7,7 @@
 
 #include <rapidcheck.h>
 
+#include "messages/hydrostatics.h"
 #include "messages/question.h"
 #include "messages/status.h"
 
@@ -60,6 +61,27 @@ inline Answer random_answer() {
     body.torque_error_bound = random_double();
   }
   return answer;
+}
+
+inline BodiesHydrostatics random_hydrostatics() {
+  BodiesHydrostatics hydrostatics{.key = random_key(), .bodies = {}};
+  hydrostatics.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyHydrostatics& body : hydrostatics.bodies) {
+    body.body_id = random_integer<std::int32_t>();
+    body.status = static_cast<BodyStatus>(random_integer<std::int32_t>());
+    for (double* value : {&body.submerged_volume, &body.wetted_area, &body.waterplane_area}) {
+      *value = random_double();
+    }
+    randomise(body.center_of_buoyancy);
+    randomise(body.waterplane_centroid);
+    randomise(body.waterplane_second_moments);
+    for (auto& axis : body.waterplane_axes) randomise(axis);
+    randomise(body.metacentric_radii);
+    for (auto& metacenter : body.metacenters) randomise(metacenter);
+    randomise(body.metacentric_heights);
+    for (auto& row : body.stiffness) randomise(row);
+  }
+  return hydrostatics;
 }
 
 }  // namespace buoyancy

@@ -15,7 +15,7 @@ namespace {
 using ByteVector = std::vector<std::uint8_t>;
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
-constexpr std::size_t kTail = 8 * std::size_t{12 + 8 + 1 + 4 + 2 + 4};
+constexpr std::size_t kTail = 8 * std::size_t{12 + 8 + 1 + 5 + 2 + 4};
 
 ServiceStatus random_status() {
   ServiceStatus status;
@@ -27,7 +27,7 @@ ServiceStatus random_status() {
        {&c.questions, &c.answered, &c.repeated, &c.changed_repeats, &c.stale, &c.overtaken, &c.sessions,
         &c.sessions_forgotten, &c.rejected_truncated, &c.rejected_fingerprint, &c.rejected_count,
         &c.rejected_length, &c.quaternions_normalised, &c.bodies_dry, &c.bodies_wet, &c.bodies_crossing,
-        &c.bodies_unchanged}) {
+        &c.bodies_unchanged, &c.hydrostatics}) {
     *counter = random_integer<std::int64_t>();
   }
   for (std::int64_t& counter : c.bodies) counter = random_integer<std::int64_t>();
@@ -73,6 +73,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_wet = c.bodies_wet;
   message.bodies_crossing = c.bodies_crossing;
   message.bodies_unchanged = c.bodies_unchanged;
+  message.hydrostatics = c.hydrostatics;
   message.largest_dropped_force = c.largest_dropped_force;
   message.largest_dropped_torque = c.largest_dropped_torque;
   message.latency_p50 = status.latency.p50;

@@ -4,6 +4,7 @@
 #include <climits>
 #include <string>
 
+#include <buoyancy/bodies_hydrostatics_t.hpp>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 #include <gtest/gtest.h>
@@ -21,6 +22,7 @@ constexpr std::size_t kQuestionFixed = 44;
 constexpr std::size_t kBodyState = 108;
 constexpr std::size_t kAnswerFixed = 36;
 constexpr std::size_t kBodyWrench = 104;
+constexpr std::size_t kBodyHydrostatics = 512;  // behind a head like an answer's
 
 template <typename Message>
 ByteVector encoded(const Message& message) {
@@ -79,6 +81,36 @@ body_wrenches_t as_generated(const Answer& answer) {
   return message;
 }
 
+template <std::size_t kRows, std::size_t kColumns>
+void copy(const std::array<std::array<double, kColumns>, kRows>& from, double (&to)[kRows][kColumns]) {
+  for (std::size_t row = 0; row < kRows; ++row) copy(from[row], to[row]);
+}
+
+bodies_hydrostatics_t as_generated(const BodiesHydrostatics& hydrostatics) {
+  bodies_hydrostatics_t message{};
+  message.utime = hydrostatics.key.utime;
+  message.session_id = hydrostatics.key.session_id;
+  message.seq = hydrostatics.key.seq;
+  message.num_bodies = static_cast<std::int32_t>(hydrostatics.bodies.size());
+  for (const BodyHydrostatics& body : hydrostatics.bodies) {
+    body_hydrostatics_t& to = message.bodies.emplace_back();
+    to.body_id = body.body_id;
+    to.status = static_cast<std::int32_t>(body.status);
+    to.submerged_volume = body.submerged_volume;
+    copy(body.center_of_buoyancy, to.center_of_buoyancy);
+    to.wetted_area = body.wetted_area;
+    to.waterplane_area = body.waterplane_area;
+    copy(body.waterplane_centroid, to.waterplane_centroid);
+    copy(body.waterplane_second_moments, to.waterplane_second_moments);
+    copy(body.waterplane_axes, to.waterplane_axes);
+    copy(body.metacentric_radii, to.metacentric_radii);
+    copy(body.metacenters, to.metacenters);
+    copy(body.metacentric_heights, to.metacentric_heights);
+    copy(body.stiffness, to.stiffness);
+  }
+  return message;
+}
+
 ByteVector question_of(std::size_t bodies) {
   Question question{.key = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
   question.bodies.resize(bodies);
@@ -121,6 +153,18 @@ RC_GTEST_PROP(Wire, DecodesAnswersOfTheGeneratedCode, ()) {
   RC_ASSERT(encoded_by_lcm(as_generated(answer)) == bytes);
 }
 
+RC_GTEST_PROP(Wire, EncodesHydrostaticsAsTheGeneratedCodeDoes, ()) {
+  const BodiesHydrostatics hydrostatics = random_hydrostatics();
+  RC_ASSERT(encoded(hydrostatics) == encoded_by_lcm(as_generated(hydrostatics)));
+}
+
+RC_GTEST_PROP(Wire, DecodesHydrostaticsOfTheGeneratedCode, ()) {
+  const ByteVector bytes = encoded_by_lcm(as_generated(random_hydrostatics()));
+  BodiesHydrostatics hydrostatics = random_hydrostatics();
+  RC_ASSERT(!decode(bytes, hydrostatics).has_value());
+  RC_ASSERT(encoded_by_lcm(as_generated(hydrostatics)) == bytes);
+}
+
 RC_GTEST_PROP(Wire, PeeksTheKeyThatDecodingFinds, ()) {
   const Question question = random_question();
   const auto key = peek_key(encoded(question));
@@ -144,6 +188,9 @@ TEST(Wire, SizesAreThoseOfTheMessageDefinitions) {
   EXPECT_EQ(question_of(3).size(), kQuestionFixed + 3 * kBodyState);
   EXPECT_EQ(encoded(Answer{}).size(), kAnswerFixed);
   EXPECT_EQ(encoded(Answer{.key = {}, .bodies = {{}, {}}}).size(), kAnswerFixed + 2 * kBodyWrench);
+  EXPECT_EQ(encoded(BodiesHydrostatics{}).size(), kAnswerFixed);
+  EXPECT_EQ(encoded(BodiesHydrostatics{.key = {}, .bodies = {{}, {}}}).size(),
+            kAnswerFixed + 2 * kBodyHydrostatics);
 }
 
 TEST(Wire, RejectsEveryTruncationOfAQuestion) {
@@ -168,6 +215,16 @@ TEST(Wire, RejectsEveryTruncationOfAnAnswer) {
   }
 }
 
+TEST(Wire, RejectsEveryTruncationOfHydrostatics) {
+  const ByteVector whole = encoded(BodiesHydrostatics{.key = {}, .bodies = {{}, {}}});
+  BodiesHydrostatics hydrostatics;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(decode(Bytes(whole).first(size), hydrostatics),
+              size < kAnswerFixed ? Rejection::kTruncated : Rejection::kLength)
+        << size << " bytes";
+  }
+}
+
 TEST(Wire, RejectsEveryFlippedBitOfTheFingerprint) {
   const ByteVector whole = question_of(1);
   Question question;
@@ -183,6 +240,7 @@ TEST(Wire, RejectsOtherTypesOfOurOwn) {
   Answer answer;
   EXPECT_EQ(decode(encoded(Answer{.key = {}, .bodies = {{}, {}}}), question), Rejection::kFingerprint);
   EXPECT_EQ(decode(question_of(2), answer), Rejection::kFingerprint);
+  EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), answer), Rejection::kFingerprint);
 }
 
 TEST(Wire, RejectsCountsThatDoNotFitTheLength) {
