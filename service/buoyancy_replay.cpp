@@ -66,8 +66,8 @@ int main(int argc, char** argv) {
   if (!scene) return refuse(scene.error(), kWrongInput);
   Expected<ReplayInput> input = ReplayInput::open(options.input, plan->input_format, options.states_channel);
   if (!input) return refuse(input.error(), kWrongInput);
-  Expected<ReplayOutput> output =
-      ReplayOutput::create(options.output, plan->output_format, options.wrenches_channel);
+  Expected<ReplayOutput> output = ReplayOutput::create(
+      options.output, plan->output_format, {options.wrenches_channel, options.hydrostatics_channel});
   if (!output) return refuse(output.error(), kFailed);
   return answer_all(app, options, *scene, *input, *output);
 }

@@ -76,9 +76,11 @@ Expected<void> Daemon::run(TerminationSignals& signals) {
       },
       kQueueCapacity);
   if (!subscribed) return subscribed;
-  spdlog::info("ready: {} bodies; questions on {}, answers on {}, status on {}; {}, mode {}, instance {}",
-               exchange_.scene().bodies().size(), channels_.states, channels_.wrenches, channels_.status,
-               connection_.url(), name(mode_), instance_id_);
+  spdlog::info(
+      "ready: {} bodies; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
+      "instance {}",
+      exchange_.scene().bodies().size(), channels_.states, channels_.wrenches, channels_.hydrostatics,
+      channels_.status, connection_.url(), name(mode_), instance_id_);
   report();
 
   std::array<pollfd, 3> waiting{pollfd{connection_.fileno(), POLLIN, 0}, pollfd{signals.fileno(), POLLIN, 0},
@@ -140,20 +142,23 @@ void Daemon::answer_waiting() {
 void Daemon::answer(Bytes question, double arrival) {
   const Bytes bytes = exchange_.answer(question);
   if (bytes.empty()) return;
-  if (const Expected<void> published = connection_.publish(channels_.wrenches, bytes); !published) {
-    publish_error_ = published.error().message();
-    return;
+  if (publish(channels_.wrenches, bytes)) latency_.add(seconds_now() - arrival);
+  if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
+    publish(channels_.hydrostatics, hydrostatics);
   }
-  latency_.add(seconds_now() - arrival);
+}
+
+bool Daemon::publish(const std::string& channel, Bytes bytes) {
+  const Expected<void> published = connection_.publish(channel, bytes);
+  if (!published) publish_error_ = published.error().message();
+  return published.has_value();
 }
 
 void Daemon::report() {
   const Counters& counters = exchange_.counters();
   encode(ServiceStatus{utime_now(), instance_id_, BUOYANCY_VERSION, counters, latency_.percentiles()},
          status_bytes_);
-  if (const Expected<void> published = connection_.publish(channels_.status, status_bytes_); !published) {
-    publish_error_ = published.error().message();
-  }
+  publish(channels_.status, status_bytes_);
   for (const std::string& trouble : describe_troubles(reported_, counters)) spdlog::warn("{}", trouble);
   if (!publish_error_.empty()) spdlog::warn("{}", publish_error_);
   publish_error_.clear();

@@ -26,6 +26,7 @@ std::string_view name(Mode mode);  // "lockstep"
 struct ChannelNames {
   std::string states{kStatesChannel};
   std::string wrenches{kWrenchesChannel};
+  std::string hydrostatics{kHydrostaticsChannel};
   std::string status{kStatusChannel};
 };
 
@@ -44,6 +45,7 @@ class Daemon {
   void take_in(Bytes question, double arrival);
   void answer_waiting();
   void answer(Bytes question, double arrival);
+  bool publish(const std::string& channel, Bytes bytes);  // false: publish_error_ says why
   void report();
 
   Mode mode_;

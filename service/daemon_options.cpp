@@ -1,5 +1,6 @@
 #include "service/daemon_options.h"
 
+#include <array>
 #include <map>
 #include <set>
 
@@ -29,6 +30,9 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
       ->capture_default_str();
   app.add_option("--wrenches-channel", options.channels.wrenches, "Channel of the answers")
       ->capture_default_str();
+  app.add_option("--hydrostatics-channel", options.channels.hydrostatics,
+                 "Channel of the hydrostatics of bodies whose outputs in the scene name them")
+      ->capture_default_str();
   app.add_option("--status-channel", options.channels.status, "Channel of the status, once a second")
       ->capture_default_str();
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error, critical or off")
@@ -40,12 +44,13 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
 
 Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
-  for (const std::string& channel : {channels.states, channels.wrenches, channels.status}) {
+  const std::array names{channels.states, channels.wrenches, channels.hydrostatics, channels.status};
+  for (const std::string& channel : names) {
     if (Expected<void> checked = check_channel(channel); !checked) return checked;
   }
-  if (std::set<std::string>{channels.states, channels.wrenches, channels.status}.size() != 3) {
-    return failure({"channels " + channels.states + ", " + channels.wrenches + " and " + channels.status,
-                    "two are the same", "three different names", "", ""});
+  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
+    return failure({"channels " + names[0] + ", " + names[1] + ", " + names[2] + " and " + names[3],
+                    "two are the same", "four different names", "", ""});
   }
   return check_lcm_url(options.lcm_url);
 }

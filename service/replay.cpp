@@ -30,7 +30,8 @@ Expected<ReplaySummary> replay(const Scene& scene, ReplayInput& input, ReplayOut
       const auto key = peek_key(question.bytes);
       listener.on_trouble("event at " + std::to_string(question.timestamp) +
                           " us is no question: " + (key ? "rejected" : describe(key.error())));
-    } else if (Expected<void> written = output.write(question.timestamp, answer); !written) {
+    } else if (Expected<void> written = output.write(question.timestamp, answer, exchange.hydrostatics());
+               !written) {
       return tl::unexpected(written.error());
     }
     listener.on_progress(input.offset(), input.size(), exchange.counters().questions);

@@ -65,6 +65,11 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
       ->capture_default_str();
   app.add_option("--wrenches-channel", options.wrenches_channel, "Channel of the answers in an LCM log")
       ->capture_default_str();
+  app.add_option(
+         "--hydrostatics-channel", options.hydrostatics_channel,
+         "Channel of the hydrostatics in an LCM log, of bodies whose outputs in the scene name them; a CSV "
+         "file holds wrenches alone")
+      ->capture_default_str();
   app.add_flag("--json", options.json, "The summary as JSON");
   app.add_option("INPUT", options.input, "A .csv or .lcmlog file")->required();
   app.add_option("OUTPUT", options.output, "A .csv or .lcmlog file; overwritten")->required();
@@ -86,9 +91,14 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
                       "replaying would overwrite what it reads", ""});
     }
   }
-  for (const std::string& channel : {options.states_channel, options.wrenches_channel}) {
+  for (const std::string& channel :
+       {options.states_channel, options.wrenches_channel, options.hydrostatics_channel}) {
     if (const Expected<void> checked = check_channel(channel); !checked)
       return tl::unexpected(checked.error());
+  }
+  if (options.wrenches_channel == options.hydrostatics_channel) {
+    return failure({"channel " + options.wrenches_channel, "named for wrenches and for hydrostatics",
+                    "two different names", "", ""});
   }
   if (!options.mesh.empty()) {
     std::optional<Method> method = BodyDescription{}.method;

@@ -23,6 +23,7 @@ struct ReplayOptions {
   std::filesystem::path output;
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
+  std::string hydrostatics_channel{kHydrostaticsChannel};
   bool json = false;
 };
 
@@ -37,7 +38,7 @@ struct ReplayPlan {
 };
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
-// carry, an unknown method.
+// carry, one channel for wrenches and hydrostatics, an unknown method.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
 
 }  // namespace buoyancy

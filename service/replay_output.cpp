@@ -16,7 +16,7 @@ Bytes bytes_of(std::string_view text) {
 }  // namespace
 
 Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format,
-                                            const std::string& wrenches_channel) {
+                                            Channels channels) {
   Expected<RecordFile> file = RecordFile::create(path);
   if (!file) return tl::unexpected(file.error());
   if (format == FileFormat::kCsv) {
@@ -24,18 +24,24 @@ Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, F
       return tl::unexpected(written.error());
     }
   }
-  return ReplayOutput(std::move(*file), format, wrenches_channel);
+  return ReplayOutput(std::move(*file), format, std::move(channels));
 }
 
-ReplayOutput::ReplayOutput(RecordFile file, FileFormat format, std::string wrenches_channel)
-    : file_(std::move(file)), format_(format), wrenches_channel_(std::move(wrenches_channel)) {}
+ReplayOutput::ReplayOutput(RecordFile file, FileFormat format, Channels channels)
+    : file_(std::move(file)), format_(format), channels_(std::move(channels)) {}
 
-Expected<void> ReplayOutput::write(std::int64_t timestamp, Bytes bytes) {
+Expected<void> ReplayOutput::write_event(std::int64_t timestamp, const std::string& channel, Bytes bytes) {
+  encode_event(events_++, timestamp, channel, bytes, event_);
+  return file_.append(event_);
+}
+
+Expected<void> ReplayOutput::write(std::int64_t timestamp, Bytes answer, Bytes hydrostatics) {
   if (format_ == FileFormat::kLcmLog) {
-    encode_event(events_++, timestamp, wrenches_channel_, bytes, event_);
-    return file_.append(event_);
+    Expected<void> written = write_event(timestamp, channels_.wrenches, answer);
+    if (!written || hydrostatics.empty()) return written;
+    return write_event(timestamp, channels_.hydrostatics, hydrostatics);
   }
-  [[maybe_unused]] const auto rejected = decode(bytes, answer_);
+  [[maybe_unused]] const auto rejected = decode(answer, answer_);
   assert(!rejected);  // we encoded it
   for (const BodyWrench& wrench : answer_.bodies) {
     format_wrench_row(answer_.key.utime, wrench, row_);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hydrostatics/buoyancy.h"
+#include "hydrostatics/hydrostatics.h"
 
 namespace buoyancy {
 namespace {
@@ -25,9 +26,16 @@ std::array<double, 3> as_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Pose as_pose(const BodyState& state) {
+std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) {
+  return {as_array(pair[0]), as_array(pair[1])};
+}
+
+// The pose to answer for.
+Pose asked_pose(const BodyState& state, double lead_time) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
-  return {.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+  const Pose sent{.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+  if (lead_time == 0.0) return sent;
+  return extrapolate(sent, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
 }
 
 // abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.
@@ -74,14 +82,11 @@ BodyStatus evaluate(const Scene& scene, const BodyState& state, double lead_time
   if (defect > kQuaternionNoteworthy) ++counters.quaternions_normalised;
   if (!std::isfinite(lead_time)) return BodyStatus::kBadLeadTime;
 
-  Pose pose = as_pose(state);
-  if (lead_time != 0.0) {
-    if (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity)) {
-      return BodyStatus::kNonFiniteTwist;
-    }
-    pose = extrapolate(pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
-    if (!all_finite(pose)) return BodyStatus::kOutOfRange;
+  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity))) {
+    return BodyStatus::kNonFiniteTwist;
   }
+  const Pose pose = asked_pose(state, lead_time);
+  if (!all_finite(pose)) return BodyStatus::kOutOfRange;
 
   const BuoyancyAnswer answer = buoyancy(body->solver, pose, scene.water(), body->reference_B);
   if (answer.status != BuoyancyStatus::kOk) return as_body_status(answer.status);
@@ -103,6 +108,38 @@ BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_t
   wrench.status = evaluate(scene, state, lead_time, counters, wrench);
   ++counters.bodies[static_cast<std::size_t>(wrench.status)];
   return wrench;
+}
+
+BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const BodyState& state,
+                                      double lead_time, BodyStatus status, Counters& counters) {
+  BodyHydrostatics message;
+  message.body_id = state.body_id;
+  message.status = status;
+  if (status != BodyStatus::kOk) return message;
+  const std::optional<Hydrostatics> found = hydrostatics(body.solver.mesh(), asked_pose(state, lead_time),
+                                                         water, body.reference_B, body.center_of_mass_B);
+  if (!found) {
+    message.status = BodyStatus::kOutOfRange;
+    return message;
+  }
+  ++counters.hydrostatics;
+  message.submerged_volume = found->volume;
+  message.center_of_buoyancy = as_array(found->center_of_buoyancy_W);
+  message.wetted_area = found->wetted_area;
+  message.waterplane_area = found->waterplane_area;
+  message.waterplane_centroid = as_array(found->waterplane_centroid_W);
+  message.waterplane_second_moments = found->waterplane_second_moments;
+  message.waterplane_axes = as_arrays(found->waterplane_axes_W);
+  message.metacentric_radii = found->metacentric_radii;
+  message.metacenters = as_arrays(found->metacenters_W);
+  message.metacentric_heights = found->metacentric_heights;
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      message.stiffness[row][column] =
+          found->stiffness(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+    }
+  }
+  return message;
 }
 
 Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& angular_velocity_W,

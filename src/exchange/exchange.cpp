@@ -22,6 +22,7 @@ Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
 
 Bytes Exchange::answer(Bytes question) {
   ++counters_.questions;
+  answered_.reset();
   const auto key = peek_key(question);
   if (!key) {
     count_rejection(key.error());
@@ -32,9 +33,11 @@ Bytes Exchange::answer(Bytes question) {
   const bool is_new = known == sessions_.end();
   Session& session = is_new ? start_session(*key) : *known;
   session.last_use = ++use_;
+  const auto place = static_cast<std::size_t>(&session - sessions_.data());
   if (!is_new) {
     if (same_bytes(session.last_question, question)) {
       ++counters_.repeated;
+      answered_ = place;
       return session.last_answer;
     }
     if (key->seq == session.last_seq) ++counters_.changed_repeats;
@@ -44,6 +47,7 @@ Bytes Exchange::answer(Bytes question) {
   session.newest_seq = std::max(session.newest_seq, key->seq);
   compute(question, session);
   ++counters_.answered;
+  answered_ = place;
   return session.last_answer;
 }
 
@@ -92,10 +96,19 @@ void Exchange::compute(Bytes question, Session& session) {
   assert(!rejection);  // peek_key() made the same checks
   answer_.key = question_.key;
   answer_.bodies.clear();
+  hydrostatics_.key = question_.key;
+  hydrostatics_.bodies.clear();
   for (const BodyState& state : question_.bodies) {
-    answer_.bodies.push_back(answer_body(*scene_, state, question_.lead_time, counters_));
+    const BodyWrench& wrench =
+        answer_.bodies.emplace_back(answer_body(*scene_, state, question_.lead_time, counters_));
+    const Body* body = scene_->find(state.body_id);
+    if (body == nullptr || !body->hydrostatics) continue;
+    hydrostatics_.bodies.push_back(
+        hydrostatics_of_body(*body, scene_->water(), state, question_.lead_time, wrench.status, counters_));
   }
   encode(answer_, session.last_answer);
+  session.last_hydrostatics.clear();
+  if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
   session.last_question.assign(question.begin(), question.end());
 }
 

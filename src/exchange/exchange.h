@@ -30,8 +30,13 @@ class Exchange {
 
   // The answer's bytes, valid until the next call; empty if the question was rejected (and counted by cause).
   // No heap once the session's buffers are as large as its largest message; a session keeps the bytes of its
-  // last question and answer. O(sessions + bytes) beside the bodies' queries.
+  // last question, answer and hydrostatics. O(sessions + bytes) beside the bodies' queries.
   Bytes answer(Bytes question);
+
+  // The hydrostatics that go with what answer() last returned: the bytes of a bodies_hydrostatics_t, of a
+  // repeated question the same again, valid until the next call of answer(); empty where no body of the
+  // question asks, or the question was rejected.
+  Bytes hydrostatics() const { return answered_ ? Bytes(sessions_[*answered_].last_hydrostatics) : Bytes(); }
 
   // For mode latest: counts a question that was superseded before it was answered.
   void count_overtaken() { ++counters_.questions, ++counters_.overtaken; }
@@ -52,6 +57,7 @@ class Exchange {
     std::uint64_t last_use = 0;  // of use_; least: forgotten first
     std::vector<std::uint8_t> last_question;
     std::vector<std::uint8_t> last_answer;
+    std::vector<std::uint8_t> last_hydrostatics;  // empty: none of the last question's bodies asks
   };
 
   void count_rejection(Rejection rejection);
@@ -63,8 +69,10 @@ class Exchange {
   std::vector<Session> sessions_;
   std::uint64_t use_ = 0;
   Counters counters_;
-  Question question_;  // reused
-  Answer answer_;      // reused
+  Question question_;                    // reused
+  Answer answer_;                        // reused
+  BodiesHydrostatics hydrostatics_;      // reused
+  std::optional<std::size_t> answered_;  // the session that answer() last answered
 };
 
 }  // namespace buoyancy

@@ -73,6 +73,12 @@ Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body
                                                      mass_properties(validation.mesh->mesh)});
 }
 
+std::optional<Vec3> center_of_mass(const ClientSpec& client, const PreparedMesh& prepared) {
+  if (client.center_of_mass_B) return client.center_of_mass_B;
+  if (prepared.mesh.open() || !(client.mass || client.density)) return std::nullopt;
+  return prepared.mass_properties.centroid_B;
+}
+
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
@@ -91,12 +97,13 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       keys.push_back(std::move(key));
     }
     PreparedMesh& prepared = *scene.meshes_[place];
-    if (body.method == Method::kHierarchical && !prepared.mesh.tree) {
+    if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
     }
     scene.index_.emplace_back(body.id, scene.bodies_.size());
     scene.bodies_.push_back({body.id, body.name, &prepared, Solver(prepared.mesh, body.method),
-                             body.tolerance, body.reference_B, body.client});
+                             body.tolerance, body.reference_B, body.hydrostatics,
+                             center_of_mass(body.client, prepared), body.client});
   }
   std::sort(scene.index_.begin(), scene.index_.end());
   return scene;

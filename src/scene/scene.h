@@ -35,6 +35,10 @@ struct Body {
   Solver solver;
   double tolerance = 0.0;
   Vec3 reference_B = Vec3::Zero();  // m
+  bool hydrostatics = false;        // asked for; the mesh then has its tree
+  // m: where [body.client] says how the mass lies (mass, density or center_of_mass) and the centre is known:
+  // an open mesh has none but what it is given.
+  std::optional<Vec3> center_of_mass_B;
   ClientSpec client;
 };
 

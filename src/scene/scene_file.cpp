@@ -1,5 +1,6 @@
 #include "scene/scene_file.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <map>
@@ -8,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "scene/nearest_word.h"
 #include "scene/shape_table.h"
 #include "scene/toml_table.h"
 
@@ -110,17 +112,36 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
   if (const auto chosen = table.choice("open", kNames)) open = kPolicies[*chosen];
 }
 
-// Wrenches are what every body answers with, so that there is nothing to keep.
-void check_outputs(TomlTable& table) {
+// Wrenches are what every question is answered with, so that only hydrostatics are kept.
+void read_outputs(TomlTable& table, bool& hydrostatics) {
+  constexpr std::string_view kExpected = "[\"wrench\"] or [\"wrench\", \"hydrostatics\"]";
+  constexpr std::array<std::string_view, 2> kWords{"wrench", "hydrostatics"};
   const toml::node* outputs = table.node("outputs");
   if (outputs == nullptr) return;
   const toml::array* array = outputs->as_array();
-  const bool right =
-      array != nullptr && array->size() == 1 && array->get(0)->value_or<std::string_view>("") == "wrench";
-  if (!right) {
-    table.fail_at("outputs", "[\"wrench\"]", "this version computes wrenches and nothing else",
-                  "Write outputs = [\"wrench\"], or leave it out");
+  std::array<int, kWords.size()> named{};
+  if (array != nullptr) {
+    for (const toml::node& output : *array) {
+      const auto text = output.value<std::string_view>();
+      if (!text) return table.fail_at("outputs", std::string(kExpected));
+      const auto word = std::find(kWords.begin(), kWords.end(), *text);
+      if (word == kWords.end()) {
+        return table.fail_at("outputs", std::string(kExpected), {},
+                             "The nearest to '" + std::string(*text) + "' is '" +
+                                 std::string(nearest_word(*text, kWords)) + "'");
+      }
+      ++named[static_cast<std::size_t>(word - kWords.begin())];
+    }
   }
+  if (array == nullptr || array->empty() || *std::max_element(named.begin(), named.end()) > 1) {
+    return table.fail_at("outputs", std::string(kExpected));
+  }
+  if (named[0] == 0) {
+    return table.fail_at("outputs", std::string(kExpected),
+                         "wrenches are what every question is answered with",
+                         "Write outputs = [\"wrench\", \"hydrostatics\"]");
+  }
+  hydrostatics = named[1] == 1;
 }
 
 void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
@@ -159,7 +180,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
   table.read("reference_point", body.reference_B, "m");
-  check_outputs(table);
+  read_outputs(table, body.hydrostatics);
   const toml::table* client = table.table("client");
 
   // Last, so that a key that is missing because it is mistyped is reported as mistyped.

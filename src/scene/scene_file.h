@@ -54,6 +54,7 @@ struct BodyDescription {
   double tolerance = 0.0;  // 0 to 1, relative to the whole displacement's weight
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // m
+  bool hydrostatics = false;        // outputs names them, beside the wrench
   ClientSpec client;
   std::string where;  // "scene.toml:12", for errors; empty where there is no scene file
 };

@@ -57,6 +57,7 @@ std::string body_text(const Body& body, const Scene& scene) {
   text += "  method        " + std::string(name(body.solver.method())) + ", tolerance " +
           number(body.tolerance) + "\n";
   text += "  torque about  " + vector_text(body.reference_B) + " m\n";
+  text += "  outputs       wrench" + std::string(body.hydrostatics ? ", hydrostatics" : "") + "\n";
   const std::optional<double> mass = mass_of(body, scene.water());
   const std::optional<double> density = density_of(body, scene.water());
   if (mass) {
@@ -142,6 +143,7 @@ Json json_of(const Body& body, const Scene& scene) {
           {"method", name(body.solver.method())},
           {"tolerance", body.tolerance},
           {"reference_point", json_of(body.reference_B)},
+          {"outputs", body.hydrostatics ? Json{"wrench", "hydrostatics"} : Json{"wrench"}},
           {"mass", json_of(mass_of(body, scene.water()))},
           {"density", json_of(density_of(body, scene.water()))}};
 }

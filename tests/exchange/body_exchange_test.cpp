@@ -119,6 +119,76 @@ TEST(BodyExchange, KeepsTheLargestPartThatAnExactMethodDropped) {
   EXPECT_EQ(counters.largest_dropped_torque, before.largest_dropped_torque);
 }
 
+BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
+                                 Counters& counters) {
+  const Body* body = scene().find(state.body_id);
+  return hydrostatics_of_body(*body, scene().water(), state, lead_time, status, counters);
+}
+
+TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
+  Counters counters;
+  const BodyHydrostatics found =
+      hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kOk, counters);
+  EXPECT_EQ(found.body_id, kHydrostaticBox);
+  EXPECT_EQ(found.status, BodyStatus::kOk);
+  EXPECT_EQ(counters.hydrostatics, 1);
+  EXPECT_NEAR(found.submerged_volume, 0.5, 1e-14);
+  EXPECT_NEAR(found.wetted_area, 3.0, 1e-14);
+  EXPECT_NEAR(found.waterplane_area, 1.0, 1e-14);
+  const double radius = 1.0 / 12.0 / 0.5;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool up = i == 2;
+    EXPECT_NEAR(found.center_of_buoyancy[i], up ? -0.25 : 0.0, 1e-14);
+    EXPECT_NEAR(found.waterplane_centroid[i], 0.0, 1e-14);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      EXPECT_NEAR(found.metacenters[axis][i], up ? radius - 0.25 : 0.0, 1e-13);
+    }
+  }
+  // A square has no axes of its own: any right-handed pair with up.
+  const auto& [first, second] = found.waterplane_axes;
+  EXPECT_NEAR(first[0] * second[1] - first[1] * second[0], 1.0, 1e-14);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_EQ(found.waterplane_axes[axis][2], 0.0);
+    EXPECT_NEAR(found.waterplane_second_moments[axis], 1.0 / 12.0, 1e-14);
+    EXPECT_NEAR(found.metacentric_radii[axis], radius, 1e-13);
+    EXPECT_NEAR(found.metacentric_heights[axis], radius - 0.25, 1e-13)
+        << "centre of mass: the volume's centroid";
+  }
+  // About the corner (0.5, 0.5, -0.5): a = (-0.5, -0.5), M = (-0.25, -0.25, 0.125).
+  const std::array<std::array<double, 6>, 6> stiffness{{{0, 0, 0, 0, 0, 0},
+                                                        {0, 0, 0, 0, 0, 0},
+                                                        {0, 0, 1, -0.5, 0.5, 0},
+                                                        {0, 0, -0.5, 1.0 / 3.0 + 0.125, -0.25, 0.25},
+                                                        {0, 0, 0.5, -0.25, 1.0 / 3.0 + 0.125, 0.25},
+                                                        {0, 0, 0, 0, 0, 0}}};
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      EXPECT_NEAR(found.stiffness[row][column], kWeight * stiffness[row][column], 1e-13 * kWeight)
+          << row << ", " << column;
+    }
+  }
+}
+
+TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
+  Counters counters;
+  BodyState rising = upright(kHydrostaticBox, -0.3);
+  rising.linear_velocity = {0.0, 0.0, 0.5};
+  const BodyHydrostatics found = hydrostatics_of(rising, 0.2, BodyStatus::kOk, counters);
+  EXPECT_NEAR(found.submerged_volume, 0.7, 1e-14);
+}
+
+TEST(BodyHydrostatics, OfABodyThatIsNotOkAreItsStatusAndZeros) {
+  Counters counters;
+  const BodyHydrostatics found =
+      hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kBadQuaternion, counters);
+  EXPECT_EQ(found.body_id, kHydrostaticBox);
+  EXPECT_EQ(found.status, BodyStatus::kBadQuaternion);
+  EXPECT_EQ(found.submerged_volume, 0.0);
+  EXPECT_EQ(found.metacenters, BodyHydrostatics{}.metacenters);
+  EXPECT_EQ(found.stiffness, BodyHydrostatics{}.stiffness);
+  EXPECT_EQ(counters.hydrostatics, 0);
+}
+
 struct BadState {
   const char* name;
   std::function<void(BodyState&)> spoil;

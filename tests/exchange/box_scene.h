@@ -17,6 +17,7 @@ inline constexpr std::int32_t kBox = 1;              // unit box about B's origi
 inline constexpr std::int32_t kOffsetBox = 2;        // the same, torque about a corner
 inline constexpr std::int32_t kFastBox = -3;         // the same, by a method without error bound
 inline constexpr std::int32_t kHierarchicalBox = 5;  // the same, by the default method
+inline constexpr std::int32_t kHydrostaticBox = 6;  // as kOffsetBox, but fast; its hydrostatics are asked for
 inline constexpr std::int32_t kNoBody = 4;
 
 inline Scene scene_of(std::string_view text, const std::filesystem::path& directory = {}) {
@@ -46,9 +47,18 @@ inline Scene box_scene() {
     id = -3
     shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
     method = "fast"
-    [[body]]
+        [[body]]
     id = 5
     shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    [[body]]
+    id = 6
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    method = "fast"
+    reference_point = [0.5, 0.5, -0.5]
+    outputs = ["wrench", "hydrostatics"]
+    [body.client]
+    density = 500
+
   )");
 }
 

@@ -110,6 +110,16 @@ angular_damping_quadratic = 13
   EXPECT_EQ(client.angular_damping_quadratic, 13.0);
 }
 
+TEST(SceneFile, KeepsHydrostaticsOffUnlessTheOutputsNameThem) {
+  const auto asks = [](const std::string& keys) {
+    return parsed(crate_and(keys)).value().bodies[0].hydrostatics;
+  };
+  EXPECT_FALSE(asks(""));
+  EXPECT_FALSE(asks("outputs = [\"wrench\"]\n"));
+  EXPECT_TRUE(asks("outputs = [\"wrench\", \"hydrostatics\"]\n"));
+  EXPECT_TRUE(asks("outputs = [\"hydrostatics\", \"wrench\"]\n"));
+}
+
 TEST(SceneFile, ReadsEveryMethodByItsName) {
   for (const Method method : kAllMethods) {
     const auto scene = parsed(crate_and("method = \"" + std::string(name(method)) + "\"\n"));
@@ -196,11 +206,17 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
       {crate_and("method = 3\n"), "method = 3; expected one of fast"},
       {crate_and("open = \"refsue\"\n"), "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
       {crate_and("open = true\n"), "open = true"},
-      {crate_and("outputs = [\"wrench\", \"hydrostatics\"]\n"),
-       "this version computes wrenches and nothing else"},
-      {crate_and("outputs = []\n"), "outputs = []; expected [\"wrench\"]"},
-      {crate_and("outputs = \"wrench\"\n"), "expected [\"wrench\"]"},
-      {crate_and("outputs = [1]\n"), "expected [\"wrench\"]"},
+      {crate_and("outputs = [\"hydrostatics\"]\n"),
+       "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"] or [\"wrench\", "
+       "\"hydrostatics\"]. Likely cause: wrenches are what every question is answered with. Write outputs = "
+       "[\"wrench\", \"hydrostatics\"]."},
+      {crate_and("outputs = [\"wrench\", \"hydrostatic\"]\n"),
+       "The nearest to 'hydrostatic' is 'hydrostatics'."},
+      {crate_and("outputs = [\"wrench\", \"wrench\"]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {crate_and("outputs = []\n"), "outputs = []; expected [\"wrench\"] or [\"wrench\", \"hydrostatics\"]"},
+      {crate_and("outputs = \"wrench\"\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {crate_and("outputs = [\"wrench\", 1]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+
       {crate_and("reference_point = [1, 2]\n"), "expected an array of 3 finite numbers (m)"},
       {crate_and("reference_point = [1, 2, inf]\n"), "expected an array of 3 finite numbers (m)"},
       {crate_and("reference_point = [1, 2, \"3\"]\n"), "expected an array of 3 finite numbers (m)"},

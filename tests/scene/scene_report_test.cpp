@@ -29,6 +29,7 @@ shape = { type = "box", size = [1, 2, 3] }
 method = "fast_surface"
 tolerance = 0.25
 reference_point = [1, 2, 3]
+outputs = ["wrench", "hydrostatics"]
 [body.client]
 density = 300
 [[body]]
@@ -58,6 +59,9 @@ TEST(SceneReports, HoldTheWaterAndEveryBodyAsJson) {
   EXPECT_EQ(crate["method"], "fast_surface");
   EXPECT_EQ(crate["tolerance"], 0.25);
   EXPECT_EQ(crate["reference_point"], Json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(crate["outputs"], Json({"wrench", "hydrostatics"}));
+  EXPECT_EQ(report["bodies"][1]["outputs"], Json({"wrench"}));
+
   EXPECT_EQ(report["bodies"][1]["mesh"], 1);
   EXPECT_EQ(report["bodies"][2]["mesh"], 0);
 }
@@ -115,6 +119,7 @@ TEST(SceneReports, TellPeopleOfEveryBodyAndMesh) {
   const std::string text = scene_report_text(prepared(kThreeBodies));
   for (const char* told : {"pool.toml\n", "up . x < 1.5 m", "1000 kg/m^3", "body 4  crate\n",
                            "body 5  ball\n", "body 6  chest\n", "fast_surface, tolerance 0.25", "[1, 2, 3] m",
+                           "outputs       wrench, hydrostatics\n", "outputs       wrench\n",
                            "1800 kg, 300 kg/m^3", "3000 kg, 500 kg/m^3", "mesh box\n", "mesh sphere\n",
                            "used by       body 4, 6\n", "used by       body 5\n"}) {
     EXPECT_NE(text.find(told), std::string::npos) << "missing: " << told << "\n" << text;

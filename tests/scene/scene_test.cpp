@@ -57,6 +57,47 @@ TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
   EXPECT_EQ(body.client.mass, 9.0);
 }
 
+TEST(Scene, GivesTheTreeToMeshesWhoseBodiesAskForHydrostatics) {
+  const TemporaryDirectory directory;
+  const std::string exact_box = "shape = { type = \"box\" }\nmethod = \"exact\"\n";
+  const auto without = loaded(directory, body_with(1, exact_box));
+  ASSERT_TRUE(without) << without.error().message();
+  EXPECT_FALSE(without->bodies()[0].hydrostatics);
+  EXPECT_FALSE(without->meshes()[0]->mesh.tree);
+  const auto with =
+      loaded(directory,
+             body_with(1, exact_box) + body_with(2, exact_box + "outputs = [\"wrench\", \"hydrostatics\"]"));
+  ASSERT_TRUE(with) << with.error().message();
+  EXPECT_FALSE(with->bodies()[0].hydrostatics);
+  EXPECT_TRUE(with->bodies()[1].hydrostatics);
+  ASSERT_EQ(with->meshes().size(), 1U);
+  EXPECT_TRUE(with->meshes()[0]->mesh.tree);
+}
+
+TEST(Scene, KnowsTheCentreOfMassWhereTheClientSaysHowTheMassLies) {
+  const TemporaryDirectory directory;
+  const std::string open_mesh =
+      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n").string();
+  const std::string cone = "shape = { type = \"cone\", height = 2 }\n";
+  const std::string open = "mesh = \"" + open_mesh + "\"\nopen = \"dry_boundary\"\n";
+  const auto center = [&](const std::string& keys) {
+    const auto scene = loaded(directory, body_with(1, keys));
+    EXPECT_TRUE(scene) << scene.error().message();
+    return scene->bodies()[0].center_of_mass_B;
+  };
+  EXPECT_FALSE(center(cone));
+  EXPECT_FALSE(center(cone + "[body.client]\nposition = [1, 2, 3]"));
+  for (const char* keys : {"mass = 3", "density = 300"}) {
+    const std::optional<Vec3> found = center(cone + "[body.client]\n" + keys);
+    ASSERT_TRUE(found) << keys;
+    EXPECT_LE((*found - Vec3(0, 0, 0.5)).norm(), 1e-14) << "the volume's centroid";
+  }
+  EXPECT_EQ(center(cone + "[body.client]\nmass = 3\ncenter_of_mass = [1, 2, 3]"), Vec3(1, 2, 3));
+  EXPECT_EQ(center(cone + "[body.client]\ncenter_of_mass = [1, 2, 3]"), Vec3(1, 2, 3));
+  EXPECT_FALSE(center(open + "[body.client]\nmass = 3")) << "an open mesh encloses no volume";
+  EXPECT_EQ(center(open + "[body.client]\nmass = 3\ncenter_of_mass = [1, 2, 3]"), Vec3(1, 2, 3));
+}
+
 TEST(Scene, LoadsAMeshUsedTwiceOnce) {
   const TemporaryDirectory directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());

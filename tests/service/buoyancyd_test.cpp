@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(Buoyancyd, Ended, testing::Values(SIGINT, SIGTERM));
 TEST(Buoyancyd, SaysWhatItListensToWhenItIsReady) {
   RunningService service({"-l", "udpm://239.255.76.67:7667?ttl=0", "--mode", "latest"});
   const std::string log = service.log();
-  for (const char* text : {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_STATUS",
-                           "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
+  for (const char* text : {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_HYDROSTATICS",
+                           "BUOYANCY_STATUS", "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
     EXPECT_NE(log.find(text), std::string::npos) << text << " is missing from " << log;
   }
 }
@@ -67,6 +67,7 @@ TEST(Buoyancyd, RefusesWrongArgumentsWithOneLineAnd2) {
   expect_refusal(run({"--scene", scene, "--states-channel", ""}), 2, "0 characters");
   expect_refusal(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
   expect_refusal(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "same");
+  expect_refusal(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "same");
 }
 
 TEST(Buoyancyd, RefusesScenesAndMeshesItCannotUseWithOneLineAnd2) {

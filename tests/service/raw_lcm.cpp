@@ -41,6 +41,10 @@ class Fingerprint {
                            const std::string& size) {
     return text(name).text(primitive_type).byte(1).byte(0).text(size);
   }
+  Fingerprint& matrix(const std::string& name, const std::string& primitive_type, const std::string& rows,
+                      const std::string& columns) {
+    return text(name).text(primitive_type).byte(2).byte(0).text(rows).byte(0).text(columns);
+  }
   // The elements' own fingerprint is added in value(); their type's name does not count.
   Fingerprint& counted_array_of_structs(const std::string& name, const std::string& count,
                                         std::int64_t element) {
@@ -95,6 +99,31 @@ std::int64_t wrenches_fingerprint() {
       .field("seq", "int64_t")
       .field("num_bodies", "int32_t")
       .counted_array_of_structs("bodies", "num_bodies", wrench)
+      .value();
+}
+
+std::int64_t hydrostatics_fingerprint() {
+  const std::int64_t body = Fingerprint()
+                                .field("body_id", "int32_t")
+                                .field("status", "int32_t")
+                                .field("submerged_volume", "double")
+                                .fixed_array("center_of_buoyancy", "double", "3")
+                                .field("wetted_area", "double")
+                                .field("waterplane_area", "double")
+                                .fixed_array("waterplane_centroid", "double", "3")
+                                .fixed_array("waterplane_second_moments", "double", "2")
+                                .matrix("waterplane_axes", "double", "2", "3")
+                                .fixed_array("metacentric_radii", "double", "2")
+                                .matrix("metacenters", "double", "2", "3")
+                                .fixed_array("metacentric_heights", "double", "2")
+                                .matrix("stiffness", "double", "6", "6")
+                                .value();
+  return Fingerprint()
+      .field("utime", "int64_t")
+      .field("session_id", "int64_t")
+      .field("seq", "int64_t")
+      .field("num_bodies", "int32_t")
+      .counted_array_of_structs("bodies", "num_bodies", body)
       .value();
 }
 
@@ -285,6 +314,33 @@ RawWrenches decode_wrenches(const RawBytes& bytes) {
   }
   if (reader.left() != 0) throw std::runtime_error("bytes behind the message");
   return wrenches;
+}
+
+RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
+  RawReader reader(bytes);
+  if (reader.int64() != hydrostatics_fingerprint()) throw std::runtime_error("not bodies_hydrostatics_t");
+  RawHydrostatics hydrostatics;
+  hydrostatics.utime = reader.int64();
+  hydrostatics.session_id = reader.int64();
+  hydrostatics.seq = reader.int64();
+  hydrostatics.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  for (RawBodyHydrostatics& body : hydrostatics.bodies) {
+    body.body_id = reader.int32();
+    body.status = reader.int32();
+    body.submerged_volume = reader.real();
+    reader.reals(body.center_of_buoyancy);
+    body.wetted_area = reader.real();
+    body.waterplane_area = reader.real();
+    reader.reals(body.waterplane_centroid);
+    reader.reals(body.waterplane_second_moments);
+    reader.reals(body.waterplane_axes);
+    reader.reals(body.metacentric_radii);
+    reader.reals(body.metacenters);
+    reader.reals(body.metacentric_heights);
+    reader.reals(body.stiffness);
+  }
+  if (reader.left() != 0) throw std::runtime_error("bytes behind the message");
+  return hydrostatics;
 }
 
 }  // namespace buoyancy

@@ -79,6 +79,14 @@ class RawReader {
     for (double& value : values) value = real();
     return values;
   }
+  template <std::size_t kSize>
+  void reals(std::array<double, kSize>& values) {
+    for (double& value : values) value = real();
+  }
+  template <std::size_t kRows, std::size_t kColumns>
+  void reals(std::array<std::array<double, kColumns>, kRows>& rows) {
+    for (auto& row : rows) reals(row);
+  }
   std::size_t left() const { return bytes_.size() - position_; }
 
  private:
@@ -124,5 +132,29 @@ struct RawWrenches {
   std::vector<RawWrench> bodies;
 };
 RawWrenches decode_wrenches(const RawBytes& bytes);  // throws where they are none
+
+// body_hydrostatics_t.lcm
+struct RawBodyHydrostatics {
+  std::int32_t body_id = 0;
+  std::int32_t status = 0;
+  double submerged_volume = 0.0;
+  std::array<double, 3> center_of_buoyancy{};
+  double wetted_area = 0.0;
+  double waterplane_area = 0.0;
+  std::array<double, 3> waterplane_centroid{};
+  std::array<double, 2> waterplane_second_moments{};
+  std::array<std::array<double, 3>, 2> waterplane_axes{};
+  std::array<double, 2> metacentric_radii{};
+  std::array<std::array<double, 3>, 2> metacenters{};
+  std::array<double, 2> metacentric_heights{};
+  std::array<std::array<double, 6>, 6> stiffness{};
+};
+struct RawHydrostatics {
+  std::int64_t utime = 0;
+  std::int64_t session_id = 0;
+  std::int64_t seq = 0;
+  std::vector<RawBodyHydrostatics> bodies;
+};
+RawHydrostatics decode_hydrostatics(const RawBytes& bytes);  // throws where they are none
 
 }  // namespace buoyancy

@@ -172,6 +172,36 @@ TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
   EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
 }
 
+TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
+  const std::string asking =
+      write("asking.toml", std::string(kScene) + "outputs = [\"wrench\", \"hydrostatics\"]\n");
+  const auto replay_asking = [&](const std::string& output, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"--scene", asking, path("in.lcmlog"), output};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(std::move(arguments)).exit_code;
+  };
+  write("in.lcmlog", log_of_questions(3));
+  ASSERT_EQ(replay_asking(path("out.lcmlog"), {"--hydrostatics-channel", "H"}), 0);
+  auto reader = EventLogReader::open(path("out.lcmlog"), "H");
+  ASSERT_TRUE(reader);
+  for (int i = 0; i < 3; ++i) {
+    const InputItem item = reader->next();
+    const auto* found = std::get_if<RecordedQuestion>(&item);
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->timestamp, 500 + i);
+    BodiesHydrostatics hydrostatics;
+    ASSERT_FALSE(decode(found->bytes, hydrostatics));
+    EXPECT_EQ(hydrostatics.key.seq, i);
+    EXPECT_DOUBLE_EQ(hydrostatics.bodies.at(0).waterplane_area, 6.0);
+  }
+  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
+
+  ASSERT_EQ(replay_asking(path("asked.csv"), {}), 0);
+  ASSERT_EQ(replay(path("in.lcmlog"), path("not_asked.csv")).exit_code, 0);
+  EXPECT_EQ(contents_of(path("asked.csv")), contents_of(path("not_asked.csv")));
+  EXPECT_EQ(replay_asking(path("x.lcmlog"), {"--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2);
+}
+
 TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20; ++i) poses += pose_row(i, 0.125 * i);

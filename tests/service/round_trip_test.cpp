@@ -100,6 +100,71 @@ TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
 
+TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAndStiffnessOfABox) {
+  const RunningService service({}, kHydrostaticBoxScene);
+  RawLcmSocket socket;
+  RawStates states = one_body(9, 3, 0.5);
+  states.utime = 77;
+  states.bodies.resize(3, states.bodies[0]);
+  states.bodies[1].body_id = 2;
+  states.bodies[2].body_id = 5;  // unknown
+  ask(socket, states);
+  EXPECT_EQ(hear(socket).bodies.size(), 3U);
+  const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kPatience);
+  ASSERT_TRUE(bytes);
+  const RawHydrostatics heard = decode_hydrostatics(*bytes);
+  EXPECT_EQ(heard.utime, 77);
+  EXPECT_EQ(heard.session_id, 9);
+  EXPECT_EQ(heard.seq, 3);
+  ASSERT_EQ(heard.bodies.size(), 1U) << "body 1 does not ask";
+  const RawBodyHydrostatics& body = heard.bodies[0];
+  EXPECT_EQ(body.body_id, 2);
+  EXPECT_EQ(body.status, 0);
+  const double draft = 1.5;
+  const double volume = 6.0 * draft;
+  EXPECT_NEAR(body.submerged_volume, volume, 1e-12);
+  EXPECT_NEAR(body.center_of_buoyancy[2], -2.0 + draft / 2, 1e-12);
+  EXPECT_NEAR(body.wetted_area, 6.0 + 10.0 * draft, 1e-12);
+  EXPECT_NEAR(body.waterplane_area, 6.0, 1e-12);
+  EXPECT_NEAR(body.waterplane_centroid[2], -0.5, 1e-12);
+  // 2 m along x and 3 m along y: heeling about y is the easier.
+  const std::array<double, 2> second_moments{3.0 * 8.0 / 12.0, 2.0 * 27.0 / 12.0};
+  EXPECT_NEAR(std::abs(body.waterplane_axes[0][1]), 1.0, 1e-12);
+  EXPECT_NEAR(std::abs(body.waterplane_axes[1][0]), 1.0, 1e-12);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double radius = second_moments[i] / volume;
+    EXPECT_NEAR(body.waterplane_second_moments[i], second_moments[i], 1e-12);
+    EXPECT_NEAR(body.metacentric_radii[i], radius, 1e-12);
+    EXPECT_NEAR(body.metacenters[i][2], -2.0 + draft / 2 + radius, 1e-12);
+    EXPECT_NEAR(body.metacentric_heights[i], -2.0 + draft / 2 + radius, 1e-12);
+    const std::size_t about = i == 0 ? 4 : 3;
+    EXPECT_NEAR(body.stiffness[about][about], kDensity * kGravity * volume * body.metacentric_heights[i],
+                1e-7)
+        << "about the centre of mass, which is B's origin";
+  }
+  EXPECT_NEAR(body.stiffness[2][2], kDensity * kGravity * 6.0, 1e-7);
+  EXPECT_TRUE(
+      hear_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
+}
+
+TEST(RoundTripOfHydrostatics, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsks) {
+  const RunningService service({"--hydrostatics-channel", "H"}, kHydrostaticBoxScene);
+  RawLcmSocket socket;
+  RawStates asking = one_body(1, 1, 0.3);
+  asking.bodies[0].body_id = 2;
+  ask(socket, asking);
+  const auto first = socket.receive("H", kPatience);
+  ASSERT_TRUE(first);
+  ask(socket, asking);
+  EXPECT_EQ(socket.receive("H", kPatience), first);
+  ask(socket, one_body(1, 2, 0.3));
+  asking.seq = 3;
+  ask(socket, asking);
+  const auto next = socket.receive("H", kPatience);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "nothing of question 2";
+}
+
 TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;

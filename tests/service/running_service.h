@@ -44,6 +44,23 @@ inline ChildCommand command_of(std::vector<std::string> arguments) {
   return command;
 }
 
+// The same box, whose hydrostatics are asked for.
+inline constexpr const char* kHydrostaticBoxScene = R"(
+[world]
+gravity = 10.0
+[water]
+density = 1000.0
+[[body]]
+id = 1
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+[[body]]
+id = 2
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+outputs = ["wrench", "hydrostatics"]
+[body.client]
+mass = 12000
+)";
+
 // Ready when constructed.
 class RunningService {
  public:
