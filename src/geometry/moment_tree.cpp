@@ -1,6 +1,7 @@
 #include "geometry/moment_tree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -52,6 +53,35 @@ NodeMoments packed(const SurfaceMoments<double>& moments, double area) {
   }
   node.values[NodeMoments::kArea] = area;
   return node;
+}
+
+float with_upper_half(std::uint16_t half) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 16U);
+}
+
+std::uint16_t upper_half(double x) {
+  return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(static_cast<float>(x)) >> 16U);
+}
+
+// Of a float32 that is not less than x >= 0; infinity where there is none.
+std::uint16_t upper_half_rounded_up(double x) {
+  const float above = std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+  return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(above) + 0xFFFFU) >> 16U);
+}
+
+// Of n = S/A + d over a surface of area A, int |n . k| dA <= |S . k| + sqrt(A^2 - |S|^2): Cauchy's inequality
+// for d, whose squares integrate to A - |S|^2/A.
+void set_projected_area(TreeNode& node, std::size_t i, const NodeMoments& moments) {
+  const double area = moments.area();
+  const Vec3 S = moments.moments().S;
+  node.area[i] = upper_half_rounded_up(area);
+  node.oriented_x[i] = upper_half(S.x());
+  node.oriented_y[i] = upper_half(S.y());
+  node.oriented_z[i] = upper_half(S.z());
+  const Vec3 stored(with_upper_half(node.oriented_x[i]), with_upper_half(node.oriented_y[i]),
+                    with_upper_half(node.oriented_z[i]));
+  const double spread = std::sqrt(std::max((area - S.norm()) * (area + S.norm()), 0.0));
+  node.spread[i] = upper_half_rounded_up(spread + (S - stored).norm() + 1e-6 * area);
 }
 
 class Builder {
@@ -191,6 +221,7 @@ class Builder {
           fits_a_leaf(ranges[i]) ? build_leaf(ranges[i], moments_index) : build_node(ranges[i]);
       node.child[i] = child.child;
       set_bounds(node, i, child.bounds);
+      set_projected_area(node, i, child.moments);
       tree_.moments[moments_index] = child.moments;
       result.bounds.include(child.bounds);
       result.moments += child.moments;

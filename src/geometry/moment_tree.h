@@ -52,6 +52,11 @@ struct alignas(64) TreeNode {
   std::array<std::uint32_t, kTreeWidth> child;  // index into nodes, or kLeafBit + index into leaves
   std::uint32_t first_moments;                  // index of child 0's moments; its siblings' follow
   std::uint32_t children;                       // 1 to kTreeWidth
+  // For descents that stop early; the exact one does not read this line. Upper halves of float32, of child
+  // i's surface, m^2: its area, and so that int |n . k| dA <= |oriented . k| + spread for any unit k.
+  std::array<std::uint16_t, kTreeWidth> area;
+  alignas(64) std::array<std::uint16_t, kTreeWidth> oriented_x, oriented_y, oriented_z;
+  std::array<std::uint16_t, kTreeWidth> spread;
 
   static constexpr std::uint32_t kLeafBit = 0x80000000U;
 };
@@ -60,9 +65,9 @@ struct alignas(64) TreeNode {
 // nothing.
 struct alignas(64) TreeLeaf {
   std::array<double, kLeafVertices> x, y, z;  // m, about `center`
-  std::array<double, 3> center;               // m, about c; whole multiples of MomentTree::grid
   std::array<std::uint8_t, kLeafTriangles> a, b, c;
-  std::uint32_t moments;  // index of its own
+  std::array<double, 3> center;  // m, about c; whole multiples of MomentTree::grid
+  std::uint32_t moments;         // index of its own
   std::uint8_t vertices;
   std::uint8_t triangles;
 };

@@ -22,7 +22,8 @@ struct ErrorBounds {
   double force, torque;
 };
 
-ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Vec3& reference_B) {
+ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Displacement& displaced,
+                         const Vec3& reference_B) {
   if (!is_exact(solver.method())) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {kNone, kNone};
@@ -32,26 +33,30 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Ve
   // The paper's exact methods lose digits with depth: the apex, or the pressure, is far from the body's size.
   const double depth = std::abs(plane.h_c);
   if (solver.method() != Method::kHierarchical && depth > mesh.diagonal) force *= 1.0 + depth / mesh.diagonal;
+  force += displaced.undecided;
   return {force, force * mesh.largest_lever(reference_B)};
 }
 
-}  // namespace
+// The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
+void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+                       const Vec3& reference_B, BuoyancyAnswer& answer) {
+  const double weight = water.density * water.gravity;  // N/m^3
+  const Eigen::Quaterniond q_WB = pose.q_WB.normalized();
+  // In this order: a reference point near the body, both far from B's origin, loses nothing.
+  const Vec3 lever_B = (mesh.center_B - reference_B) + mesh.centroid;
+  answer.volume = mesh.volume;
+  answer.force_W = (weight * mesh.volume) * water.up_W;
+  const Vec3 torque_W = (weight * mesh.volume) * (q_WB * lever_B).cross(water.up_W);
+  answer.torque_W = torque_W - water.up_W.dot(torque_W) * water.up_W;
+  answer.center_of_buoyancy_W = q_WB * (mesh.center_B + mesh.centroid);
+  answer.force_error_bound = weight * mesh.volume_gate();
+  answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
+}
 
-BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
+// What the body displaces, as forces in the world.
+void answer_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
+                              const Water& water, const Vec3& reference_B, BuoyancyAnswer& answer) {
   const HydrostaticMesh& mesh = solver.mesh();
-  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  BuoyancyAnswer answer;
-  if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
-    answer.status = BuoyancyStatus::kOutOfRange;
-    return answer;
-  }
-  answer.immersion = immersion(mesh, plane);
-  if (answer.immersion == Immersion::kDry) return answer;  // nothing to sum: every method says zero, exactly
-  if (mesh.open() && !boundary_is_dry(mesh, plane)) {
-    answer.status = BuoyancyStatus::kOpenEdgeWet;
-    return answer;
-  }
-
   const Displacement displaced = solver.displacement(plane);
   const double weight = water.density * water.gravity;  // N/m^3
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
@@ -73,19 +78,48 @@ BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& wat
     answer.torque_W = weight * (R_WB * (displaced.torque + lever.cross(displaced.force)));
   }
 
-  const ErrorBounds bounds = error_bounds(solver, plane, reference_B);
+  const ErrorBounds bounds = error_bounds(solver, plane, displaced, reference_B);
   answer.force_error_bound = weight * bounds.force;
   answer.torque_error_bound = weight * bounds.torque;
   const double smallest_volume = std::isnan(bounds.force) ? mesh.volume_gate() : bounds.force;
   if (std::abs(displaced.volume) > smallest_volume) {
     answer.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
   }
-  if (!finite(answer)) {
-    const Immersion where = answer.immersion;
-    answer = {};
-    answer.status = BuoyancyStatus::kOutOfRange;
-    answer.immersion = where;
+}
+
+BuoyancyAnswer not_answered(BuoyancyStatus status, Immersion where) {
+  BuoyancyAnswer answer;
+  answer.status = status;
+  answer.immersion = where;
+  return answer;
+}
+
+}  // namespace
+
+BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
+  const HydrostaticMesh& mesh = solver.mesh();
+  const bool knows_its_whole = solver.method() == Method::kHierarchical;
+  BuoyancyAnswer answer;
+  answer.immersion = immersion_at_a_glance(mesh, pose, water);
+  if (answer.immersion == Immersion::kCrossing || (answer.immersion == Immersion::kWet && !knows_its_whole)) {
+    const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+    if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
+      return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
+    }
+    answer.immersion = immersion(mesh, plane);
+    if (answer.immersion != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
+      return not_answered(BuoyancyStatus::kOpenEdgeWet, answer.immersion);
+    }
+    if (answer.immersion == Immersion::kCrossing ||
+        (answer.immersion == Immersion::kWet && !knows_its_whole)) {
+      answer_from_displacement(solver, plane, pose, water, reference_B, answer);
+    }
   }
+  if (answer.immersion == Immersion::kDry) return answer;  // nothing to sum: every method says zero, exactly
+  if (answer.immersion == Immersion::kWet && knows_its_whole) {
+    answer_wholly_wet(mesh, pose, water, reference_B, answer);
+  }
+  if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, answer.immersion);
   return answer;
 }
 

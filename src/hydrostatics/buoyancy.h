@@ -2,6 +2,7 @@
 // end in.
 #pragma once
 
+#include "hydrostatics/immersion.h"
 #include "hydrostatics/solver.h"
 
 namespace buoyancy {
@@ -24,7 +25,8 @@ struct BuoyancyAnswer {
 };
 
 // pose: finite, quaternion not zero. reference_B: m, the point that torque is about.
-// Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing.
+// Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing. A dry body costs its
+// bounds alone, whatever the method; so does a wholly wet one with `hierarchical`.
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
 // health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate); of `exact` and

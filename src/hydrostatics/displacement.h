@@ -11,6 +11,9 @@ struct Displacement {
   Vec3 moment = Vec3::Zero();  // m^4, B axes: integral of (x - c) over the displaced volume
   Vec3 force = Vec3::Zero();   // m^3, B axes: F/(rho g), as computed
   Vec3 torque = Vec3::Zero();  // m^4, B axes: torque about c/(rho g), as computed
+  // m^3: what an answer within a tolerance left undecided cannot change |volume|, |force| or |torque|/lever
+  // by more; 0 where nothing was.
+  double undecided = 0.0;
 };
 
 }  // namespace buoyancy

@@ -1,7 +1,9 @@
 #include "hydrostatics/hierarchical.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "hydrostatics/immersion.h"
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wet_tree_sum.h"
 
@@ -48,19 +50,41 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
 
   const double cut_volume = sum.volume6 / 6.0;
   const double cut_height = sum.height24 / 24.0;
-  const double volume = k_N_k + z_c * k_S + cut_volume;
-  const double height = 0.5 * (k.dot(k_P_k) + z_c * (2.0 * k_N_k + z_c * k_S)) + cut_height;
   const Vec3 u(query.u[0], query.u[1], query.u[2]);
   const Vec3 v(query.v[0], query.v[1], query.v[2]);
+  Displacement result;
+  result.volume = k_N_k + z_c * k_S + cut_volume;
+  double height = 0.5 * (k.dot(k_P_k) + z_c * (2.0 * k_N_k + z_c * k_S)) + cut_height;
   // Along k the cut triangles' part of U is int z (z - z_c) n_k dA = 2 H - z_c V.
-  const Vec3 U = k_P_k + z_c * N_k + (sum.moment_u24 / 24.0) * u + (sum.moment_v24 / 24.0) * v +
-                 (2.0 * cut_height - z_c * cut_volume) * k;
-  return {volume, U - height * k, volume * k, U.cross(k)};
+  Vec3 U = k_P_k + z_c * N_k + (sum.moment_u24 / 24.0) * u + (sum.moment_v24 / 24.0) * v +
+           (2.0 * cut_height - z_c * cut_volume) * k;
+  if (query.budget > 0.0) {
+    const UndecidedSum& rest = sum.undecided;
+    const SurfaceMoments<double> offsets = rest.offsets.moments();
+    const Vec3 offset_N_k = offsets.N * k;
+    const double offset_k_S = k.dot(offsets.S);
+    const Vec3 curved(rest.moment[0], rest.moment[1], rest.moment[2]);
+    result.volume += offset_k_S + rest.volume;
+    height += 0.5 * (k.dot(offset_N_k) + z_c * offset_k_S + k.dot(curved) + z_c * rest.volume);
+    U += offset_N_k + curved;
+    result.undecided = rest.error;
+  }
+  result.moment = U - height * k;
+  result.force = result.volume * k;
+  result.torque = U.cross(k);
+  return result;
+}
+
+// m^3: what may be left undecided so that with the rounding, G_V, all stays within the tolerance. Bounds are
+// held in float32: sizes beyond its range are answered exactly.
+double budget(const HydrostaticMesh& mesh, double tolerance) {
+  const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
+  return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.volume_gate(), 0.0) : 0.0;
 }
 
 }  // namespace
 
-Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, double tolerance) {
   const MomentTree& tree = *mesh.tree;
   switch (immersion(mesh, plane)) {
     case Immersion::kDry:
@@ -70,7 +94,9 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane) 
     case Immersion::kCrossing:
       break;
   }
-  const TreeQuery query = make_tree_query(tree, plane);
+  TreeQuery query = make_tree_query(tree, plane);
+  query.budget = tolerance > 0.0 ? budget(mesh, tolerance) : 0.0;
+  query.half_diagonal = 0.5 * mesh.diagonal;
   return read_out(sum_wet_tree(tree, query), query, plane);
 }
 

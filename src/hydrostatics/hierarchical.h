@@ -10,6 +10,10 @@
 // Error: within G_V and G_V L_r (HydrostaticMesh::volume_gate) at every depth. A leaf's heights are rounded
 // relative to the leaf's size, its centre's height being taken from an exact product: a cap of 1e-6 V_T keeps
 // 9 digits. Complexity: O(triangles the water cuts + log n); no heap.
+//
+// With a tolerance the descent stops where what is undecided cannot change volume by more than tolerance V_T,
+// or torque/(rho g) by more than that times L_r (undecided_node.h); the bound that was reached is in the
+// answer. The cost then follows the tolerance, and n hardly.
 #pragma once
 
 #include "hydrostatics/displacement.h"
@@ -18,7 +22,8 @@
 
 namespace buoyancy {
 
-// mesh: with its tree.
-Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane);
+// mesh: with its tree. tolerance: 0 (exact) or more, relative to the whole displacement; below G_V / V_T it
+// is as 0.
+Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, double tolerance = 0.0);
 
 }  // namespace buoyancy

@@ -87,16 +87,4 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   return mesh;
 }
 
-Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  const Vec3 at_min = plane.up_B.cwiseProduct(mesh.box_min);
-  const Vec3 at_max = plane.up_B.cwiseProduct(mesh.box_max);
-  const double lowest = at_min.cwiseMin(at_max).sum() - plane.h_c;
-  const double highest = at_min.cwiseMax(at_max).sum() - plane.h_c;
-  const double margin = 8.0 * kEpsilon * (mesh.diagonal + std::abs(plane.h_c));
-  if (lowest > margin) return Immersion::kDry;
-  if (highest < -margin && !mesh.open()) return Immersion::kWet;
-  return Immersion::kCrossing;
-}
-
 }  // namespace buoyancy

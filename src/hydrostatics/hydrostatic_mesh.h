@@ -48,11 +48,4 @@ enum class WithTree { kNo, kYes };
 
 HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree = WithTree::kYes);
 
-// How a body lies in the water: above it, below it, or so near the surface that it has to be looked at.
-enum class Immersion { kDry, kWet, kCrossing };
-
-// By the bounding box, with a margin for rounding: kDry and kWet are certain. An open mesh is never kWet.
-// O(1).
-Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane);
-
 }  // namespace buoyancy

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hydrostatics/floating_moments.h"
+#include "hydrostatics/immersion.h"
 #include "hydrostatics/wet_moments.h"
 
 namespace buoyancy {

@@ -37,7 +37,8 @@ bool is_exact(Method method) {
   return method == Method::kExact || method == Method::kExactSurface || method == Method::kHierarchical;
 }
 
-Solver::Solver(const HydrostaticMesh& mesh, Method method) : mesh_(&mesh), method_(method) {
+Solver::Solver(const HydrostaticMesh& mesh, Method method, double tolerance)
+    : mesh_(&mesh), method_(method), tolerance_(tolerance) {
   if (method == Method::kFast) fast_.emplace(mesh);
 }
 
@@ -54,7 +55,7 @@ Displacement Solver::displacement(const WaterPlane& plane) const {
     case Method::kExactSurface:
       return exact_surface(*mesh_, plane);
     case Method::kHierarchical:
-      return hierarchical(*mesh_, plane);
+      return hierarchical(*mesh_, plane, tolerance_);
   }
   return {};
 }

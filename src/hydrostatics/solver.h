@@ -38,17 +38,20 @@ bool is_exact(Method method);  // exact to rounding in volume, force and torque
 
 class Solver {
  public:
-  // mesh must outlive the solver. Precomputes what the method needs and nothing else.
-  Solver(const HydrostaticMesh& mesh, Method method);
+  // mesh must outlive the solver. Precomputes what the method needs and nothing else. tolerance: 0 (exact) or
+  // more, relative to the whole displacement; only `hierarchical` makes use of it.
+  Solver(const HydrostaticMesh& mesh, Method method, double tolerance = 0.0);
 
   Displacement displacement(const WaterPlane& plane) const;
 
   const HydrostaticMesh& mesh() const { return *mesh_; }
   Method method() const { return method_; }
+  double tolerance() const { return tolerance_; }
 
  private:
   const HydrostaticMesh* mesh_;
   Method method_;
+  double tolerance_;
   std::optional<FastTable> fast_;
 };
 

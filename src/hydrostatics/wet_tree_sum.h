@@ -22,6 +22,18 @@ struct TreeQuery {
   std::array<double, 3> k, k_high, k_low;  // up in B
   std::array<double, 3> u, v;              // horizontal axes in B: (u, v, k) orthonormal and right-handed
   double h_high, h_low;                    // m
+  // m^3: how much may be left undecided, in volume and in torque/(rho g L_r); 0: nothing.
+  double budget;
+  double half_diagonal;  // m: L / 2; read where budget > 0
+};
+
+// What undecided nodes (undecided_node.h) add besides their slopes times their moments, which are among
+// wet_nodes.
+struct UndecidedSum {
+  NodeMoments offsets;             // m times moments: offset times S and N; the rest is unused
+  double volume = 0.0;             // m^3: int (p2 - p1) n_k dA
+  std::array<double, 3> moment{};  // m^4: the same times y_m
+  double error = 0.0;  // m^3: bound on what all of it can be wrong in volume, and in torque/(rho g L_r)
 };
 
 // Integrals over the wet surface, in two parts that the read-out adds.
@@ -34,10 +46,13 @@ struct WetTreeSum {
   double moment_v24 = 0.0;  // m^4: 24 int z y_v n_k dA
   double height24 = 0.0;    // m^4: 24 H = 12 int z^2 n_k dA
 
-  std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0;
+  UndecidedSum undecided;  // zero where the budget is
+
+  std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_undecided = 0;
 };
 
-// Descends from the root. Exact: nothing is left undecided. No heap.
+// Descends from the root. undecided.error <= budget. With budget 0 nothing is left undecided, and there is no
+// heap; else none once the thread has seen a tree as large.
 WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query);
 
 std::vector<std::string>

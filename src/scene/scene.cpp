@@ -101,9 +101,9 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
     }
     scene.index_.emplace_back(body.id, scene.bodies_.size());
-    scene.bodies_.push_back({body.id, body.name, &prepared, Solver(prepared.mesh, body.method),
-                             body.tolerance, body.reference_B, body.hydrostatics,
-                             center_of_mass(body.client, prepared), body.client});
+    scene.bodies_.push_back({body.id, body.name, &prepared,
+                             Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
+                             body.hydrostatics, center_of_mass(body.client, prepared), body.client});
   }
   std::sort(scene.index_.begin(), scene.index_.end());
   return scene;

@@ -33,7 +33,6 @@ struct Body {
   std::string name;
   const PreparedMesh* prepared = nullptr;  // owned by the scene
   Solver solver;
-  double tolerance = 0.0;
   Vec3 reference_B = Vec3::Zero();  // m
   bool hydrostatics = false;        // asked for; the mesh then has its tree
   // m: where [body.client] says how the mass lies (mass, density or center_of_mass) and the centre is known:

@@ -55,7 +55,7 @@ std::string body_text(const Body& body, const Scene& scene) {
   std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
   text += "  mesh          " + body.prepared->report.name + "\n";
   text += "  method        " + std::string(name(body.solver.method())) + ", tolerance " +
-          number(body.tolerance) + "\n";
+          number(body.solver.tolerance()) + "\n";
   text += "  torque about  " + vector_text(body.reference_B) + " m\n";
   text += "  outputs       wrench" + std::string(body.hydrostatics ? ", hydrostatics" : "") + "\n";
   const std::optional<double> mass = mass_of(body, scene.water());
@@ -141,7 +141,7 @@ Json json_of(const Body& body, const Scene& scene) {
           {"name", body.name},
           {"mesh", number_of(*body.prepared, scene)},
           {"method", name(body.solver.method())},
-          {"tolerance", body.tolerance},
+          {"tolerance", body.solver.tolerance()},
           {"reference_point", json_of(body.reference_B)},
           {"outputs", body.hydrostatics ? Json{"wrench", "hydrostatics"} : Json{"wrench"}},
           {"mass", json_of(mass_of(body, scene.water()))},

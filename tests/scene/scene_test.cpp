@@ -52,7 +52,7 @@ TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
   EXPECT_EQ(body.id, 4);
   EXPECT_EQ(body.name, "crate");
   EXPECT_EQ(body.solver.method(), Method::kFast);
-  EXPECT_EQ(body.tolerance, 0.25);
+  EXPECT_EQ(body.solver.tolerance(), 0.25);
   EXPECT_EQ(body.reference_B, Vec3(1, 2, 3));
   EXPECT_EQ(body.client.mass, 9.0);
 }

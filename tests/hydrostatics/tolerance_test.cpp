@@ -1,0 +1,133 @@
+// `hierarchical` with a tolerance: the bound that it publishes is a bound, and no larger than was asked for.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "hydrostatics/hierarchical.h"
+#include "hydrostatics/wet_tree_sum.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+const Water kUnitWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
+
+// Largest of a set of poses: bound over what was asked for, and true errors over the bound.
+struct Worst {
+  double bound = 0.0, force = 0.0, torque = 0.0;
+};
+
+Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh, double tolerance, int poses,
+                        std::uint64_t seed) {
+  const Solver within(mesh, Method::kHierarchical, tolerance);
+  const Solver exactly(mesh, Method::kHierarchical);
+  const BoundingBox box = bounding_box(source);
+  const double gate = mesh.volume_gate();
+  RandomPoses random(seed);
+  Worst worst;
+  for (int i = 0; i < poses; ++i) {
+    Water water = kUnitWater;
+    if (i % 4 == 3) water.up_W = random.direction();
+    const Pose pose = i % 5 == 4 ? random.adversarial(source, water) : random.crossing(box, water);
+    const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.uniform(0, 1) * random.direction();
+    const BuoyancyAnswer answer = buoyancy(within, pose, water, reference_B);
+    const BuoyancyAnswer truth = buoyancy(exactly, pose, water, reference_B);
+    if (answer.immersion == Immersion::kDry) continue;
+    const double allowed = std::max(tolerance * mesh.volume, 4.0 * gate);
+    worst.bound = std::max(worst.bound, answer.force_error_bound / allowed);
+    worst.bound =
+        std::max(worst.bound, answer.torque_error_bound / (allowed * mesh.largest_lever(reference_B)));
+    // The truth has an error of its own, which is one gate at most.
+    worst.force =
+        std::max(worst.force, (answer.force_W - truth.force_W).norm() / (answer.force_error_bound + gate));
+    worst.force =
+        std::max(worst.force, std::abs(answer.volume - truth.volume) / (answer.force_error_bound + gate));
+    worst.torque =
+        std::max(worst.torque, (answer.torque_W - truth.torque_W).norm() /
+                                   (answer.torque_error_bound + gate * mesh.largest_lever(reference_B)));
+  }
+  return worst;
+}
+
+TEST(Tolerance, IsNeverExceededByTheBoundNorTheBoundByTheError) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    for (const double tolerance : {1e-15, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1.0}) {
+      const Worst worst = over_random_poses(named.mesh, mesh, tolerance, 100, 41);
+      EXPECT_LE(worst.bound, 1.0) << named.name << ", " << tolerance;
+      EXPECT_LE(worst.force, 1.0) << named.name << ", " << tolerance;
+      EXPECT_LE(worst.torque, 1.0) << named.name << ", " << tolerance;
+    }
+  }
+}
+
+TEST(Tolerance, HoldsOnEveryInstructionSetAndOnLargeMeshes) {
+  for (const int frequency : {16, 70}) {
+    const TriangleMesh rock = make_shape(RockShape{.frequency = frequency});
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+    for (const std::string& target : simd_targets()) {
+      ASSERT_TRUE(force_simd_target(target));
+      for (const double tolerance : {1e-5, 1e-3, 1e-2}) {
+        const Worst worst = over_random_poses(rock, mesh, tolerance, 400, 42);
+        EXPECT_LE(worst.bound, 1.0) << target << ", " << tolerance;
+        EXPECT_LE(worst.force, 1.0) << target << ", " << tolerance;
+        EXPECT_LE(worst.torque, 1.0) << target << ", " << tolerance;
+        EXPECT_GT(worst.force, 1e-3) << "nothing was left undecided: the test sees nothing";
+      }
+    }
+    force_simd_target("");
+  }
+}
+
+TEST(Tolerance, OfZeroOrBelowTheRoundingGivesTheExactAnswersBits) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 16});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  const Pose pose{Vec3(0, 0, 0.3), Eigen::Quaterniond(0.9, 0.1, 0.3, -0.2).normalized()};
+  const WaterPlane plane = water_plane_in_body(pose, kUnitWater, mesh.center_B);
+  const Displacement exactly = hierarchical(mesh, plane);
+  const Displacement barely = hierarchical(mesh, plane, 1e-16);
+  EXPECT_EQ(exactly.undecided, 0.0);
+  EXPECT_EQ(barely.undecided, 0.0);
+  EXPECT_EQ(barely.volume, exactly.volume);
+  EXPECT_EQ(barely.moment, exactly.moment);
+  EXPECT_EQ(barely.torque, exactly.torque);
+}
+
+TEST(Tolerance, LooksAtLessOfTheMeshTheMoreItAllows) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 122}), {}});
+  TreeQuery query{};
+  query.k = query.k_high = {0, 0, 1};
+  query.u = {1, 0, 0};
+  query.v = {0, 1, 0};
+  query.half_diagonal = 0.5 * mesh.diagonal;
+  std::int64_t visited = sum_wet_tree(*mesh.tree, query).nodes_visited;
+  for (const double tolerance : {1e-4, 1e-3, 1e-2}) {
+    query.budget = tolerance * mesh.volume;
+    const WetTreeSum sum = sum_wet_tree(*mesh.tree, query);
+    EXPECT_LT(sum.nodes_visited, visited);
+    EXPECT_LE(sum.undecided.error, query.budget);
+    EXPECT_GT(sum.nodes_undecided, 0);
+    visited = sum.nodes_visited;
+  }
+  EXPECT_LT(visited, 100) << "at 1e-2 the answer hardly depends on the mesh";
+}
+
+TEST(Tolerance, KeepsTheCentreOfBuoyancyWhereTheVolumeIs) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 39});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  RandomPoses random(43);
+  for (int i = 0; i < 200; ++i) {
+    const Pose pose = random.crossing(bounding_box(rock), kUnitWater);
+    const WaterPlane plane = water_plane_in_body(pose, kUnitWater, mesh.center_B);
+    const Displacement truth = hierarchical(mesh, plane);
+    const Displacement within = hierarchical(mesh, plane, 1e-3);
+    EXPECT_LE((within.moment - truth.moment).norm(), 2e-3 * mesh.volume * mesh.diagonal);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
