@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <random>
+#include <utility>
 
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
@@ -24,6 +26,10 @@ std::filesystem::path mesh_directory() {
 
 }  // namespace
 
+BenchmarkMesh torus_knot() {
+  return from_shape("torus knot", TorusKnotShape{});
+}
+
 BenchmarkMesh rock(int frequency) {
   return from_shape("rock", RockShape{.frequency = frequency});
 }
@@ -39,12 +45,26 @@ BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, in
       }
     }
   }
-  return rock(frequency);
+  BenchmarkMesh stand_in = rock(frequency);
+  stand_in.name += " for " + name;
+  return stand_in;
+}
+
+BenchmarkMesh shuffled(const BenchmarkMesh& model) {
+  TriangleMesh source = model.source;
+  // Fisher and Yates by hand: std::shuffle may differ from one standard library to the next. The bias of the
+  // remainder, 1e6 of 2^64, moves nothing.
+  std::mt19937_64 generator(1);
+  for (std::size_t i = source.triangles.size(); i > 1; --i) {
+    std::swap(source.triangles[i - 1], source.triangles[generator() % i]);
+  }
+  HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
+  return {model.name + " shuffled", std::move(source), std::move(mesh)};
 }
 
 std::vector<BenchmarkMesh> paper_meshes() {
   std::vector<BenchmarkMesh> meshes;
-  meshes.push_back(from_shape("torus knot", TorusKnotShape{}));
+  meshes.push_back(torus_knot());
   meshes.push_back(model_or_rock("bunny", "bunny_5002.ply", 16));
   meshes.push_back(model_or_rock("armadillo", "armadillo_30000.ply", 39));
   return meshes;

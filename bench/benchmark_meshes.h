@@ -9,7 +9,7 @@
 namespace buoyancy {
 
 struct BenchmarkMesh {
-  std::string name;  // "bunny", or "rock" where the model was not at hand
+  std::string name;  // "bunny", or "rock for bunny" where the model was not at hand
   TriangleMesh source;
   HydrostaticMesh mesh;
 };
@@ -22,6 +22,11 @@ std::vector<BenchmarkMesh> paper_meshes();
 // A mesh file of $BUOYANCY_MESHES; where it is absent a rock of 20 frequency^2 triangles.
 BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, int frequency);
 
+BenchmarkMesh torus_knot();
 BenchmarkMesh rock(int frequency);
+
+// The same mesh with its triangles in an order that has nothing to do with where they lie: the same on every
+// machine. Its name says "shuffled".
+BenchmarkMesh shuffled(const BenchmarkMesh& model);
 
 }  // namespace buoyancy

@@ -10,6 +10,7 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
+#include "unit_water.h"
 
 namespace buoyancy {
 namespace {
@@ -32,7 +33,6 @@ void run() {
       {"sphere", SphereShape{.radius = 1.0, .segments = 50}, 1.0, ball, sphere},
       {"sphere", SphereShape{.radius = 1.0, .segments = 200}, 1.0, ball, sphere},
   };
-  const Water water{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
   constexpr int kSteps = 200;
 
   std::printf("shape,triangles,method,h,force,closed_form,error_of_whole\n");
@@ -43,7 +43,7 @@ void run() {
       for (int step = 1; step < kSteps; ++step) {
         const double h = c.reach * (2.0 * step / kSteps - 1.0);
         const Pose pose{Vec3(0, 0, h), Eigen::Quaterniond::Identity()};
-        const double force = buoyancy(solver, pose, water, Vec3::Zero()).force_W.z();
+        const double force = buoyancy(solver, pose, kUnitWater, Vec3::Zero()).force_W.z();
         std::printf("%s,%zu,%s,%.17g,%.17g,%.17g,%.17g\n", c.name.c_str(), mesh.surface.triangles.size(),
                     std::string(name(method)).c_str(), h, force, c.force(h), (force - c.force(h)) / c.whole);
       }

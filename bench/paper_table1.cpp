@@ -3,14 +3,9 @@
 // One iteration answers 100 poses from almost dry to almost submerged. Errors are the largest over those
 // poses against extended precision, relative to the whole: force by rho g V_T, torque by rho g V_T L. They
 // are computed, and for the exact methods checked, before anything is timed.
-#include <array>
-#include <cmath>
-#include <cstdint>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <functional>
-#include <numeric>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -18,12 +13,12 @@
 #include "benchmark_meshes.h"
 #include "hydrostatics/buoyancy.h"
 #include "pose_sweep.h"
+#include "read_mesh.h"
 #include "tests/hydrostatics/exact_oracle.h"
+#include "unit_water.h"
 
 namespace buoyancy {
 namespace {
-
-const Water kUnitWater{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
 
 struct Errors {
   double force = 0.0, torque = 0.0;
@@ -53,28 +48,9 @@ void count(benchmark::State& state, const HydrostaticMesh& mesh, const Errors& e
   state.counters["torque_error"] = errors.torque;
 }
 
-// Reads an array, 64 bytes at a time, with the widest registers that this processor has.
-[[gnu::target_clones("avx512f", "avx2", "default")]] std::uint64_t read_once(const void* array,
-                                                                             std::size_t bytes) {
-  std::array<std::uint64_t, 8> seen{};
-  for (std::size_t i = 0; i + sizeof(seen) <= bytes; i += sizeof(seen)) {
-    std::array<std::uint64_t, 8> line;
-    std::memcpy(line.data(), static_cast<const unsigned char*>(array) + i, sizeof(line));
-    for (std::size_t lane = 0; lane < line.size(); ++lane) seen[lane] ^= line[lane];
-  }
-  return std::accumulate(seen.begin(), seen.end(), std::uint64_t{0}, std::bit_xor());
-}
-
 // What any method that looks at every triangle must spend.
-void read_vertices_and_indices(benchmark::State& state, const HydrostaticMesh& mesh) {
-  const TriangleMesh& surface = mesh.surface;
-  for (auto _ : state) {
-    for (const std::vector<double>* coordinate : {&surface.x, &surface.y, &surface.z}) {
-      benchmark::DoNotOptimize(read_once(coordinate->data(), coordinate->size() * sizeof(double)));
-    }
-    benchmark::DoNotOptimize(
-        read_once(surface.triangles.data(), surface.triangles.size() * sizeof(Triangle)));
-  }
+void read_mesh(benchmark::State& state, const HydrostaticMesh& mesh) {
+  for (auto _ : state) benchmark::DoNotOptimize(read_vertices_and_indices(mesh.surface));
   count(state, mesh, {});
 }
 
@@ -100,9 +76,8 @@ int run(int argc, char** argv) {
   }
   for (std::size_t m = 0; m < models.size(); ++m) {
     const std::string model = models[m].name + "/" + std::to_string(models[m].mesh.surface.triangles.size());
-    benchmark::RegisterBenchmark(
-        (model + "/read vertices and indices").c_str(),
-        [&, m](benchmark::State& state) { read_vertices_and_indices(state, models[m].mesh); });
+    benchmark::RegisterBenchmark((model + "/read vertices and indices").c_str(),
+                                 [&, m](benchmark::State& state) { read_mesh(state, models[m].mesh); });
     for (std::size_t i = 0; i < kAllMethods.size(); ++i) {
       const Solver& solver = solvers[m * kAllMethods.size() + i];
       const Errors errors = largest_errors(models[m], solver, sweeps[m]);

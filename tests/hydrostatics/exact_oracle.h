@@ -3,9 +3,13 @@
 // Everything is taken from the definition: the pose's rotation is R(q)/|q|^2, rational in the quaternion's
 // components; the wet part of every triangle comes from the same clip as the product's (triangle_clip.h),
 // then volume and first moment are the sums of the tetrahedra over an apex on the water. In rationals nothing
-// is rounded, so that a double result minus this one is the double's true error.
+// is rounded, so that a double result minus this one is the double's true error. In long double the terms are
+// summed in blocks, so that 1,000,000 triangles cost no digits that count.
 #pragma once
 
+#include <vector>
+
+#include "geometry/pairwise_sum.h"
 #include "geometry/triangle_mesh.h"
 #include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/water_plane.h"
@@ -43,33 +47,44 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
   const Vec3T<T> apex_B = k * T(h / k.dot(k));
   const auto apex = Point<T>::from(apex_B);
 
-  const auto corner = [&](std::int32_t i) {
-    const Vec3T<T> x = mesh.vertex(i).template cast<T>();
-    return Corner<T>{Point<T>::from(x), T(k.dot(x) - h)};
+  std::vector<Corner<T>> corners;
+  corners.reserve(mesh.vertex_count());
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const Vec3T<T> x = mesh.vertex(static_cast<std::int32_t>(i)).template cast<T>();
+    corners.push_back({Point<T>::from(x), T(k.dot(x) - h)});
+  }
+  struct Term {
+    T volume6{};
+    Point<T> moment24{};  // about the apex
+
+    Term& operator+=(const Term& other) {
+      volume6 += other.volume6;
+      moment24 += other.moment24;
+      return *this;
+    }
   };
-  T volume6(0);
-  Point<T> moment24{T(0), T(0), T(0)};  // about the apex
+  PairwiseSum<Term> sum;
   const auto add = [&](const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
     const Point<T> p = a.y - apex;
     const Point<T> q = b.y - apex;
     const Point<T> r = c.y - apex;
     const T v6 = dot(p, cross(q, r));
-    volume6 += v6;
-    moment24 += v6 * (p + q + r);
+    sum.add({v6, v6 * (p + q + r)});
   };
   for (const Triangle& triangle : mesh.triangles) {
-    const Corner<T> a = corner(triangle[0]);
-    const Corner<T> b = corner(triangle[1]);
-    const Corner<T> c = corner(triangle[2]);
-    const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
+    const auto corner = [&](std::size_t n) -> const Corner<T>& {
+      return corners[static_cast<std::size_t>(triangle[n])];
+    };
+    const int wet = int(corner(0).wet()) + int(corner(1).wet()) + int(corner(2).wet());
     if (wet == 3) {
-      add(a, b, c);
+      add(corner(0), corner(1), corner(2));
     } else if (wet != 0) {
-      visit_wet_part(a, b, c, add);
+      visit_wet_part(corner(0), corner(1), corner(2), add);
     }
   }
-  result.volume = volume6 / T(6);
-  result.moment = moment24.vec3() / T(24) + apex_B * result.volume;
+  const Term total = sum.total();
+  result.volume = total.volume6 / T(6);
+  result.moment = total.moment24.vec3() / T(24) + apex_B * result.volume;
   return result;
 }
 

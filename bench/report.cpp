@@ -1,0 +1,317 @@
+#include "report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "markdown_table.h"
+#include "time_queries.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr const char* kRock = "rock";
+
+// What the ratio of the times of exact and hierarchical has to be, by the number of triangles.
+struct RatioGoal {
+  std::size_t triangles;
+  double must, aim;  // on the best instruction set
+  double any_must;   // on every one
+};
+constexpr std::array kRatioGoals{RatioGoal{5'120, 6, 10, 3}, RatioGoal{30'420, 13, 20, 6},
+                                 RatioGoal{297'680, 25, 45, 12}, RatioGoal{1'003'520, 35, 80, 20}};
+
+constexpr double kExponentMust = 0.70;
+constexpr double kExponentAim = 0.60;
+constexpr std::size_t kReadGoalTriangles = 30'000;  // from here on a query takes less time than reading
+constexpr double kToleranceGoal = 1e-3;
+constexpr double kToleranceGrowth = 3.0;  // at most, of its time from the smallest rock to the largest
+constexpr double kBuildNs = 1000.0;       // per triangle, at most
+constexpr double kTreeBytes = 250.0;      // likewise
+
+std::string text(const char* format, double value) {
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+// Three digits that count, without an exponent.
+std::string microseconds(double ns) {
+  const double us = 1e-3 * ns;
+  return text(us < 9.995 ? "%.2f" : us < 99.95 ? "%.1f" : "%.0f", us);
+}
+
+std::string error(double value) {
+  return std::isnan(value) ? "" : text("%.2g", value);
+}
+
+// "0", "1e-6".
+std::string power_of_ten(double value) {
+  return value == 0.0 ? "0" : text("1e%g", std::round(std::log10(value)));
+}
+
+std::string verdict(bool met) {
+  return met ? "met" : "MISSED";
+}
+
+struct MeshName {
+  std::string name;
+  std::size_t triangles;
+
+  bool operator==(const MeshName&) const = default;
+};
+
+std::vector<MeshName> meshes_of(const std::vector<MeasuredRow>& rows) {
+  std::vector<MeshName> meshes;
+  for (const MeasuredRow& row : rows) {
+    const MeshName mesh{row.mesh, row.triangles};
+    if (std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) meshes.push_back(mesh);
+  }
+  return meshes;
+}
+
+class Report {
+ public:
+  Report(std::FILE* file, const Measurements& measured)
+      : file_(file), rows_(measured.rows), trees_(measured.trees), meshes_(meshes_of(measured.rows)) {}
+
+  void times(const std::string& regime, const char* heading) const {
+    std::fprintf(file_, "### %s\n\nMedian time per query, us.\n\n", heading);
+    by_method(regime, true, [](const MeasuredRow& row) { return microseconds(row.median_ns); });
+  }
+
+  void errors() const {
+    std::fprintf(file_, "### Largest error\n\n");
+    std::fprintf(file_, "Of force, over the poses of both regimes, relative to the whole.\n\n");
+    by_method("independent", false, [&](const MeasuredRow& row) {
+      const MeasuredRow* coherent =
+          find_row(rows_, row.mesh, row.triangles, row.method, row.tolerance, "", "coherent");
+      return error(std::max(row.errors.force, coherent->errors.force));
+    });
+  }
+
+  void ratios() const {
+    std::fprintf(file_, "### How many times faster than `exact`\n\n");
+    std::fprintf(file_, "Time of `exact` over time of `hierarchical` at tolerance 0, poses far apart.\n\n");
+    MarkdownTable table({"mesh", "triangles", "exact, us", "hierarchical, us", "target", "ratio", "must",
+                         "aim", "slowest target", "ratio", "must", ""});
+    for (const MeshName& mesh : meshes_) {
+      const MeasuredRow* const exact = find(mesh, "exact", 0.0);
+      const MeasuredRow* const best = find(mesh, "hierarchical", 0.0);
+      const MeasuredRow* const slowest = slowest_target(mesh);
+      const double ratio = exact->median_ns / best->median_ns;
+      const double slowest_ratio = exact->median_ns / slowest->median_ns;
+      std::vector<std::string> cells{mesh.name,
+                                     std::to_string(mesh.triangles),
+                                     microseconds(exact->median_ns),
+                                     microseconds(best->median_ns),
+                                     best->target,
+                                     text("%.1f", ratio),
+                                     "",
+                                     "",
+                                     slowest->target,
+                                     text("%.1f", slowest_ratio),
+                                     "",
+                                     ""};
+      const auto goal = std::find_if(kRatioGoals.begin(), kRatioGoals.end(),
+                                     [&](const RatioGoal& g) { return g.triangles == mesh.triangles; });
+      if (goal != kRatioGoals.end() && mesh.name.starts_with(kRock)) {
+        cells[6] = text("%g", goal->must);
+        cells[7] = text("%g", goal->aim);
+        cells[10] = text("%g", goal->any_must);
+        cells[11] = verdict(ratio >= goal->must && slowest_ratio >= goal->any_must);
+        if (ratio >= goal->aim) cells[11] += ", aim too";
+      }
+      table.add(std::move(cells));
+    }
+    table.print(file_, 1);
+  }
+
+  void against_reading() const {
+    std::fprintf(file_, "### Less time than reading the mesh once\n\n");
+    std::fprintf(
+        file_, "Vertices and indices are read again and again, from the nearest cache that holds them.\n\n");
+    MarkdownTable table({"mesh", "triangles", "read, us", "hierarchical, us", "query / read", ""});
+    for (const MeshName& mesh : meshes_) {
+      const double reading = find(mesh, kReadRow, 0.0)->median_ns;
+      const double query = find(mesh, "hierarchical", 0.0)->median_ns;
+      table.add({mesh.name, std::to_string(mesh.triangles), microseconds(reading), microseconds(query),
+                 text("%.2f", query / reading),
+                 mesh.triangles >= kReadGoalTriangles ? verdict(query < reading) : ""});
+    }
+    table.print(file_, 1);
+  }
+
+  void targets() const {
+    std::fprintf(file_, "### Instruction sets\n\n");
+    std::fprintf(file_, "Median time of `hierarchical` at tolerance 0, us, poses far apart.\n\n");
+    std::vector<std::string> header{"mesh", "triangles"};
+    std::vector<std::string> names;
+    for (const MeasuredRow& row : rows_) {
+      if (row.target != kNoTarget && std::find(names.begin(), names.end(), row.target) == names.end())
+        names.push_back(row.target);
+    }
+    header.insert(header.end(), names.begin(), names.end());
+    MarkdownTable table(header);
+    for (const MeshName& mesh : meshes_) {
+      std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
+      for (const std::string& target : names) {
+        cells.push_back(microseconds(
+            find_row(rows_, mesh.name, mesh.triangles, "hierarchical", 0.0, target, "independent")
+                ->median_ns));
+      }
+      table.add(std::move(cells));
+    }
+    table.print(file_, 1);
+  }
+
+  void growth() const {
+    std::vector<const MeasuredRow*> hierarchical;
+    for (const MeshName& mesh : meshes_) {
+      if (mesh.name == kRock) hierarchical.push_back(find(mesh, "hierarchical", 0.0));
+    }
+    if (hierarchical.size() < 2) return;
+    const double exponent = fitted_exponent(hierarchical);
+    std::fprintf(file_,
+                 "### Growth\n\nThe time of `hierarchical` at tolerance 0 grows with the %.2fth power of the "
+                 "number of triangles,\n"
+                 "fitted to the %zu rocks (at most %.2f: %s; aim %.2f: %s).\n\n",
+                 exponent, hierarchical.size(), kExponentMust, verdict(exponent <= kExponentMust).c_str(),
+                 kExponentAim, verdict(exponent <= kExponentAim).c_str());
+  }
+
+  void tolerances() const {
+    std::fprintf(file_,
+                 "### Tolerance\n\nTrue error of force beside the bound that came with the answer, poses far "
+                 "apart.\n\n");
+    MarkdownTable table({"mesh", "triangles", "tolerance", "time, us", "error, median", "error, largest",
+                         "bound, median", "bound, largest"});
+    for (const MeshName& mesh : meshes_) {
+      if (mesh.name != kRock) continue;
+      for (const double tolerance : kMeasuredTolerances) {
+        const MeasuredRow& row = *find(mesh, "hierarchical", tolerance);
+        table.add({mesh.name, std::to_string(mesh.triangles), power_of_ten(tolerance),
+                   microseconds(row.median_ns), error(row.errors.force_median), error(row.errors.force),
+                   error(row.errors.bound_median), error(row.errors.bound)});
+      }
+    }
+    table.print(file_, 1);
+    tolerance_verdicts();
+  }
+
+  void trees() const {
+    std::fprintf(file_, "### The tree\n\n");
+    MarkdownTable table({"mesh", "triangles", "build, ns per triangle", "at most",
+                         "memory, bytes per triangle", "at most", ""});
+    for (const TreeCost& tree : trees_) {
+      table.add({tree.mesh, std::to_string(tree.triangles), text("%.0f", tree.build_ns), text("%g", kBuildNs),
+                 text("%.0f", tree.bytes), text("%g", kTreeBytes),
+                 verdict(tree.build_ns <= kBuildNs && tree.bytes <= kTreeBytes)});
+    }
+    table.print(file_, 1);
+  }
+
+ private:
+  const MeasuredRow* find(const MeshName& mesh, const std::string& method, double tolerance) const {
+    return find_row(rows_, mesh.name, mesh.triangles, method, tolerance, "", "independent");
+  }
+
+  const MeasuredRow* slowest_target(const MeshName& mesh) const {
+    const MeasuredRow* slowest = find(mesh, "hierarchical", 0.0);
+    for (const MeasuredRow& row : rows_) {
+      if (row.mesh == mesh.name && row.triangles == mesh.triangles && row.method == "hierarchical" &&
+          row.tolerance == 0.0 && row.regime == "independent" && row.median_ns > slowest->median_ns)
+        slowest = &row;
+    }
+    return slowest;
+  }
+
+  // A row per mesh, a column per method and tolerance, all on the best instruction set.
+  template <typename Cell>
+  void by_method(const std::string& regime, bool with_read, const Cell& cell) const {
+    std::vector<std::string> header{"mesh", "triangles"};
+    std::vector<std::pair<std::string, double>> columns;
+    if (with_read) columns.emplace_back(kReadRow, 0.0);
+    for (const Method method : kAllMethods) columns.emplace_back(name(method), 0.0);
+    for (const double tolerance : kMeasuredTolerances) {
+      if (tolerance > 0.0) columns.emplace_back("hierarchical", tolerance);
+    }
+    for (const auto& [method, tolerance] : columns)
+      header.push_back(tolerance > 0.0 ? "at " + power_of_ten(tolerance) : method);
+    MarkdownTable table(header);
+    for (const MeshName& mesh : meshes_) {
+      std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
+      for (const auto& [method, tolerance] : columns)
+        cells.push_back(cell(*find_row(rows_, mesh.name, mesh.triangles, method, tolerance, "", regime)));
+      table.add(std::move(cells));
+    }
+    table.print(file_, 1);
+  }
+
+  void tolerance_verdicts() const {
+    const MeasuredRow* smallest = nullptr;
+    const MeasuredRow* largest = nullptr;
+    std::string dearer;
+    for (const MeshName& mesh : meshes_) {
+      const MeasuredRow* const row = find(mesh, "hierarchical", kToleranceGoal);
+      if (mesh.triangles > 5'000 && row->median_ns >= find(mesh, "hierarchical", 0.0)->median_ns) {
+        dearer += (dearer.empty() ? "" : ", ") + mesh.name + " " + std::to_string(mesh.triangles);
+      }
+      if (mesh.name != kRock) continue;
+      if (smallest == nullptr) smallest = row;
+      largest = row;
+    }
+    if (smallest == largest) return;
+    const double growth = largest->median_ns / smallest->median_ns;
+    std::fprintf(file_,
+                 "- Tolerance %g takes %.2f times as long at %zu triangles as at %zu (at most %g: %s).\n",
+                 kToleranceGoal, growth, largest->triangles, smallest->triangles, kToleranceGrowth,
+                 verdict(growth <= kToleranceGrowth).c_str());
+    std::fprintf(
+        file_,
+        "- It takes less time than tolerance 0 on every mesh of more than 5,000 triangles: %s%s%s.\n\n",
+        verdict(dearer.empty()).c_str(), dearer.empty() ? "" : ", not on ", dearer.c_str());
+  }
+
+  std::FILE* file_;
+  const std::vector<MeasuredRow>& rows_;
+  const std::vector<TreeCost>& trees_;
+  std::vector<MeshName> meshes_;
+};
+
+}  // namespace
+
+double fitted_exponent(const std::vector<const MeasuredRow*>& rows) {
+  const auto count = static_cast<double>(rows.size());
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  for (const MeasuredRow* row : rows) {
+    mean_x += std::log(static_cast<double>(row->triangles)) / count;
+    mean_y += std::log(row->median_ns) / count;
+  }
+  double xy = 0.0;
+  double xx = 0.0;
+  for (const MeasuredRow* row : rows) {
+    const double x = std::log(static_cast<double>(row->triangles)) - mean_x;
+    xy += x * (std::log(row->median_ns) - mean_y);
+    xx += x * x;
+  }
+  return xy / xx;
+}
+
+void print_report(std::FILE* file, const Measurements& measured) {
+  const Report report(file, measured);
+  report.times("independent", "Time, poses far apart");
+  report.times("coherent", "Time, a floating body's trajectory");
+  report.errors();
+  report.ratios();
+  report.against_reading();
+  report.targets();
+  report.growth();
+  report.tolerances();
+  report.trees();
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,34 @@
+// What a person reads of the measurements: tables of time and error, and each thing that was promised of
+// `hierarchical` beside what came out.
+//
+// A heading, a table and a few sentences per question, as Markdown: the same text stands in the documents.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "measured_row.h"
+
+namespace buoyancy {
+
+// What the moment tree of a mesh costs.
+struct TreeCost {
+  std::string mesh;
+  std::size_t triangles = 0;
+  double build_ns = 0.0;  // per triangle
+  double bytes = 0.0;     // per triangle
+};
+
+struct Measurements {
+  std::vector<MeasuredRow> rows;
+  std::vector<TreeCost> trees;
+};
+
+// The exponent e of time = c triangles^e that fits best in the least squares of the logarithms. At least two
+// different numbers of triangles.
+double fitted_exponent(const std::vector<const MeasuredRow*>& rows);
+
+void print_report(std::FILE* file, const Measurements& measured);
+
+}  // namespace buoyancy

@@ -1,0 +1,80 @@
+// The meshes and poses that are measured: what the tables say they are.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/benchmark_meshes.h"
+#include "bench/coherent_poses.h"
+#include "bench/pose_sweep.h"
+#include "bench/unit_water.h"
+#include "hydrostatics/buoyancy.h"
+
+namespace buoyancy {
+namespace {
+
+Vec3 centroid_W(const HydrostaticMesh& mesh, const Pose& pose) {
+  return pose.p_WB + pose.q_WB * (mesh.center_B + mesh.centroid);
+}
+
+TEST(ShuffledMesh, HoldsTheSameTrianglesInAnotherOrderThatIsTheSameEveryTime) {
+  const BenchmarkMesh model = rock(8);
+  const BenchmarkMesh first = shuffled(model);
+  EXPECT_EQ(first.name, "rock shuffled");
+  EXPECT_EQ(first.source.triangles, shuffled(model).source.triangles);
+  std::vector<Triangle> triangles = model.source.triangles;
+  std::vector<Triangle> others = first.source.triangles;
+  std::size_t in_place = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) in_place += triangles[i] == others[i] ? 1 : 0;
+  EXPECT_LT(in_place, 10U);  // about one of a random order stays
+  std::sort(triangles.begin(), triangles.end());
+  std::sort(others.begin(), others.end());
+  EXPECT_EQ(triangles, others);
+}
+
+TEST(BenchmarkMesh, IsARockThatSaysWhatItStandsForWhereTheModelIsAbsent) {
+  const BenchmarkMesh stand_in = model_or_rock("bunny", "no such file.ply", 5);
+  EXPECT_EQ(stand_in.name, "rock for bunny");
+  EXPECT_EQ(stand_in.source.triangles.size(), 500U);
+}
+
+TEST(SweepOfPoses, RunsFromAlmostDryToAlmostSubmerged) {
+  const BenchmarkMesh model = rock(16);
+  const Solver solver(model.mesh, Method::kExact);
+  const auto wet_share = [&](const Pose& pose) {
+    return buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume / model.mesh.volume;
+  };
+  const std::vector<Pose> poses = sweep_of_poses(model.source);
+  ASSERT_EQ(poses.size(), 100U);
+  EXPECT_GT(wet_share(poses.front()), 0.0);
+  EXPECT_LT(wet_share(poses.front()), 1e-3);
+  EXPECT_GT(wet_share(poses.back()), 1.0 - 1e-3);
+  EXPECT_LT(wet_share(poses.back()), 1.0);
+}
+
+TEST(FloatingPose, IsInBalance) {
+  for (const BenchmarkMesh& model : {rock(16), torus_knot()}) {
+    const Solver solver(model.mesh, Method::kExact);
+    const Vec3 centroid_B = model.mesh.center_B + model.mesh.centroid;
+    const BuoyancyAnswer answer = buoyancy(solver, floating_pose(solver), kUnitWater, centroid_B);
+    EXPECT_NEAR(answer.force_W.z() / model.mesh.volume, 0.5, 1e-9) << model.name;
+    EXPECT_LE(answer.torque_W.norm(), 1e-8 * model.mesh.volume * model.mesh.diagonal) << model.name;
+  }
+}
+
+TEST(CoherentPoses, MoveAThousandthFromEachToTheNextAndBackToTheFirst) {
+  const BenchmarkMesh model = torus_knot();
+  const Pose floating = floating_pose(Solver(model.mesh, Method::kExact));
+  const std::vector<Pose> poses = coherent_poses(model.mesh, floating);
+  ASSERT_EQ(poses.size(), 100U);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose& here = poses[i];
+    const Pose& next = poses[(i + 1) % poses.size()];
+    const double moved = (centroid_W(model.mesh, next) - centroid_W(model.mesh, here)).norm();
+    EXPECT_NEAR(moved / model.mesh.diagonal, kCoherentStep, 1e-9);
+    EXPECT_NEAR(here.q_WB.angularDistance(next.q_WB), kCoherentStep, 1e-2 * kCoherentStep);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
