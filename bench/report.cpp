@@ -174,12 +174,12 @@ class Report {
     }
     if (hierarchical.size() < 2) return;
     const double exponent = fitted_exponent(hierarchical);
-    std::fprintf(file_,
-                 "### Growth\n\nThe time of `hierarchical` at tolerance 0 grows with the %.2fth power of the "
-                 "number of triangles,\n"
-                 "fitted to the %zu rocks (at most %.2f: %s; aim %.2f: %s).\n\n",
-                 exponent, hierarchical.size(), kExponentMust, verdict(exponent <= kExponentMust).c_str(),
-                 kExponentAim, verdict(exponent <= kExponentAim).c_str());
+    std::fprintf(
+        file_,
+        "### Growth\n\nThe time of `hierarchical` at tolerance 0 grows as triangles^%.2f, fitted to the "
+        "%zu rocks, poses far apart\n(at most %.2f: %s; aim %.2f: %s).\n\n",
+        exponent, hierarchical.size(), kExponentMust, verdict(exponent <= kExponentMust).c_str(),
+        kExponentAim, verdict(exponent <= kExponentAim).c_str());
   }
 
   void tolerances() const {
@@ -266,9 +266,9 @@ class Report {
     if (smallest == largest) return;
     const double growth = largest->median_ns / smallest->median_ns;
     std::fprintf(file_,
-                 "- Tolerance %g takes %.2f times as long at %zu triangles as at %zu (at most %g: %s).\n",
-                 kToleranceGoal, growth, largest->triangles, smallest->triangles, kToleranceGrowth,
-                 verdict(growth <= kToleranceGrowth).c_str());
+                 "- Tolerance %s takes %.2f times as long at %zu triangles as at %zu (at most %g: %s).\n",
+                 power_of_ten(kToleranceGoal).c_str(), growth, largest->triangles, smallest->triangles,
+                 kToleranceGrowth, verdict(growth <= kToleranceGrowth).c_str());
     std::fprintf(
         file_,
         "- It takes less time than tolerance 0 on every mesh of more than 5,000 triangles: %s%s%s.\n\n",
