@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/timerfd.h>
 
+#include "hydrostatics/wet_tree_sum.h"
 #include "messages/status.h"
 #include "service/file_descriptor.h"
 #include "service/troubles.h"
@@ -156,7 +157,13 @@ bool Daemon::publish(const std::string& channel, Bytes bytes) {
 
 void Daemon::report() {
   const Counters& counters = exchange_.counters();
-  encode(ServiceStatus{utime_now(), instance_id_, BUOYANCY_VERSION, counters, latency_.percentiles()},
+  encode(ServiceStatus{.utime = utime_now(),
+                       .instance_id = instance_id_,
+                       .version = BUOYANCY_VERSION,
+                       .simd_target = simd_target_from_name(simd_target()),
+                       .threads = static_cast<std::int32_t>(exchange_.threads()),
+                       .counters = counters,
+                       .latency = latency_.percentiles()},
          status_bytes_);
   publish(channels_.status, status_bytes_);
   for (const std::string& trouble : describe_troubles(reported_, counters)) spdlog::warn("{}", trouble);

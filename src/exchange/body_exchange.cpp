@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 
 namespace buoyancy {
@@ -30,8 +29,7 @@ std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) 
   return {as_array(pair[0]), as_array(pair[1])};
 }
 
-// The pose to answer for.
-Pose asked_pose(const BodyState& state, double lead_time) {
+Pose extrapolated(const BodyState& state, double lead_time) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   const Pose sent{.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
   if (lead_time == 0.0) return sent;
@@ -55,8 +53,59 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-void count_answer(const BuoyancyAnswer& answer, Counters& counters) {
-  switch (answer.immersion) {
+}  // namespace
+
+AskedPose asked_pose(const BodyState& state, double lead_time) {
+  AskedPose asked;
+  const auto fail = [&asked](BodyStatus status) {
+    asked.status = status;
+    return asked;
+  };
+  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz))
+    return fail(BodyStatus::kNonFinitePose);
+  const double defect = norm_defect(state.quaternion_wxyz);
+  if (defect > kQuaternionTolerance) return fail(BodyStatus::kBadQuaternion);
+  asked.quaternion_normalised = defect > kQuaternionNoteworthy;
+  if (!std::isfinite(lead_time)) return fail(BodyStatus::kBadLeadTime);
+  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity))) {
+    return fail(BodyStatus::kNonFiniteTwist);
+  }
+  asked.pose = extrapolated(state, lead_time);
+  if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
+  return asked;
+}
+
+BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised) {
+  BodyOutcome outcome;
+  outcome.wrench.body_id = body_id;
+  outcome.wrench.status = status;
+  outcome.quaternion_normalised = quaternion_normalised;
+  return outcome;
+}
+
+BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked) {
+  const BuoyancyAnswer answer = buoyancy(body.solver, asked.pose, water, body.reference_B);
+  BodyOutcome outcome = not_answered(body.id, as_body_status(answer.status), asked.quaternion_normalised);
+  if (answer.status != BuoyancyStatus::kOk) return outcome;
+  outcome.immersion = answer.immersion;
+  outcome.dropped_force = answer.dropped_force;
+  outcome.dropped_torque = answer.dropped_torque;
+  BodyWrench& wrench = outcome.wrench;
+  wrench.force = as_array(answer.force_W);
+  wrench.torque = as_array(answer.torque_W);
+  wrench.submerged_volume = answer.volume;
+  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
+  wrench.force_error_bound = answer.force_error_bound;
+  wrench.torque_error_bound = answer.torque_error_bound;
+  return outcome;
+}
+
+void count(const BodyOutcome& outcome, Counters& counters) {
+  ++counters.bodies[static_cast<std::size_t>(outcome.wrench.status)];
+  counters.quaternions_normalised += static_cast<std::int64_t>(outcome.quaternion_normalised);
+  if (outcome.wrench.status != BodyStatus::kOk) return;
+  counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
+  switch (outcome.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;
       break;
@@ -67,47 +116,23 @@ void count_answer(const BuoyancyAnswer& answer, Counters& counters) {
       ++counters.bodies_crossing;
       break;
   }
-  counters.largest_dropped_force = std::max(counters.largest_dropped_force, answer.dropped_force);
-  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, answer.dropped_torque);
+  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.dropped_force);
+  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.dropped_torque);
 }
-
-// Fills wrench where the status it returns is kOk, and leaves it as it is otherwise.
-BodyStatus evaluate(const Scene& scene, const BodyState& state, double lead_time, Counters& counters,
-                    BodyWrench& wrench) {
-  const Body* body = scene.find(state.body_id);
-  if (body == nullptr) return BodyStatus::kUnknownBody;
-  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz)) return BodyStatus::kNonFinitePose;
-  const double defect = norm_defect(state.quaternion_wxyz);
-  if (defect > kQuaternionTolerance) return BodyStatus::kBadQuaternion;
-  if (defect > kQuaternionNoteworthy) ++counters.quaternions_normalised;
-  if (!std::isfinite(lead_time)) return BodyStatus::kBadLeadTime;
-
-  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity))) {
-    return BodyStatus::kNonFiniteTwist;
-  }
-  const Pose pose = asked_pose(state, lead_time);
-  if (!all_finite(pose)) return BodyStatus::kOutOfRange;
-
-  const BuoyancyAnswer answer = buoyancy(body->solver, pose, scene.water(), body->reference_B);
-  if (answer.status != BuoyancyStatus::kOk) return as_body_status(answer.status);
-  count_answer(answer, counters);
-  wrench.force = as_array(answer.force_W);
-  wrench.torque = as_array(answer.torque_W);
-  wrench.submerged_volume = answer.volume;
-  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
-  wrench.force_error_bound = answer.force_error_bound;
-  wrench.torque_error_bound = answer.torque_error_bound;
-  return BodyStatus::kOk;
-}
-
-}  // namespace
 
 BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters) {
-  BodyWrench wrench;
-  wrench.body_id = state.body_id;
-  wrench.status = evaluate(scene, state, lead_time, counters, wrench);
-  ++counters.bodies[static_cast<std::size_t>(wrench.status)];
-  return wrench;
+  const Body* body = scene.find(state.body_id);
+  const AskedPose asked = asked_pose(state, lead_time);
+  BodyOutcome outcome;
+  if (body == nullptr) {
+    outcome = not_answered(state.body_id, BodyStatus::kUnknownBody);
+  } else if (asked.status != BodyStatus::kOk) {
+    outcome = not_answered(state.body_id, asked.status, asked.quaternion_normalised);
+  } else {
+    outcome = evaluate(*body, scene.water(), asked);
+  }
+  count(outcome, counters);
+  return outcome.wrench;
 }
 
 BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const BodyState& state,
@@ -116,7 +141,7 @@ BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, cons
   message.body_id = state.body_id;
   message.status = status;
   if (status != BodyStatus::kOk) return message;
-  const std::optional<Hydrostatics> found = hydrostatics(body.solver.mesh(), asked_pose(state, lead_time),
+  const std::optional<Hydrostatics> found = hydrostatics(body.solver.mesh(), extrapolated(state, lead_time),
                                                          water, body.reference_B, body.center_of_mass_B);
   if (!found) {
     message.status = BodyStatus::kOutOfRange;

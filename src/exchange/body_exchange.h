@@ -2,6 +2,7 @@
 // by lead_time, and the query. The main path's link between messages and hydrostatics.
 #pragma once
 
+#include "hydrostatics/buoyancy.h"
 #include "messages/hydrostatics.h"
 #include "messages/question.h"
 #include "messages/status.h"
@@ -13,9 +14,34 @@ namespace buoyancy {
 inline constexpr double kQuaternionTolerance = 1e-3;
 inline constexpr double kQuaternionNoteworthy = 1e-6;
 
-// Checks in this order, the first failure is the status: unknown id, pose not finite, quaternion's norm,
-// lead_time not finite, twist not finite (only where lead_time is not 0), then the query's own. Anything but
-// kOk leaves zeros. Counts into counters what it met. Allocates nothing.
+// The pose that a state asks about, or why there is none.
+struct AskedPose {
+  BodyStatus status = BodyStatus::kOk;
+  Pose pose;                           // where status is kOk: finite, |q| within the tolerance of 1
+  bool quaternion_normalised = false;  // beyond kQuaternionNoteworthy
+};
+
+// Checks in this order, the first failure is the status: pose not finite, quaternion's norm, lead_time not
+// finite, twist not finite (only where lead_time is not 0), extrapolated pose beyond double's range.
+AskedPose asked_pose(const BodyState& state, double lead_time);
+
+// A wrench, and what the status counts of it.
+struct BodyOutcome {
+  BodyWrench wrench;  // anything but kOk: zeros
+  bool quaternion_normalised = false;
+  bool unchanged = false;                      // taken from the body's last answer
+  Immersion immersion = Immersion::kCrossing;  // this and the following: where the status is kOk
+  double dropped_force = 0.0;                  // BuoyancyAnswer
+  double dropped_torque = 0.0;
+};
+
+// An outcome without a wrench.
+BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised = false);
+// asked.status: kOk. Allocates nothing.
+BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked);
+void count(const BodyOutcome& outcome, Counters& counters);
+
+// All of it for one body: unknown id, the checks of asked_pose(), then the query's own. Allocates nothing.
 BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters);
 
 // The hydrostatics of a body whose outputs name them, at the pose that answer_body() took. status: of its

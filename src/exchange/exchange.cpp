@@ -16,7 +16,7 @@ bool same_bytes(Bytes a, Bytes b) {
 }  // namespace
 
 Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
-    : scene_(&scene), max_sessions_(options.max_sessions) {
+    : scene_(&scene), max_sessions_(options.max_sessions), body_answers_(scene, options.threads) {
   assert(max_sessions_ >= 1);
 }
 
@@ -95,16 +95,15 @@ void Exchange::compute(Bytes question, Session& session) {
   [[maybe_unused]] const auto rejection = decode(question, question_);
   assert(!rejection);  // peek_key() made the same checks
   answer_.key = question_.key;
-  answer_.bodies.clear();
+  body_answers_.answer(question_, answer_.bodies, counters_);
   hydrostatics_.key = question_.key;
   hydrostatics_.bodies.clear();
-  for (const BodyState& state : question_.bodies) {
-    const BodyWrench& wrench =
-        answer_.bodies.emplace_back(answer_body(*scene_, state, question_.lead_time, counters_));
+  for (std::size_t i = 0; scene_->any_hydrostatics() && i < question_.bodies.size(); ++i) {
+    const BodyState& state = question_.bodies[i];
     const Body* body = scene_->find(state.body_id);
     if (body == nullptr || !body->hydrostatics) continue;
-    hydrostatics_.bodies.push_back(
-        hydrostatics_of_body(*body, scene_->water(), state, question_.lead_time, wrench.status, counters_));
+    hydrostatics_.bodies.push_back(hydrostatics_of_body(*body, scene_->water(), state, question_.lead_time,
+                                                        answer_.bodies[i].status, counters_));
   }
   encode(answer_, session.last_answer);
   session.last_hydrostatics.clear();

@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "exchange/body_answers.h"
 #include "messages/status.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
@@ -21,6 +22,7 @@ namespace buoyancy {
 
 struct ExchangeOptions {
   std::size_t max_sessions = 64;  // >= 1; looked up one after another
+  unsigned threads = 0;  // for the bodies of one question: 1 or more; 0: as many as the processor runs
 };
 
 class Exchange {
@@ -46,6 +48,8 @@ class Exchange {
   // The newest seq answered in the session; nullopt: no such session.
   std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
 
+  // That a question's bodies are shared among, where there is enough to do.
+  unsigned threads() const { return body_answers_.threads(); }
   const Counters& counters() const { return counters_; }
   const Scene& scene() const { return *scene_; }
 
@@ -69,6 +73,7 @@ class Exchange {
   std::vector<Session> sessions_;
   std::uint64_t use_ = 0;
   Counters counters_;
+  BodyAnswers body_answers_;
   Question question_;                    // reused
   Answer answer_;                        // reused
   BodiesHydrostatics hydrostatics_;      // reused

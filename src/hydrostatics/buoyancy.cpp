@@ -96,12 +96,16 @@ BuoyancyAnswer not_answered(BuoyancyStatus status, Immersion where) {
 
 }  // namespace
 
+bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
+  return immersion == Immersion::kDry ||
+         (immersion == Immersion::kWet && solver.method() == Method::kHierarchical);
+}
+
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();
-  const bool knows_its_whole = solver.method() == Method::kHierarchical;
   BuoyancyAnswer answer;
   answer.immersion = immersion_at_a_glance(mesh, pose, water);
-  if (answer.immersion == Immersion::kCrossing || (answer.immersion == Immersion::kWet && !knows_its_whole)) {
+  if (!is_answered_by_bounds(solver, answer.immersion)) {
     const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
     if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
       return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
@@ -110,15 +114,14 @@ BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& wat
     if (answer.immersion != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
       return not_answered(BuoyancyStatus::kOpenEdgeWet, answer.immersion);
     }
-    if (answer.immersion == Immersion::kCrossing ||
-        (answer.immersion == Immersion::kWet && !knows_its_whole)) {
+    if (!is_answered_by_bounds(solver, answer.immersion)) {
       answer_from_displacement(solver, plane, pose, water, reference_B, answer);
+      if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, answer.immersion);
+      return answer;
     }
   }
   if (answer.immersion == Immersion::kDry) return answer;  // nothing to sum: every method says zero, exactly
-  if (answer.immersion == Immersion::kWet && knows_its_whole) {
-    answer_wholly_wet(mesh, pose, water, reference_B, answer);
-  }
+  answer_wholly_wet(mesh, pose, water, reference_B, answer);
   if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, answer.immersion);
   return answer;
 }

@@ -24,6 +24,9 @@ struct BuoyancyAnswer {
   double dropped_torque = 0.0;  // exact methods: |part of torque along up| / (rho g V_T L), likewise
 };
 
+// True where immersion says enough for an answer: a dry body, or a wholly wet one with `hierarchical`.
+bool is_answered_by_bounds(const Solver& solver, Immersion immersion);
+
 // pose: finite, quaternion not zero. reference_B: m, the point that torque is about.
 // Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing. A dry body costs its
 // bounds alone, whatever the method; so does a wholly wet one with `hierarchical`.

@@ -72,6 +72,7 @@ void visit_head(Status& status, Visitor& visitor) {
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_tail(Status& status, Visitor& visitor) {
   auto& c = status.counters;
+  visitor(status.simd_target, status.threads);
   visitor(c.questions, c.answered, c.repeated, c.changed_repeats, c.stale, c.overtaken, c.sessions,
           c.sessions_forgotten);
   visitor(c.rejected_truncated, c.rejected_fingerprint, c.rejected_count, c.rejected_length);

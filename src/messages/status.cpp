@@ -25,6 +25,16 @@ FixedSizes fixed_sizes(const ServiceStatus& status) {
 
 }  // namespace
 
+SimdTarget simd_target_from_name(std::string_view name) {
+  if (name == "SCALAR") return SimdTarget::kScalar;
+  if (name == "SSSE3") return SimdTarget::kSsse3;
+  if (name == "SSE4") return SimdTarget::kSse4;
+  if (name == "AVX2") return SimdTarget::kAvx2;
+  if (name == "AVX3" || name == "AVX3_DL") return SimdTarget::kAvx3;
+  if (name == "NEON") return SimdTarget::kNeon;
+  return SimdTarget::kOther;
+}
+
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes) {
   const FixedSizes sizes = fixed_sizes(status);
   const std::size_t version_size = status.version.size() + 1;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "messages/wire.h"
@@ -44,10 +45,25 @@ struct LatencyPercentiles {  // s
   double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
 };
 
+// Values as in service_status_t.lcm.
+enum class SimdTarget : std::int32_t {
+  kOther = 0,
+  kScalar = 1,
+  kSsse3 = 2,
+  kSse4 = 3,
+  kAvx2 = 4,
+  kAvx3 = 5,
+  kNeon = 6,
+};
+// By the name that hydrostatics gives it (wet_tree_sum.h); kOther for a name that has no value here.
+SimdTarget simd_target_from_name(std::string_view name);
+
 struct ServiceStatus {
   std::int64_t utime = 0;  // us
   std::int64_t instance_id = 0;
   std::string version;
+  SimdTarget simd_target = SimdTarget::kOther;
+  std::int32_t threads = 1;
   Counters counters;
   LatencyPercentiles latency;
 };

@@ -100,12 +100,12 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
     }
-    scene.index_.emplace_back(body.id, scene.bodies_.size());
+    scene.index_.emplace(body.id, scene.bodies_.size());
+    scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
                              body.hydrostatics, center_of_mass(body.client, prepared), body.client});
   }
-  std::sort(scene.index_.begin(), scene.index_.end());
   return scene;
 }
 
@@ -121,8 +121,8 @@ const Body* Scene::find(std::int32_t id) const {
 }
 
 std::optional<std::size_t> Scene::index_of(std::int32_t id) const {
-  const auto entry = std::lower_bound(index_.begin(), index_.end(), std::pair{id, std::size_t{0}});
-  if (entry == index_.end() || entry->first != id) return std::nullopt;
+  const auto entry = index_.find(id);
+  if (entry == index_.end()) return std::nullopt;
   return entry->second;
 }
 

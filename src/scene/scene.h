@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "geometry/error.h"
@@ -54,15 +55,17 @@ class Scene {
   const Water& water() const { return water_; }
   const std::vector<Body>& bodies() const { return bodies_; }  // in the file's order
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
-  const Body* find(std::int32_t id) const;                     // nullptr: unknown; O(log n)
+  const Body* find(std::int32_t id) const;                     // nullptr: unknown; O(1)
   std::optional<std::size_t> index_of(std::int32_t id) const;  // into bodies()
+  bool any_hydrostatics() const { return any_hydrostatics_; }  // of any body
 
  private:
   std::string name_;
   Water water_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;
-  std::vector<std::pair<std::int32_t, std::size_t>> index_;  // (id, position in bodies_), ascending by id
+  std::unordered_map<std::int32_t, std::size_t> index_;  // position in bodies_ by id
+  bool any_hydrostatics_ = false;
 };
 
 }  // namespace buoyancy

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hydrostatics/wet_tree_sum.h"
+
 namespace buoyancy {
 namespace {
 
@@ -155,6 +157,7 @@ std::string scene_report_text(const Scene& scene) {
   std::string text = scene.name() + "\n";
   text += "  water         up . x < " + number(water.level) + " m, up " + vector_text(water.up_W) + ", " +
           number(water.density) + " kg/m^3, gravity " + number(water.gravity) + " m/s^2\n";
+  text += "  instructions  " + simd_target() + "\n";
   for (const Body& body : scene.bodies()) {
     text += '\n';
     text += body_text(body, scene);
@@ -182,6 +185,7 @@ std::string scene_report_json(const Scene& scene) {
   }
   const Json report{{"scene", scene.name()},
                     {"water", json_of(scene.water())},
+                    {"simd_target", simd_target()},
                     {"bodies", std::move(bodies)},
                     {"meshes", std::move(meshes)}};
   // Numbers that are not finite come out as null; file names that are not UTF-8 with replacement characters.

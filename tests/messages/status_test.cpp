@@ -15,13 +15,15 @@ namespace {
 using ByteVector = std::vector<std::uint8_t>;
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
-constexpr std::size_t kTail = 8 * std::size_t{12 + 8 + 1 + 5 + 2 + 4};
+constexpr std::size_t kTail = 4 + 4 + 8 * std::size_t{12 + 8 + 1 + 5 + 2 + 4};
 
 ServiceStatus random_status() {
   ServiceStatus status;
   status.utime = random_integer<std::int64_t>();
   status.instance_id = random_integer<std::int64_t>();
   status.version = *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
+  status.simd_target = static_cast<SimdTarget>(random_integer<std::int32_t>());
+  status.threads = random_integer<std::int32_t>();
   Counters& c = status.counters;
   for (std::int64_t* counter :
        {&c.questions, &c.answered, &c.repeated, &c.changed_repeats, &c.stale, &c.overtaken, &c.sessions,
@@ -48,6 +50,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.utime = status.utime;
   message.instance_id = status.instance_id;
   message.version = status.version;
+  message.simd_target = static_cast<std::int32_t>(status.simd_target);
+  message.threads = status.threads;
   message.questions = c.questions;
   message.answered = c.answered;
   message.repeated = c.repeated;
@@ -113,6 +117,17 @@ RC_GTEST_PROP(StatusMessage, DecodesWhatTheGeneratedCodeEncodes, ()) {
   ServiceStatus status = random_status();
   RC_ASSERT(!decode(bytes, status).has_value());
   RC_ASSERT(encoded_by_lcm(status) == bytes);
+}
+
+TEST(StatusMessage, NamesInstructionSetsByTheConstantsOfTheDefinition) {
+  const auto value = [](const char* name) { return static_cast<std::int32_t>(simd_target_from_name(name)); };
+  EXPECT_EQ(value("SCALAR"), service_status_t::SIMD_SCALAR);
+  EXPECT_EQ(value("SSSE3"), service_status_t::SIMD_SSSE3);
+  EXPECT_EQ(value("SSE4"), service_status_t::SIMD_SSE4);
+  EXPECT_EQ(value("AVX2"), service_status_t::SIMD_AVX2);
+  EXPECT_EQ(value("AVX3"), service_status_t::SIMD_AVX3);
+  EXPECT_EQ(value("NEON"), service_status_t::SIMD_NEON);
+  EXPECT_EQ(value("Z80"), service_status_t::SIMD_OTHER);
 }
 
 TEST(StatusMessage, RejectsEveryTruncation) {
