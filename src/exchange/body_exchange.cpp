@@ -31,9 +31,11 @@ std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) 
 
 Pose extrapolated(const BodyState& state, double lead_time) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
-  const Pose sent{.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
-  if (lead_time == 0.0) return sent;
-  return extrapolate(sent, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
+  Pose pose{.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+  if (lead_time != 0.0) {
+    pose = extrapolate(pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
+  }
+  return pose;
 }
 
 // abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.

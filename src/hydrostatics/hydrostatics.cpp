@@ -11,8 +11,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-
 // The displaced volume and the waterplane about a point of the body, B axes.
 struct Immersed {
   FloatingMoments<double> moments;
@@ -36,7 +34,7 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
       part.point = wet.point;
       part.wetted_area = wet.area;
       const double area_gate = 64.0 * std::numeric_limits<double>::epsilon() * mesh.area;
-      if (!wet.cut || !(part.moments.waterplane_area > area_gate)) {
+      if (!(part.moments.waterplane_area > area_gate)) {
         part.moments.waterplane_area = 0.0;
         part.moments.waterplane_moment.setZero();
         part.moments.waterplane_second_moments.setZero();
@@ -47,18 +45,13 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   return part;
 }
 
-struct PrincipalMoments {
-  std::array<double, 2> moments{};  // ascending
-  std::array<Vec3, 2> axes;         // about which; right-handed with up
-};
-
-// second_moments: about the centroid; only what is horizontal counts.
-PrincipalMoments principal_moments(const Mat3& second_moments, const Vec3& up) {
-  const Vec3 u = up.unitOrthogonal();
-  const Vec3 v = up.cross(u);
-  const double uu = u.dot(second_moments * u);
-  const double vv = v.dot(second_moments * v);
-  const double uv = 0.5 * (u.dot(second_moments * v) + v.dot(second_moments * u));
+// second_moments_W: about the centroid; only what is horizontal counts.
+void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydrostatics& result) {
+  const Vec3 u = up_W.unitOrthogonal();
+  const Vec3 v = up_W.cross(u);
+  const double uu = u.dot(second_moments_W * u);
+  const double vv = v.dot(second_moments_W * v);
+  const double uv = 0.5 * (u.dot(second_moments_W * v) + v.dot(second_moments_W * u));
   const double half_difference = 0.5 * (uu - vv);
   const double radius = std::sqrt(half_difference * half_difference + uv * uv);
   const double mean = 0.5 * (uu + vv);
@@ -67,7 +60,33 @@ PrincipalMoments principal_moments(const Mat3& second_moments, const Vec3& up) {
                                         : Vec3(uv * u + (radius - half_difference) * v);
   const double length = longest.norm();
   longest = length > 0.0 ? Vec3(longest / length) : u;
-  return {{std::max(0.0, mean - radius), mean + radius}, {longest, up.cross(longest)}};
+  result.waterplane_second_moments = {std::max(0.0, mean - radius), mean + radius};
+  result.waterplane_axes_W = {longest, up_W.cross(longest)};
+}
+
+// moments_W: about a point, point_W from p_WB.
+void add_waterplane(const FloatingMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
+                    Hydrostatics& result) {
+  result.waterplane_area = moments_W.waterplane_area;
+  if (!(result.waterplane_area > 0.0)) return;
+  const Vec3 to_centroid_W = moments_W.waterplane_moment / result.waterplane_area;
+  result.waterplane_centroid_W = point_W + to_centroid_W;
+  add_principal_moments(moments_W.moved(to_centroid_W).waterplane_second_moments, up_W, result);
+}
+
+// The same; mass_to_point_W: from the centre of mass, if it is known. To be called after add_waterplane.
+void add_metacenters(const FloatingMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
+                     const std::optional<Vec3>& mass_to_point_W, Hydrostatics& result) {
+  const Vec3 to_buoyancy_W = moments_W.moment / moments_W.volume;
+  result.center_of_buoyancy_W = point_W + to_buoyancy_W;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double radius = result.waterplane_second_moments[i] / moments_W.volume;
+    result.metacentric_radii[i] = radius;
+    result.metacenters_W[i] = result.center_of_buoyancy_W + radius * up_W;
+    if (mass_to_point_W) {
+      result.metacentric_heights[i] = up_W.dot(*mass_to_point_W + to_buoyancy_W) + radius;
+    }
+  }
 }
 
 bool finite(const Hydrostatics& result) {
@@ -90,38 +109,14 @@ std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose
   Hydrostatics result;
   result.volume = moments_W.volume;
   result.wetted_area = part.wetted_area;
-  result.waterplane_area = moments_W.waterplane_area;
+  add_waterplane(moments_W, point_W, water.up_W, result);
+  if (result.volume > mesh.volume_gate()) {
+    std::optional<Vec3> mass_to_point_W;
+    if (center_of_mass_B) mass_to_point_W = R_WB * ((mesh.center_B - *center_of_mass_B) + part.point);
+    add_metacenters(moments_W, point_W, water.up_W, mass_to_point_W, result);
+  }
   const Vec3 to_reference_W = R_WB * ((reference_B - mesh.center_B) - part.point);
   result.stiffness = water.density * water.gravity * stiffness(moments_W.moved(to_reference_W), water.up_W);
-
-  result.waterplane_centroid_W.setConstant(kUndefined);
-  for (Vec3& axis : result.waterplane_axes_W) axis.setConstant(kUndefined);
-  if (result.waterplane_area > 0.0) {
-    const Vec3 to_centroid_W = moments_W.waterplane_moment / result.waterplane_area;
-    result.waterplane_centroid_W = point_W + to_centroid_W;
-    const PrincipalMoments principal =
-        principal_moments(moments_W.moved(to_centroid_W).waterplane_second_moments, water.up_W);
-    result.waterplane_second_moments = principal.moments;
-    result.waterplane_axes_W = principal.axes;
-  }
-
-  result.center_of_buoyancy_W.setConstant(kUndefined);
-  for (Vec3& metacenter : result.metacenters_W) metacenter.setConstant(kUndefined);
-  result.metacentric_radii.fill(kUndefined);
-  result.metacentric_heights.fill(kUndefined);
-  if (result.volume > mesh.volume_gate()) {
-    const Vec3 to_buoyancy_W = moments_W.moment / result.volume;
-    result.center_of_buoyancy_W = point_W + to_buoyancy_W;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double radius = result.waterplane_second_moments[i] / result.volume;
-      result.metacentric_radii[i] = radius;
-      result.metacenters_W[i] = result.center_of_buoyancy_W + radius * water.up_W;
-      if (center_of_mass_B) {
-        const Vec3 from_mass_W = R_WB * (part.point - (*center_of_mass_B - mesh.center_B)) + to_buoyancy_W;
-        result.metacentric_heights[i] = water.up_W.dot(from_mass_W) + radius;
-      }
-    }
-  }
   if (!finite(result)) return std::nullopt;
   return result;
 }

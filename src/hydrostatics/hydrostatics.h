@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "hydrostatics/hydrostatic_mesh.h"
@@ -21,21 +22,25 @@
 
 namespace buoyancy {
 
-// Points are relative to p_WB, everything in W axes. Two values: [0] of the smaller second moment, [1] the
-// larger.
+// A pair for the waterplane's two principal axes: [0] of the smaller second moment, [1] of the larger.
+template <typename T>
+using PrincipalPair = std::array<T, 2>;
+
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+// Everything in W axes, points relative to p_WB. Its defaults are a dry body's.
 struct Hydrostatics {
-  double volume = 0.0;                                // m^3: V, displaced
-  Vec3 center_of_buoyancy_W = Vec3::Zero();           // m
-  double wetted_area = 0.0;                           // m^2, without the waterplane
-  double waterplane_area = 0.0;                       // m^2: A
-  Vec3 waterplane_centroid_W = Vec3::Zero();          // m
-  std::array<double, 2> waterplane_second_moments{};  // m^4: principal, about axes through the centroid
-  std::array<Vec3, 2> waterplane_axes_W{Vec3::Zero(),
-                                        Vec3::Zero()};  // unit, horizontal: those axes; [1] = up x [0].
-                                                        // Any pair where the two moments are equal.
-  std::array<double, 2> metacentric_radii{};            // m: BM, when heeling about those axes
-  std::array<Vec3, 2> metacenters_W{Vec3::Zero(), Vec3::Zero()};  // m
-  std::array<double, 2> metacentric_heights{};                    // m: GM
+  double volume = 0.0;                                      // m^3: V, displaced
+  Vec3 center_of_buoyancy_W = Vec3::Constant(kUndefined);   // m
+  double wetted_area = 0.0;                                 // m^2, without the waterplane
+  double waterplane_area = 0.0;                             // m^2: A
+  Vec3 waterplane_centroid_W = Vec3::Constant(kUndefined);  // m
+  PrincipalPair<double> waterplane_second_moments{};        // m^4, about axes through the centroid
+  // Those axes: unit, horizontal, [1] = up x [0]. Any such pair where the two moments are equal.
+  PrincipalPair<Vec3> waterplane_axes_W{Vec3::Constant(kUndefined), Vec3::Constant(kUndefined)};
+  PrincipalPair<double> metacentric_radii{kUndefined, kUndefined};  // m: BM, when heeling about those axes
+  PrincipalPair<Vec3> metacenters_W{Vec3::Constant(kUndefined), Vec3::Constant(kUndefined)};  // m
+  PrincipalPair<double> metacentric_heights{kUndefined, kUndefined};                          // m: GM
   // -d(F, tau)/d(p, theta) of buoyancy alone: rows force (N), torque (N m) about the reference point; columns
   // translation (m), rotation (rad) about W axes through the reference point, which goes with the body. Not
   // symmetric where the centre of buoyancy does not lie over or under the reference point.

@@ -33,11 +33,11 @@ class Descent {
   }
 
   WetMoments result() const {
-    const NodeMoments nodes = wet_nodes_.total();
-    WetMoments wet{nodes.moments(), Vec3::Zero(), -plane_.h_c, nodes.area(), cut_};
+    const Patch nodes = wet_nodes_.total();
+    WetMoments wet{nodes.moments, Vec3::Zero(), -plane_.h_c, nodes.area};
     if (point_) {
       const Patch patch = clipped_.total();
-      wet.moments = nodes.moments().moved(*point_);
+      wet.moments = nodes.moments.moved(*point_);
       wet.moments += patch.moments;
       wet.point = *point_;
       wet.height = height_;
@@ -56,7 +56,7 @@ class Descent {
       if (height - reach > 0.0) continue;
       const std::uint32_t child = node.child[i];
       if (height + reach < 0.0) {
-        wet_nodes_.add(tree_.moments[node.first_moments + i]);
+        add_wet_node(node.first_moments + i);
       } else if ((child & TreeNode::kLeafBit) == 0) {
         visit(tree_.nodes[child]);
       } else {
@@ -87,7 +87,7 @@ class Descent {
     }
     if (wet == 0) return;
     if (wet == leaf.vertices) {
-      wet_nodes_.add(tree_.moments[leaf.moments]);
+      add_wet_node(leaf.moments);
       return;
     }
     if (!point_) {
@@ -107,10 +107,14 @@ class Descent {
           static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
       if (wet_corners == 3) add(a, b, c);
       if (wet_corners == 1 || wet_corners == 2) {
-        cut_ = true;
         visit_wet_part(a, b, c, [this](const auto& p, const auto& q, const auto& r) { add(p, q, r); });
       }
     }
+  }
+
+  void add_wet_node(std::uint32_t index) {
+    const NodeMoments& node = tree_.moments[index];
+    wet_nodes_.add({node.moments(), node.area()});
   }
 
   void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c) {
@@ -121,12 +125,11 @@ class Descent {
 
   const MomentTree& tree_;
   const WaterPlane& plane_;
-  double margin_ = 0.0;  // m: more than what rounding can move a bound's height
-  PairwiseSum<NodeMoments> wet_nodes_;
-  PairwiseSum<Patch> clipped_;  // about point_
-  std::optional<Vec3> point_;   // the first wet vertex of a leaf that is not wholly wet; from c
-  double height_ = 0.0;         // of point_
-  bool cut_ = false;
+  double margin_ = 0.0;           // m: more than what rounding can move a bound's height
+  PairwiseSum<Patch> wet_nodes_;  // about c
+  PairwiseSum<Patch> clipped_;    // about point_
+  std::optional<Vec3> point_;     // the first wet vertex of a leaf that is not wholly wet; from c
+  double height_ = 0.0;           // of point_
 };
 
 }  // namespace

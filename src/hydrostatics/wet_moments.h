@@ -18,7 +18,6 @@ struct WetMoments {
   Vec3 point = Vec3::Zero();       // m, B axes, from the mesh's centre c
   double height = 0.0;             // m: of `point` over the water
   double area = 0.0;               // m^2: of the wet surface
-  bool cut = false;                // the water cuts a triangle; else there is no waterplane
 };
 
 // Errors, with A_w the wet surface's area, R the distance from `point` to its farthest part, each times a few

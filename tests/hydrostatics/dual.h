@@ -53,6 +53,8 @@ struct Dual {
 
 }  // namespace buoyancy
 
+// The names are Eigen's.
+// NOLINTBEGIN(readability-identifier-naming)
 template <>
 struct Eigen::NumTraits<buoyancy::Dual> : Eigen::GenericNumTraits<double> {
   using Real = buoyancy::Dual;
@@ -68,3 +70,4 @@ struct Eigen::NumTraits<buoyancy::Dual> : Eigen::GenericNumTraits<double> {
     MulCost = 20
   };
 };
+// NOLINTEND(readability-identifier-naming)

@@ -273,6 +273,39 @@ TEST(Hydrostatics, AgreeWithTheWrenchOnVolumeAndCentre) {
   }
 }
 
+TEST(Hydrostatics, OfTwoPartsWithTheSurfaceBetweenThemHaveNoWaterplane) {
+  const TriangleMesh boxes =
+      joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 2}));
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({boxes, {}});
+  const Hydrostatics found = of(mesh, at_height(-1.0));
+  EXPECT_NEAR(found.volume, 1.0, kRelative);
+  EXPECT_NEAR(found.wetted_area, 6.0, kRelative);
+  EXPECT_EQ(found.waterplane_area, 0.0);
+  EXPECT_EQ(found.metacentric_radii, (std::array<double, 2>{}));
+  expect_near(found.metacenters_W[0], Vec3::Zero(), kRelative);
+  EXPECT_EQ(found.stiffness(2, 2), 0.0);
+}
+
+TEST(Hydrostatics, OfAnOpenHullWithADryRimAreThoseOfTheClosedOne) {
+  TriangleMesh open = make_shape(BoxShape{.size = {3, 2, 1}, .segments = {3, 2, 2}});
+  const HydrostaticMesh closed = make_hydrostatic_mesh({open, {}});
+  std::vector<std::int32_t> rim;
+  const auto on_deck = [&](std::int32_t i) { return open.vertex(i).z() == 0.5; };
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(open.vertex_count()); ++i) {
+    if (on_deck(i)) rim.push_back(i);
+  }
+  std::erase_if(open.triangles,
+                [&](const Triangle& t) { return on_deck(t[0]) && on_deck(t[1]) && on_deck(t[2]); });
+  const HydrostaticMesh hull = make_hydrostatic_mesh({open, rim});
+  const Pose pose{Vec3(0, 0, 0.1), Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Vec3(1, 2, 0).normalized()))};
+  const Hydrostatics expected = of(closed, pose);
+  const Hydrostatics found = of(hull, pose);
+  EXPECT_NEAR(found.volume, expected.volume, kRelative);
+  EXPECT_NEAR(found.waterplane_area, expected.waterplane_area, 10 * kRelative);
+  EXPECT_LE((found.stiffness - expected.stiffness).norm(), kRelative * 10 * expected.stiffness.norm());
+  expect_near(found.metacenters_W[1], expected.metacenters_W[1], 10 * kRelative);
+}
+
 TEST(Hydrostatics, GMIsTheRightingMomentsStiffnessAboutTheCentreOfMass) {
   const HydrostaticMesh mesh = prepared(RockShape{.frequency = 8, .roughness = 0.5, .seed = 3});
   const BoundingBox box = bounding_box(mesh.surface);
@@ -406,6 +439,26 @@ TEST(Hydrostatics, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
     EXPECT_NEAR(both.found.waterplane_area, area, 1e-12 * area);
     EXPECT_LE(difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments),
               1e-11 * second);
+  }
+}
+
+TEST(Hydrostatics, TakeHeightsFromWhereTheWaterIsAndNotFromTheBodysMiddle) {
+  const TriangleMesh sphere = make_shape(RockShape{.frequency = 40, .roughness = 0.0});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
+  constexpr double kLeaf = 0.1;  // m, the size of 16 triangles
+  RandomPoses random(46);
+  for (int i = 0; i < 8; ++i) {
+    Pose pose{Vec3::Zero(), random.rotation()};
+    double lowest = 0.0;
+    for (std::size_t v = 0; v < sphere.vertex_count(); ++v) {
+      lowest = std::min(lowest, (pose.q_WB * sphere.vertex(static_cast<std::int32_t>(v))).z());
+    }
+    const double draft = 1e-9;
+    pose.p_WB.z() = -lowest - draft;
+    const BothReadOuts both = read_out_twice(mesh, pose);
+    // A cone's volume is A draft/3, so an error of the height of z is 3 z/draft of it.
+    const double volume = to_double(both.exact.volume);
+    EXPECT_LE(std::abs(both.found.volume - volume), 3.0 * kEpsilon * kLeaf / draft * volume);
   }
 }
 

@@ -27,9 +27,9 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
   const ScratchDirectory directory;
   const std::string recorded = directory.path("live.lcmlog");
   const std::string replayed = directory.path("replayed.lcmlog");
-  const std::string scene = directory.write("scene.toml", kBoxScene);
+  const std::string scene = directory.write("scene.toml", kHydrostaticBoxScene);
   RawLcmSocket socket;
-  const RunningService service;
+  const RunningService service({}, kHydrostaticBoxScene);
   ChildProcess logger(command_of({"lcm-logger", "-q", "-f", "--flush-interval=1", recorded}));
   std::error_code not_there_yet;
   while (std::filesystem::file_size(recorded, not_there_yet) + 1 <= 1) {
@@ -68,6 +68,9 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
   const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");
   EXPECT_EQ(live.size(), 330U);
   EXPECT_EQ(events(replayed, "BUOYANCY_WRENCHES"), live);
+  const std::vector<RawBytes> live_hydrostatics = events(recorded, "BUOYANCY_HYDROSTATICS");
+  EXPECT_GT(live_hydrostatics.size(), 50U);
+  EXPECT_EQ(events(replayed, "BUOYANCY_HYDROSTATICS"), live_hydrostatics);
 }
 
 }  // namespace
