@@ -228,65 +228,6 @@ TEST(Exchange, CountsWhatTheModeLatestPassesOver) {
   EXPECT_EQ(exchange.counters().answered, 0);
 }
 
-BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
-  BodiesHydrostatics hydrostatics;
-  EXPECT_FALSE(decode(bytes, hydrostatics).has_value());
-  return hydrostatics;
-}
-
-TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
-  Exchange exchange(scene());
-  std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
-                                upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
-  bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
-  exchange.answer(question_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
-  const BodiesHydrostatics found = decoded_hydrostatics(exchange.hydrostatics());
-  EXPECT_EQ(found.key.utime, 5);
-  EXPECT_EQ(found.key.session_id, 6);
-  EXPECT_EQ(found.key.seq, 7);
-  ASSERT_EQ(found.bodies.size(), 3U);
-  for (const BodyHydrostatics& body : found.bodies) EXPECT_EQ(body.body_id, kHydrostaticBox);
-  EXPECT_NEAR(found.bodies[0].submerged_volume, 0.25, 1e-14);
-  EXPECT_NEAR(found.bodies[1].submerged_volume, 0.75, 1e-14);
-  EXPECT_EQ(found.bodies[2].status, BodyStatus::kNonFinitePose);
-  EXPECT_EQ(found.bodies[2].submerged_volume, 0.0);
-  EXPECT_EQ(exchange.counters().hydrostatics, 2);
-}
-
-TEST(ExchangedHydrostatics, AreEmptyWhereNoBodyOfTheQuestionAsks) {
-  Exchange exchange(scene());
-  EXPECT_TRUE(exchange.hydrostatics().empty());
-  const ByteVector asking = question_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
-  exchange.answer(asking);
-  EXPECT_FALSE(exchange.hydrostatics().empty());
-  exchange.answer(question(1, 2));
-  EXPECT_TRUE(exchange.hydrostatics().empty());
-  exchange.answer(asking);
-  exchange.answer(question(1, 2));
-  exchange.answer(question(1, 2));
-  EXPECT_EQ(exchange.counters().repeated, 1);
-  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a repeat";
-  exchange.answer(asking);
-  exchange.answer(ByteVector{1, 2, 3});
-  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a rejected question";
-  EXPECT_EQ(exchange.counters().hydrostatics, 3);
-}
-
-TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
-  Exchange exchange(scene());
-  const auto asked = [](std::int64_t session_id, double height) {
-    return question_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
-  };
-  exchange.answer(asked(1, 0.1));
-  const ByteVector first = copied(exchange.hydrostatics());
-  for (std::int64_t other = 2; other < 20; ++other) exchange.answer(asked(other, 0.2));
-  const std::int64_t computed = exchange.counters().hydrostatics;
-  exchange.answer(asked(1, 0.1));
-  EXPECT_EQ(copied(exchange.hydrostatics()), first);
-  EXPECT_EQ(exchange.counters().repeated, 1);
-  EXPECT_EQ(exchange.counters().hydrostatics, computed);
-}
-
 TEST(MalformedMessages, AreManyAndDifferent) {
   const auto list = malformed_messages();
   EXPECT_GE(list.size(), 40U);

@@ -30,9 +30,9 @@ Mat6 stiffness_by_dual_numbers(const HydrostaticMesh& mesh, const Pose& pose, co
   const DualVec c_from_r = (mesh.center_B - reference_B).cast<Dual>();
   DualVec p;
   DualVec theta;
-  for (int i = 0; i < 3; ++i) {
-    p(i) = Dual::parameter(static_cast<std::size_t>(i));
-    theta(i) = Dual::parameter(static_cast<std::size_t>(3 + i));
+  for (std::size_t i = 0; i < 3; ++i) {
+    p(static_cast<Eigen::Index>(i)) = Dual::parameter(i);
+    theta(static_cast<Eigen::Index>(i)) = Dual::parameter(3 + i);
   }
   // The body turned by theta has R = (1 + [theta] + ..) R_WB; a point y about c is at
   // p_r + p + R (y + c - r), so k = R^T up and h_c = level - up . (p_r + p) - k . (c - r).
