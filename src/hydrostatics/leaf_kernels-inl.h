@@ -88,48 +88,68 @@ struct LeafCorners {
   hn::Vec<Words> part[4];
 };
 
-template <class D>
-HWY_INLINE std::size_t compress_part(D d, hn::Vec<D> corners, std::uint32_t chosen, Corners* to) {
-  const auto count = static_cast<std::size_t>(__builtin_popcount(chosen & ((1U << hn::Lanes(d)) - 1U)));
-  const auto compressed = hn::CompressBits(corners, reinterpret_cast<const std::uint8_t*>(&chosen));
-  hn::StoreU(hn::IfThenElseZero(hn::FirstN(d, count), compressed), d, to);
+// Writes the chosen ones to `to`, in order, and zeros behind them to fill a vector of Reals: a triangle of
+// one corner.
+#if HWY_MAX_BYTES >= 64
+
+HWY_INLINE std::size_t compress(const LeafCorners& corners, std::uint32_t chosen, Corners* to) {
+  const hn::FixedTag<Corners, 8> d8;
+  const hn::FixedTag<Corners, 16> d16;
+  const auto& part = corners.part;
+  const auto all = hn::Combine(d16, hn::Combine(d8, part[3], part[2]), hn::Combine(d8, part[1], part[0]));
+  const auto count = static_cast<std::size_t>(__builtin_popcount(chosen));
+  const auto mask = hn::LoadMaskBits(d16, reinterpret_cast<const std::uint8_t*>(&chosen));
+  hn::Store(hn::IfThenElseZero(hn::FirstN(d16, count), hn::Compress(all, mask)), d16, to);
   return count;
 }
 
-// Writes the chosen ones to `to`, in order, and zeros behind them to fill a vector of Reals: a triangle of
-// one corner.
-HWY_INLINE std::size_t compress(const LeafCorners& corners, std::uint32_t chosen, Corners* to) {
-  const auto& part = corners.part;
-#if HWY_MAX_BYTES >= 32
-  const hn::FixedTag<Corners, 8> d8;
-  const auto low = hn::Combine(d8, part[1], part[0]);
-  const auto high = hn::Combine(d8, part[3], part[2]);
-#endif
-#if HWY_MAX_BYTES >= 64
-  const hn::FixedTag<Corners, 16> d16;
-  return compress_part(d16, hn::Combine(d16, high, low), chosen, to);
-#elif HWY_MAX_BYTES >= 32
-  const std::size_t first = compress_part(d8, low, chosen, to);
-  const std::size_t count = first + compress_part(d8, high, chosen >> 8U, to + first);
-  hn::StoreU(hn::Zero(d8), d8, to + count);
-  return count;
 #else
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < 4; ++i)
-    count += compress_part(Words(), part[i], chosen >> (4 * i) & 0xFU, to + count);
-  hn::StoreU(hn::Zero(Words()), Words(), to + count);
-  return count;
-#endif
+
+// Where the bytes of the chosen words of four come from, by which are chosen. Highway's own Compress has such
+// a table too, which GCC 12 copies to the stack at every use.
+struct alignas(16) WordShuffle {
+  std::array<std::uint8_t, 16> bytes;
+};
+constexpr std::array<WordShuffle, 16> make_word_shuffles() {
+  std::array<WordShuffle, 16> shuffles{};
+  for (std::size_t chosen = 0; chosen < 16; ++chosen) {
+    std::size_t to = 0;
+    for (std::size_t word = 0; word < 4; ++word) {
+      if ((chosen >> word & 1U) == 0) continue;
+      for (std::size_t byte = 0; byte < 4; ++byte) {
+        shuffles[chosen].bytes[to++] = static_cast<std::uint8_t>(4 * word + byte);
+      }
+    }
+  }
+  return shuffles;
 }
+inline constexpr std::array<WordShuffle, 16> kWordShuffles = make_word_shuffles();
+
+HWY_INLINE std::size_t compress(const LeafCorners& corners, std::uint32_t chosen, Corners* to) {
+  const Words d;
+  const hn::FixedTag<std::uint8_t, 16> bytes;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint32_t here = chosen >> (4 * i) & 0xFU;
+    const auto shuffle = hn::BitCast(d, hn::Load(bytes, kWordShuffles[here].bytes.data()));
+    hn::StoreU(hn::TableLookupBytes(corners.part[i], shuffle), d, to + count);
+    count += static_cast<std::size_t>(__builtin_popcount(here));
+  }
+  hn::StoreU(hn::Zero(d), d, to + count);
+  return count;
+}
+
+#endif
 
 // wet: one bit per vertex.
 HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& work) {
   const hn::FixedTag<std::uint8_t, 16> d;
   const hn::FixedTag<std::uint16_t, 8> d16;
   static_assert(kLeafTriangles == 16 && kLeafVertices == 16);
-  HWY_ALIGN constexpr std::array<std::uint8_t, 16> kByte{0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
-  HWY_ALIGN constexpr std::array<std::uint8_t, 16> kBit{1, 2, 4, 8, 16, 32, 64, 128,
-                                                        1, 2, 4, 8, 16, 32, 64, 128};
+  alignas(16) static constexpr std::array<std::uint8_t, 16> kByte{0, 0, 0, 0, 0, 0, 0, 0,
+                                                                  1, 1, 1, 1, 1, 1, 1, 1};
+  alignas(16) static constexpr std::array<std::uint8_t, 16> kBit{1, 2, 4, 8, 16, 32, 64, 128,
+                                                                 1, 2, 4, 8, 16, 32, 64, 128};
   const auto bits = hn::BitCast(d, hn::Set(d16, static_cast<std::uint16_t>(wet)));
   const auto bit = hn::Load(d, kBit.data());
   // 0xFF for a wet vertex.
