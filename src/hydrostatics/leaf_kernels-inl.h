@@ -279,7 +279,8 @@ class LeafSums {
     const double z_low = query.k_low[0] * c[0] + query.k_low[1] * c[1] + query.k_low[2] * c[2] - query.h_low;
     VertexTable z;
     const std::uint32_t vertices = (1U << leaf.vertices) - 1U;
-    const std::uint32_t wet = project(leaf, query.k, z_high + z_low, z) & vertices;
+    project(leaf, query.k, z_high + z_low, z);
+    const std::uint32_t wet = wet_vertices(leaf, z) & vertices;
     if (wet == 0) return LeafOutcome::kAdded;
     if (wet == vertices) return LeafOutcome::kAddLeaf;
 
@@ -303,26 +304,34 @@ class LeafSums {
   }
 
  private:
-  // start + axis . y of the leaf's vertices; one bit for each where that is negative.
-  HWY_INLINE static std::uint32_t project(const TreeLeaf& leaf, const std::array<double, 3>& axis,
-                                          double start, VertexTable& table) {
+  // start + axis . y of the leaf's vertices.
+  HWY_INLINE static void project(const TreeLeaf& leaf, const std::array<double, 3>& axis, double start,
+                                 VertexTable& table) {
     const Reals d;
     const auto x = hn::Set(d, axis[0]);
     const auto y = hn::Set(d, axis[1]);
     const auto z = hn::Set(d, axis[2]);
     const auto from = hn::Set(d, start);
-    std::uint32_t negative = 0;
+    const std::size_t vertices = leaf.vertices;
+    for (std::size_t i = 0; i < vertices; i += hn::Lanes(d)) {
+      const auto value = hn::MulAdd(x, hn::Load(d, leaf.x.data() + i),
+                                    hn::MulAdd(y, hn::Load(d, leaf.y.data() + i),
+                                               hn::MulAdd(z, hn::Load(d, leaf.z.data() + i), from)));
+      hn::Store(value, d, table.values.data() + i);
+    }
+  }
+
+  // One bit for each vertex below the water.
+  HWY_INLINE static std::uint32_t wet_vertices(const TreeLeaf& leaf, const VertexTable& z) {
+    const Reals d;
+    std::uint32_t wet = 0;
     for (std::size_t i = 0; i < kLeafVertices; i += hn::Lanes(d)) {
       if (i >= leaf.vertices) break;
-      const auto value = hn::MulAdd(
-          x, hn::Load(d, leaf.x.data() + i),
-          hn::MulAdd(y, hn::Load(d, leaf.y.data() + i), hn::MulAdd(z, hn::Load(d, leaf.z.data() + i), from)));
-      hn::Store(value, d, table.values.data() + i);
       std::array<std::uint8_t, 8> bits{};
-      hn::StoreMaskBits(d, hn::Lt(value, hn::Zero(d)), bits.data());
-      negative |= static_cast<std::uint32_t>(bits[0]) << i;
+      hn::StoreMaskBits(d, hn::Lt(hn::Load(d, z.values.data() + i), hn::Zero(d)), bits.data());
+      wet |= static_cast<std::uint32_t>(bits[0]) << i;
     }
-    return negative;
+    return wet;
   }
 
   // Twice a triangle's area projected on the water, n_k dA.

@@ -165,13 +165,9 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
 template <std::size_t kCount>
 class NodeSums {
  public:
-  HWY_INLINE void add(const NodeMoments& moments) {
-    const Reals d;
-    for (std::size_t i = 0; i < kCount; i += hn::Lanes(d)) {
-      hn::Store(hn::Add(hn::Load(d, block_.values.data() + i), hn::Load(d, moments.values.data() + i)), d,
-                block_.values.data() + i);
-    }
-    if (++in_block_ == 16) close_block();
+  // Those of moments that are listed.
+  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const std::uint32_t* list, std::size_t count) {
+    for (std::size_t n = 0; n < count; n += kBlock) add_block(moments, list + n, std::min(kBlock, count - n));
   }
 
   HWY_INLINE void add_weighted(const NodeMoments& moments, double weight) {
@@ -182,7 +178,7 @@ class NodeSums {
           hn::MulAdd(factor, hn::Load(d, moments.values.data() + i), hn::Load(d, block_.values.data() + i)),
           d, block_.values.data() + i);
     }
-    if (++in_block_ == 16) close_block();
+    if (++in_block_ == kBlock) close_block();
   }
 
   HWY_INLINE void finish(NodeMoments& sum) {
@@ -191,16 +187,46 @@ class NodeSums {
   }
 
  private:
+  static constexpr std::size_t kBlock = 16;
+
+  // Four vectors at a time, which stay in registers.
+  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const std::uint32_t* list,
+                            std::size_t count) {
+    const Reals d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t i = 0; i < kCount; i += 4 * lanes) {
+      auto sum0 = hn::Zero(d);
+      auto sum1 = hn::Zero(d);
+      auto sum2 = hn::Zero(d);
+      auto sum3 = hn::Zero(d);
+      for (std::size_t n = 0; n < count; ++n) {
+        const double* const from = moments[list[n]].values.data() + i;
+        sum0 = hn::Add(sum0, hn::Load(d, from));
+        sum1 = hn::Add(sum1, hn::Load(d, from + lanes));
+        sum2 = hn::Add(sum2, hn::Load(d, from + 2 * lanes));
+        sum3 = hn::Add(sum3, hn::Load(d, from + 3 * lanes));
+      }
+      add_compensated(i, sum0);
+      add_compensated(i + lanes, sum1);
+      add_compensated(i + 2 * lanes, sum2);
+      add_compensated(i + 3 * lanes, sum3);
+    }
+  }
+
+  HWY_INLINE void add_compensated(std::size_t i, hn::Vec<Reals> block) {
+    const Reals d;
+    const auto total = hn::Load(d, total_.values.data() + i);
+    const auto sum = hn::Add(total, block);
+    const auto block_part = hn::Sub(sum, total);
+    const auto error = hn::Add(hn::Sub(total, hn::Sub(sum, block_part)), hn::Sub(block, block_part));
+    hn::Store(sum, d, total_.values.data() + i);
+    hn::Store(hn::Add(hn::Load(d, rest_.values.data() + i), error), d, rest_.values.data() + i);
+  }
+
   HWY_INLINE void close_block() {
     const Reals d;
     for (std::size_t i = 0; i < kCount; i += hn::Lanes(d)) {
-      const auto block = hn::Load(d, block_.values.data() + i);
-      const auto total = hn::Load(d, total_.values.data() + i);
-      const auto sum = hn::Add(total, block);
-      const auto block_part = hn::Sub(sum, total);
-      const auto error = hn::Add(hn::Sub(total, hn::Sub(sum, block_part)), hn::Sub(block, block_part));
-      hn::Store(sum, d, total_.values.data() + i);
-      hn::Store(hn::Add(hn::Load(d, rest_.values.data() + i), error), d, rest_.values.data() + i);
+      add_compensated(i, hn::Load(d, block_.values.data() + i));
       hn::Store(hn::Zero(d), d, block_.values.data() + i);
     }
     in_block_ = 0;
@@ -210,7 +236,7 @@ class NodeSums {
     std::array<double, kCount> values{};
   };
   Values block_, total_, rest_;
-  int in_block_ = 0;
+  std::size_t in_block_ = 0;
 };
 
 // S and N, and what it takes to fill the vectors.

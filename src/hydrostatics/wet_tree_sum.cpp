@@ -107,7 +107,7 @@ class Descent {
   static constexpr std::size_t kQueue = 256;
 
   HWY_INLINE void add_queued() {
-    for (std::size_t i = 0; i < wets_; ++i) node_sums_.add(tree_.moments[wet_queue_[i]]);
+    node_sums_.add(tree_.moments, wet_queue_.data(), wets_);
     wets_ = 0;
   }
 
