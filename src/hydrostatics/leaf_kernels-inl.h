@@ -314,9 +314,9 @@ class LeafSums {
     const auto from = hn::Set(d, start);
     const std::size_t vertices = leaf.vertices;
     for (std::size_t i = 0; i < vertices; i += hn::Lanes(d)) {
-      const auto value = hn::MulAdd(x, hn::Load(d, leaf.x.data() + i),
-                                    hn::MulAdd(y, hn::Load(d, leaf.y.data() + i),
-                                               hn::MulAdd(z, hn::Load(d, leaf.z.data() + i), from)));
+      const auto value = hn::MulAdd(
+          x, hn::Load(d, leaf.x.data() + i),
+          hn::MulAdd(y, hn::Load(d, leaf.y.data() + i), hn::MulAdd(z, hn::Load(d, leaf.z.data() + i), from)));
       hn::Store(value, d, table.values.data() + i);
     }
   }

@@ -78,6 +78,49 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return bits[0];
 }
 
+// append_places writes first + i for every bit i of the mask, in order, append_children child[i]; behind them
+// anything, room for kTreeWidth in all. They return how many. leaf_children: a bit for each.
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+
+using ChildWords = hn::FixedTag<std::uint32_t, kTreeWidth>;
+
+HWY_INLINE std::size_t append_words(hn::Vec<ChildWords> words, std::uint32_t mask, std::uint32_t* to) {
+  const ChildWords d;
+  hn::StoreU(hn::Compress(words, hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&mask))), d, to);
+  return static_cast<std::size_t>(__builtin_popcount(mask));
+}
+HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
+  const ChildWords d;
+  return append_words(hn::Add(hn::Iota(d, 0), hn::Set(d, first)), mask, to);
+}
+HWY_INLINE std::size_t append_children(const TreeNode& node, std::uint32_t mask, std::uint32_t* to) {
+  return append_words(hn::Load(ChildWords(), node.child.data()), mask, to);
+}
+HWY_INLINE std::uint32_t leaf_children(const TreeNode& node) {
+  const hn::FixedTag<std::int32_t, kTreeWidth> d;
+  return mask_bits(d, hn::Lt(hn::BitCast(d, hn::Load(ChildWords(), node.child.data())), hn::Zero(d)));
+}
+
+#else
+
+HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
+  std::size_t count = 0;
+  for (; mask != 0; mask &= mask - 1) to[count++] = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+  return count;
+}
+HWY_INLINE std::size_t append_children(const TreeNode& node, std::uint32_t mask, std::uint32_t* to) {
+  std::size_t count = 0;
+  for (; mask != 0; mask &= mask - 1) to[count++] = node.child[static_cast<std::size_t>(__builtin_ctz(mask))];
+  return count;
+}
+HWY_INLINE std::uint32_t leaf_children(const TreeNode& node) {
+  std::uint32_t leaves = 0;
+  for (std::size_t i = 0; i < kTreeWidth; ++i) leaves |= node.child[i] >> 31U << i;
+  return leaves;
+}
+
+#endif
+
 HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query) {
   const Bounds d;
   std::uint32_t wet = 0;

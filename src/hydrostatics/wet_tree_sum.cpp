@@ -25,8 +25,8 @@ HWY_INLINE void prefetch_node(const TreeNode& node) {
   for (std::size_t byte = 0; byte < sizeof(TreeNode); byte += 64) __builtin_prefetch(line + byte);
 }
 
-// What both descents share. Found nodes and leaves are queued and prefetched, and used when a queue is full:
-// memory is fetched meanwhile.
+// What both descents share. Found nodes and leaves are queued and used when a queue is full: memory is then
+// fetched for many at once.
 class Descent {
  public:
   HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum)
@@ -35,11 +35,15 @@ class Descent {
   HWY_INLINE const BoundsQuery& bounds() const { return bounds_; }
 
   HWY_INLINE void add_wet(const TreeNode& node, std::uint32_t mask) {
-    for (; mask != 0; mask &= mask - 1) {
-      const std::uint32_t index = node.first_moments + static_cast<std::uint32_t>(__builtin_ctz(mask));
-      prefetch_moments(index);
-      wet_queue_[wets_++] = index;
-    }
+    wets_ += append_places(mask, node.first_moments, wet_queue_.data() + wets_);
+  }
+
+  // Queues those of a node's children in the mask that are leaves, and writes the others to `inner`: how
+  // many.
+  HWY_INLINE std::size_t add_crossing(const TreeNode& node, std::uint32_t mask, std::uint32_t* inner) {
+    const std::uint32_t leaves = mask & leaf_children(node);
+    leaves_ += append_children(node, leaves, leaf_queue_.data() + leaves_);
+    return append_children(node, mask & ~leaves, inner);
   }
 
   HWY_INLINE void prefetch_moments(std::uint32_t index) const {
@@ -47,12 +51,8 @@ class Descent {
     for (std::size_t i = 0; i < NodeMoments::kCount; i += 8) __builtin_prefetch(moments.values.data() + i);
   }
 
-  // leaf: without kLeafBit.
-  HWY_INLINE void clip(std::uint32_t leaf) {
-    const auto* const line = reinterpret_cast<const unsigned char*>(&tree_.leaves[leaf]);
-    for (std::size_t byte = 0; byte < sizeof(TreeLeaf); byte += 64) __builtin_prefetch(line + byte);
-    leaf_queue_[leaves_++] = leaf;
-  }
+  // leaf: with kLeafBit.
+  HWY_INLINE void clip(std::uint32_t leaf) { leaf_queue_[leaves_++] = leaf; }
 
   // After every node.
   HWY_INLINE void make_room() {
@@ -64,8 +64,11 @@ class Descent {
   HWY_NOINLINE void drain() {
     sum_.leaves_clipped += static_cast<std::int64_t>(leaves_);
     sum_.nodes_added += static_cast<std::int64_t>(wets_);
+    for (std::size_t i = 0; i < wets_; ++i) prefetch_moments(wet_queue_[i]);
+    for (std::size_t i = 0; i < std::min(kAhead, leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
     for (std::size_t i = 0; i < leaves_; ++i) {
-      const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i]];
+      if (i + kAhead < leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
+      const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
       if (leaf_sums_.add(leaf, query_) == LeafOutcome::kAddLeaf) wet_queue_[wets_++] = leaf.moments;
       if (wets_ == wet_queue_.size()) add_queued();
     }
@@ -105,6 +108,12 @@ class Descent {
 
  private:
   static constexpr std::size_t kQueue = 256;
+  static constexpr std::size_t kAhead = 8;  // leaves
+  HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
+    const auto* const line =
+        reinterpret_cast<const unsigned char*>(&tree_.leaves[leaf & ~TreeNode::kLeafBit]);
+    for (std::size_t byte = 0; byte < sizeof(TreeLeaf); byte += 64) __builtin_prefetch(line + byte);
+  }
 
   HWY_INLINE void add_queued() {
     node_sums_.add(tree_.moments, wet_queue_.data(), wets_);
@@ -126,7 +135,7 @@ class Descent {
 // Depth first: every node that the water crosses is looked into.
 void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum) {
   constexpr std::size_t kStack = 256;
-  std::array<std::uint32_t, kStack> stack;
+  std::array<std::uint32_t, kStack + kTreeWidth> stack;
   std::size_t depth = 0;
   Descent descent(tree, query, sum);
   stack[depth++] = 0;
@@ -134,18 +143,10 @@ void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum
     const TreeNode& node = tree.nodes[stack[--depth]];
     const ChildMasks masks = test_children(node, descent.bounds());
     descent.add_wet(node, masks.wet);
-    for (std::uint32_t rest = masks.crossing; rest != 0;) {
-      const int last = 31 - __builtin_clz(rest);  // from the back: the stack then gives them in order
-      rest ^= 1U << last;
-      const std::uint32_t child = node.child[static_cast<std::size_t>(last)];
-      if ((child & TreeNode::kLeafBit) != 0) {
-        descent.clip(child - TreeNode::kLeafBit);
-      } else {
-        assert(depth < kStack);
-        __builtin_prefetch(&tree.nodes[child]);
-        stack[depth++] = child;
-      }
-    }
+    const std::size_t found = descent.add_crossing(node, masks.crossing, stack.data() + depth);
+    for (std::size_t i = 0; i < found; ++i) prefetch_node(tree.nodes[stack[depth + i]]);
+    depth += found;
+    assert(depth <= kStack);
     descent.make_room();
   }
   descent.finish();
@@ -193,7 +194,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, Undecided
         descent.prefetch_undecided(node);
         next[undecided++] = node;
       } else if ((node.child & TreeNode::kLeafBit) != 0) {
-        descent.clip(node.child - TreeNode::kLeafBit);
+        descent.clip(node.child);
         descent.make_room();
       } else {
         prefetch_node(tree.nodes[node.child]);
