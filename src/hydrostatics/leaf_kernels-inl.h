@@ -247,7 +247,7 @@ HWY_INLINE RealVector look_up(const VertexTable& table, CornerIndex<kByte> index
   return hn::Set(Reals(), v[index[0]]);
 #elif HWY_ARCH_X86 && HWY_TARGET == HWY_AVX2
   return RealVector{_mm256_set_pd(v[index[3]], v[index[2]], v[index[1]], v[index[0]])};
-#elif HWY_ARCH_X86
+#elif HWY_ARCH_X86 && HWY_TARGET <= HWY_SSSE3
   return RealVector{_mm_set_pd(v[index[1]], v[index[0]])};
 #else
   const Reals d;

@@ -7,6 +7,10 @@
 
 #include "hydrostatics/undecided_node.h"
 
+// The twin without SIMD is Highway's scalar target with every compiler, and not, with some, its emulation of
+// two lanes.
+#define HWY_BROKEN_EMU128 1
+
 // This file is compiled once per instruction set; the name is how it includes itself.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hydrostatics/wet_tree_sum.cpp"

@@ -12,6 +12,7 @@
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
 #include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/agreement.h"
 
 namespace buoyancy {
 namespace {
@@ -124,6 +125,20 @@ TEST_F(ReferenceMeshes, DirtyWamVIsRefusedWithWhatIsWrongWithIt) {
     EXPECT_GT(validation.report.misoriented_edges, 0);
     EXPECT_NE(validation.refusal->message().find("wamv_dirty.dae"), std::string::npos);
     EXPECT_FALSE(validation.refusal->remedy.empty());
+  }
+}
+
+TEST_F(ReferenceMeshes, GiveTheSameByHierarchicalAndByExactAtTwoThousandPosesEach) {
+  const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
+  for (const auto& [file, oracle] : oracles.items()) {
+    if (oracle.at("status") == "open") continue;
+    const MeshValidation validation = load(file);
+    ASSERT_TRUE(validation.mesh) << file << ": " << validation.refusal->message();
+    const HydrostaticMesh mesh = make_hydrostatic_mesh(*validation.mesh);
+    for (const Agreement& found : agreement_with_exact(validation.mesh->mesh, mesh, 2000, 31)) {
+      EXPECT_LE(found.volume, 2.0) << file << ", " << found.target;
+      EXPECT_LE(found.torque, 2.0) << file << ", " << found.target;
+    }
   }
 }
 

@@ -1,0 +1,56 @@
+// How far `hierarchical` is from `exact`, over many poses and on every instruction set of this processor.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/exact.h"
+#include "hydrostatics/hierarchical.h"
+#include "hydrostatics/wet_tree_sum.h"
+#include "tests/hydrostatics/random_poses.h"
+
+namespace buoyancy {
+
+// Largest differences, as multiples of G_V and G_V L_r.
+struct Agreement {
+  std::string target;
+  double volume = 0.0, torque = 0.0, moment = 0.0;
+};
+
+// Half of the poses are random, half aimed at trouble; a quarter have another up than z. source: of `mesh`.
+inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, const HydrostaticMesh& mesh,
+                                                   int poses, std::uint64_t seed) {
+  const BoundingBox box = bounding_box(source);
+  const double gate = mesh.volume_gate();
+  const double lever = mesh.largest_lever(mesh.center_B);
+  std::vector<Agreement> found;
+  for (const std::string& target : simd_targets()) found.push_back({.target = target});
+  RandomPoses random(seed);
+  for (int i = 0; i < poses; ++i) {
+    Water water{.level = 0.25, .density = 1.0, .gravity = 1.0};
+    if (i % 4 == 3) water.up_W = random.direction();
+    const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(source, water);
+    const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+    // A body deeper than its size is answered from its constants; `exact` then loses digits of its own.
+    const double depth = std::max(1.0, std::abs(plane.h_c) / mesh.diagonal);
+    const Displacement brute = exact(mesh, plane);
+    for (Agreement& agreement : found) {
+      EXPECT_TRUE(force_simd_target(agreement.target));
+      const Displacement fast = hierarchical(mesh, plane);
+      const auto worse = [](double& largest, double value) {
+        // A NaN is worse than anything.
+        if (!(value <= largest)) largest = value;
+      };
+      worse(agreement.volume, std::abs(fast.volume - brute.volume) / (gate * depth));
+      worse(agreement.torque, (fast.torque - brute.torque).norm() / (gate * lever * depth));
+      worse(agreement.moment, (fast.moment - brute.moment).norm() / (gate * lever * depth));
+    }
+  }
+  force_simd_target("");
+  return found;
+}
+
+}  // namespace buoyancy
