@@ -21,7 +21,7 @@ int serve(const CLI::App& app, const DaemonOptions& options, const Scene& scene)
     print_error(app, connection.error());
     return kFailed;
   }
-  Daemon daemon(scene, std::move(*connection), options.mode, options.channels);
+  Daemon daemon(scene, std::move(*connection), options.mode, options.channels, options.threads);
   if (const Expected<void> ended = daemon.run(signals); !ended) {
     print_error(app, ended.error());
     return kFailed;

@@ -52,11 +52,12 @@ std::string_view name(Mode mode) {
   return mode == Mode::kLockstep ? "lockstep" : "latest";
 }
 
-Daemon::Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels)
+Daemon::Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels,
+               unsigned threads)
     : mode_(mode),
       channels_(std::move(channels)),
       connection_(std::move(connection)),
-      exchange_(scene, {kMaxSessions}),
+      exchange_(scene, {.max_sessions = kMaxSessions, .threads = threads}),
       latest_(kMaxSessions),
       instance_id_(random_id()) {}
 

@@ -32,8 +32,8 @@ struct ChannelNames {
 
 class Daemon {
  public:
-  // scene must outlive the daemon.
-  Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels);
+  // scene must outlive the daemon. threads: as ExchangeOptions has it.
+  Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels, unsigned threads);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 

@@ -35,6 +35,12 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
       ->capture_default_str();
   app.add_option("--status-channel", options.channels.status, "Channel of the status, once a second")
       ->capture_default_str();
+  app.add_option(
+         "--threads", options.threads,
+         "Threads among which a question's bodies are shared, where there is enough to do; 0: as many as the "
+         "processor runs at once. The answers do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N [0]");
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error, critical or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}))
       ->option_text("LEVEL [info]");

@@ -1,7 +1,6 @@
 #include "exchange/body_answers.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace buoyancy {
@@ -51,7 +50,7 @@ void BodyAnswers::answer_or_postpone(const BodyState& state, double lead_time, s
     return;
   }
   const Remembered& last = remembered_[*index];
-  if (last.valid && last.pose == bits_of(asked.pose)) {
+  if (last.valid && last.pose == pose_bits(asked.pose)) {
     outcomes_[i] = last.outcome;
     outcomes_[i].unchanged = true;
     return;
@@ -89,14 +88,8 @@ void BodyAnswers::remember(std::size_t body, const Pose& pose, const BodyOutcome
   Remembered& last = remembered_[body];
   last.valid = outcome.wrench.status == BodyStatus::kOk;
   if (!last.valid) return;
-  last.pose = bits_of(pose);
+  last.pose = pose_bits(pose);
   last.outcome = outcome;
-}
-
-BodyAnswers::PoseBits BodyAnswers::bits_of(const Pose& pose) {
-  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  return {bits(pose.p_WB.x()), bits(pose.p_WB.y()), bits(pose.p_WB.z()), bits(pose.q_WB.w()),
-          bits(pose.q_WB.x()), bits(pose.q_WB.y()), bits(pose.q_WB.z())};
 }
 
 }  // namespace buoyancy

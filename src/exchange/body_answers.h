@@ -27,7 +27,6 @@ class BodyAnswers {
   unsigned threads() const { return workers_.threads(); }
 
  private:
-  using PoseBits = std::array<std::uint64_t, 7>;  // of p_WB and q_WB
   // A body's last answer that was kOk.
   struct Remembered {
     bool valid = false;
@@ -44,7 +43,6 @@ class BodyAnswers {
   void answer_or_postpone(const BodyState& state, double lead_time, std::size_t i);
   void compute_pending();
   void remember(std::size_t body, const Pose& pose, const BodyOutcome& outcome);
-  static PoseBits bits_of(const Pose& pose);
 
   const Scene* scene_;
   Workers workers_;

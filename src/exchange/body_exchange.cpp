@@ -1,6 +1,7 @@
 #include "exchange/body_exchange.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "hydrostatics/hydrostatics.h"
@@ -75,6 +76,12 @@ AskedPose asked_pose(const BodyState& state, double lead_time) {
   asked.pose = extrapolated(state, lead_time);
   if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
   return asked;
+}
+
+PoseBits pose_bits(const Pose& pose) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return {bits(pose.p_WB.x()), bits(pose.p_WB.y()), bits(pose.p_WB.z()), bits(pose.q_WB.w()),
+          bits(pose.q_WB.x()), bits(pose.q_WB.y()), bits(pose.q_WB.z())};
 }
 
 BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised) {

@@ -2,6 +2,9 @@
 // by lead_time, and the query. The main path's link between messages and hydrostatics.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "hydrostatics/buoyancy.h"
 #include "messages/hydrostatics.h"
 #include "messages/question.h"
@@ -24,6 +27,10 @@ struct AskedPose {
 // Checks in this order, the first failure is the status: pose not finite, quaternion's norm, lead_time not
 // finite, twist not finite (only where lead_time is not 0), extrapolated pose beyond double's range.
 AskedPose asked_pose(const BodyState& state, double lead_time);
+
+// Two poses are the same if these are: the bits of p_WB and q_WB.
+using PoseBits = std::array<std::uint64_t, 7>;
+PoseBits pose_bits(const Pose& pose);
 
 // A wrench, and what the status counts of it.
 struct BodyOutcome {

@@ -16,7 +16,10 @@ bool same_bytes(Bytes a, Bytes b) {
 }  // namespace
 
 Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
-    : scene_(&scene), max_sessions_(options.max_sessions), body_answers_(scene, options.threads) {
+    : scene_(&scene),
+      max_sessions_(options.max_sessions),
+      body_answers_(scene, options.threads),
+      last_hydrostatics_(scene.any_hydrostatics() ? scene.bodies().size() : 0) {
   assert(max_sessions_ >= 1);
 }
 
@@ -96,19 +99,31 @@ void Exchange::compute(Bytes question, Session& session) {
   assert(!rejection);  // peek_key() made the same checks
   answer_.key = question_.key;
   body_answers_.answer(question_, answer_.bodies, counters_);
-  hydrostatics_.key = question_.key;
-  hydrostatics_.bodies.clear();
-  for (std::size_t i = 0; scene_->any_hydrostatics() && i < question_.bodies.size(); ++i) {
-    const BodyState& state = question_.bodies[i];
-    const Body* body = scene_->find(state.body_id);
-    if (body == nullptr || !body->hydrostatics) continue;
-    hydrostatics_.bodies.push_back(hydrostatics_of_body(*body, scene_->water(), state, question_.lead_time,
-                                                        answer_.bodies[i].status, counters_));
-  }
+  compute_hydrostatics();
   encode(answer_, session.last_answer);
   session.last_hydrostatics.clear();
   if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
   session.last_question.assign(question.begin(), question.end());
+}
+
+void Exchange::compute_hydrostatics() {
+  hydrostatics_.key = question_.key;
+  hydrostatics_.bodies.clear();
+  for (std::size_t i = 0; scene_->any_hydrostatics() && i < question_.bodies.size(); ++i) {
+    const BodyState& state = question_.bodies[i];
+    const std::optional<std::size_t> index = scene_->index_of(state.body_id);
+    if (!index || !scene_->bodies()[*index].hydrostatics) continue;
+    const BodyStatus status = answer_.bodies[i].status;
+    LastHydrostatics& last = last_hydrostatics_[*index];
+    const PoseBits pose = pose_bits(asked_pose(state, question_.lead_time).pose);
+    if (status != BodyStatus::kOk || !last.valid || last.pose != pose) {
+      last.hydrostatics = hydrostatics_of_body(scene_->bodies()[*index], scene_->water(), state,
+                                               question_.lead_time, status, counters_);
+      last.pose = pose;
+      last.valid = last.hydrostatics.status == BodyStatus::kOk;
+    }
+    hydrostatics_.bodies.push_back(last.hydrostatics);
+  }
 }
 
 }  // namespace buoyancy

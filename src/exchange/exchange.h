@@ -67,6 +67,7 @@ class Exchange {
   void count_rejection(Rejection rejection);
   Session& start_session(const QuestionKey& first);  // in place of the least recently used one, if need be
   void compute(Bytes question, Session& session);
+  void compute_hydrostatics();
 
   const Scene* scene_;
   std::size_t max_sessions_;
@@ -74,9 +75,16 @@ class Exchange {
   std::uint64_t use_ = 0;
   Counters counters_;
   BodyAnswers body_answers_;
-  Question question_;                    // reused
-  Answer answer_;                        // reused
-  BodiesHydrostatics hydrostatics_;      // reused
+  Question question_;                // reused
+  Answer answer_;                    // reused
+  BodiesHydrostatics hydrostatics_;  // reused
+  // By body of the scene: the last ones, and the pose that they are of.
+  struct LastHydrostatics {
+    bool valid = false;
+    PoseBits pose{};
+    BodyHydrostatics hydrostatics;
+  };
+  std::vector<LastHydrostatics> last_hydrostatics_;
   std::optional<std::size_t> answered_;  // the session that answer() last answered
 };
 

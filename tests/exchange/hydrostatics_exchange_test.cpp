@@ -137,7 +137,7 @@ TEST(ExchangedHydrostatics, AreEmptyWhereNoBodyOfTheQuestionAsks) {
   exchange.answer(asking);
   exchange.answer(ByteVector{1, 2, 3});
   EXPECT_TRUE(exchange.hydrostatics().empty()) << "a rejected question";
-  EXPECT_EQ(exchange.counters().hydrostatics, 3);
+  EXPECT_EQ(exchange.counters().hydrostatics, 1) << "of a body that did not move they are computed once";
 }
 
 TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
@@ -153,6 +153,30 @@ TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
   EXPECT_EQ(copied(exchange.hydrostatics()), first);
   EXPECT_EQ(exchange.counters().repeated, 1);
   EXPECT_EQ(exchange.counters().hydrostatics, computed);
+}
+
+TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing) {
+  Exchange exchange(scene());
+  const auto ask = [&](std::int64_t seq, std::vector<BodyState> bodies) {
+    exchange.answer(question_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
+    BodiesHydrostatics found;
+    EXPECT_FALSE(decode(exchange.hydrostatics(), found).has_value());
+    return found.bodies;
+  };
+  const BodyState low = upright(kHydrostaticBox, 0.0);
+  const BodyState high = upright(kHydrostaticBox, 0.2);
+  const auto first = ask(0, {low});
+  const auto again = ask(1, {upright(kBox, 0.1), low});
+  EXPECT_EQ(exchange.counters().hydrostatics, 1);
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].stiffness, first[0].stiffness);
+  EXPECT_EQ(again[0].wetted_area, first[0].wetted_area);
+
+  // Named twice, each state gets its own.
+  const auto both = ask(2, {high, low});
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_NEAR(both[0].submerged_volume, 0.3, 1e-14);
+  EXPECT_EQ(both[1].submerged_volume, first[0].submerged_volume);
 }
 
 }  // namespace

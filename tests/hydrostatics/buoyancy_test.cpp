@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/allocation_count.h"
+#include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
@@ -138,6 +140,23 @@ TEST(Buoyancy, OfAMeshScaledByAPowerOfTwoHasTheSameBits) {
         buoyancy(Solver(scaled, method), {Vec3(0, 0, 0.125 * 0x1p-20), tilted}, unit, Vec3::Zero());
     EXPECT_EQ(small.volume * 0x1p60, answer.volume) << name(method);
     EXPECT_EQ(Vec3(small.torque_W * 0x1p80), answer.torque_W) << name(method);
+  }
+}
+
+TEST(Buoyancy, TakesNothingFromTheHeapAfterWarmUpWhateverTheMethodAndTolerance) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 12});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  RandomPoses random(17);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 50; ++i) poses.push_back(random.crossing(bounding_box(rock), {}));
+  for (const Method method : kAllMethods) {
+    for (const double tolerance : {0.0, 1e-4, 1e-2}) {
+      const Solver solver(mesh, method, tolerance);
+      buoyancy(solver, at_height(0.0), {}, Vec3::Zero());  // afloat: a dry body would warm nothing up
+      const AllocationCount allocations;
+      for (const Pose& pose : poses) buoyancy(solver, pose, {}, Vec3::Zero());
+      EXPECT_EQ(allocations.count(), 0) << name(method) << ", tolerance " << tolerance;
+    }
   }
 }
 
