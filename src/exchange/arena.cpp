@@ -46,6 +46,8 @@ void Arena::run(std::size_t count, std::size_t /*grain*/, Task task, void* conte
 
 #endif
 
+Arena::Arena(Arena&&) noexcept = default;
+Arena& Arena::operator=(Arena&&) noexcept = default;
 Arena::~Arena() = default;
 
 }  // namespace buoyancy

@@ -12,8 +12,8 @@ namespace buoyancy {
 class Arena {
  public:
   explicit Arena(unsigned threads);  // as Workers
-  Arena(const Arena&) = delete;
-  Arena& operator=(const Arena&) = delete;
+  Arena(Arena&&) noexcept;
+  Arena& operator=(Arena&&) noexcept;
   ~Arena();
 
   unsigned threads() const;
