@@ -33,7 +33,7 @@ using Corners = std::uint32_t;
 // counts less its dry corner, of one with one wet corner that corner alone. Where most of the leaf is wet,
 // the leaf's moments are added and what is not wet is taken off.
 struct LeafWork {
-  static constexpr std::size_t kRoom = 2 * kLeafTriangles;  // whole vectors are written and read
+  static constexpr std::size_t kRoom = 2 * std::size_t{kLeafTriangles};  // whole vectors are written and read
   HWY_ALIGN std::array<Corners, kRoom> whole, cut;
   std::size_t wholes, cuts;
   bool less_than_leaf;  // the whole triangles are those to take off

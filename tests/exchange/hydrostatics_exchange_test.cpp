@@ -157,7 +157,7 @@ TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
 
 TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing) {
   Exchange exchange(scene());
-  const auto ask = [&](std::int64_t seq, std::vector<BodyState> bodies) {
+  const auto ask = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
     exchange.answer(question_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
     BodiesHydrostatics found;
     EXPECT_FALSE(decode(exchange.hydrostatics(), found).has_value());
