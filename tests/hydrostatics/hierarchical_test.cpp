@@ -50,7 +50,7 @@ TEST(SimdTargets, AreForcedByNameAndIncludeTheScalarTwin) {
 TEST(Hierarchical, EqualsBruteForceOnEveryMeshPoseAndInstructionSet) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
-    for (const Agreement& found : agreement_with_exact(named.mesh, mesh, 2000, 21)) {
+    for (const Agreement& found : agreement_with_exact(named.mesh, mesh, kAgreementPoses, 21)) {
       EXPECT_LE(found.volume, 2.0) << named.name << ", " << found.target;
       EXPECT_LE(found.torque, 2.0) << named.name << ", " << found.target;
       EXPECT_LE(found.moment, 4.0) << named.name << ", " << found.target;
@@ -144,8 +144,9 @@ TEST(Hierarchical, AnswersEightThreadsAtOnceAsItAnswersOne) {
       for (const Pose& pose : poses) {
         alone.push_back(solver.displacement(water_plane_in_body(pose, {}, mesh.center_B)));
       }
-      std::vector<std::thread> threads;
       std::array<int, 8> different{};
+      std::vector<std::thread> threads;
+      threads.reserve(different.size());
       for (int& count : different) {
         threads.emplace_back([&] {
           for (std::size_t i = 0; i < poses.size(); ++i) {

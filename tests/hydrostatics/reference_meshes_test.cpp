@@ -135,7 +135,7 @@ TEST_F(ReferenceMeshes, GiveTheSameByHierarchicalAndByExactAtTwoThousandPosesEac
     const MeshValidation validation = load(file);
     ASSERT_TRUE(validation.mesh) << file << ": " << validation.refusal->message();
     const HydrostaticMesh mesh = make_hydrostatic_mesh(*validation.mesh);
-    for (const Agreement& found : agreement_with_exact(validation.mesh->mesh, mesh, 2000, 31)) {
+    for (const Agreement& found : agreement_with_exact(validation.mesh->mesh, mesh, kAgreementPoses, 31)) {
       EXPECT_LE(found.volume, 2.0) << file << ", " << found.target;
       EXPECT_LE(found.torque, 2.0) << file << ", " << found.target;
     }
