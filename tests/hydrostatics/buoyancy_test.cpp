@@ -148,6 +148,7 @@ TEST(Buoyancy, TakesNothingFromTheHeapAfterWarmUpWhateverTheMethodAndTolerance) 
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   RandomPoses random(17);
   std::vector<Pose> poses;
+  poses.reserve(50);
   for (int i = 0; i < 50; ++i) poses.push_back(random.crossing(bounding_box(rock), {}));
   for (const Method method : kAllMethods) {
     for (const double tolerance : {0.0, 1e-4, 1e-2}) {

@@ -135,12 +135,14 @@ TEST(Hierarchical, AnswersEightThreadsAtOnceAsItAnswersOne) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 16});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   std::vector<Pose> poses;
+  poses.reserve(200);
   RandomPoses random(26);
   for (int i = 0; i < 200; ++i) poses.push_back(random.crossing(bounding_box(rock), {}));
   for (const Method method : kAllMethods) {
     for (const double tolerance : {0.0, 1e-3}) {
       const Solver solver(mesh, method, tolerance);
       std::vector<Displacement> alone;
+      alone.reserve(poses.size());
       for (const Pose& pose : poses) {
         alone.push_back(solver.displacement(water_plane_in_body(pose, {}, mesh.center_B)));
       }
