@@ -15,10 +15,10 @@
 #include <CLI/CLI.hpp>
 #include <signal.h>
 
-#include "client/progress_bar.h"
 #include "client/run_csv.h"
 #include "client/run_summary.h"
 #include "client/simulation.h"
+#include "terminal/progress_bar.h"
 
 namespace buoyancy {
 namespace {
@@ -177,9 +177,9 @@ int simulate(Arguments arguments) {
   const Clock::time_point start = Clock::now();
   Expected<RunEnd> end = RunEnd::kDone;
   {
-    ProgressBar progress(steps);
+    ProgressBar progress("steps");
     end = run(*simulation, *asker, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
-      progress.show(now.step_number());
+      progress.update(now.step_number(), steps, now.step_number());
       return csv ? csv->write(now) : Expected<void>{};
     });
   }

@@ -5,11 +5,11 @@
 
 #include "scene/scene.h"
 #include "service/command_line.h"
-#include "service/progress_bar.h"
 #include "service/replay.h"
 #include "service/replay_options.h"
 #include "service/replay_summary.h"
 #include "service/termination_signals.h"
+#include "terminal/progress_bar.h"
 
 namespace {
 
@@ -21,7 +21,7 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const Scene& s
                ReplayOutput& output) {
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message
-  ProgressBar progress;
+  ProgressBar progress("questions");
   int troubles = 0;
   const ReplayListener listener{[&](const std::string& trouble) {
                                   ++troubles;

@@ -30,15 +30,6 @@ std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) 
   return {as_array(pair[0]), as_array(pair[1])};
 }
 
-Pose extrapolated(const BodyState& state, double lead_time) {
-  const auto& [w, x, y, z] = state.quaternion_wxyz;
-  Pose pose{.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
-  if (lead_time != 0.0) {
-    pose = extrapolate(pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
-  }
-  return pose;
-}
-
 // abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.
 double norm_defect(const std::array<double, 4>& q) {
   return std::abs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1.0);
@@ -73,7 +64,12 @@ AskedPose asked_pose(const BodyState& state, double lead_time) {
   if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity))) {
     return fail(BodyStatus::kNonFiniteTwist);
   }
-  asked.pose = extrapolated(state, lead_time);
+  const auto& [w, x, y, z] = state.quaternion_wxyz;
+  asked.pose = {.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+  if (lead_time != 0.0) {
+    asked.pose =
+        extrapolate(asked.pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
+  }
   if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
   return asked;
 }
@@ -129,29 +125,14 @@ void count(const BodyOutcome& outcome, Counters& counters) {
   counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.dropped_torque);
 }
 
-BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters) {
-  const Body* body = scene.find(state.body_id);
-  const AskedPose asked = asked_pose(state, lead_time);
-  BodyOutcome outcome;
-  if (body == nullptr) {
-    outcome = not_answered(state.body_id, BodyStatus::kUnknownBody);
-  } else if (asked.status != BodyStatus::kOk) {
-    outcome = not_answered(state.body_id, asked.status, asked.quaternion_normalised);
-  } else {
-    outcome = evaluate(*body, scene.water(), asked);
-  }
-  count(outcome, counters);
-  return outcome.wrench;
-}
-
-BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const BodyState& state,
-                                      double lead_time, BodyStatus status, Counters& counters) {
+BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,
+                                      BodyStatus status, Counters& counters) {
   BodyHydrostatics message;
-  message.body_id = state.body_id;
+  message.body_id = body.id;
   message.status = status;
   if (status != BodyStatus::kOk) return message;
-  const std::optional<Hydrostatics> found = hydrostatics(body.solver.mesh(), extrapolated(state, lead_time),
-                                                         water, body.reference_B, body.center_of_mass_B);
+  const std::optional<Hydrostatics> found =
+      hydrostatics(body.solver.mesh(), pose, water, body.reference_B, body.center_of_mass_B);
   if (!found) {
     message.status = BodyStatus::kOutOfRange;
     return message;

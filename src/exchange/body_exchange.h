@@ -48,13 +48,10 @@ BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternio
 BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked);
 void count(const BodyOutcome& outcome, Counters& counters);
 
-// All of it for one body: unknown id, the checks of asked_pose(), then the query's own. Allocates nothing.
-BodyWrench answer_body(const Scene& scene, const BodyState& state, double lead_time, Counters& counters);
-
-// The hydrostatics of a body whose outputs name them, at the pose that answer_body() took. status: of its
-// wrench; anything but kOk leaves zeros. Counts what was computed. Allocates nothing.
-BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const BodyState& state,
-                                      double lead_time, BodyStatus status, Counters& counters);
+// The hydrostatics of a body whose outputs name them, at the pose of its wrench. status: of that wrench;
+// anything but kOk leaves zeros. Counts what was computed. Allocates nothing.
+BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,
+                                      BodyStatus status, Counters& counters);
 
 // The pose after `seconds` of the constant twist: p + v t, and q turned by w t about W's axes. The quaternion
 // keeps its norm. Not finite where the result, or an angle of more than 1e154, is beyond double.

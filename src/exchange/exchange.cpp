@@ -115,11 +115,12 @@ void Exchange::compute_hydrostatics() {
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;
     const BodyStatus status = answer_.bodies[i].status;
     LastHydrostatics& last = last_hydrostatics_[*index];
-    const PoseBits pose = pose_bits(asked_pose(state, question_.lead_time).pose);
-    if (status != BodyStatus::kOk || !last.valid || last.pose != pose) {
-      last.hydrostatics = hydrostatics_of_body(scene_->bodies()[*index], scene_->water(), state,
-                                               question_.lead_time, status, counters_);
-      last.pose = pose;
+    const Pose pose = asked_pose(state, question_.lead_time).pose;
+    const PoseBits bits = pose_bits(pose);
+    if (status != BodyStatus::kOk || !last.valid || last.pose != bits) {
+      last.hydrostatics =
+          hydrostatics_of_body(scene_->bodies()[*index], scene_->water(), pose, status, counters_);
+      last.pose = bits;
       last.valid = last.hydrostatics.status == BodyStatus::kOk;
     }
     hydrostatics_.bodies.push_back(last.hydrostatics);

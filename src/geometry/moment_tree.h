@@ -52,7 +52,7 @@ struct alignas(64) TreeNode {
   std::array<std::uint32_t, kTreeWidth> child;  // index into nodes, or kLeafBit + index into leaves
   std::uint32_t first_moments;                  // index of child 0's moments; its siblings' follow
   std::uint32_t children;                       // 1 to kTreeWidth
-  // For descents that stop early; the exact one does not read this line. Upper halves of float32, of child
+  // For descents that stop early; the exact one reads none of it. Upper halves of float32, of child
   // i's surface, m^2: its area, and so that int |n . k| dA <= |oriented . k| + spread for any unit k.
   std::array<std::uint16_t, kTreeWidth> area;
   alignas(64) std::array<std::uint16_t, kTreeWidth> oriented_x, oriented_y, oriented_z;

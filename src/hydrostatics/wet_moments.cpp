@@ -24,9 +24,9 @@ struct Patch {
   }
 };
 
-class Descent {
+class WetSurfaceWalk {
  public:
-  Descent(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
+  WetSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
     constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
     margin_ = 16.0 * kEpsilon * (3.0 * static_cast<double>(tree.reach) + std::abs(plane.h_c));
     visit(tree.nodes[0]);
@@ -135,7 +135,7 @@ class Descent {
 }  // namespace
 
 WetMoments wet_moments(const MomentTree& tree, const WaterPlane& plane) {
-  return Descent(tree, plane).result();
+  return WetSurfaceWalk(tree, plane).result();
 }
 
 }  // namespace buoyancy

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/exchange/answer_alone.h"
 #include "tests/exchange/box_scene.h"
 
 namespace buoyancy {
@@ -27,7 +28,7 @@ const Scene& scene() {
 
 BodyWrench answer(const BodyState& state, double lead_time = 0.0) {
   Counters counters;
-  return answer_body(scene(), state, lead_time, counters);
+  return answer_alone(scene(), state, lead_time, counters);
 }
 
 void expect_zeros(const BodyWrench& wrench) {
@@ -91,9 +92,9 @@ TEST(BodyExchange, AnApproximateMethodSaysThatItHasNoBound) {
 
 TEST(BodyExchange, CountsHowBodiesLieInTheWater) {
   Counters counters;
-  EXPECT_EQ(answer_body(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
-  for (int i = 0; i < 2; ++i) answer_body(scene(), upright(kBox, -10.0), 0.0, counters);
-  for (int i = 0; i < 3; ++i) answer_body(scene(), upright(kBox, 0.2), 0.0, counters);
+  EXPECT_EQ(answer_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
+  for (int i = 0; i < 2; ++i) answer_alone(scene(), upright(kBox, -10.0), 0.0, counters);
+  for (int i = 0; i < 3; ++i) answer_alone(scene(), upright(kBox, 0.2), 0.0, counters);
   EXPECT_EQ(counters.bodies_dry, 1);
   EXPECT_EQ(counters.bodies_wet, 2);
   EXPECT_EQ(counters.bodies_crossing, 3);
@@ -107,14 +108,14 @@ TEST(BodyExchange, KeepsTheLargestPartThatAnExactMethodDropped) {
   tilted.quaternion_wxyz = {0.9, 0.3, 0.3, 0.1};
   for (int i = 0; i < 20; ++i) {
     tilted.position[2] = -0.5 + 0.05 * i;
-    answer_body(scene(), tilted, 0.0, counters);
+    answer_alone(scene(), tilted, 0.0, counters);
   }
   EXPECT_EQ(count(counters, BodyStatus::kOk), 20);
   EXPECT_GT(counters.largest_dropped_force + counters.largest_dropped_torque, 0.0);
   EXPECT_LT(counters.largest_dropped_force, 1e-13);
   EXPECT_LT(counters.largest_dropped_torque, 1e-13);
   const Counters before = counters;
-  answer_body(scene(), upright(kBox, 10.0), 0.0, counters);
+  answer_alone(scene(), upright(kBox, 10.0), 0.0, counters);
   EXPECT_EQ(counters.largest_dropped_force, before.largest_dropped_force);
   EXPECT_EQ(counters.largest_dropped_torque, before.largest_dropped_torque);
 }
@@ -195,7 +196,7 @@ TEST(BodyExchange, GivesEveryBadStateItsStatusAndZeros) {
     BodyState state = upright(kBox, 0.0);
     bad.spoil(state);
     Counters counters;
-    const BodyWrench wrench = answer_body(scene(), state, bad.lead_time, counters);
+    const BodyWrench wrench = answer_alone(scene(), state, bad.lead_time, counters);
     EXPECT_EQ(wrench.body_id, state.body_id);
     EXPECT_STREQ(name(wrench.status), name(bad.expected));
     expect_zeros(wrench);
@@ -262,7 +263,7 @@ TEST(BodyExchange, NormalisesQuaternionsUpToTheToleranceAndCountsNoteworthyOnes)
     const BodyWrench unit = answer(state);
     for (double& component : state.quaternion_wxyz) component *= c.norm;
     Counters counters;
-    const BodyWrench wrench = answer_body(scene(), state, 0.0, counters);
+    const BodyWrench wrench = answer_alone(scene(), state, 0.0, counters);
     EXPECT_EQ(wrench.status, c.expected);
     EXPECT_EQ(counters.quaternions_normalised, c.normalised);
     if (c.expected != BodyStatus::kOk) continue;
@@ -316,10 +317,10 @@ TEST(BodyExchange, AnOpenHullIsAnsweredWhileItsEdgeIsDry) {
   )",
                              directory);
   Counters counters;
-  const BodyWrench afloat = answer_body(tub, upright(1, 0.5), 0.0, counters);
+  const BodyWrench afloat = answer_alone(tub, upright(1, 0.5), 0.0, counters);
   EXPECT_EQ(afloat.status, BodyStatus::kOk);
   EXPECT_NEAR(afloat.submerged_volume, 2.0, 1e-12);
-  const BodyWrench sunk = answer_body(tub, upright(1, -1.5), 0.0, counters);
+  const BodyWrench sunk = answer_alone(tub, upright(1, -1.5), 0.0, counters);
   EXPECT_EQ(sunk.status, BodyStatus::kOpenEdgeWet);
   expect_zeros(sunk);
   EXPECT_EQ(count(counters, BodyStatus::kOpenEdgeWet), 1);

@@ -21,7 +21,7 @@ const Scene& scene() {
 BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
                                  Counters& counters) {
   const Body* body = scene().find(state.body_id);
-  return hydrostatics_of_body(*body, scene().water(), state, lead_time, status, counters);
+  return hydrostatics_of_body(*body, scene().water(), asked_pose(state, lead_time).pose, status, counters);
 }
 
 TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {

@@ -82,6 +82,16 @@ std::int64_t state_fingerprint() {
       .value();
 }
 
+std::int64_t answer_fingerprint(std::int64_t body) {
+  return Fingerprint()
+      .field("utime", "int64_t")
+      .field("session_id", "int64_t")
+      .field("seq", "int64_t")
+      .field("num_bodies", "int32_t")
+      .counted_array_of_structs("bodies", "num_bodies", body)
+      .value();
+}
+
 std::int64_t wrenches_fingerprint() {
   const std::int64_t wrench = Fingerprint()
                                   .field("body_id", "int32_t")
@@ -93,13 +103,7 @@ std::int64_t wrenches_fingerprint() {
                                   .field("force_error_bound", "double")
                                   .field("torque_error_bound", "double")
                                   .value();
-  return Fingerprint()
-      .field("utime", "int64_t")
-      .field("session_id", "int64_t")
-      .field("seq", "int64_t")
-      .field("num_bodies", "int32_t")
-      .counted_array_of_structs("bodies", "num_bodies", wrench)
-      .value();
+  return answer_fingerprint(wrench);
 }
 
 std::int64_t hydrostatics_fingerprint() {
@@ -118,13 +122,19 @@ std::int64_t hydrostatics_fingerprint() {
                                 .fixed_array("metacentric_heights", "double", "2")
                                 .matrix("stiffness", "double", "6", "6")
                                 .value();
-  return Fingerprint()
-      .field("utime", "int64_t")
-      .field("session_id", "int64_t")
-      .field("seq", "int64_t")
-      .field("num_bodies", "int32_t")
-      .counted_array_of_structs("bodies", "num_bodies", body)
-      .value();
+  return answer_fingerprint(body);
+}
+
+// What every answer begins with, and room for its bodies.
+template <typename Answer>
+Answer read_head(RawReader& reader, std::int64_t fingerprint) {
+  if (reader.int64() != fingerprint) throw std::runtime_error("a message of another type");
+  Answer answer;
+  answer.utime = reader.int64();
+  answer.session_id = reader.int64();
+  answer.seq = reader.int64();
+  answer.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  return answer;
 }
 
 }  // namespace
@@ -296,12 +306,7 @@ RawBytes encode_states(const RawStates& states) {
 
 RawWrenches decode_wrenches(const RawBytes& bytes) {
   RawReader reader(bytes);
-  if (reader.int64() != wrenches_fingerprint()) throw std::runtime_error("not body_wrenches_t");
-  RawWrenches wrenches;
-  wrenches.utime = reader.int64();
-  wrenches.session_id = reader.int64();
-  wrenches.seq = reader.int64();
-  wrenches.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  auto wrenches = read_head<RawWrenches>(reader, wrenches_fingerprint());
   for (RawWrench& wrench : wrenches.bodies) {
     wrench.body_id = reader.int32();
     wrench.status = reader.int32();
@@ -318,12 +323,7 @@ RawWrenches decode_wrenches(const RawBytes& bytes) {
 
 RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
   RawReader reader(bytes);
-  if (reader.int64() != hydrostatics_fingerprint()) throw std::runtime_error("not bodies_hydrostatics_t");
-  RawHydrostatics hydrostatics;
-  hydrostatics.utime = reader.int64();
-  hydrostatics.session_id = reader.int64();
-  hydrostatics.seq = reader.int64();
-  hydrostatics.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  auto hydrostatics = read_head<RawHydrostatics>(reader, hydrostatics_fingerprint());
   for (RawBodyHydrostatics& body : hydrostatics.bodies) {
     body.body_id = reader.int32();
     body.status = reader.int32();
