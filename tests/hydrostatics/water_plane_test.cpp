@@ -28,7 +28,7 @@ TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
 
     const WaterPlane plane = water_plane_in_body(pose, water, c_B);
 
-    const Vec3T<Rational> k = exact_up_in_body<Rational>(pose, water);
+    const Vec3T<Rational> k = exact_plane<Rational>(pose, water).up_B;
     const Rational h_c = Rational(water.level) - water.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
                          k.dot(c_B.cast<Rational>());
     for (int axis = 0; axis < 3; ++axis)

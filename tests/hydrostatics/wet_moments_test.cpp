@@ -53,7 +53,7 @@ BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
   BothReadOuts both;
   both.wet = wet_moments(*mesh.tree, plane);
   both.found = read_out(both.wet.moments, both.wet.height, plane.up_B);
-  const Vec3T<Rational> k = exact_up_in_body<Rational>(pose, kWater);
+  const Vec3T<Rational> k = exact_plane<Rational>(pose, kWater).up_B;
   const Rational h_c = Rational(kWater.level) - kWater.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
                        k.dot(mesh.center_B.cast<Rational>());
   const auto about_c = read_out<Rational>(wet_moments_by_hand<Rational>(mesh.surface, k, h_c), -h_c, k);

@@ -1,0 +1,186 @@
+// The oracle's own check: what holds in exact arithmetic holds in it without any error, and balls enclose it.
+#include "tests/hydrostatics/exact_oracle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/ball.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+using RationalVec = Vec3T<Rational>;
+
+const Water kWater{.up_W = Vec3(0.36, 0.48, 0.8), .level = 0.25, .density = 1.0, .gravity = 1.0};
+const Water kUpright{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
+
+Pose turned(double w, double x, double y, double z, const Vec3& p_WB = Vec3::Zero()) {
+  return {.p_WB = p_WB, .q_WB = {w, x, y, z}};
+}
+
+ExactDisplacement<Rational> exactly(const TriangleMesh& mesh, const Pose& pose, const Water& water) {
+  return exact_displacement<Rational>(mesh, pose, water);
+}
+
+// The same surface with the water on its other side.
+Water from_above(Water water) {
+  water.up_W = -water.up_W;
+  water.level = -water.level;
+  return water;
+}
+
+TriangleMesh tetrahedron() {
+  TriangleMesh mesh;
+  for (const Vec3& vertex : {Vec3(0, 0, 0), Vec3(3, 0, 0.5), Vec3(0.25, 2, 0), Vec3(0.5, 0.75, 4)})
+    mesh.add_vertex(vertex);
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  return mesh;
+}
+
+TEST(ExactOracle, TurnsVectorsByRationalQuaternionsWithoutAnyError) {
+  const Pose pose = turned(1, 2, -3, 0.5);
+  const RationalVec v = Vec3(0.1, -7, 1e-3).cast<Rational>();
+  const RationalVec turned_v = exactly_in_world<Rational>(pose, v);
+  EXPECT_EQ(turned_v.dot(turned_v), v.dot(v));
+  const RationalVec back = exact_plane<Rational>(pose, Water{.up_W = Vec3(0.1, -7, 1e-3), .level = 0.0}).up_B;
+  EXPECT_EQ(exactly_in_world<Rational>(pose, back), v);
+}
+
+TEST(ExactOracle, KnowsTheVolumeAndTheCentreOfAnUprightBox) {
+  const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 4}, .segments = {2, 3, 1}});
+  const auto found = exactly(box, turned(1, 0, 0, 0, {5, -6, 1.25}), kUpright);
+  const Rational draft(0.75);
+  EXPECT_EQ(found.volume, Rational(2) * draft);
+  const Rational center = Rational(-2) + draft / Rational(2);
+  EXPECT_EQ(found.moment, RationalVec(0, 0, found.volume * center));
+  const RationalVec torque = found.torque(Vec3(0.5, -1, 0));
+  EXPECT_EQ(torque, RationalVec(found.volume, found.volume / Rational(2), 0));
+}
+
+TEST(ExactOracle, KnowsTheTipOfATiltedTetrahedronThatAPlaneCutsOff) {
+  const TriangleMesh mesh = tetrahedron();
+  const Pose pose = turned(3, -1, 2, 0.7, {0.1, 0.2, 0.3});
+  const ExactPlane<Rational> dry = exact_plane<Rational>(pose, kUpright);
+  std::array<Rational, 4> height;
+  for (std::size_t i = 0; i < 4; ++i)
+    height[i] = dry.up_B.dot(mesh.vertex(static_cast<std::int32_t>(i)).cast<Rational>()) - dry.h;
+  const auto lowest =
+      static_cast<std::size_t>(std::min_element(height.begin(), height.end()) - height.begin());
+  std::array<Rational, 4> sorted = height;
+  std::sort(sorted.begin(), sorted.end());
+  Water water = kUpright;  // between the lowest vertex and the next
+  water.level = Rational((sorted[0] + sorted[1]) / Rational(2)).convert_to<double>();
+  Rational share(1);
+  RationalVec centre = RationalVec::Constant(Rational(0));
+  const RationalVec tip = mesh.vertex(static_cast<std::int32_t>(lowest)).cast<Rational>();
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == lowest) continue;
+    const Rational part = (height[lowest] - Rational(water.level)) / (height[lowest] - height[i]);
+    share *= part;
+    const RationalVec edge = mesh.vertex(static_cast<std::int32_t>(i)).cast<Rational>() - tip;
+    centre += edge * Rational(part / Rational(4));
+  }
+  Water above = kUpright;
+  above.level = 100.0;
+  const Rational whole = exactly(mesh, pose, above).volume;
+  const Vec3 a = mesh.vertex(1);
+  EXPECT_EQ(whole, Rational(a.dot(mesh.vertex(2).cross(mesh.vertex(3)))) / Rational(6))
+      << "of short binary numbers";
+  const auto found = exactly(mesh, pose, water);
+  EXPECT_EQ(found.volume, whole * share);
+  EXPECT_EQ(found.moment, RationalVec((tip + centre) * found.volume));
+}
+
+TEST(ExactOracle, HalvesABoxByAnyPlaneThroughItsCentre) {
+  const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
+  for (const Pose& pose : {turned(1, 0, 0, 0), turned(1, 2, 3, 4), turned(0.1, -0.7, 1e-9, 0.3)}) {
+    EXPECT_EQ(exactly(box, pose, kUpright).volume, Rational(3));
+  }
+}
+
+TEST(ExactOracle, AddsUpWetAndDryPartsAndPartsOfABodyWithoutAnyError) {
+  const TriangleMesh left = moved_and_scaled(make_shape(BoxShape{}), {-0.5, 0, 0});
+  const TriangleMesh right = moved_and_scaled(make_shape(BoxShape{}), {0.5, 0, 0});
+  const TriangleMesh whole = make_shape(BoxShape{.size = {2, 1, 1}});
+  RandomPoses random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Pose pose = random.crossing(bounding_box(whole), kWater);
+    const auto both = exactly(whole, pose, kWater);
+    const auto a = exactly(left, pose, kWater);
+    const auto b = exactly(right, pose, kWater);
+    EXPECT_EQ(Rational(a.volume + b.volume), both.volume);
+    EXPECT_EQ(RationalVec(a.moment + b.moment), both.moment);
+    const auto dry = exactly(whole, pose, from_above(kWater));
+    EXPECT_EQ(Rational(both.volume + dry.volume), Rational(2));
+    EXPECT_EQ(RationalVec(both.moment + dry.moment), RationalVec(0, 0, 0));
+  }
+}
+
+TEST(ExactOracle, DoesNotDependOnTheOrderOfFacesNorOnTheQuaternionsLength) {
+  TriangleMesh mesh = make_shape(TorusKnotShape{.tubular = 20, .radial = 4});
+  RandomPoses random(4);
+  const Pose pose = random.crossing(bounding_box(mesh), kWater);
+  const auto found = exactly(mesh, pose, kWater);
+  std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937_64(1));
+  Pose longer = pose;
+  longer.q_WB.coeffs() *= -4.0;
+  const auto again = exactly(mesh, longer, kWater);
+  EXPECT_TRUE(again.volume == found.volume);
+  EXPECT_TRUE(again.moment == found.moment);
+}
+
+TEST(Ball, HoldsWhatRationalArithmeticFinds) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    RandomPoses random(5);
+    for (int i = 0; i < 6; ++i) {
+      const Pose pose = i % 2 == 0 ? random.crossing(bounding_box(named.mesh), kWater)
+                                   : random.adversarial(named.mesh, kWater);
+      const auto exact = exactly(named.mesh, pose, kWater);
+      const auto balls = exact_displacement<Ball>(named.mesh, pose, kWater);
+      EXPECT_TRUE(balls.volume.holds(exact.volume)) << named.name;
+      const RationalVec torque_W = exactly_in_world<Rational>(pose, exact.torque(Vec3(1, 2, 3)));
+      const Vec3T<Ball> torque_W_balls = exactly_in_world<Ball>(pose, balls.torque(Vec3(1, 2, 3)));
+      for (int j = 0; j < 3; ++j) {
+        EXPECT_TRUE(balls.moment[j].holds(exact.moment[j])) << named.name;
+        EXPECT_TRUE(torque_W_balls[j].holds(torque_W[j])) << named.name;
+      }
+      EXPECT_LT(balls.volume.rad, 0.05L * mesh.volume_gate()) << named.name << ": too wide to judge by";
+    }
+  }
+}
+
+TEST(Ball, DoesNotHoldWhatIsNextToIt) {
+  const Ball third = Ball(1) / Ball(3);
+  EXPECT_TRUE(third.holds(Rational(1) / Rational(3)));
+  EXPECT_FALSE(third.holds(Rational(1) / Rational(3) + Rational(0x1p-60)));
+  EXPECT_FALSE(Ball(2.0).holds(Rational(std::nextafter(2.0, 3.0))));
+}
+
+TEST(Ball, ShowsThatPublishedBoundsHoldOnMeshesTooLargeForRationalArithmetic) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 40, .roughness = 0.4});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
+    const Solver solver(mesh, method);
+    RandomPoses random(6);
+    for (int i = 0; i < 8; ++i) {
+      const Pose pose =
+          i % 2 == 0 ? random.crossing(bounding_box(rock), kWater) : random.adversarial(rock, kWater);
+      const BuoyancyAnswer answer = buoyancy(solver, pose, kWater, Vec3::Zero());
+      const Ball volume = exact_displacement<Ball>(rock, pose, kWater).volume;
+      EXPECT_LE(volume.distance(answer.volume), answer.force_error_bound) << name(method);
+      EXPECT_LT(volume.rad, 0.05L * answer.force_error_bound);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
