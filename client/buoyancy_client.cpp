@@ -17,6 +17,7 @@
 
 #include "client/run_csv.h"
 #include "client/run_summary.h"
+#include "client/run_warnings.h"
 #include "client/simulation.h"
 #include "terminal/progress_bar.h"
 
@@ -29,6 +30,7 @@ constexpr int kWrongInput = 2;
 
 constexpr double kMostSteps = 1e15;  // whole numbers up to here are exact as doubles
 constexpr std::int64_t kMostCount = std::int64_t{1} << 40U;
+constexpr std::int64_t kMostLateSteps = 10000;  // so many answers are kept
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
@@ -49,6 +51,7 @@ struct Arguments {
   std::int64_t csv_every = 1;
   std::string integrator{name(Integrator::kVelocityVerlet)};
   double lead_time = 0.0;
+  std::int64_t late_steps = 0;
   std::optional<std::int64_t> session;
   bool json = false;
 };
@@ -81,12 +84,13 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--step", arguments.step, "Time step, s (default: 0.001; with --rate: its inverse)")
       ->check(number_in(0.0, 1e6, "S"));
-  app.add_option(
-         "--rate", arguments.rate,
-         "Run freely at this many steps per second of wall-clock time, with the newest answer there is "
-         "(default: lock-step, as fast as answers come)")
-      ->check(number_in(0.0, 1e6, "HZ"))
-      ->excludes(embedded);
+  auto* rate =
+      app.add_option(
+             "--rate", arguments.rate,
+             "Run freely at this many steps per second of wall-clock time, with the newest answer there is "
+             "(default: lock-step, as fast as answers come)")
+          ->check(number_in(0.0, 1e6, "HZ"))
+          ->excludes(embedded);
   app.add_option("--csv", arguments.csv, "Write states and wrenches to this file");
   app.add_option("--csv-every", arguments.csv_every, "Write only every Nth step")
       ->check(CLI::Range(std::int64_t{1}, kMostCount, "N"))
@@ -98,6 +102,12 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
   app.add_option("--lead-time", arguments.lead_time,
                  "Have the wrench evaluated at the pose extrapolated by this many seconds")
       ->check(number_in(-1e3, 1e3, "S"))
+      ->capture_default_str();
+  app.add_option("--late", arguments.late_steps,
+                 "Use every answer this many steps late: what a simulator that does not wait would see, but "
+                 "the same in every run")
+      ->check(CLI::Range(std::int64_t{0}, kMostLateSteps, "STEPS"))
+      ->excludes(rate)
       ->capture_default_str();
   app.add_option("--timeout", arguments.patience.timeout, "Ask again after this many seconds")
       ->check(number_in(0.0, 1e6, "S"))
@@ -154,6 +164,7 @@ int simulate(Arguments arguments) {
   options.step = arguments.step.value_or(arguments.rate ? 1.0 / *arguments.rate : options.step);
   options.integrator = *integrator_from_name(arguments.integrator);
   options.lead_time = arguments.lead_time;
+  options.late_steps = arguments.late_steps;
   options.session_id = arguments.session.value_or(draw_session_id());
   const double steps_asked = std::round(arguments.duration / options.step);
   if (const Expected<void> checked = check_arguments(arguments, steps_asked); !checked) {
@@ -174,12 +185,28 @@ int simulate(Arguments arguments) {
   Expected<Asker> asker = make_asker(arguments, *scene);
   if (!asker) return report(asker.error(), kFailed);
 
+  RunSummary summary;
+  const auto warn = [&summary](std::optional<Error> warning) {
+    if (!warning) return;
+    std::fprintf(stderr, "buoyancy-client: warning: %s\n", warning->message().c_str());
+    summary.warnings.push_back(std::move(*warning));
+  };
+  warn(step_warning(*simulation));
+  warn(lateness_warning(*simulation, static_cast<double>(options.late_steps) * options.step));
+  LatenessWatch lateness;
+
   const Clock::time_point start = Clock::now();
   Expected<RunEnd> end = RunEnd::kDone;
   {
     ProgressBar progress("steps");
     end = run(*simulation, *asker, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
       progress.update(now.step_number(), steps, now.step_number());
+      if (arguments.rate) {
+        if (std::optional<Error> late = lateness.see(now)) {
+          progress.clear();
+          warn(std::move(late));
+        }
+      }
       return csv ? csv->write(now) : Expected<void>{};
     });
   }
@@ -188,7 +215,7 @@ int simulate(Arguments arguments) {
   if (!end) return report(end.error(), kFailed);
   if (!closed) return report(closed.error(), kFailed);
 
-  RunSummary summary;
+  warn(energy_warning(*simulation));
   summary.steps = simulation->completed_steps();
   summary.steps_asked = steps;
   summary.interrupted = *end == RunEnd::kInterrupted;

@@ -7,6 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "hydrostatics/buoyancy.h"
+
 namespace buoyancy {
 namespace {
 
@@ -122,6 +124,16 @@ double mechanical_energy(const RigidBody& body, const RigidBodyState& state, con
   const double buoyancy_height = water.up_W.dot(center_of_buoyancy_W) - water.level;
   return kinetic_energy(body, state) + body.mass * water.gravity * center_height -
          water.density * water.gravity * wrench.submerged_volume * buoyancy_height;
+}
+
+std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
+                                        const Solver& solver, const Water& water) {
+  const BuoyancyAnswer answer = buoyancy(solver, pose_of(body, state), water, body.reference_B);
+  if (answer.status != BuoyancyStatus::kOk) return std::nullopt;
+  BodyWrench wrench;
+  wrench.submerged_volume = answer.volume;
+  wrench.center_of_buoyancy = array3(answer.center_of_buoyancy_W);
+  return mechanical_energy(body, state, wrench, water);
 }
 
 }  // namespace buoyancy

@@ -7,9 +7,12 @@
 // v - w x (R c), and tau about C = tau about r + (r - C) x F.
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Geometry>
 
 #include "geometry/error.h"
+#include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
 #include "messages/question.h"
 #include "scene/scene.h"
@@ -70,5 +73,8 @@ double kinetic_energy(const RigidBody& body, const RigidBodyState& state);
 // The last term is the buoyancy's potential: bringing dV to the depth d below the surface takes rho g d dV.
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water);
+// The same where no wrench belongs to the state's pose: asks the solver. nullopt: it has no answer there.
+std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
+                                        const Solver& solver, const Water& water);
 
 }  // namespace buoyancy

@@ -73,6 +73,7 @@ std::string to_text(const RunSummary& summary) {
               static_cast<long long>(summary.asker.questions), static_cast<long long>(summary.asker.retries),
               static_cast<long long>(summary.asker.lost), static_cast<long long>(summary.asker.late),
               static_cast<long long>(summary.asker.latest));
+  for (const Error& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
   return text;
 }
 
@@ -89,10 +90,13 @@ std::string to_json(const RunSummary& summary) {
                       {"energy_drift", body.energy_drift},
                       {"energy_range", body.energy_range}});
   }
+  nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
+  for (const Error& warning : summary.warnings) warnings.push_back(warning.message());
   const LatencyPercentiles round_trip = summary.asker.round_trip.percentiles();
   const nlohmann::ordered_json json = {{"integrator", name(summary.options.integrator)},
                                        {"step", summary.options.step},
                                        {"lead_time", summary.options.lead_time},
+                                       {"late_steps", summary.options.late_steps},
                                        {"session_id", summary.options.session_id},
                                        {"steps", summary.steps},
                                        {"steps_asked", summary.steps_asked},
@@ -109,7 +113,8 @@ std::string to_json(const RunSummary& summary) {
                                        {"retries", summary.asker.retries},
                                        {"lost", summary.asker.lost},
                                        {"late", summary.asker.late},
-                                       {"late_by_at_most", summary.asker.latest}};
+                                       {"late_by_at_most", summary.asker.latest},
+                                       {"warnings", warnings}};
   // A name from the scene file that is no UTF-8 must not make dump() throw.
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

@@ -34,6 +34,7 @@ struct RunSummary {
   SimulationOptions options;
   std::vector<BodySummary> bodies;
   AskerStatistics asker;
+  std::vector<Error> warnings;
 };
 
 BodySummary summarize(const SimulatedBody& body, const Water& water);  // O(vertices)

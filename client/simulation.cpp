@@ -12,9 +12,13 @@ Load current_load(const SimulatedBody& body, const Water& water) {
   return load_on(body.rigid, body.state, body.wrench, water);
 }
 
-void record_energy(SimulatedBody& body, bool first, const Water& water) {
+// own_wrench: the body's wrench belongs to its pose.
+void record_energy(SimulatedBody& body, bool first, bool own_wrench, const Water& water) {
   EnergyRecord& energy = body.energy;
-  energy.current = mechanical_energy(body.rigid, body.state, body.wrench, water);
+  energy.current =
+      own_wrench
+          ? mechanical_energy(body.rigid, body.state, body.wrench, water)
+          : mechanical_energy(body.rigid, body.state, body.body->solver, water).value_or(energy.current);
   const double kinetic = kinetic_energy(body.rigid, body.state);
   if (first) energy = {energy.current, energy.current, energy.current, energy.current, kinetic};
   energy.least = std::min(energy.least, energy.current);
@@ -22,10 +26,18 @@ void record_energy(SimulatedBody& body, bool first, const Water& water) {
   energy.greatest_kinetic = std::max(energy.greatest_kinetic, kinetic);
 }
 
+constexpr const char* kBlownUp =
+    "the simulation has left the range of numbers: a step too large for the body";
+constexpr const char* kSmallerStep = "Take a smaller --step";
+
+std::string body_at(const SimulatedBody& body, double time) {
+  return "body " + std::to_string(body.body->id) + " (" + body.body->name + ") at " + std::to_string(time) +
+         " s";
+}
+
 Error not_ok_error(const SimulatedBody& body, double time) {
   Error error;
-  error.subject = "body " + std::to_string(body.body->id) + " (" + body.body->name + ") at " +
-                  std::to_string(time) + " s";
+  error.subject = body_at(body, time);
   error.found = std::string("status ") + name(body.wrench.status);
   error.expectation = "status OK";
   switch (body.wrench.status) {
@@ -38,8 +50,8 @@ Error not_ok_error(const SimulatedBody& body, double time) {
       error.remedy = "Close the mesh, or start the body lighter, higher or calmer";
       break;
     default:
-      error.cause = "the simulation has left the range of numbers: a step too large for the body";
-      error.remedy = "Take a smaller --step";
+      error.cause = kBlownUp;
+      error.remedy = kSmallerStep;
   }
   return error;
 }
@@ -66,6 +78,11 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
   return simulation;
 }
 
+Simulation::Simulation(const Water& water, const SimulationOptions& options)
+    : water_(water), options_(options) {
+  if (options.late_steps > 0) held_.resize(static_cast<std::size_t>(options.late_steps) + 1);
+}
+
 std::int64_t Simulation::utime() const {
   return std::llround(time() * 1e6);
 }
@@ -84,15 +101,25 @@ const Question& Simulation::question() {
   return question_;
 }
 
-void Simulation::accept(const Answer& answer) {
+const Answer& Simulation::exchange_for_late(const Answer& newest) {
+  if (held_.empty()) return newest;
+  const auto slot = [&](std::int64_t step) { return static_cast<std::size_t>(step) % held_.size(); };
+  held_[slot(step_number_)] = newest;
+  return held_[slot(std::max<std::int64_t>(step_number_ - options_.late_steps, 0))];
+}
+
+void Simulation::accept(const Answer& newest) {
+  const Answer& answer = exchange_for_late(newest);
   assert(answer.bodies.size() == bodies_.size());
+  delay_ = static_cast<double>(step_number_ - answer.key.seq) * options_.step;
+  const bool own_wrenches = delay_ == 0.0 && options_.lead_time == 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SimulatedBody& body = bodies_[i];
     body.wrench = answer.bodies[i];
     if (in_step_) {
       finish_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, body.state);
     }
-    record_energy(body, !in_step_, water_);
+    record_energy(body, !in_step_, own_wrenches, water_);
   }
   in_step_ = false;
 }
@@ -113,6 +140,18 @@ Expected<void> Simulation::check_wrenches() const {
   return {};
 }
 
+Expected<void> Simulation::check_motion() const {
+  for (const SimulatedBody& body : bodies_) {
+    const RigidBodyState& state = body.state;
+    const bool finite = state.velocity_W.allFinite() && state.angular_momentum_W.allFinite() &&
+                        std::isfinite(body.energy.current);
+    if (finite || body.wrench.status != BodyStatus::kOk) continue;
+    return failure({body_at(body, time()), "a velocity or energy that is not finite", "finite numbers",
+                    kBlownUp, kSmallerStep});
+  }
+  return {};
+}
+
 Expected<RunEnd> run(Simulation& simulation, Asker& asker, std::int64_t steps, const std::atomic<bool>& stop,
                      const std::function<Expected<void>(const Simulation&)>& after_step) {
   while (true) {
@@ -120,6 +159,7 @@ Expected<RunEnd> run(Simulation& simulation, Asker& asker, std::int64_t steps, c
     if (!answer && stop.load()) return RunEnd::kInterrupted;
     if (!answer) return failure(answer.error());
     simulation.accept(**answer);
+    if (const Expected<void> finite = simulation.check_motion(); !finite) return failure(finite.error());
     if (const Expected<void> seen = after_step(simulation); !seen) return failure(seen.error());
     if (const Expected<void> ok = simulation.check_wrenches(); !ok) return failure(ok.error());
     if (simulation.step_number() >= steps) return RunEnd::kDone;

@@ -19,11 +19,13 @@ namespace buoyancy {
 struct SimulationOptions {
   double step = 1e-3;  // s, > 0
   Integrator integrator = Integrator::kVelocityVerlet;
-  double lead_time = 0.0;  // s, sent with every question
+  double lead_time = 0.0;       // s, sent with every question
+  std::int64_t late_steps = 0;  // every answer is used so many steps late, >= 0; the first one till then
   std::int64_t session_id = 0;
 };
 
-// Mechanical energy over the run, J (rigid_body.h). It is conserved only without damping and in lock-step.
+// Mechanical energy over the run, J (rigid_body.h), of the poses as they are, however late their wrenches
+// are. It is conserved only without damping and with wrenches that are not late.
 struct EnergyRecord {
   double initial = 0.0;
   double current = 0.0;
@@ -36,7 +38,7 @@ struct SimulatedBody {
   const Body* body = nullptr;  // the scene's
   RigidBody rigid;
   RigidBodyState state;
-  BodyWrench wrench;  // the last answer's
+  BodyWrench wrench;  // that moves it
   EnergyRecord energy;
 };
 
@@ -55,18 +57,23 @@ class Simulation {
 
   // Errors: a body whose wrench is not OK. A simulator must not go on without its force.
   Expected<void> check_wrenches() const;
+  // Errors: a body whose velocity, angular momentum or energy is not finite though its wrench is OK.
+  Expected<void> check_motion() const;
 
   // Steps whose wrenches have been accepted; one less than step_number() between advance and accept.
   std::int64_t completed_steps() const { return in_step_ ? step_number_ - 1 : step_number_; }
   std::int64_t step_number() const { return step_number_; }                          // 0 at the start
   double time() const { return static_cast<double>(step_number_) * options_.step; }  // s
   std::int64_t utime() const;                                                        // us
+  double delay() const { return delay_; }  // s: by which the wrenches in use are late
   const std::vector<SimulatedBody>& bodies() const { return bodies_; }
   const Water& water() const { return water_; }
   const SimulationOptions& options() const { return options_; }
 
  private:
-  Simulation(const Water& water, const SimulationOptions& options) : water_(water), options_(options) {}
+  Simulation(const Water& water, const SimulationOptions& options);
+
+  const Answer& exchange_for_late(const Answer& newest);
 
   Water water_;
   SimulationOptions options_;
@@ -74,12 +81,16 @@ class Simulation {
   std::int64_t step_number_ = 0;
   bool in_step_ = false;  // between advance and accept
   Question question_;     // reused
+  double delay_ = 0.0;
+  // The last late_steps + 1 answers, that to step n at n modulo their number; empty if none is to be late.
+  std::vector<Answer> held_;
 };
 
 enum class RunEnd { kDone, kInterrupted };
 
 // Runs `steps` steps, or until stop becomes true. after_step sees the simulation at its start and after every
-// step, also the one whose wrenches end the run; an error of it ends the run.
+// step, also the one whose wrenches end the run, but nothing that is not finite beside a wrench that is OK;
+// an error of it ends the run.
 Expected<RunEnd> run(Simulation& simulation, Asker& asker, std::int64_t steps, const std::atomic<bool>& stop,
                      const std::function<Expected<void>(const Simulation&)>& after_step);
 

@@ -156,13 +156,97 @@ TEST_F(ClientProgram, ACsvThatCannotBeCreatedIsAnErrorBeforeTheRun) {
 
 TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
   const std::string csv = directory_.path("run.csv");
-  const std::string path =
-      directory_.write("far.toml", crate("", "density = 500\nlinear_velocity = [0, 0, 1e308]\n"));
+  // A tray without its lid, too heavy for its sides.
+  const std::string mesh = directory_.write(
+      "tray.off",
+      "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.2\n1 0 0.2\n1 1 0.2\n0 1 0.2\n"
+      "3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
+  const std::string path = directory_.write(
+      "tray.toml",
+      "[[body]]\nid = 1\nname = \"tray\"\nmesh = \"" + mesh +
+          "\"\nopen = \"dry_boundary\"\n[body.client]\nmass = 300\ncenter_of_mass = [0.5, 0.5, 0]\n"
+          "inertia = [50, 50, 50]\n");
   const FinishedProcess finished =
-      run_to_end(client_command(path, {"--embedded", "--step", "10", "--csv", csv}), 200.0);
+      run_to_end(client_command(path, {"--embedded", "--step", "0.01", "--csv", csv}), 200.0);
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("body 1 (crate)"), std::string::npos) << finished.standard_error;
+  EXPECT_EQ(finished.standard_output, "");
+  EXPECT_NE(finished.standard_error.find("body 1 (tray)"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("OPEN_EDGE_WET"), std::string::npos) << finished.standard_error;
   EXPECT_NE(csv_column(read_file(csv), "status").back(), 0.0);
+}
+
+TEST_F(ClientProgram, AMotionThatLeavesTheRangeOfNumbersIsAnErrorAndNoRowHidesIt) {
+  const struct {
+    std::string client;
+    Options options;
+  } cases[] = {
+      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10"}},
+      {"linear_velocity = [1e200, 0, 0]\n", {}},
+      {"angular_velocity = [1e200, 1e200, 0]\n", {}},
+      {"position = [0, 0, -1e308]\ndensity = 1e-3\n", {"--step", "1e6", "--duration", "1e9"}},
+      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10", "--late", "2"}},
+  };
+  for (const auto& wrong : cases) {
+    const std::string csv = directory_.path("run.csv");
+    const std::string path = directory_.write("far.toml", crate("", wrong.client));
+    Options options = {"--embedded", "--csv", csv};
+    options.insert(options.end(), wrong.options.begin(), wrong.options.end());
+    const FinishedProcess finished = run_to_end(client_command(path, options), 200.0);
+    EXPECT_EQ(finished.exit_code, 1) << wrong.client << finished.standard_output;
+    EXPECT_EQ(finished.standard_output, "");
+    EXPECT_NE(finished.standard_error.find("body 1 (crate) at"), std::string::npos)
+        << finished.standard_error;
+    EXPECT_NE(finished.standard_error.find("smaller --step"), std::string::npos) << finished.standard_error;
+    const std::string text = read_file(csv);
+    EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+    EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+  }
+}
+
+TEST_F(ClientProgram, WarnsOfAStepTooLargeBeforeTheRunAndOfTheEnergyAfterIt) {
+  // A plate of 2 kg: w = 70 rad/s.
+  const std::string plate = directory_.write(
+      "plate.toml",
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"plate\"\nshape = { type = \"box\", size "
+      "= [1, 1, 0.1] }\n[body.client]\ndensity = 20\nposition = [0, 0, 0.1]\n");
+  const nlohmann::json summary =
+      simulate_with_warnings(plate, {"--embedded", "--step", "0.05", "--duration", "20"});
+  ASSERT_EQ(summary["warnings"].size(), 2U) << summary["warnings"];
+  EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (plate): step x frequency"), std::string::npos);
+  EXPECT_NE(std::string(summary["warnings"][0]).find("Take --step 0.007"), std::string::npos)
+      << summary["warnings"][0];
+  EXPECT_NE(std::string(summary["warnings"][1]).find("mechanical energy rose"), std::string::npos);
+
+  const FinishedProcess table =
+      run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), 200.0);
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): step"), std::string::npos)
+      << table.standard_output;
+  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): mechanical"), std::string::npos);
+  simulate(plate, {"--embedded", "--step", "0.007", "--duration", "20"});
+}
+
+TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForIt) {
+  const std::string bob = directory_.write(
+      "bob.toml",
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\nshape = { type = \"box\", size "
+      "= [1, 1, 0.4] }\n[body.client]\ndensity = 500\nposition = [0, 0, 0.05]\n");
+  // w = 7 rad/s: alpha = 0.007, then 0.14.
+  const Options minute = {"--embedded", "--duration", "60", "--step", "0.001"};
+  const auto with = [&](Options more) {
+    more.insert(more.end(), minute.begin(), minute.end());
+    return simulate_with_warnings(bob, more);
+  };
+  const nlohmann::json led = with({"--late", "1", "--lead-time", "0.001"});
+  EXPECT_EQ(led["late_steps"], 1);
+  EXPECT_EQ(led["warnings"].size(), 0U) << led["warnings"];
+  EXPECT_LT(double{body(led, 1)["energy_range"]}, 1e-3);
+  const nlohmann::json late = with({"--late", "1"});
+  ASSERT_EQ(late["warnings"].size(), 1U) << late["warnings"];
+  EXPECT_NE(std::string(late["warnings"][0]).find("energy rose"), std::string::npos);
+  const nlohmann::json too_late = with({"--late", "20", "--lead-time", "0.02"});
+  ASSERT_FALSE(too_late["warnings"].empty());
+  EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the answers"), std::string::npos);
 }
 
 TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
@@ -179,6 +263,8 @@ TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
       {scene_, {"--duration", "-1", "--embedded"}, "--duration"},
       {scene_, {"--integrator", "euler", "--embedded"}, "--integrator"},
       {scene_, {"--rate", "100", "--embedded"}, "--embedded"},
+      {scene_, {"--rate", "100", "--late", "1"}, "--late"},
+      {scene_, {"--late", "-1", "--embedded"}, "--late"},
       {scene_, {"-l", "udpm://239.255.76.67:7667", "--embedded"}, "--embedded"},
       {scene_, {"--no-such-option"}, "--no-such-option"},
       {scene_, {"-l", "no url"}, "no url"},

@@ -52,14 +52,27 @@ ChildCommand service_command(const std::string& scene, const Options& options) {
   return command(BUOYANCYD, scene, options);
 }
 
-nlohmann::json simulate(const std::string& scene, const Options& options) {
+nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options) {
   ChildCommand command = client_command(scene, options);
   command.arguments.emplace_back("--json");
   const FinishedProcess finished = run_to_end(command, kPatience);
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
-  EXPECT_EQ(finished.standard_error, "");
   if (finished.exit_code != 0) return nullptr;
-  return nlohmann::json::parse(finished.standard_output);
+  nlohmann::json summary = nlohmann::json::parse(finished.standard_output);
+  std::string warnings;
+  for (const std::string warning : summary["warnings"]) {
+    warnings += "buoyancy-client: warning: " + warning + "\n";
+  }
+  EXPECT_EQ(finished.standard_error, warnings);
+  return summary;
+}
+
+nlohmann::json simulate(const std::string& scene, const Options& options) {
+  nlohmann::json summary = simulate_with_warnings(scene, options);
+  if (summary.is_object()) {
+    EXPECT_EQ(summary["warnings"], nlohmann::json::array());
+  }
+  return summary;
 }
 
 nlohmann::json body(const nlohmann::json& summary, int id) {

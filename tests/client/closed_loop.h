@@ -40,7 +40,10 @@ using Options = std::vector<std::string>;
 ChildCommand client_command(const std::string& scene, const Options& options);
 ChildCommand service_command(const std::string& scene, const Options& options);
 
-// Runs buoyancy-client --json to its end, which the test expects to be a success; null after a failure.
+// Runs buoyancy-client --json to its end, which the test expects to be a success, and to be silent but for
+// the warnings that are in the table too; null after a failure.
+nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options);
+// The same where the test expects no warnings.
 nlohmann::json simulate(const std::string& scene, const Options& options);
 
 // The run's table: the body with this id.

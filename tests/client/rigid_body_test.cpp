@@ -7,18 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/buoyancy.h"
-#include "scene/scene.h"
+#include "tests/client/embedded_run.h"
 
 namespace buoyancy {
 namespace {
-
-Scene scene_of(const std::string& text) {
-  const Expected<SceneDescription> description = parse_scene(text, "test.toml", ".");
-  if (!description) throw std::runtime_error(description.error().message());
-  Expected<Scene> scene = Scene::prepare(*description);
-  if (!scene) throw std::runtime_error(scene.error().message());
-  return std::move(*scene);
-}
 
 // A box of 1 x 2 x 3 m with these lines in its [body.client].
 Scene box_with(const std::string& client) {
