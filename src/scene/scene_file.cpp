@@ -232,7 +232,7 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
   } catch (const toml::parse_error& error) {
     const toml::source_position& place = error.source().begin;
     return failure({name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column),
-                    std::string(error.description()),
+                    printable(std::string(error.description())),
                     "TOML (https://toml.io)",
                     {},
                     {}});

@@ -50,12 +50,10 @@ std::string written(const toml::node& node) {
   return text.str();
 }
 
-// On one line, cut short, without control characters.
+// Cut short.
 std::string quotation(const toml::node& node) {
   std::string line = written(node);
   if (line.size() > kLongestQuotation) line = line.substr(0, kLongestQuotation) + "...";
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return !is_printable(c); }, '?');
   return line;
 }
 
@@ -93,6 +91,12 @@ std::string list(std::span<const std::string_view> words) {
 }
 
 }  // namespace
+
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return !is_printable(c); }, '?');
+  return text;
+}
 
 std::string SceneReading::at(const toml::source_region& place) const {
   return file + ":" + std::to_string(place.begin.line);
@@ -261,8 +265,8 @@ void TomlTable::fail_missing(std::string_view key, std::string expectation) {
 void TomlTable::set_error(const toml::source_region& source, std::string found, std::string expectation,
                           std::string cause, std::string remedy) {
   if (reading_->error) return;
-  reading_->error = Error{reading_->at(source) + ": " + what_, std::move(found), std::move(expectation),
-                          std::move(cause), std::move(remedy)};
+  reading_->error = Error{reading_->at(source) + ": " + what_, printable(std::move(found)),
+                          std::move(expectation), std::move(cause), printable(std::move(remedy))};
 }
 
 }  // namespace buoyancy

@@ -21,6 +21,9 @@
 
 namespace buoyancy {
 
+// On one line: every control character, whatever a file's text may have smuggled in, as '?'.
+std::string printable(std::string text);
+
 // The file being read, and the first thing found wrong with it.
 struct SceneReading {
   std::string file;

@@ -1,5 +1,6 @@
 #include "scene/scene_file.h"
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -315,6 +316,19 @@ TEST(SingleMeshScenes, HoldOneBodyInTheStandardSea) {
   EXPECT_EQ(std::get<MeshFile>(scene.bodies[0].source).path, std::filesystem::path("models/duck.dae"));
   EXPECT_EQ(scene.bodies[0].method, Method::kExactSurface);
   EXPECT_EQ(scene.bodies[0].tolerance, 0.25);
+}
+
+// A terminal obeys them: what a file holds must not reach it through a message.
+TEST(SceneFile, TellsWhatIsWrongWithoutTheFilesControlCharacters) {
+  for (const std::string& text :
+       {crate_and("open = \x7f\n"), crate_and("\"sc\\u001bale\" = 1\n"),
+        crate_and("outputs = [\"wre\\u0007nch\"]\n"), crate_and("method = \"ex\\u009bact\\n\"\n")}) {
+    const std::string refusal = refusal_of(text);
+    EXPECT_NE(refusal, "accepted");
+    EXPECT_TRUE(std::none_of(refusal.begin(), refusal.end(), [](char c) {
+      return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    })) << refusal;
+  }
 }
 
 }  // namespace
