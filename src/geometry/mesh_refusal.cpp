@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "geometry/rounding_area.h"
 #include "geometry/wording.h"
 
 namespace buoyancy {
@@ -111,9 +112,9 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
                remedy};
 }
 
-std::optional<Error> refuse_volume(double volume, const MeshReport& report) {
-  const double rounding_error =
-      std::numeric_limits<double>::epsilon() * (64.0 * std::abs(volume) + report.diagonal * report.area);
+std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
+  const double rounding_error = std::numeric_limits<double>::epsilon() *
+                                (64.0 * std::abs(volume) + report.diagonal * rounding_area(mesh));
   if (std::abs(volume) > rounding_error) return std::nullopt;
   return Error{report.name,
                "encloses " + number(volume) + " m^3, which is not above the rounding error of " +

@@ -24,7 +24,7 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
                                   const MeshReport& report, OpenPolicy open);
 
 // volume, m^3: that the mesh encloses, or would with its holes closed; must be above its own rounding error
-// eps (64 |V| + L A).
-std::optional<Error> refuse_volume(double volume, const MeshReport& report);
+// eps (64 |V| + L A), A the mesh's rounding_area().
+std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);
 
 }  // namespace buoyancy

@@ -122,7 +122,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
       volume = orient_open(mesh, holes, components);
       report_surface(mesh, report);
     }
-    validation.refusal = refuse_volume(volume, report);
+    validation.refusal = refuse_volume(mesh, volume, report);
   }
   report_components(std::move(components), report);
   if (options.count_intersecting_pairs) report.intersecting_pairs = count_intersecting_pairs(mesh);

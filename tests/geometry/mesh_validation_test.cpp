@@ -160,6 +160,19 @@ TEST(MeshValidation, RefusesWhatEnclosesNoVolume) {
   expect_refused(validate(cube_mesh(0.0)), "has no triangles");
 }
 
+// The products that a slanted needle's area is the difference of are rounded by more than that area.
+TEST(MeshValidation, RefusesWhatEnclosesNoVolumeHoweverThinItsFacesAre) {
+  for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    TriangleMesh sheet;
+    sheet.add_vertex({0.1, 0.2, 0.3});
+    sheet.add_vertex({0.7, -0.6, 0.9});
+    sheet.add_vertex({0.4 + 0.3 * thin, -0.2 + 0.5 * thin, 0.6 - 0.7 * thin});
+    sheet.add_vertex({-0.2, 0.6, 0.0});
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 0, 2}, {2, 0, 3}, {1, 3, 0}};
+    expect_refused(validate(sheet), "not above the rounding error");
+  }
+}
+
 TEST(MeshValidation, AcceptsAPlateAsThinAsItsRoundingErrorAllows) {
   EXPECT_TRUE(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-8))).mesh);
 }
