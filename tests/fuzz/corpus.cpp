@@ -1,0 +1,123 @@
+#include "tests/fuzz/corpus.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kLongestInput = 8192;
+constexpr std::size_t kLongestRepeat = 64;
+
+std::optional<std::uint8_t> hexadecimal_digit(char c) {
+  if (c >= '0' && c <= '9') return static_cast<std::uint8_t>(c - '0');
+  if (c >= 'a' && c <= 'f') return static_cast<std::uint8_t>(c - 'a' + 10);
+  return std::nullopt;
+}
+
+FuzzInput from_hexadecimal(const FuzzInput& text, const std::string& name) {
+  FuzzInput bytes;
+  std::optional<std::uint8_t> high;
+  bool in_remark = false;
+  for (const std::uint8_t character : text) {
+    const auto c = static_cast<char>(character);
+    if (c == '\n') in_remark = false;
+    if (c == '#') in_remark = true;
+    if (in_remark || c == '\n' || c == ' ') continue;
+    const std::optional<std::uint8_t> digit = hexadecimal_digit(c);
+    if (!digit) throw std::runtime_error(name + ": '" + c + "' where a digit of 0-9, a-f was expected");
+    if (high) {
+      bytes.push_back(static_cast<std::uint8_t>(16U * *high + *digit));
+      high.reset();
+    } else {
+      high = digit;
+    }
+  }
+  if (high) throw std::runtime_error(name + ": an odd number of hexadecimal digits");
+  return bytes;
+}
+
+// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014: SplitMix64.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31U);
+  }
+  // 0 to count - 1; 0 also where count is 0.
+  std::size_t below(std::size_t count) { return count == 0 ? 0 : next() % count; }
+
+ private:
+  std::uint64_t state_;
+};
+
+FuzzInput::difference_type offset(std::size_t place) {
+  return static_cast<FuzzInput::difference_type>(place);
+}
+
+void mutate_once(FuzzInput& input, const FuzzInput& other, Random& random) {
+  constexpr std::array<std::uint8_t, 8> kTelling{0x00, 0x01, 0x7f, 0x80, 0xff, ' ', '0', '\n'};
+  const std::size_t place = random.below(input.size());
+  const std::size_t length = 1 + random.below(std::min(kLongestRepeat, input.size() - place));
+  switch (random.below(7)) {
+    case 0:
+      if (!input.empty()) input[place] ^= static_cast<std::uint8_t>(1U << random.below(8));
+      break;
+    case 1:
+      if (!input.empty()) input[place] = static_cast<std::uint8_t>(random.next());
+      break;
+    case 2:
+      if (!input.empty()) input[place] = kTelling[random.below(kTelling.size())];
+      break;
+    case 3:
+      input.insert(input.begin() + offset(place), kTelling[random.below(kTelling.size())]);
+      break;
+    case 4:
+      if (!input.empty()) input.erase(input.begin() + offset(place), input.begin() + offset(place + length));
+      break;
+    case 5:
+      if (!input.empty()) {
+        const FuzzInput repeated(input.begin() + offset(place), input.begin() + offset(place + length));
+        input.insert(input.begin() + offset(random.below(input.size())), repeated.begin(), repeated.end());
+      }
+      break;
+    default:
+      input.resize(place);
+      input.insert(input.end(), other.begin() + offset(random.below(other.size())), other.end());
+  }
+}
+
+}  // namespace
+
+std::vector<CorpusFile> read_corpus(const std::filesystem::path& directory) {
+  std::vector<CorpusFile> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    std::ifstream stream(entry.path(), std::ios::binary);
+    FuzzInput content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".hex") content = from_hexadecimal(content, name);
+    files.push_back({name, std::move(content)});
+  }
+  if (files.empty()) throw std::runtime_error(directory.string() + ": no file");
+  std::sort(files.begin(), files.end(),
+            [](const CorpusFile& a, const CorpusFile& b) { return a.name < b.name; });
+  return files;
+}
+
+FuzzInput mutated(const FuzzInput& input, const FuzzInput& other, std::uint64_t seed) {
+  Random random(seed);
+  FuzzInput mutant = input;
+  for (std::size_t times = 1 + random.below(8); times > 0; --times) mutate_once(mutant, other, random);
+  if (mutant.size() > kLongestInput) mutant.resize(kLongestInput);
+  return mutant;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,120 @@
+// Bytes to vertices, faces and a policy, then everything that a mesh goes through before it is asked:
+// welding, topology, orientation, refusals, the moment tree. What is refused must say why; what is accepted
+// must be what ValidatedMesh promises, and must pass again unchanged. The bytes: fuzz_mesh.h.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "geometry/mass_properties.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/mesh_validation.h"
+#include "geometry/rounding_area.h"
+#include "hydrostatics/buoyancy.h"
+#include "hydrostatics/hydrostatics.h"
+#include "tests/fuzz/fuzz_bytes.h"
+#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_mesh.h"
+
+namespace buoyancy {
+namespace {
+
+void check_welded(const TriangleMesh& mesh) {
+  std::set<std::array<double, 3>> places;
+  std::vector<bool> used(mesh.vertex_count(), false);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const Vec3 vertex = mesh.vertex(static_cast<std::int32_t>(v));
+    law(vertex.allFinite(), "the vertices of an accepted mesh are finite");
+    law(places.insert({vertex.x(), vertex.y(), vertex.z()}).second, "no two vertices lie at one place");
+  }
+  for (const Triangle& face : mesh.triangles) {
+    law(face[0] != face[1] && face[1] != face[2] && face[2] != face[0], "no face names a vertex twice");
+    for (const std::int32_t v : face) {
+      law(v >= 0 && static_cast<std::size_t>(v) < mesh.vertex_count(), "indices are in range");
+      used[static_cast<std::size_t>(v)] = true;
+    }
+  }
+  law(std::find(used.begin(), used.end(), false) == used.end(), "every vertex is used");
+}
+
+void check_edges(const ValidatedMesh& accepted, OpenPolicy open) {
+  const MeshTopology topology = mesh_topology(accepted.mesh);
+  law(topology.misoriented.empty() && topology.non_manifold.empty(), "edges are closed, balanced or open");
+  law(topology.boundary.empty() || open == OpenPolicy::kDryBoundary, "open meshes are accepted on request");
+  std::set<std::int32_t> boundary;
+  for (const Edge& edge : topology.boundary) boundary.insert(edge.begin(), edge.end());
+  law(std::equal(boundary.begin(), boundary.end(), accepted.boundary_vertices.begin(),
+                 accepted.boundary_vertices.end()),
+      "boundary_vertices are those of the boundary, ascending");
+}
+
+void check_volume(const TriangleMesh& mesh, const MeshReport& report) {
+  law(std::isfinite(report.diagonal) && std::isfinite(report.area), "extent and area are numbers");
+  law(report.diagonal > 0.0 && report.area > 0.0, "an accepted mesh has an extent");
+  if (!report.closed()) return;
+  law(report.volume > 0.0, "a closed mesh encloses a positive volume");
+  const double rounding = std::numeric_limits<double>::epsilon() *
+                          (64.0 * std::abs(report.volume) + report.diagonal * rounding_area(mesh));
+  const double spread = report.volume_by_axis.maxCoeff() - report.volume_by_axis.minCoeff();
+  law(spread <= rounding, "the volume is the same from x, y and z");
+}
+
+// What make_hydrostatic_mesh() and the methods make of it: a status, or numbers.
+void check_answers(const ValidatedMesh& accepted) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh(accepted);
+  const Vec3 middle = mesh.center_B;
+  for (const Method method : kAllMethods) {
+    const Solver solver(mesh, method);
+    for (const double turn : {0.0, 0.3}) {
+      const Pose pose{.p_WB = -middle, .q_WB = Eigen::Quaterniond(1.0, turn, 0.5 * turn, 0.0)};
+      const BuoyancyAnswer answer = buoyancy(solver, pose, {}, middle);
+      law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
+              answer.center_of_buoyancy_W.allFinite(),
+          "an answer holds numbers");
+      if (answer.status == BuoyancyStatus::kOk) hydrostatics(mesh, pose, {}, middle, middle);
+    }
+  }
+}
+
+void check_again(const MeshValidation& first, const ValidationOptions& options) {
+  ImportedMesh imported;
+  imported.mesh = first.mesh->mesh;
+  const MeshValidation second = validate_mesh(imported, "again", options);
+  law(second.mesh.has_value(), "an accepted mesh is accepted again");
+  law(second.report.weld == WeldKind::kExact && second.report.dropped_faces == 0,
+      "a second weld finds nothing");
+  law(second.mesh->mesh.x == imported.mesh.x && second.mesh->mesh.y == imported.mesh.y &&
+          second.mesh->mesh.z == imported.mesh.z,
+      "a second validation moves no vertex");
+  law(second.mesh->mesh.triangles == imported.mesh.triangles, "a second validation turns nothing");
+}
+
+void check(const FuzzMesh& input) {
+  const MeshValidation validation = validate_mesh(input.imported, "fuzz", input.options);
+  law(!to_text(validation.report).empty(), "there is a report");
+  law(validation.mesh.has_value() != validation.refusal.has_value(), "a mesh is accepted or refused");
+  if (validation.refusal) {
+    const Error& refusal = *validation.refusal;
+    law(!refusal.found.empty() && !refusal.expectation.empty() && !refusal.cause.empty() &&
+            !refusal.remedy.empty(),
+        "a refusal says what was found, expected, why, and what to do");
+    return;
+  }
+  const ValidatedMesh& accepted = *validation.mesh;
+  check_welded(accepted.mesh);
+  check_edges(accepted, input.options.open);
+  check_volume(accepted.mesh, validation.report);
+  check_again(validation, input.options);
+  mass_properties(accepted.mesh);
+  check_answers(accepted);
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  buoyancy::check(buoyancy::read_mesh(buoyancy::FuzzBytes({data, size})));
+  return 0;
+}

@@ -1,0 +1,143 @@
+// Bytes as the text of a scene file. What is refused must say why, on one line; what is read must keep to the
+// ranges that docs/scene_file.md states. Where every body is a generated shape, and a small one, the scene is
+// prepared as well, reported on, and asked about each body. No file is read.
+#include <algorithm>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include <Eigen/Cholesky>
+
+#include "hydrostatics/buoyancy.h"
+#include "scene/scene.h"
+#include "scene/scene_report.h"
+#include "tests/fuzz/fuzz_law.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::int64_t kMostTriangles = 1500;  // of all bodies; more would cost the fuzzer its speed
+
+// docs/scene_file.md, "Shapes".
+std::int64_t triangle_count(const Shape& shape) {
+  const auto count = [](const auto& s) -> std::int64_t {
+    using S = std::decay_t<decltype(s)>;
+    if constexpr (std::is_same_v<S, BoxShape>) {
+      const auto& [a, b, c] = s.segments;
+      return 4 * (std::int64_t{a} * b + std::int64_t{b} * c + std::int64_t{c} * a);
+    } else if constexpr (std::is_same_v<S, SphereShape>) {
+      return 2 * std::int64_t{s.segments} * s.segments;
+    } else if constexpr (std::is_same_v<S, CylinderShape>) {
+      return 2 * std::int64_t{s.segments} * (std::int64_t{s.stacks} + 1);
+    } else if constexpr (std::is_same_v<S, ConeShape>) {
+      return 2 * std::int64_t{s.segments} * s.stacks;
+    } else if constexpr (std::is_same_v<S, TorusKnotShape>) {
+      return 2 * std::int64_t{s.tubular} * s.radial;
+    } else if constexpr (std::is_same_v<S, WigleyShape>) {
+      return 4 * std::int64_t{s.segments} * (std::int64_t{s.levels} + 1) + 2 * std::int64_t{s.segments} - 2;
+    } else {
+      static_assert(std::is_same_v<S, RockShape>);
+      return 20 * std::int64_t{s.frequency} * s.frequency;
+    }
+  };
+  return std::visit(count, shape);
+}
+
+void check_error(const Error& error) {
+  const std::string message = error.message();
+  law(message.starts_with("fuzz.toml"), "an error names the file");
+  law(!error.found.empty() && !error.expectation.empty(), "an error says what was found and expected");
+  const bool one_line = std::none_of(message.begin(), message.end(), [](char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return code < 0x20 || code == 0x7f;
+  });
+  law(one_line, "an error is one line without control characters");
+}
+
+void check_water(const Water& water) {
+  law(std::abs(water.up_W.norm() - 1.0) <= 1e-15, "up is a unit vector");
+  law(std::isfinite(water.level), "the level is a number");
+  law(std::isfinite(water.density) && water.density >= 0.0, "the density is at least 0");
+  law(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
+}
+
+void check_client(const ClientSpec& client) {
+  law(!(client.mass && client.density), "mass and density exclude each other");
+  for (const auto& given : {client.mass, client.density}) {
+    law(!given || (std::isfinite(*given) && *given > 0.0), "mass and density are above 0");
+  }
+  law(!client.center_of_mass_B || client.center_of_mass_B->allFinite(), "the centre of mass is finite");
+  if (client.inertia_B) {
+    law(client.inertia_B->allFinite() && Eigen::LLT<Mat3>(*client.inertia_B).info() == Eigen::Success,
+        "the inertia is positive definite");
+  }
+  law(client.position.allFinite() && client.linear_velocity.allFinite() &&
+          client.angular_velocity.allFinite(),
+      "position and velocities are finite");
+  law(std::abs(client.orientation.norm() - 1.0) <= 1e-15, "the orientation is a unit quaternion");
+  for (const double damping : {client.linear_damping, client.linear_damping_quadratic, client.angular_damping,
+                               client.angular_damping_quadratic}) {
+    law(std::isfinite(damping) && damping >= 0.0, "damping is at least 0");
+  }
+}
+
+void check_description(const SceneDescription& scene) {
+  check_water(scene.water);
+  law(!scene.bodies.empty(), "a scene has a body");
+  std::set<std::int32_t> ids;
+  for (const BodyDescription& body : scene.bodies) {
+    law(ids.insert(body.id).second, "ids are unique");
+    law(!body.name.empty() && !body.where.empty(), "a body has a name and a place in the file");
+    law(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
+    law(body.tolerance >= 0.0 && body.tolerance <= 1.0, "a tolerance is from 0 to 1");
+    law(body.reference_B.allFinite(), "the reference point is finite");
+    if (const auto* file = std::get_if<MeshFile>(&body.source)) {
+      law(!file->path.empty(), "a mesh file has a name");
+    } else {
+      law(check_shape(std::get<Shape>(body.source)).has_value(), "a shape keeps to its ranges");
+    }
+    check_client(body.client);
+  }
+}
+
+bool is_small_and_generated(const SceneDescription& scene) {
+  std::int64_t triangles = 0;
+  for (const BodyDescription& body : scene.bodies) {
+    const auto* shape = std::get_if<Shape>(&body.source);
+    if (shape == nullptr) return false;
+    triangles += triangle_count(*shape);
+    if (triangles > kMostTriangles) return false;
+  }
+  return true;
+}
+
+void check_prepared(const SceneDescription& description) {
+  const Expected<Scene> scene = Scene::prepare(description);
+  if (!scene) return check_error(scene.error());
+  law(scene->bodies().size() == description.bodies.size(), "every body is prepared");
+  law(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"), "there is a report");
+  for (const Body& body : scene->bodies()) {
+    const Pose pose{.p_WB = body.client.position, .q_WB = body.client.orientation};
+    const BuoyancyAnswer answer = buoyancy(body.solver, pose, scene->water(), body.reference_B);
+    law(answer.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
+    law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
+            answer.center_of_buoyancy_W.allFinite(),
+        "an answer holds numbers");
+  }
+}
+
+void check(std::string_view text) {
+  const Expected<SceneDescription> scene = parse_scene(text, "fuzz.toml", "/nowhere");
+  if (!scene) return check_error(scene.error());
+  check_description(*scene);
+  if (is_small_and_generated(*scene)) check_prepared(*scene);
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  buoyancy::check({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

@@ -1,0 +1,292 @@
+// Bytes to a mesh, a pose, water and a reference point. Whatever they are, every method answers with numbers
+// or with a status. Where every value lies within 2^-40 and 2^40 of 1, so that no product leaves double's
+// range, the exact methods must be within the bounds that they publish of the oracle. It computes with 512
+// bits, where rationals would take a hundred times as long: what it rounds, 2^-512 of the fourth power of
+// 2^41, is far below the smallest bound there can be, 2^-52 of the third power of 2^-40.
+//
+//   options    1 byte: bits 0-1 how pose, water and reference point are written (0 int8; 1 two int8, the
+//              second 2^-26 of the first; 2 float32; 3 double), bit 2 up is written too, bit 3 density and
+//              gravity are written too, bit 4 the water goes through a vertex, bit 5 the mesh is written
+//   mesh       1 byte: which of the meshes below, where it is not written
+//   tolerance  1 byte t: 0 none, else 2^-(t / 4), of `hierarchical` a second time
+//   target     1 byte: which of the processor's instruction sets
+//   vertex     1 byte: which the water goes through, 1 int8: how many ulp off
+//   scale      1 int8 e: position, level and reference point are multiplied by 2^e
+//   then q_WB (w, x, y, z), p_WB, level, reference point, up, density, gravity, and a mesh (fuzz_mesh.h)
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/eigen.hpp>
+
+#include "geometry/rounding_area.h"
+#include "hydrostatics/buoyancy.h"
+#include "hydrostatics/hydrostatics.h"
+#include "hydrostatics/wet_tree_sum.h"
+#include "tests/fuzz/fuzz_bytes.h"
+#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_mesh.h"
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+using Wide = boost::multiprecision::number<
+    boost::multiprecision::cpp_bin_float<512, boost::multiprecision::digit_base_2>,
+    boost::multiprecision::et_off>;
+
+constexpr std::size_t kMostTriangles = 120;  // of a written mesh; the oracle takes some 10 us for each
+// exact and exact_surface publish G_V (1 + depth/L) for bodies deeper than L, which their rounding was found
+// to pass by a tenth (corpus/wrench/plate_264_m_deep.hex).
+constexpr double kDeepSlack = 4.0;
+constexpr int kLargestExponent = 40;  // of the values that the oracle is asked about
+
+// A mesh, prepared, as the oracle and as the methods see it.
+struct Subject {
+  TriangleMesh source;
+  HydrostaticMesh mesh;
+  // Of the published bounds, which count rounding by the mesh's area. The errors of slanted needles from 1 :
+  // 50 on were found to pass them, by what rounding_area() is above the area.
+  double slack = 1.0;
+};
+
+std::optional<Subject> subject_of(const TriangleMesh& source, OpenPolicy open = OpenPolicy::kRefuse) {
+  ImportedMesh imported;
+  imported.mesh = source;
+  const MeshValidation validation = validate_mesh(imported, "fuzz", {.open = open});
+  if (!validation.mesh) return std::nullopt;
+  Subject subject{validation.mesh->mesh, make_hydrostatic_mesh(*validation.mesh)};
+  subject.slack = std::max(1.0, rounding_area(subject.source) / subject.mesh.area);
+  return subject;
+}
+
+const std::vector<Subject>& subjects() {
+  static const std::vector<Subject> kSubjects = [] {
+    const TriangleMesh box = make_shape(BoxShape{});
+    const TriangleMesh rock = make_shape(RockShape{.frequency = 2, .roughness = 0.5, .seed = 3});
+    const TriangleMesh fine_box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
+    const TriangleMesh cavity = moved_and_scaled(turned_inside_out(box), {0.125, 0, 0}, 0.5);
+    std::vector<Subject> list;
+    for (const TriangleMesh& mesh :
+         {box, fine_box, rock, make_shape(BoxShape{.size = {1, 1, 1e-8}, .segments = {2, 2, 1}}),
+          make_shape(BoxShape{.size = {8192, 1, 1}, .segments = {4, 1, 1}}),
+          make_shape(ConeShape{.segments = 5, .stacks = 2}), make_shape(SphereShape{.segments = 5}),
+          make_shape(WigleyShape{.segments = 4, .levels = 2}), joined(box, cavity),
+          joined(box, moved_and_scaled(box, {3, 0, 1})), moved_and_scaled(rock, Vec3::Zero(), 1e-6),
+          moved_and_scaled(rock, Vec3::Zero(), 1e6), moved_and_scaled(rock, {600, -800, 100}),
+          moved_and_scaled(rock, {6e5, -8e5, 1e5})}) {
+      std::optional<Subject> subject = subject_of(mesh);
+      law(subject.has_value(), "the target's own meshes are accepted");
+      list.push_back(*std::move(subject));
+    }
+    return list;
+  }();
+  return kSubjects;
+}
+
+struct Case {
+  std::size_t mesh = 0;
+  bool mesh_is_written = false;
+  double tolerance = 0.0;
+  std::size_t target = 0;
+  Pose pose;
+  Water water;
+  Vec3 reference_B = Vec3::Zero();
+};
+
+class CaseReader {
+ public:
+  explicit CaseReader(FuzzBytes& bytes) : bytes_(&bytes) {}
+
+  Case read() {
+    const unsigned options = bytes_->byte();
+    writing_ = options & 3U;
+    Case read;
+    read.mesh = bytes_->byte();
+    read.mesh_is_written = (options & 32U) != 0;
+    const int tolerance = bytes_->byte();
+    if (tolerance > 0) read.tolerance = std::exp2(-0.25 * tolerance);
+    read.target = bytes_->byte();
+    vertex_ = bytes_->byte();
+    ulps_ = bytes_->small();
+    through_a_vertex_ = (options & 16U) != 0;
+    scale_ = bytes_->small();
+    const double w = coordinate(*bytes_, writing_);
+    const Vec3 u = vector(0);
+    read.pose.q_WB = Eigen::Quaterniond(w, u.x(), u.y(), u.z());
+    read.pose.p_WB = vector(scale_);
+    read.water.level = std::ldexp(coordinate(*bytes_, writing_), scale_);
+    read.reference_B = vector(scale_);
+    read.water.density = 1.0;
+    read.water.gravity = 1.0;
+    if ((options & 4U) != 0) read.water.up_W = direction();
+    if ((options & 8U) != 0) {
+      read.water.density = std::abs(coordinate(*bytes_, writing_));
+      read.water.gravity = std::abs(coordinate(*bytes_, writing_));
+    }
+    return read;
+  }
+
+  // Sets the level so that the water's surface passes through a vertex, where the bytes say so.
+  void aim(const TriangleMesh& mesh, Case& read) const {
+    if (!through_a_vertex_) return;
+    const Vec3 vertex_B = mesh.vertex(static_cast<std::int32_t>(vertex_ % mesh.vertex_count()));
+    double level = read.water.up_W.dot(read.pose.q_WB.normalized() * vertex_B + read.pose.p_WB);
+    for (int i = 0; i < std::abs(ulps_); ++i) level = std::nextafter(level, ulps_ > 0 ? INFINITY : -INFINITY);
+    read.water.level = level;
+  }
+
+ private:
+  Vec3 vector(int scale) {
+    Vec3 v;
+    for (double& value : v) value = std::ldexp(coordinate(*bytes_, writing_), scale);
+    return v;
+  }
+  Vec3 direction() {
+    const Vec3 v = vector(0);
+    const double largest = v.cwiseAbs().maxCoeff();
+    if (!v.allFinite() || largest == 0.0) return Vec3::UnitZ();
+    return (v / largest).normalized();
+  }
+
+  FuzzBytes* bytes_;
+  unsigned writing_ = 0;
+  std::size_t vertex_ = 0;
+  int ulps_ = 0;
+  int scale_ = 0;
+  bool through_a_vertex_ = false;
+};
+
+// What buoyancy() asks of its callers.
+bool may_be_asked(const Case& asked) {
+  return asked.pose.p_WB.allFinite() && asked.pose.q_WB.coeffs().allFinite() &&
+         !asked.pose.q_WB.coeffs().isZero(0.0) && std::isfinite(asked.water.level) &&
+         std::isfinite(asked.water.density) && std::isfinite(asked.water.gravity) &&
+         asked.reference_B.allFinite();
+}
+
+bool is_moderate(double value) {
+  return value == 0.0 || (std::abs(value) <= std::ldexp(1.0, kLargestExponent) &&
+                          std::abs(value) >= std::ldexp(1.0, -kLargestExponent));
+}
+
+template <typename Values>
+bool all_moderate(const Values& values) {
+  return std::all_of(values.begin(), values.end(), is_moderate);
+}
+
+bool is_moderate(const Case& asked, const Subject& subject) {
+  const std::array<double, 3> water{asked.water.level, asked.water.density, asked.water.gravity};
+  return all_moderate(water) && all_moderate(asked.water.up_W) && all_moderate(asked.pose.p_WB) &&
+         all_moderate(asked.pose.q_WB.coeffs()) && all_moderate(asked.reference_B) &&
+         all_moderate(subject.source.x) && all_moderate(subject.source.y) && all_moderate(subject.source.z);
+}
+
+// The true wrench.
+struct Truth {
+  Wide weight;  // N/m^3
+  Wide volume;
+  Vec3T<Wide> force_W, torque_W;
+};
+
+Truth true_wrench(const Case& asked, const Subject& subject) {
+  const auto displaced = exact_displacement<Wide>(subject.source, asked.pose, asked.water);
+  Truth truth;
+  truth.weight = Wide(asked.water.density) * Wide(asked.water.gravity);
+  truth.volume = displaced.volume;
+  truth.force_W = asked.water.up_W.cast<Wide>() * Wide(truth.weight * displaced.volume);
+  truth.torque_W = exactly_in_world<Wide>(asked.pose, displaced.torque(asked.reference_B)) * truth.weight;
+  return truth;
+}
+
+std::string figures(const char* what, Method method, const Wide& error, double bound) {
+  return std::string(what) + " of " + std::string(name(method)) + " off by " + error.str(4) + ", bound " +
+         std::to_string(bound) + " = " + Wide(bound).str(4);
+}
+
+void check_within(const char* what, Method method, const Vec3& found, const Vec3T<Wide>& truth,
+                  double bound) {
+  const Vec3T<Wide> difference = found.cast<Wide>() - truth;
+  const Wide error = sqrt(Wide(difference.dot(difference)));
+  if (!(error <= Wide(bound))) broken_law("the published bound holds", figures(what, method, error, bound));
+}
+
+void check_answer(const Solver& solver, const BuoyancyAnswer& answer) {
+  law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
+          answer.center_of_buoyancy_W.allFinite(),
+      "an answer holds numbers");
+  if (answer.status != BuoyancyStatus::kOk) {
+    law(answer.force_W.isZero(0.0) && answer.torque_W.isZero(0.0) && answer.volume == 0.0 &&
+            answer.center_of_buoyancy_W.isZero(0.0),
+        "what is not answered is zero");
+  } else if (is_exact(solver.method())) {
+    law(answer.force_error_bound >= 0.0 && answer.torque_error_bound >= 0.0, "exact methods have bounds");
+  }
+}
+
+void check_method(const Solver& solver, const Case& asked, double slack, const std::optional<Truth>& truth) {
+  const BuoyancyAnswer answer = buoyancy(solver, asked.pose, asked.water, asked.reference_B);
+  check_answer(solver, answer);
+  if (answer.status != BuoyancyStatus::kOk || !is_exact(solver.method()) || !truth) return;
+  const bool deep = answer.immersion == Immersion::kWet && solver.method() != Method::kHierarchical;
+  if (deep) slack *= kDeepSlack;
+  check_within("force", solver.method(), answer.force_W, truth->force_W, slack * answer.force_error_bound);
+  check_within("torque", solver.method(), answer.torque_W, truth->torque_W,
+               slack * answer.torque_error_bound);
+}
+
+void check_hydrostatics(const Case& asked, const Subject& subject, const std::optional<Truth>& truth) {
+  const auto found =
+      hydrostatics(subject.mesh, asked.pose, asked.water, asked.reference_B, subject.mesh.center_B);
+  if (!found) return;
+  law(std::isfinite(found->volume) && found->stiffness.allFinite() && found->waterplane_area >= 0.0 &&
+          found->wetted_area >= 0.0,
+      "hydrostatics are numbers");
+  if (!truth) return;
+  const Wide error = abs(Wide(found->volume) - truth->volume);
+  const double bound = subject.slack * subject.mesh.volume_gate();
+  if (!(error <= Wide(bound))) {
+    broken_law("the displaced volume is within G_V", figures("volume", Method::kHierarchical, error, bound));
+  }
+}
+
+void check(FuzzBytes bytes) {
+  CaseReader reader(bytes);
+  Case asked = reader.read();
+  std::optional<Subject> written;
+  if (asked.mesh_is_written) {
+    const FuzzMesh mesh = read_mesh(bytes);
+    if (mesh.imported.mesh.triangles.size() > kMostTriangles) return;
+    written = subject_of(mesh.imported.mesh, mesh.options.open);
+    if (!written) return;
+  }
+  const Subject& subject = written ? *written : subjects()[asked.mesh % subjects().size()];
+  if (!may_be_asked(asked)) return;
+  reader.aim(subject.source, asked);
+  if (!std::isfinite(asked.water.level)) return;
+
+  static const std::vector<std::string> kTargets = simd_targets();
+  force_simd_target(kTargets[asked.target % kTargets.size()]);
+  std::optional<Truth> truth;
+  if (is_moderate(asked, subject)) truth = true_wrench(asked, subject);
+  for (const Method method : kAllMethods)
+    check_method(Solver(subject.mesh, method), asked, subject.slack, truth);
+  check_method(Solver(subject.mesh, Method::kHierarchical, asked.tolerance), asked, subject.slack, truth);
+  if (buoyancy(Solver(subject.mesh, Method::kHierarchical), asked.pose, asked.water, asked.reference_B)
+          .status == BuoyancyStatus::kOk) {
+    check_hydrostatics(asked, subject, truth);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  buoyancy::check(buoyancy::FuzzBytes({data, size}));
+  return 0;
+}
