@@ -10,8 +10,8 @@
 // median_ns   of the whole query, over the poses
 // *_error     the largest over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
 //             V_T L; nan for `read`
-// bound       the largest force error bound that the answers came with, over rho g V_T; nan: the method has
-//             none
+// bound       the largest force error bound that the answers came with, over rho g V_T; nan for
+//             `read`
 #pragma once
 
 #include <cstdio>

@@ -33,12 +33,12 @@ struct SolverErrors {
   double force = 0.0;         // the largest over the poses
   double torque = 0.0;        // likewise
   double force_median = 0.0;  // over the poses
-  double bound = 0.0;         // the largest force error bound that was published; NaN: the method has none
+  double bound = 0.0;         // the largest force error bound that was published
   double bound_median = 0.0;  // likewise
 };
 
-// Asks the solver for every pose and compares. Where the answer came with bounds it must keep them, and the
-// bound of force must be at most the solver's tolerance or 4 G_V, whichever is larger.
+// Asks the solver for every pose and compares. Every answer must keep its bounds; of an exact method the bound of
+// force must be at most the solver's tolerance or 4 G_V, whichever is larger.
 //
 // Errors: a pose whose answer is farther from the truth than its own bound, or whose bound is too large;
 // names the mesh, the method and the pose.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace buoyancy {
 namespace {
@@ -17,24 +16,34 @@ bool finite(const BuoyancyAnswer& answer) {
          answer.center_of_buoyancy_W.allFinite();
 }
 
-// Bounds on the norms of the errors of force/(rho g) and torque/(rho g); NaN for methods that have none.
+// Bounds on the norms of the errors of force/(rho g) and torque/(rho g).
 struct ErrorBounds {
   double force, torque;
 };
 
+// How many times G_V rounding may reach. The paper's methods lose digits with depth: the apex, or the
+// pressure, is then far from the body's size; `fast` with the distance of its apex, B's origin.
+double rounding_in_gates(const Solver& solver, const WaterPlane& plane) {
+  const HydrostaticMesh& mesh = solver.mesh();
+  double far = 0.0;  // m
+  if (solver.method() == Method::kFast) {
+    far = mesh.center_B.norm();
+  } else if (solver.method() != Method::kHierarchical) {
+    far = std::abs(plane.h_c);
+  }
+  return far > mesh.diagonal ? 1.0 + far / mesh.diagonal : 1.0;
+}
+
 ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Displacement& displaced,
                          const Vec3& reference_B) {
-  if (!is_exact(solver.method())) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    return {kNone, kNone};
-  }
   const HydrostaticMesh& mesh = solver.mesh();
-  double force = mesh.volume_gate();
-  // The paper's exact methods lose digits with depth: the apex, or the pressure, is far from the body's size.
-  const double depth = std::abs(plane.h_c);
-  if (solver.method() != Method::kHierarchical && depth > mesh.diagonal) force *= 1.0 + depth / mesh.diagonal;
-  force += displaced.undecided;
-  return {force, force * mesh.largest_lever(reference_B)};
+  const double rounding = mesh.volume_gate() * rounding_in_gates(solver, plane);
+  double lever = mesh.largest_lever(reference_B);
+  if (displaced.left_out_reach > 0.0) {
+    lever = std::max(lever, displaced.left_out_reach + (reference_B - mesh.center_B).norm());
+  }
+  const double force = rounding + displaced.left_out;
+  return {force, force * lever};
 }
 
 // The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
@@ -81,7 +90,7 @@ void answer_from_displacement(const Solver& solver, const WaterPlane& plane, con
   const ErrorBounds bounds = error_bounds(solver, plane, displaced, reference_B);
   answer.force_error_bound = weight * bounds.force;
   answer.torque_error_bound = weight * bounds.torque;
-  const double smallest_volume = std::isnan(bounds.force) ? mesh.volume_gate() : bounds.force;
+  const double smallest_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_gate();
   if (std::abs(displaced.volume) > smallest_volume) {
     answer.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
   }

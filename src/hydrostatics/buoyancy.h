@@ -17,7 +17,7 @@ struct BuoyancyAnswer {
   double volume = 0.0;           // m^3, submerged
   Vec3 center_of_buoyancy_W =
       Vec3::Zero();                 // m, W axes, relative to p_WB; zero where volume <= its error bound
-  double force_error_bound = 0.0;   // N; NaN: the method has none
+  double force_error_bound = 0.0;   // N: the true force is no farther away
   double torque_error_bound = 0.0;  // N m; likewise
   double dropped_force =
       0.0;  // exact methods: |horizontal part of F| / (rho g V_T), dropped because it must be 0
@@ -33,7 +33,8 @@ bool is_answered_by_bounds(const Solver& solver, Immersion immersion);
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
 // health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate); of `exact` and
-// `exact_surface` times 1 + depth/L for bodies deeper than L.
+// `exact_surface` times 1 + depth/L for bodies deeper than L. Those of the approximations, and of
+// `hierarchical` within a tolerance, add what was left out (docs/mathematics.md, "Error bounds").
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
 }  // namespace buoyancy

@@ -7,7 +7,7 @@ namespace buoyancy {
 
 Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const auto k = Point<double>::from(plane.up_B);
-  const auto sum = sum_over_wet_surface<PressureElements, CutTriangles::kClip>(
+  const auto sum = sum_over_whole_wet_surface<PressureElements>(
       mesh, plane,
       [k](PressureElements& block, const auto& a, const auto& b, const auto& c) { block.add(a, b, c, k); });
   return sum.displacement(plane);

@@ -1,5 +1,7 @@
 #include "hydrostatics/fast.h"
 
+#include <cmath>
+
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wet_surface.h"
 
@@ -9,10 +11,14 @@ namespace {
 struct ElementSum {
   double volume = 0.0;
   Vec3 moment = Vec3::Zero();
+  double left_out = 0.0;  // m^3: sum |V_i| of the cut triangles
+  std::size_t wet_triangles = 0;
 
   ElementSum& operator+=(const ElementSum& other) {
     volume += other.volume;
     moment += other.moment;
+    left_out += other.left_out;
+    wet_triangles += other.wet_triangles;
     return *this;
   }
 };
@@ -32,11 +38,25 @@ FastTable::FastTable(const HydrostaticMesh& mesh) {
 
 Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const {
   const VertexHeights heights = vertex_heights(mesh.surface, plane);
-  const auto total = sum_over_blocks<ElementSum>(
-      mesh.surface, heights, [this](ElementSum& sum, TriangleList wet, TriangleList /*cut*/) {
-        for (const std::uint32_t i : wet) sum += {elements_[i].volume, elements_[i].moment};
-      });
-  return displacement_of_volume(total.volume, total.moment, plane);
+  const auto total = sum_over_blocks<ElementSum>(mesh.surface, heights,
+                                                 [this](ElementSum& sum, TriangleList wet, TriangleList cut) {
+                                                   for (const std::uint32_t i : wet) {
+                                                     sum.volume += elements_[i].volume;
+                                                     sum.moment += elements_[i].moment;
+                                                   }
+                                                   for (const std::uint32_t i : cut)
+                                                     sum.left_out += std::abs(elements_[i].volume);
+                                                   sum.wet_triangles += wet.size();
+                                                 });
+  Displacement result = displacement_of_volume(total.volume, total.moment, plane);
+  result.left_out = total.left_out;
+  if (total.wet_triangles < mesh.surface.triangles.size()) {
+    // The cone over the waterplane, whose area is at most that of the wet surface and that of the dry one.
+    const double waterplane_area = mesh.open() ? mesh.area : 0.5 * mesh.area;
+    result.left_out += std::abs(plane.height(-mesh.center_B)) * waterplane_area / 3.0;
+  }
+  result.left_out_reach = mesh.center_B.norm();
+  return result;
 }
 
 }  // namespace buoyancy

@@ -1,16 +1,40 @@
 #include "hydrostatics/fast_surface.h"
 
+#include <algorithm>
+
 #include "hydrostatics/pressure_elements.h"
 #include "hydrostatics/wet_surface.h"
 
 namespace buoyancy {
+namespace {
+
+struct PressureSum {
+  PressureElements wet;
+  double left_out6 = 0.0;  // m^3: twice the area of the cut triangles times the sum of their corners' depths
+
+  PressureSum& operator+=(const PressureSum& other) {
+    wet += other.wet;
+    left_out6 += other.left_out6;
+    return *this;
+  }
+};
+
+}  // namespace
 
 Displacement fast_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const auto k = Point<double>::from(plane.up_B);
-  const auto sum = sum_over_wet_surface<PressureElements, CutTriangles::kLeaveOut>(
+  const auto sum = sum_over_wet_surface<PressureSum>(
       mesh, plane,
-      [k](PressureElements& block, const auto& a, const auto& b, const auto& c) { block.add(a, b, c, k); });
-  return sum.displacement(plane);
+      [k](PressureSum& block, const auto& a, const auto& b, const auto& c) { block.wet.add(a, b, c, k); },
+      [](PressureSum& block, const auto& a, const auto& b, const auto& c) {
+        // A convex function's integral is at most that of the plane through its corners: int |min(z, 0)| dA
+        // <= A/3 sum |min(z_i, 0)|.
+        const double depths = std::max(-a.z, 0.0) + std::max(-b.z, 0.0) + std::max(-c.z, 0.0);
+        block.left_out6 += depths * cross(b.y - a.y, c.y - a.y).vec3().norm();
+      });
+  Displacement result = sum.wet.displacement(plane);
+  result.left_out = sum.left_out6 / 6.0;
+  return result;
 }
 
 }  // namespace buoyancy

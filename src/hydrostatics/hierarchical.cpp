@@ -67,7 +67,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
     result.volume += offset_k_S + rest.volume;
     height += 0.5 * (k.dot(offset_N_k) + z_c * offset_k_S + k.dot(curved) + z_c * rest.volume);
     U += offset_N_k + curved;
-    result.undecided = rest.error;
+    result.left_out = rest.error;
   }
   result.moment = U - height * k;
   result.force = result.volume * k;

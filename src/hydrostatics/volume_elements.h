@@ -11,6 +11,12 @@
 
 namespace buoyancy {
 
+// 6 V_i(o), m^3.
+inline double six_volumes(const Point<double>& a, const Point<double>& b, const Point<double>& c,
+                          const Point<double>& apex) {
+  return dot(a - apex, cross(b - a, c - a));
+}
+
 // Sums over triangles, for one apex o.
 struct VolumeElements {
   double volume6 = 0.0;            // m^3: 6 sum V_i(o)
@@ -24,7 +30,7 @@ struct VolumeElements {
 
   void add(const Point<double>& a, const Point<double>& b, const Point<double>& c,
            const Point<double>& apex) {
-    const double v6 = dot(a - apex, cross(b - a, c - a));
+    const double v6 = six_volumes(a, b, c, apex);
     volume6 += v6;
     moment6 += v6 * (a + b + c);
   }
@@ -42,7 +48,8 @@ inline Vec3 apex_on_water(const Vec3& centroid, const WaterPlane& plane) {
 
 // Displacement of a volume V with first moment M about c; the wrench is Archimedes': F = V k at the centroid.
 inline Displacement displacement_of_volume(double volume, const Vec3& moment, const WaterPlane& plane) {
-  return {volume, moment, volume * plane.up_B, moment.cross(plane.up_B)};
+  return {
+      .volume = volume, .moment = moment, .force = volume * plane.up_B, .torque = moment.cross(plane.up_B)};
 }
 
 }  // namespace buoyancy

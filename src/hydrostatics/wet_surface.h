@@ -64,12 +64,11 @@ Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, c
   return total.total();
 }
 
-enum class CutTriangles { kLeaveOut, kClip };
-
-// accumulate(sum, a, b, c) adds one wet triangle with corners Corner<double>. kClip also hands over the wet
-// parts of the triangles that the water cuts. O(vertices + triangles).
-template <typename Sum, CutTriangles kCut, typename Accumulate>
-Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Accumulate& accumulate) {
+// add_wet(sum, a, b, c) adds one wet triangle with corners Corner<double>, add_cut(sum, a, b, c) what the
+// method makes of one that the water cuts. O(vertices + triangles).
+template <typename Sum, typename AddWet, typename AddCut>
+Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const AddWet& add_wet,
+                         const AddCut& add_cut) {
   const double* const x = mesh.surface.x.data();
   const double* const y = mesh.surface.y.data();
   const double* const z = mesh.surface.z.data();
@@ -78,16 +77,22 @@ Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, c
   return sum_over_blocks<Sum>(mesh.surface, heights, [&](Sum& sum, TriangleList wet, TriangleList cut) {
     for (const std::uint32_t i : wet) {
       const Triangle& triangle = mesh.surface.triangles[i];
-      accumulate(sum, corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
+      add_wet(sum, corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
     }
-    if constexpr (kCut == CutTriangles::kClip) {
-      for (const std::uint32_t i : cut) {
-        const Triangle& triangle = mesh.surface.triangles[i];
-        visit_wet_part(corner(triangle[0]), corner(triangle[1]), corner(triangle[2]),
-                       [&](const auto& a, const auto& b, const auto& c) { accumulate(sum, a, b, c); });
-      }
+    for (const std::uint32_t i : cut) {
+      const Triangle& triangle = mesh.surface.triangles[i];
+      add_cut(sum, corner(triangle[0]), corner(triangle[1]), corner(triangle[2]));
     }
   });
+}
+
+// The whole wet surface: add(sum, a, b, c) gets the wet triangles and the wet parts of those that are cut.
+template <typename Sum, typename Add>
+Sum sum_over_whole_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Add& add) {
+  return sum_over_wet_surface<Sum>(
+      mesh, plane, add, [&](Sum& sum, const auto& a, const auto& b, const auto& c) {
+        visit_wet_part(a, b, c, [&](const auto& p, const auto& q, const auto& r) { add(sum, p, q, r); });
+      });
 }
 
 }  // namespace buoyancy

@@ -114,7 +114,7 @@ inline ExactPlane<Ball> exact_plane<Ball>(const Pose& pose, const Water& water, 
           Ball::around(plane.h)};
 }
 
-// Heights of which a ball does not tell the sign and five digits are taken from rational arithmetic: they
+// Heights of which a ball does not tell the sign and twelve digits are taken from rational arithmetic: they
 // decide what is wet, and where an edge is cut.
 template <>
 class SettledHeights<Ball> {
@@ -123,7 +123,7 @@ class SettledHeights<Ball> {
       : mesh_(&mesh), pose_(&pose), water_(&water) {}
 
   Ball settled(std::size_t vertex, const Ball& height) {
-    if (height.rad <= std::abs(height.mid) * 0x1p-16L) return height;
+    if (height.rad <= std::abs(height.mid) * 0x1p-40L) return height;
     if (!plane_) plane_ = exact_plane<Rational>(*pose_, *water_);
     const Vec3T<Rational> x = mesh_->vertex(static_cast<std::int32_t>(vertex)).cast<Rational>();
     return Ball::around(Rational(plane_->up_B.dot(x) - plane_->h));

@@ -47,11 +47,16 @@ TEST(Buoyancy, SaysNothingOfACentreThatTheVolumeDoesNotDetermine) {
   EXPECT_EQ(answer.center_of_buoyancy_W, Vec3::Zero());
 }
 
-TEST(Buoyancy, HasNoBoundForApproximationsAndOneForExactMethods) {
+TEST(Buoyancy, HasABoundOfRoundingAloneForExactMethodsAndForWhollyWetBodies) {
+  const Water water;
+  const double whole = water.density * water.gravity;
   for (const Method method : kAllMethods) {
-    const BuoyancyAnswer answer = buoyancy(Solver(unit_box(), method), at_height(0.1), {}, Vec3::Zero());
-    EXPECT_EQ(std::isnan(answer.force_error_bound), !is_exact(method)) << name(method);
-    EXPECT_EQ(std::isnan(answer.torque_error_bound), !is_exact(method)) << name(method);
+    const Solver solver(unit_box(), method);
+    const BuoyancyAnswer cut = buoyancy(solver, at_height(0.1), water, Vec3::Zero());
+    EXPECT_EQ(cut.force_error_bound < 1e-12 * whole, is_exact(method)) << name(method);
+    EXPECT_EQ(cut.torque_error_bound < 1e-12 * whole, is_exact(method)) << name(method);
+    const BuoyancyAnswer wet = buoyancy(solver, at_height(-1.0), water, Vec3::Zero());
+    EXPECT_LT(wet.force_error_bound, 1e-12 * whole) << name(method);
   }
 }
 

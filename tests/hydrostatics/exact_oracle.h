@@ -19,13 +19,16 @@ namespace buoyancy {
 
 template <typename T>
 struct ExactDisplacement {
-  T volume;         // m^3
-  Vec3T<T> moment;  // m^4, B: integral of x_B over the displaced volume
-  Vec3T<T> up_B;    // k
+  T volume;           // m^3
+  Vec3T<T> moment;    // m^4, B: integral of x_B over the displaced volume
+  Vec3T<T> up_B;      // k
+  Vec3 o_B;           // m: a point of the mesh
+  Vec3T<T> moment_o;  // m^4: the moment about it, for number types in which a far origin costs digits
 
-  // torque/(rho g) about a point of B, in B: (moment - V r) x k
+  // torque/(rho g) about a point of B, in B: (moment_o + V (o - r)) x k
   Vec3T<T> torque(const Vec3& reference_B) const {
-    return (moment - volume * reference_B.template cast<T>()).cross(up_B);
+    const Vec3T<T> lever = o_B.template cast<T>() - reference_B.template cast<T>();
+    return (moment_o + lever * volume).cross(up_B);
   }
 };
 
@@ -69,7 +72,8 @@ class SettledHeights {
 template <typename T>
 ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& pose, const Water& water) {
   ExactDisplacement<T> result;
-  const Vec3 o_B = mesh.vertex(0);  // all is computed about it: a mesh may be far from B's origin
+  const Vec3 o_B = mesh.vertex(0);
+  result.o_B = o_B;
   const auto [k, h] = exact_plane<T>(pose, water, o_B);
   result.up_B = k;
   const Vec3T<T> apex_o = k * T(h / k.dot(k));
@@ -114,7 +118,8 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
   }
   const Term total = sum.total();
   result.volume = total.volume6 / T(6);
-  result.moment = total.moment24.vec3() / T(24) + (apex_o + o_B.template cast<T>()) * result.volume;
+  result.moment_o = total.moment24.vec3() / T(24) + apex_o * result.volume;
+  result.moment = result.moment_o + o_B.template cast<T>() * result.volume;
   return result;
 }
 

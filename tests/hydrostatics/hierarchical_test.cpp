@@ -218,7 +218,7 @@ TEST(Hierarchical, HasTheSameBitsFromEveryCompilerAndBuildTypePerInstructionSet)
         hash.add(found.volume);
         hash.add(found.moment);
         hash.add(found.torque);
-        hash.add(found.undecided);
+        hash.add(found.left_out);
       }
     }
     EXPECT_EQ(hash.value(), known->second)

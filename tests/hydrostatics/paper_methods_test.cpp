@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/ball.h"
+#include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
@@ -141,6 +143,53 @@ TEST(PaperMethods, AreFoundByTheirNamesAndByNoOther) {
   for (const Method method : kAllMethods) EXPECT_EQ(method_from_name(name(method)), method);
   EXPECT_EQ(method_from_name("exactly"), std::nullopt);
   EXPECT_EQ(method_from_name(""), std::nullopt);
+}
+
+class Approximations : public testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(PaperMethods, Approximations,
+                         testing::Values(Method::kFast, Method::kImproved, Method::kFastSurface),
+                         [](const auto& method) { return std::string(name(method.param)); });
+
+TEST_P(Approximations, StayWithinTheirBoundsOnEveryMeshAndPose) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    const Solver solver(mesh, GetParam());
+    const BoundingBox box = bounding_box(named.mesh);
+    RandomPoses random(21);
+    for (int i = 0; i < 60; ++i) {
+      Water water = kPaperWater;
+      if (i % 4 == 3) water.up_W = random.direction();
+      const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(named.mesh, water);
+      const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.direction();
+      const BuoyancyAnswer answer = buoyancy(solver, pose, water, reference_B);
+      const auto truth = exact_displacement<Ball>(named.mesh, pose, water);
+      const Vec3T<Ball> torque_W = exactly_in_world<Ball>(pose, truth.torque(reference_B));
+      Vec3 force_error;
+      Vec3 torque_error;
+      for (int j = 0; j < 3; ++j) {
+        force_error[j] =
+            static_cast<double>((truth.volume * Ball(water.up_W[j])).distance(answer.force_W[j]));
+        torque_error[j] = static_cast<double>(torque_W[j].distance(answer.torque_W[j]));
+      }
+      EXPECT_LE(force_error.norm(), answer.force_error_bound) << named.name;
+      EXPECT_LE(torque_error.norm(), answer.torque_error_bound) << named.name;
+    }
+  }
+}
+
+TEST(Approximations, OfTheWaterlineTellByTheirBoundThatRefiningHelps) {
+  const Pose tilted{Vec3(0, 0, 0.1), Eigen::Quaterniond(1.0, 0.3, -0.2, 0.1)};
+  for (const Method method : {Method::kImproved, Method::kFastSurface}) {
+    double bound = 1.0;
+    for (const int segments : {2, 8, 32}) {
+      const HydrostaticMesh mesh =
+          make_hydrostatic_mesh({make_shape(BoxShape{.segments = {segments, segments, segments}}), {}});
+      const double finer =
+          buoyancy(Solver(mesh, method), tilted, kPaperWater, Vec3::Zero()).force_error_bound;
+      EXPECT_LT(finer, 0.5 * bound) << name(method) << ", " << segments;
+      bound = finer;
+    }
+  }
 }
 
 }  // namespace

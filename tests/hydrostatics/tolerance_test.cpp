@@ -90,8 +90,8 @@ TEST(Tolerance, OfZeroOrBelowTheRoundingGivesTheExactAnswersBits) {
   const WaterPlane plane = water_plane_in_body(pose, kUnitWater, mesh.center_B);
   const Displacement exactly = hierarchical(mesh, plane);
   const Displacement barely = hierarchical(mesh, plane, 1e-16);
-  EXPECT_EQ(exactly.undecided, 0.0);
-  EXPECT_EQ(barely.undecided, 0.0);
+  EXPECT_EQ(exactly.left_out, 0.0);
+  EXPECT_EQ(barely.left_out, 0.0);
   EXPECT_EQ(barely.volume, exactly.volume);
   EXPECT_EQ(barely.moment, exactly.moment);
   EXPECT_EQ(barely.torque, exactly.torque);
