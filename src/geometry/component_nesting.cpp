@@ -47,7 +47,8 @@ ComponentLists boxes_around(const std::vector<BoundingBox>& boxes) {
   return around;
 }
 
-// Up to kSamplesPerComponent corners of faces, spread over each component's faces and over their corners.
+// Up to kSamplesPerComponent corners of faces, spread over each component's faces and over their corners; the
+// same ones of a mesh that is inside out.
 ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& topology) {
   std::vector<std::size_t> corners(static_cast<std::size_t>(topology.components), 0);
   for (const std::int32_t component : topology.component_of_face) {
@@ -59,7 +60,9 @@ ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& top
     const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
     std::size_t stride = (corners[component] + kSamplesPerComponent - 1) / kSamplesPerComponent;
     if (stride % 3 == 0) ++stride;  // else it would always be the same corner
-    for (const std::int32_t v : mesh.triangles[f]) {
+    Triangle face = mesh.triangles[f];
+    std::sort(face.begin(), face.end());
+    for (const std::int32_t v : face) {
       if (met[component]++ % stride == 0) samples[component].push_back(v);
     }
   }

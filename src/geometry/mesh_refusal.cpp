@@ -66,10 +66,11 @@ std::optional<Error> refuse_size(const MeshReport& report) {
                  "a body whose volume in m^3 is a finite number", "wrong units, or a damaged file",
                  "Scale the mesh to metres"};
   }
-  if (report.diagonal == 0.0) {
+  const bool area_vanishes = report.area == 0.0 && report.degenerate_faces < report.triangles;
+  if (report.diagonal == 0.0 || area_vanishes) {
     return Error{report.name,
                  "reaches from " + point(report.box.min_B) + " to " + point(report.box.max_B) +
-                     " m, which squared is 0",
+                     (report.diagonal == 0.0 ? " m, which squared is 0" : " m; its area squared is 0"),
                  "a body that has an extent", "a scale of 0, or a size too small to represent",
                  "Scale the mesh to metres"};
   }
