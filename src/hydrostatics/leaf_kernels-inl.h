@@ -387,9 +387,10 @@ class LeafSums {
       // Shares of the edges p-q and p-r that belong to p's corner.
       const auto z_pq = hn::Sub(zp, look_up(z, at.q));
       const auto z_pr = hn::Sub(zp, look_up(z, at.r));
-      const auto in_use = hn::FirstN(d, work.cuts - i);
-      // One division instead of two. Unused lanes, all of one corner, would divide by zero.
-      const auto scale = hn::IfThenElseZero(in_use, hn::Div(zp, hn::Mul(z_pq, z_pr)));
+      // One division instead of two. The product is 0 in unused lanes, all of one corner, and where heights
+      // of less than 1e-154 m underflow in it: there is nothing to add, and nothing to divide by.
+      const auto both = hn::Mul(z_pq, z_pr);
+      const auto scale = hn::IfThenElseZero(hn::Ne(both, hn::Zero(d)), hn::Div(zp, both));
       const auto to_q = hn::Mul(scale, z_pr);
       const auto to_r = hn::Mul(scale, z_pq);
       const auto w = hn::Sub(hn::Mul(u_pq, v_pr), hn::Mul(u_pr, v_pq));
