@@ -1,0 +1,279 @@
+// The stress catalogue, "Cases": the water's surface in vertices, edges and faces or a hair beside them;
+// bodies that hardly touch it, or are hardly out of it.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/stress/exact_truth.h"
+#include "tests/stress/stress_case.h"
+#include "tests/stress/stressed_body.h"
+
+namespace buoyancy {
+namespace {
+
+const Water kLevelZero{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
+
+TriangleMesh octahedron() {
+  TriangleMesh mesh;
+  for (const double side : {1.0, -1.0}) {
+    for (int axis = 0; axis < 3; ++axis) mesh.add_vertex(side * Vec3::Unit(axis));
+  }
+  mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
+  return mesh;
+}
+
+// q such that R_WB maps axes to axes: all 24 of them, without rounding in R.
+std::vector<Eigen::Quaterniond> axis_rotations() {
+  std::vector<Eigen::Quaterniond> found;
+  for (const double w : {0.0, 1.0}) {
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 1.0}) {
+        for (const double z : {-1.0, 0.0, 1.0}) {
+          const double squared = w + std::abs(x) + std::abs(y) + std::abs(z);
+          const bool first_positive = w > 0 || x > 0 || (x == 0 && (y > 0 || (y == 0 && z > 0)));
+          if (first_positive && (squared == 1.0 || squared == 2.0 || squared == 4.0))
+            found.emplace_back(w, x, y, z);
+        }
+      }
+    }
+  }
+  return found;
+}
+
+TEST(StressGrazing, VerticesEdgesAndFacesOnThePlaneAreDry) {
+  StressCase stress("vertex, edge, whole face on the plane (dry by convention)", "rational arithmetic",
+                    "G_V, G_V L_r; standing on the water: 0");
+  const StressedBody diamond("octahedron", octahedron());
+  const StressedBody box("box", make_shape(BoxShape{.segments = {2, 2, 2}}));
+  EXPECT_EQ(axis_rotations().size(), 24U);
+  for (const Eigen::Quaterniond& q_WB : axis_rotations()) {
+    // Heights at which a corner, the four edges around the middle, or whole faces lie in the surface.
+    for (const double height : {1.0, 0.0, -1.0}) {
+      check_exactly(stress, diamond, {Vec3(0, 0, height), q_WB}, kLevelZero, Vec3(0.5, 0.25, 0));
+    }
+    for (const double height : {0.5, 0.0, -0.5}) {
+      check_exactly(stress, box, {Vec3(0, 0, height), q_WB}, kLevelZero, Vec3(0.5, 0.25, 0));
+    }
+    visit_exact_solvers(diamond.mesh, [&](const std::string& method, const Solver& solver) {
+      stress.check(buoyancy(solver, {Vec3(0, 0, 1), q_WB}, kLevelZero, Vec3::Zero()).volume, 0.0,
+                   "on a corner, " + method);
+    });
+    visit_exact_solvers(box.mesh, [&](const std::string& method, const Solver& solver) {
+      stress.check(buoyancy(solver, {Vec3(0, 0, 0.5), q_WB}, kLevelZero, Vec3::Zero()).volume, 0.0,
+                   "on a face, " + method);
+    });
+  }
+
+  // Any rotation about a vertex, and about an edge along x, that lies in B's origin, which lies in the
+  // surface.
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(301);
+    for (int i = 0; i < tries(6); ++i) {
+      const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
+      const StressedBody moved(body.name, moved_and_scaled(body.source, -body.source.vertex(vertex)));
+      check_exactly(stress, moved, {Vec3(0, 0, kStressWater.level), random.rotation()}, kStressWater,
+                    reference_near(random, moved), ", a vertex");
+    }
+  }
+  const StressedBody bar("box with an edge in x",
+                         moved_and_scaled(make_shape(BoxShape{.segments = {3, 2, 2}}), {0, 0.5, 0.5}));
+  const StressedBody slab("box with a face in z",
+                          moved_and_scaled(make_shape(BoxShape{.segments = {3, 3, 2}}), {0, 0, 0.5}));
+  RandomPoses random(302);
+  for (int i = 0; i < tries(60); ++i) {
+    const double angle = random.uniform(-3.1, 3.1);
+    check_exactly(
+        stress, bar,
+        {Vec3(0, 0, kStressWater.level), Eigen::Quaterniond(std::cos(angle), std::sin(angle), 0, 0)},
+        kStressWater, Vec3::Zero(), ", an edge");
+    const Eigen::Quaterniond about_z(std::cos(angle), 0, 0, std::sin(angle));
+    const Eigen::Quaterniond upside_down(0, 1, 0, 0);
+    for (const Eigen::Quaterniond& q_WB : {about_z, Eigen::Quaterniond(about_z * upside_down)}) {
+      check_exactly(stress, slab, {Vec3(0, 0, kStressWater.level), q_WB}, kStressWater, Vec3::Zero(),
+                    ", a face");
+    }
+  }
+}
+
+double shifted_by_ulps(double value, int ulps) {
+  for (; ulps > 0; --ulps) value = std::nextafter(value, INFINITY);
+  for (; ulps < 0; ++ulps) value = std::nextafter(value, -INFINITY);
+  return value;
+}
+
+TEST(StressGrazing, ABigFlatFaceWithinAFewUlpOfThePlane) {
+  StressCase stress("all of a big flat face within k ulp of the plane, k = -8 .. 8", "rational arithmetic",
+                    "G_V, G_V L_r");
+  const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 1}, .segments = {4, 4, 1}});
+  const TriangleMesh plate = make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {5, 5, 1}});
+  RandomPoses random(303);
+  // Upright in B, and turned in B, so that the face's vertices are rounded to both sides of its plane.
+  const Eigen::Quaterniond rotation = random.rotation();
+  for (const bool oblique : {false, true}) {
+    for (const TriangleMesh* shape : {&box, &plate}) {
+      const TriangleMesh mesh = oblique ? turned(*shape, rotation) : *shape;
+      const std::string called = shape == &box ? "box" : "plate";
+      const StressedBody body(oblique ? "oblique " + called : called, mesh);
+      const double half = shape == &box ? 0.5 : 0.5e-3;
+      for (const double level : {0.0, 0.3, 1000.3}) {
+        for (const double face : {half, -half}) {
+          for (int k = -8; k <= 8; ++k) {
+            if (tries(20) < 20 && k % 4 != 0) continue;
+            Water water = kStressWater;
+            water.level = level;
+            Pose pose;
+            // A tilt of a few ulp makes some of the face wet and some dry.
+            const Eigen::Quaterniond tilt(1.0, random.uniform(-4, 4) * kEpsilon,
+                                          random.uniform(-4, 4) * kEpsilon, 0);
+            pose.q_WB = tilt * (oblique ? rotation.conjugate() : Eigen::Quaterniond::Identity());
+            pose.p_WB.z() = shifted_by_ulps(level - face, k);
+            check_exactly(stress, body, pose, water, reference_near(random, body));
+          }
+        }
+      }
+    }
+  }
+}
+
+// Bodies that touch the water with a tip, an edge or a face.
+struct Grazing {
+  StressedBody body;
+  Eigen::Quaterniond q_WB;
+};
+
+std::vector<Grazing> grazing_bodies(RandomPoses& random) {
+  std::vector<Grazing> found;
+  const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond on_an_edge(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+  for (const StressedBody& body : stressed_bodies()) found.push_back({body, random.rotation()});
+  const StressedBody box("box", make_shape(BoxShape{.segments = {3, 3, 3}}));
+  found.push_back({box, upright});
+  found.push_back({box, on_an_edge});
+  found.push_back(
+      {StressedBody("sphere", make_shape(RockShape{.frequency = 4, .roughness = 0})), random.rotation()});
+  found.push_back({StressedBody("plate", make_shape(BoxShape{.size = {1, 1, 1e-3}})), on_an_edge});
+  return found;
+}
+
+double lowest_point(const TriangleMesh& mesh, const Eigen::Quaterniond& q_WB) {
+  double lowest = INFINITY;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    lowest = std::min(lowest, (q_WB * mesh.vertex(static_cast<std::int32_t>(v))).z());
+  }
+  return lowest;
+}
+
+// The volume's error that each method may make where the water reaches no farther than `plane`. What is
+// rounded is
+//   exact_surface  the heights: 4 eps L A_wp, the catalogue's gate
+//   hierarchical   also, where the water runs along an edge, the dry parts of large triangles that are taken
+//   off again exact          also the place of the cut points, under an apex that lies L away
+double grazing_gate(Method method, const TrueWaterplane& plane, double diagonal) {
+  const double gate = 4 * kEpsilon * diagonal;
+  if (method == Method::kHierarchical) return gate * (plane.area + plane.cut_area);
+  if (method == Method::kExact) return gate * (plane.area + diagonal * plane.perimeter);
+  return gate * plane.area;
+}
+
+TEST(StressGrazing, AWetTipOfABillionthOfTheVolumeKeepsAnAbsoluteError) {
+  StressCase stress("grazing: wet volume 1e-9 V_T and less; no c_B below the bound", "rational arithmetic",
+                    "4 eps L A_wp; more along edges (hierarchical), of the waterline (exact)");
+  RandomPoses random(304);
+  for (int round = 0; round < tries(3); ++round) {
+    for (const Grazing& grazing : grazing_bodies(random)) {
+      const StressedBody& body = grazing.body;
+      for (int exponent = -3; exponent >= -16; --exponent) {
+        const double draft = body.mesh.diagonal * std::pow(10.0, exponent) * random.uniform(0.3, 1.0);
+        const Pose pose{Vec3(0, 0, -lowest_point(body.source, grazing.q_WB) - draft), grazing.q_WB};
+        const Truth truth = true_answer(body.source, pose, kLevelZero, body.mesh.center_B);
+        if (truth.volume > Rational(1e-9 * body.mesh.volume)) continue;
+        // A tip, or a face that a body rests on, is in the water or not as rounding has it.
+        const TrueWaterplane plane =
+            true_waterplane(body.source, pose, kLevelZero, 4 * kEpsilon * body.mesh.diagonal);
+        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+          const BuoyancyAnswer answer = buoyancy(solver, pose, kLevelZero, body.mesh.center_B);
+          const double gate = grazing_gate(solver.method(), plane, body.mesh.diagonal);
+          const std::string where = body.name + ", " + method;
+          stress.check(distance(answer.volume, truth.volume), gate, "volume, " + where);
+          stress.check(distance(answer.torque_W, truth.torque_W),
+                       gate * body.mesh.largest_lever(body.mesh.center_B), "torque, " + where);
+          const bool has_center = answer.center_of_buoyancy_W != Vec3::Zero();
+          stress.require(!has_center || answer.volume > answer.force_error_bound, "c_B, " + where);
+        });
+      }
+    }
+  }
+}
+
+TEST(StressGrazing, ABodyNearlySubmergedLacksNoMoreThanItsTip) {
+  StressCase stress("nearly submerged", "complement: V_T less the dry tip, rational", "G_V, G_V L_r");
+  RandomPoses random(305);
+  for (const Grazing& grazing : grazing_bodies(random)) {
+    const StressedBody& body = grazing.body;
+    const Eigen::Quaterniond q_WB = Eigen::Quaterniond(0, 1, 0, 0) * grazing.q_WB;  // upside down
+    const double highest = -lowest_point(body.source, grazing.q_WB);
+    for (int exponent = -2; exponent >= -16; exponent -= 2) {
+      const double freeboard = body.mesh.diagonal * std::pow(10.0, exponent);
+      check_exactly(stress, body, {Vec3(0, 0, freeboard - highest), q_WB}, kLevelZero,
+                    reference_near(random, body));
+    }
+  }
+}
+
+TEST(StressGrazing, ASubmergedBodyIsItsConstantsAtEveryDepth) {
+  StressCase stress("submerged, depth to 1e4 m", "the constants",
+                    "same bits; exact and exact_surface: G_V (1 + 8 depth/L)");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(306);
+    for (int i = 0; i < tries(4); ++i) {
+      Pose pose{Vec3::Zero(), random.rotation()};
+      const Vec3 reference_B = reference_near(random, body);
+      const Vec3 center_W = pose.q_WB * body.box.center();
+      std::vector<BuoyancyAnswer> shallow;
+      for (const double depth : {0.6 * body.mesh.diagonal, 3.0 * body.mesh.diagonal, 1e2 * body.mesh.diagonal,
+                                 0.6 * body.mesh.diagonal + 1e4}) {
+        pose.p_WB = Vec3(0, 0, -depth) - center_W;
+        const Truth truth = true_answer(body.source, pose, kLevelZero, reference_B);
+        std::size_t next = 0;
+        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+          const BuoyancyAnswer answer = buoyancy(solver, pose, kLevelZero, reference_B);
+          const std::string where = body.name + ", " + method;
+          check_answer(stress, body, answer, truth, reference_B, depth_factor(solver, pose, kLevelZero),
+                       where);
+          stress.require(answer.immersion == Immersion::kWet, where);
+          if (next == shallow.size()) shallow.push_back(answer);
+          if (solver.method() == Method::kHierarchical) {
+            stress.require(same_bits(answer, shallow[next]), "bits, " + where);
+            stress.check(std::abs(answer.volume - body.mesh.volume), 0.0, "V_T, " + where);
+          }
+          ++next;
+        });
+      }
+    }
+  }
+}
+
+TEST(StressGrazing, ADryBodyIsZero) {
+  StressCase stress("dry", "zero, all six methods", "same bits");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(307);
+    for (int i = 0; i < tries(40); ++i) {
+      Pose pose{Vec3::Zero(), random.rotation()};
+      const double clearance = body.mesh.diagonal * std::pow(10.0, random.uniform(-9, 5));
+      pose.p_WB.z() = clearance - lowest_point(body.source, pose.q_WB);
+      for (const Method method : kAllMethods) {
+        const BuoyancyAnswer answer =
+            buoyancy(Solver(body.mesh, method), pose, kLevelZero, body.mesh.center_B);
+        stress.require(answer.status == BuoyancyStatus::kOk && answer.volume == 0.0 &&
+                           answer.force_W.isZero(0.0) && answer.torque_W.isZero(0.0) &&
+                           answer.center_of_buoyancy_W.isZero(0.0),
+                       body.name + ", " + std::string(name(method)));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

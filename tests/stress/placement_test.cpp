@@ -1,0 +1,197 @@
+// The stress catalogue, "Cases": bodies far away, huge, tiny, and far from the origin of their own mesh.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/hydrostatics.h"
+#include "tests/stress/exact_truth.h"
+#include "tests/stress/stress_case.h"
+#include "tests/stress/stressed_body.h"
+
+namespace buoyancy {
+namespace {
+
+double waterplane_area(const StressedBody& body, const Pose& pose, const Water& water) {
+  const auto found = hydrostatics(body.mesh, pose, water, body.mesh.center_B, std::nullopt);
+  return found ? found->waterplane_area : kUndefined;
+}
+
+// Two answers to what would be the same question if poses had all digits: within what the body's waterplane
+// makes of the last digit of p.
+void check_moved(StressCase& stress, const StressedBody& body, const Pose& near, const Water& near_water,
+                 const Pose& far, const Water& far_water, double distance) {
+  const double area =
+      std::max(waterplane_area(body, near, near_water), waterplane_area(body, far, far_water));
+  const double volume_gate = area * kEpsilon * distance + body.volume_gate();
+  const double torque_gate = volume_gate * body.mesh.largest_lever(body.mesh.center_B);
+  visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+    const BuoyancyAnswer one = buoyancy(solver, near, near_water, body.mesh.center_B);
+    const BuoyancyAnswer other = buoyancy(solver, far, far_water, body.mesh.center_B);
+    const double factor = depth_factor(solver, near, near_water);
+    const std::string where = body.name + ", " + method;
+    stress.check(std::abs(other.volume - one.volume), factor * volume_gate, "volume, " + where);
+    stress.check((other.torque_W - one.torque_W).norm(), factor * torque_gate, "torque, " + where);
+  });
+}
+
+TEST(StressPlacement, ABodyFarAwayHorizontallyHasTheSameBitsWhereUpIsAnAxis) {
+  StressCase stress("body 1e6 m, 1e9 m away horizontally, up an axis", "the same body near", "same bits");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(201);
+    for (int i = 0; i < tries(60); ++i) {
+      Water water = kStressWater;
+      const int axis = i % 3;
+      water.up_W = (i % 2 == 0 ? 1.0 : -1.0) * Vec3::Unit(axis);
+      Pose near;
+      near.q_WB = random.rotation();
+      const double height = water.level + 0.55 * body.mesh.diagonal * random.uniform(-1, 1) -
+                            water.up_W.dot(near.q_WB * body.box.center());
+      near.p_WB = height * water.up_W;
+      for (const double distance : {1e6, 1e9}) {
+        Pose far = near;
+        far.p_WB[(axis + 1) % 3] = distance * random.uniform(-1, 1);
+        far.p_WB[(axis + 2) % 3] = distance;
+        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+          stress.require(same_bits(buoyancy(solver, near, water, Vec3::Zero()),
+                                   buoyancy(solver, far, water, Vec3::Zero())),
+                         body.name + ", " + method);
+        });
+      }
+    }
+  }
+}
+
+TEST(StressPlacement, ABodyFarAwayHorizontallyIsAsExactAsItsPoseWhereUpIsTilted) {
+  StressCase stress("the same, up tilted", "the same body near", "A_wp dh, dh = eps |p| (beside G_V)");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(202);
+    for (int i = 0; i < tries(40); ++i) {
+      Water water = kStressWater;
+      const double tilt = random.uniform(0.1, 1.4);
+      water.up_W = Vec3(std::sin(tilt), 0.0, std::cos(tilt));
+      const Pose near = random.crossing(body.box, water);
+      for (const double distance : {1e6, 1e9}) {
+        Pose far = near;
+        far.p_WB += distance * Vec3(water.up_W.z(), random.uniform(-1, 1), -water.up_W.x());
+        check_moved(stress, body, near, water, far, water, far.p_WB.norm() + near.p_WB.norm());
+      }
+    }
+  }
+}
+
+TEST(StressPlacement, ABodyFarAwayIsAnsweredExactlyForThePoseThatWasAsked) {
+  StressCase stress("the same, up tilted", "rational arithmetic at the pose as asked", "G_V, G_V L_r");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(203);
+    for (int i = 0; i < tries(8); ++i) {
+      Water water = kStressWater;
+      water.up_W = random.direction();
+      Pose pose = random.crossing(body.box, water);
+      const Vec3 sideways = random.direction();
+      pose.p_WB += (i % 2 == 0 ? 1e6 : 1e9) * (sideways - water.up_W.dot(sideways) * water.up_W);
+      // What the rounding of p took away from the level is given back, roughly.
+      const Vec3 center_W = pose.p_WB + pose.q_WB * body.box.center();
+      water.level = water.up_W.dot(center_W) + 0.3 * body.mesh.diagonal * random.uniform(-1, 1);
+      check_exactly(stress, body, pose, water, reference_near(random, body));
+    }
+  }
+}
+
+TEST(StressPlacement, AVerticalOffsetOfLevelAndPositionChangesNoMoreThanItsLastDigit) {
+  StressCase stress("vertical offset 1e6 m (level and position)", "without the offset",
+                    "A_wp dh, dh = eps |p_z| (beside G_V)");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(204);
+    for (int i = 0; i < tries(40); ++i) {
+      const Pose near = random.crossing(body.box, kStressWater);
+      for (const double offset : {1e6, -1e6, 1234567.89}) {
+        Water far_water = kStressWater;
+        far_water.level += offset;
+        Pose far = near;
+        far.p_WB.z() += offset;
+        check_moved(stress, body, near, kStressWater, far, far_water,
+                    std::abs(far.p_WB.z()) + std::abs(far_water.level));
+      }
+    }
+  }
+}
+
+TEST(StressPlacement, AVerticalOffsetIsAnsweredExactlyForThePoseThatWasAsked) {
+  StressCase stress("vertical offset 1e6 m (level and position)", "rational arithmetic at the pose as asked",
+                    "G_V, G_V L_r");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(205);
+    for (int i = 0; i < tries(8); ++i) {
+      const double offset = random.uniform(-1e6, 1e6);
+      Pose pose = random.crossing(body.box, kStressWater);
+      pose.p_WB.z() += offset;
+      Water water = kStressWater;
+      water.level += offset;
+      check_exactly(stress, body, pose, water, reference_near(random, body));
+    }
+  }
+}
+
+TEST(StressPlacement, AMeshFarFromItsOwnOriginIsAnsweredExactly) {
+  StressCase stress("mesh 1e3 m, 1e6 m from its own body origin", "rational arithmetic", "G_V, G_V L_r");
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 4, .roughness = 0.4, .seed = 7});
+  const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
+  for (const double distance : {1e3, 1e6}) {
+    for (const TriangleMesh* mesh : {&rock, &box}) {
+      const Vec3 offset = distance * Vec3(0.6, -0.77, 0.3);
+      const StressedBody body((mesh == &rock ? "rock, " : "box, ") + std::to_string(distance),
+                              moved_and_scaled(*mesh, offset));
+      RandomPoses random(206);
+      for (int i = 0; i < tries(60); ++i) {
+        Water water = kStressWater;
+        const Pose pose = stressed_pose(random, body, i, water);
+        // Torque about the far origin, and about a point near the body.
+        check_exactly(stress, body, pose, water, i % 2 == 0 ? Vec3::Zero() : reference_near(random, body));
+      }
+    }
+  }
+}
+
+TEST(StressPlacement, ABodyScaledByAPowerOfTwoHasTheSameBits) {
+  StressCase stress("body of 1e-6 m, of 1e6 m (scaled by 2^-20, 2^20)", "the body of 1 m, all six methods",
+                    "same bits");
+  for (const StressedBody& body : stressed_bodies()) {
+    for (const double scale : {0x1p-20, 0x1p20}) {
+      const StressedBody scaled(body.name, moved_and_scaled(body.source, Vec3::Zero(), scale));
+      RandomPoses random(207);
+      for (int i = 0; i < tries(60); ++i) {
+        Water water = kStressWater;
+        const Pose pose = stressed_pose(random, body, i, water);
+        Pose scaled_pose = pose;
+        scaled_pose.p_WB *= scale;
+        Water scaled_water = water;
+        scaled_water.level *= scale;
+        const Vec3 reference_B = reference_near(random, body);
+        const auto check = [&](const Solver& solver, const Solver& scaled_solver) {
+          const BuoyancyAnswer one = buoyancy(solver, pose, water, reference_B);
+          BuoyancyAnswer other = buoyancy(scaled_solver, scaled_pose, scaled_water, scale * reference_B);
+          const double volume = scale * scale * scale;
+          other.volume /= volume;
+          other.force_W /= volume;
+          other.torque_W /= volume * scale;
+          other.center_of_buoyancy_W /= scale;
+          const bool same = other.volume == one.volume && other.force_W == one.force_W &&
+                            other.torque_W == one.torque_W &&
+                            other.center_of_buoyancy_W == one.center_of_buoyancy_W;
+          stress.require(same, body.name + ", " + std::string(name(solver.method())));
+        };
+        for (const Method method : kAllMethods) check(Solver(body.mesh, method), Solver(scaled.mesh, method));
+        for (const std::string& target : simd_targets()) {
+          ASSERT_TRUE(force_simd_target(target));
+          check(Solver(body.mesh, Method::kHierarchical), Solver(scaled.mesh, Method::kHierarchical));
+        }
+        force_simd_target("");
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

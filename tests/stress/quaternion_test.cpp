@@ -1,0 +1,191 @@
+// The stress catalogue, "Cases": quaternions and positions as people send them, through the solvers and
+// through the exchange that stands before them.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "exchange/exchange.h"
+#include "tests/exchange/box_scene.h"
+#include "tests/stress/exact_truth.h"
+#include "tests/stress/stress_case.h"
+#include "tests/stress/stressed_body.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+Eigen::Quaterniond scaled(const Eigen::Quaterniond& q, double factor) {
+  return Eigen::Quaterniond(factor * q.w(), factor * q.x(), factor * q.y(), factor * q.z());
+}
+
+TEST(StressQuaternions, QAndMinusQAreTheSamePose) {
+  StressCase stress("q and -q", "each other, all six methods", "same bits");
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(601);
+    for (int i = 0; i < tries(100); ++i) {
+      Water water = kStressWater;
+      Pose pose = stressed_pose(random, body, i, water);
+      if (i % 3 == 0) pose.q_WB = scaled(pose.q_WB, random.uniform(0.999, 1.001));
+      Pose opposite = pose;
+      opposite.q_WB = scaled(pose.q_WB, -1.0);
+      const auto check = [&](const Solver& solver) {
+        const BuoyancyAnswer one = buoyancy(solver, pose, water, body.mesh.center_B);
+        const BuoyancyAnswer other = buoyancy(solver, opposite, water, body.mesh.center_B);
+        stress.require(one.volume == other.volume && one.force_W == other.force_W &&
+                           one.torque_W == other.torque_W &&
+                           one.center_of_buoyancy_W == other.center_of_buoyancy_W,
+                       body.name + ", " + std::string(name(solver.method())));
+      };
+      for (const Method method : kAllMethods) check(Solver(body.mesh, method));
+      visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) { check(solver); });
+    }
+  }
+}
+
+BodyState asked(std::int32_t id, const Pose& pose) {
+  BodyState state;
+  state.body_id = id;
+  state.position = {pose.p_WB.x(), pose.p_WB.y(), pose.p_WB.z()};
+  state.quaternion_wxyz = {pose.q_WB.w(), pose.q_WB.x(), pose.q_WB.y(), pose.q_WB.z()};
+  return state;
+}
+
+Answer answer_of(Exchange& exchange, const std::vector<BodyState>& bodies, double lead_time = 0.0) {
+  static std::int64_t seq = 0;
+  Answer answer;
+  EXPECT_FALSE(decode(exchange.answer(question_bytes({.seq = ++seq}, bodies, lead_time)), answer));
+  return answer;
+}
+
+Vec3 as_vec3(const std::array<double, 3>& a) {
+  return {a[0], a[1], a[2]};
+}
+
+TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
+  StressCase stress("| |q| - 1 | <= 1e-3", "rational arithmetic at q/|q|", "G_V, G_V L_r");
+  const std::vector<double> norms{1.0 - 9.99e-4, 1.0 - 1e-4, 1.0 - 1e-6,
+                                  1.0 + 1e-9,    1.0 + 1e-5, 1.0 + 9.99e-4};
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(602);
+    for (int i = 0; i < tries(6); ++i) {
+      Pose pose = random.crossing(body.box, kStressWater);
+      pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i)]);
+      check_exactly(stress, body, pose, kStressWater, reference_near(random, body));
+    }
+  }
+
+  const Scene scene = box_scene();
+  const StressedBody box("box, by the exchange", make_shape(BoxShape{.segments = {2, 2, 2}}));
+  const Water water{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
+  Exchange exchange(scene);
+  RandomPoses random(603);
+  for (int i = 0; i < tries(60); ++i) {
+    Pose pose = random.crossing(box.box, water);
+    pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i) % norms.size()]);
+    const Truth truth = true_answer(box.source, pose, water, Vec3::Zero());
+    const std::int64_t before = exchange.counters().quaternions_normalised;
+    const Answer answer = answer_of(exchange, {asked(kBox, pose), asked(kHierarchicalBox, pose)});
+    for (const BodyWrench& wrench : answer.bodies) {
+      const std::string where = box.name + ", body " + std::to_string(wrench.body_id);
+      stress.require(wrench.status == BodyStatus::kOk, "the status of " + where);
+      stress.check(distance(wrench.submerged_volume, truth.volume), box.volume_gate(), "volume, " + where);
+      stress.check(distance(as_vec3(wrench.force) / kWeight, truth.force_W), box.volume_gate(),
+                   "force, " + where);
+      stress.check(distance(as_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_gate(Vec3::Zero()),
+                   "torque, " + where);
+    }
+    const bool noteworthy = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
+    if (noteworthy) stress.require(exchange.counters().quaternions_normalised == before + 2, "counted");
+  }
+}
+
+struct Refused {
+  std::string name;
+  BodyState state;
+  double lead_time;
+  BodyStatus status;
+};
+
+std::vector<Refused> refused_states() {
+  std::vector<Refused> found;
+  const auto add = [&](const std::string& called, const BodyState& state, BodyStatus status,
+                       double lead_time = 0.0) {
+    found.push_back({called, state, lead_time, status});
+  };
+  const auto with_quaternion = [](double w, double x, double y, double z) {
+    BodyState state = upright(kBox, 0.1);
+    state.quaternion_wxyz = {w, x, y, z};
+    return state;
+  };
+  for (const double norm : {0.0, 1e-300, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 2.0, 1e200, kLargest}) {
+    add("a quaternion of norm " + std::to_string(norm), with_quaternion(0.6 * norm, 0, 0.8 * norm, 0),
+        BodyStatus::kBadQuaternion);
+  }
+  for (const double value : {kNaN, kInfinity, -kInfinity}) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      BodyState state = upright(kBox, 0.1);
+      state.quaternion_wxyz[i] = value;
+      add("a quaternion with " + std::to_string(value), state, BodyStatus::kNonFinitePose);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      BodyState state = upright(kBox, 0.1);
+      state.position[i] = value;
+      add("a position with " + std::to_string(value), state, BodyStatus::kNonFinitePose);
+      state = upright(kBox, 0.1);
+      state.linear_velocity[i] = value;
+      add("a velocity with " + std::to_string(value), state, BodyStatus::kNonFiniteTwist, 0.01);
+    }
+    add("a lead time of " + std::to_string(value), upright(kBox, 0.1), BodyStatus::kBadLeadTime, value);
+  }
+  BodyState fast = upright(kBox, 0.1);
+  fast.linear_velocity = {kLargest, 0, 0};
+  add("a position that overflows", fast, BodyStatus::kOutOfRange, 10.0);
+  fast = upright(kBox, 0.1);
+  fast.angular_velocity = {0, kLargest, 0};
+  add("a turn that overflows", fast, BodyStatus::kOutOfRange, 10.0);
+  return found;
+}
+
+TEST(StressQuaternions, WhatIsNoPoseIsRefusedCountedAndLeavesTheOthersAlone) {
+  StressCase stress("q further off, NaN, Inf, overflow to Inf",
+                    "its status, counted; zeros for it, the others' wrenches unchanged", "status");
+  const Scene scene = box_scene();
+  for (const Refused& refused : refused_states()) {
+    Exchange exchange(scene);
+    const BodyState good = upright(kHierarchicalBox, 0.2);
+    const Answer alone = answer_of(exchange, {good}, 0.0);
+    const Counters before = exchange.counters();
+    const Answer answer = answer_of(exchange, {refused.state, good}, refused.lead_time);
+    ASSERT_EQ(answer.bodies.size(), 2U);
+    const BodyWrench& bad = answer.bodies[0];
+    const std::array<double, 3> zeros{};
+    stress.require(bad.status == refused.status, "the status of " + refused.name);
+    stress.require(bad.force == zeros && bad.torque == zeros && bad.submerged_volume == 0.0 &&
+                       bad.center_of_buoyancy == zeros && bad.force_error_bound == 0.0 &&
+                       bad.torque_error_bound == 0.0,
+                   "zeros for " + refused.name);
+    const auto index = static_cast<std::size_t>(refused.status);
+    const bool concerns_all = refused.status == BodyStatus::kBadLeadTime;
+    stress.require(exchange.counters().bodies[index] == before.bodies[index] + (concerns_all ? 2 : 1),
+                   "counted, " + refused.name);
+    if (!concerns_all) {
+      stress.require(answer.bodies[1].status == BodyStatus::kOk &&
+                         answer.bodies[1].force == alone.bodies[0].force &&
+                         answer.bodies[1].torque == alone.bodies[0].torque,
+                     "the other body beside " + refused.name);
+    }
+    // And the body is answered again as soon as it is asked about properly.
+    stress.require(answer_of(exchange, {upright(kBox, 0.1)}).bodies[0].status == BodyStatus::kOk,
+                   "afterwards, " + refused.name);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
