@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hydrostatics/hydrostatics.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
@@ -64,6 +65,17 @@ TEST(StressGrazing, VerticesEdgesAndFacesOnThePlaneAreDry) {
       stress.check(buoyancy(solver, {Vec3(0, 0, 0.5), q_WB}, kLevelZero, Vec3::Zero()).volume, 0.0,
                    "on a face, " + method);
     });
+    // A dry face is no wetted area, and where it is in the surface the waterplane takes its place.
+    const auto standing = hydrostatics(box.mesh, {Vec3(0, 0, 0.5), q_WB}, kLevelZero, Vec3::Zero(), {});
+    const auto awash = hydrostatics(box.mesh, {Vec3(0, 0, -0.5), q_WB}, kLevelZero, Vec3::Zero(), {});
+    stress.require(standing && awash, "hydrostatics");
+    if (!standing || !awash) continue;
+    stress.check(standing->wetted_area, 0.0, "wetted area of a box on the water");
+    stress.check(standing->waterplane_area, 0.0, "waterplane of a box on the water");
+    stress.check(std::abs(awash->wetted_area - 5.0), 4 * kEpsilon * box.mesh.area,
+                 "wetted area of a box awash");
+    stress.check(std::abs(awash->waterplane_area - 1.0), 4 * kEpsilon * box.mesh.area,
+                 "waterplane of a box awash");
   }
 
   // Any rotation about a vertex, and about an edge along x, that lies in B's origin, which lies in the

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/number_text.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
@@ -64,7 +65,8 @@ TEST(StressPlacement, ABodyFarAwayHorizontallyHasTheSameBitsWhereUpIsAnAxis) {
 }
 
 TEST(StressPlacement, ABodyFarAwayHorizontallyIsAsExactAsItsPoseWhereUpIsTilted) {
-  StressCase stress("the same, up tilted", "the same body near", "A_wp dh, dh = eps |p| (beside G_V)");
+  StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted", "the same body near",
+                    "A_wp dh, dh = eps |p| (beside G_V)");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(202);
     for (int i = 0; i < tries(40); ++i) {
@@ -82,7 +84,8 @@ TEST(StressPlacement, ABodyFarAwayHorizontallyIsAsExactAsItsPoseWhereUpIsTilted)
 }
 
 TEST(StressPlacement, ABodyFarAwayIsAnsweredExactlyForThePoseThatWasAsked) {
-  StressCase stress("the same, up tilted", "rational arithmetic at the pose as asked", "G_V, G_V L_r");
+  StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted",
+                    "rational arithmetic at the pose as asked", "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(203);
     for (int i = 0; i < tries(8); ++i) {
@@ -141,7 +144,7 @@ TEST(StressPlacement, AMeshFarFromItsOwnOriginIsAnsweredExactly) {
   for (const double distance : {1e3, 1e6}) {
     for (const TriangleMesh* mesh : {&rock, &box}) {
       const Vec3 offset = distance * Vec3(0.6, -0.77, 0.3);
-      const StressedBody body((mesh == &rock ? "rock, " : "box, ") + std::to_string(distance),
+      const StressedBody body((mesh == &rock ? "rock, " : "box, ") + number_text(distance) + " m away",
                               moved_and_scaled(*mesh, offset));
       RandomPoses random(206);
       for (int i = 0; i < tries(60); ++i) {

@@ -1,0 +1,213 @@
+// How wrong each method is where numbers are put under stress: over tilt, level, scale, the mesh's place in
+// its own frame, and what little is wet. CSV on standard output, one row per sweep, step and method: the
+// force's largest error over a few poses, relative to the whole displacement.
+//
+// Beside the six methods stands what many simulators do: everything in single precision, in the world's
+// frame. It is here for comparison and nowhere else. The truth is enclosed by the tests' oracle in ball
+// arithmetic.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "geometry/shapes.h"
+#include "hydrostatics/buoyancy.h"
+#include "tests/hydrostatics/ball.h"
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/rational.h"
+#include "unit_water.h"
+
+namespace buoyancy {
+namespace {
+
+struct Sample {
+  Pose pose;
+  Water water = kUnitWater;
+};
+
+// Pressure on the wet parts of the triangles, summed one after another: m^3, W.
+Vec3 float32_force(const TriangleMesh& mesh, const Pose& pose, const Water& water) {
+  using Vec3f = Vec3T<float>;
+  const Mat3T<float> R_WB = pose.q_WB.normalized().toRotationMatrix().cast<float>();
+  const Vec3f p_WB = pose.p_WB.cast<float>();
+  const auto level = static_cast<float>(water.level);
+  std::vector<Corner<float>> corners;
+  corners.reserve(mesh.vertex_count());
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const Vec3f x_W = R_WB * mesh.vertex(static_cast<std::int32_t>(i)).cast<float>() + p_WB;
+    corners.push_back({Point<float>::from(x_W), x_W.z() - level});
+  }
+  Vec3f force = Vec3f::Zero();
+  const auto add = [&](const Corner<float>& a, const Corner<float>& b, const Corner<float>& c) {
+    force += (a.z + b.z + c.z) / 6.0F * cross(b.y - a.y, c.y - a.y).vec3();
+  };
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto corner = [&](std::size_t n) { return corners[static_cast<std::size_t>(triangle[n])]; };
+    const int wet = int(corner(0).wet()) + int(corner(1).wet()) + int(corner(2).wet());
+    if (wet == 3) {
+      add(corner(0), corner(1), corner(2));
+    } else if (wet != 0) {
+      visit_wet_part(corner(0), corner(1), corner(2), add);
+    }
+  }
+  return force.cast<double>();
+}
+
+double distance(const Ball& truth, double found) {
+  return static_cast<double>(truth.distance(found));
+}
+double distance(const Rational& truth, double found) {
+  return std::abs(Rational(truth - Rational(found)).convert_to<double>());
+}
+
+// A row for every method: the largest error over the samples. x: what the sweep runs over. Number: what the
+// truth is computed in.
+template <typename Number = Ball>
+void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
+                const std::vector<Sample>& samples) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
+  std::vector<Number> truth;
+  truth.reserve(samples.size());
+  for (const Sample& sample : samples)
+    truth.push_back(exact_displacement<Number>(source, sample.pose, sample.water).volume);
+  const auto print = [&](const std::string& method, const auto& force_of) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vec3 force_W = force_of(samples[i]);
+      const double error = std::hypot(distance(truth[i], force_W.z()), force_W.head<2>().norm());
+      largest = std::max(largest, error / mesh.volume);
+    }
+    std::printf("%s,%.6g,%s,%.6g\n", sweep.c_str(), x, method.c_str(), largest);
+  };
+  for (const Method method : kAllMethods) {
+    const Solver solver(mesh, method);
+    print(std::string(name(method)), [&](const Sample& sample) {
+      return buoyancy(solver, sample.pose, sample.water, mesh.center_B).force_W;
+    });
+  }
+  print("float32_in_world",
+        [&](const Sample& sample) { return float32_force(source, sample.pose, sample.water); });
+}
+
+// Rotations that are the same in every sweep.
+std::vector<Eigen::Quaterniond> rotations(int count) {
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  std::vector<Eigen::Quaterniond> found;
+  for (int i = 0; i < count; ++i) {
+    found.emplace_back(normal(generator), normal(generator), normal(generator), normal(generator));
+    found.back().normalize();
+  }
+  return found;
+}
+
+// Heights of the body's middle over the water, in radii: a little, half and most of it wet.
+constexpr std::array kHeights{0.6, 0.05, -0.4};
+constexpr int kPerDecade = 4;
+
+std::vector<double> decades(int from, int to) {
+  std::vector<double> steps;
+  for (int i = from * kPerDecade; i <= to * kPerDecade; ++i)
+    steps.push_back(std::pow(10.0, static_cast<double>(i) / kPerDecade));
+  return steps;
+}
+
+TriangleMesh rock() {
+  return make_shape(RockShape{.radius = 1.0, .frequency = 8, .roughness = 0.3, .seed = 1});
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by_B, double scale) {
+  for (double& x : mesh.x) x = scale * x + by_B.x();
+  for (double& y : mesh.y) y = scale * y + by_B.y();
+  for (double& z : mesh.z) z = scale * z + by_B.z();
+  return mesh;
+}
+
+// A box of 1,200 triangles, tilted a little more at every step.
+void sweep_tilt() {
+  const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 1}, .segments = {10, 10, 10}});
+  for (const double tilt : decades(-12, 0)) {
+    std::vector<Sample> samples;
+    for (const double height : {0.32, 0.03, -0.27}) {
+      const Eigen::Quaterniond q_WB(Eigen::AngleAxisd(tilt, Vec3(0.6, 0.8, 0.0)));
+      samples.push_back({{Vec3(0, 0, height), q_WB}});
+    }
+    print_rows("tilt", tilt, box, samples);
+  }
+}
+
+// The water's level and the body's position rise together.
+void sweep_level() {
+  const TriangleMesh mesh = rock();
+  for (const double level : decades(0, 9)) {
+    std::vector<Sample> samples;
+    for (const Eigen::Quaterniond& q_WB : rotations(3)) {
+      for (const double height : kHeights) {
+        Sample sample{{Vec3(0, 0, level + height), q_WB}};
+        sample.water.level = level;
+        samples.push_back(sample);
+      }
+    }
+    print_rows("level", level, mesh, samples);
+  }
+}
+
+void sweep_scale() {
+  for (const double scale : decades(-6, 6)) {
+    std::vector<Sample> samples;
+    for (const Eigen::Quaterniond& q_WB : rotations(3)) {
+      for (const double height : kHeights) samples.push_back({{Vec3(0, 0, scale * height), q_WB}});
+    }
+    print_rows("scale", scale, moved(rock(), Vec3::Zero(), scale), samples);
+  }
+}
+
+// The mesh lies ever farther from B's origin, and B's origin the same way from the world's.
+void sweep_origin() {
+  for (const double distance : decades(0, 7)) {
+    const Vec3 offset_B = distance * Vec3(0.6, -0.48, 0.64);
+    std::vector<Sample> samples;
+    for (const Eigen::Quaterniond& q_WB : rotations(3)) {
+      for (const double height : kHeights) samples.push_back({{Vec3(0, 0, height) - q_WB * offset_B, q_WB}});
+    }
+    print_rows("origin", distance, moved(rock(), offset_B, 1.0), samples);
+  }
+}
+
+// Ever less of the body is in the water: each pose is lowered until the share is what was asked for. The
+// errors are less than what ball arithmetic leaves open.
+void sweep_wet_share() {
+  const TriangleMesh mesh = rock();
+  const HydrostaticMesh prepared = make_hydrostatic_mesh({mesh, {}});
+  const Solver solver(prepared, Method::kHierarchical);
+  for (const double share : decades(-9, 0)) {
+    std::vector<Sample> samples;
+    for (const Eigen::Quaterniond& q_WB : rotations(3)) {
+      double dry = 2.0;
+      double wet = -2.0;
+      for (int step = 0; step < 60; ++step) {
+        const double height = 0.5 * (dry + wet);
+        const double volume = buoyancy(solver, {Vec3(0, 0, height), q_WB}, kUnitWater, Vec3::Zero()).volume;
+        (volume < 0.999999999 * share * prepared.volume ? dry : wet) = height;
+      }
+      samples.push_back({{Vec3(0, 0, wet), q_WB}});
+    }
+    print_rows<Rational>("wet_share", share, mesh, samples);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main() {
+  std::printf("sweep,x,method,error_of_whole\n");
+  buoyancy::sweep_tilt();
+  buoyancy::sweep_level();
+  buoyancy::sweep_scale();
+  buoyancy::sweep_origin();
+  buoyancy::sweep_wet_share();
+}
