@@ -272,6 +272,7 @@ class Builder {
     }
     SurfaceMoments<double> moments;
     double area = 0.0;
+    double edges = 0.0;  // m: two per triangle
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const Triangle& triangle = surface_.triangles[static_cast<std::size_t>(items_[i].triangle)];
       const auto slot = i - range.begin;
@@ -286,10 +287,26 @@ class Builder {
           surface_.vertex(triangle[0]), surface_.vertex(triangle[1]), surface_.vertex(triangle[2]));
       moments += of_triangle;
       area += of_triangle.S.norm();
+      edges += two_longest_edges(triangle);
     }
+    // The heights of its vertices are within its diagonal of 0 while the water crosses it: a quarter of eps L
+    // (edges) (height) in volume per triangle.
+    const double height = (result.bounds.max - result.bounds.min).norm();
+    leaf.rounding = static_cast<float>(0.25 * height * edges);
+    tree_.rounding += static_cast<double>(leaf.rounding);
     result.moments = packed(moments, area);
     tree_.leaves.push_back(leaf);
     return result;
+  }
+
+  double two_longest_edges(const Triangle& triangle) const {
+    const Vec3 a = surface_.vertex(triangle[0]);
+    const Vec3 b = surface_.vertex(triangle[1]);
+    const Vec3 c = surface_.vertex(triangle[2]);
+    const double ab = (b - a).norm();
+    const double bc = (c - b).norm();
+    const double ca = (a - c).norm();
+    return ab + bc + ca - std::min({ab, bc, ca});
   }
 
   const TriangleMesh& surface_;

@@ -70,6 +70,10 @@ struct alignas(64) TreeLeaf {
   std::uint32_t moments;         // index of its own
   std::uint8_t vertices;
   std::uint8_t triangles;
+  // m^2: what rounding takes its share of, times eps L, while the water crosses the leaf: its triangles are
+  // projected on the water about c, so that their areas are off by eps L times their edges, whatever is left
+  // of the area.
+  float rounding;
 };
 
 struct MomentTree {
@@ -77,6 +81,7 @@ struct MomentTree {
   std::vector<TreeLeaf> leaves;      // in the order of a depth-first walk
   std::vector<NodeMoments> moments;  // of every child of every node
   NodeMoments total;                 // of the whole surface
+  double rounding = 0.0;             // m^2: of all leaves
   float reach = 0.0F;                // m: no bound reaches farther from c in any coordinate
   double grid = 1.0;  // m: a power of two, reach <= 2^22 grid. Leaf centres are whole multiples of it,
                       // so that the product with a number of 26 bits is exact in double.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hydrostatics/volume_elements.h"
+
 namespace buoyancy {
 namespace {
 
@@ -13,7 +15,8 @@ bool boundary_is_dry(const HydrostaticMesh& mesh, const WaterPlane& plane) {
 
 bool finite(const BuoyancyAnswer& answer) {
   return answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-         answer.center_of_buoyancy_W.allFinite();
+         answer.center_of_buoyancy_W.allFinite() && std::isfinite(answer.force_error_bound) &&
+         std::isfinite(answer.torque_error_bound);
 }
 
 // Bounds on the norms of the errors of force/(rho g) and torque/(rho g).
@@ -21,23 +24,34 @@ struct ErrorBounds {
   double force, torque;
 };
 
-// How many times G_V rounding may reach. The paper's methods lose digits with depth: the apex, or the
-// pressure, is then far from the body's size; `fast` with the distance of its apex, B's origin.
-double rounding_in_gates(const Solver& solver, const WaterPlane& plane) {
+// m: how far from c numbers reach beyond the body's size. The paper's methods lose digits where the pressure
+// is much larger than over the body, or their apex is far from it: with depth; where overlapping parts put
+// the centroid far outside; `fast`, where B's origin is.
+double far_reach(const Solver& solver, const WaterPlane& plane) {
   const HydrostaticMesh& mesh = solver.mesh();
-  double far = 0.0;  // m
-  if (solver.method() == Method::kFast) {
-    far = mesh.center_B.norm();
-  } else if (solver.method() != Method::kHierarchical) {
-    far = std::abs(plane.h_c);
+  switch (solver.method()) {
+    case Method::kHierarchical:
+      return 0.0;
+    case Method::kFast:
+      return mesh.center_B.norm();
+    case Method::kFastSurface:
+    case Method::kExactSurface:
+      return std::abs(plane.h_c);
+    case Method::kImproved:
+    case Method::kExact:
+      return std::max(std::abs(plane.h_c), apex_on_water(mesh.centroid, plane).norm());
   }
-  return far > mesh.diagonal ? 1.0 + far / mesh.diagonal : 1.0;
+  return 0.0;
 }
 
 ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Displacement& displaced,
                          const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();
-  const double rounding = mesh.volume_gate() * rounding_in_gates(solver, plane);
+  constexpr double kGrowth = 3.0;  // plates of many faces were found to need two
+  const double near = mesh.rounding_bound();
+  // Of bodies of less than 1e-162 m the diagonal underflows, and all else with it.
+  const double per_metre = mesh.diagonal > 0.0 ? near / mesh.diagonal : 0.0;
+  const double rounding = near + kGrowth * far_reach(solver, plane) * per_metre + displaced.rounding;
   double lever = mesh.largest_lever(reference_B);
   if (displaced.left_out_reach > 0.0) {
     lever = std::max(lever, displaced.left_out_reach + (reference_B - mesh.center_B).norm());
@@ -58,7 +72,7 @@ void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Wate
   const Vec3 torque_W = (weight * mesh.volume) * (q_WB * lever_B).cross(water.up_W);
   answer.torque_W = torque_W - water.up_W.dot(torque_W) * water.up_W;
   answer.center_of_buoyancy_W = q_WB * (mesh.center_B + mesh.centroid);
-  answer.force_error_bound = weight * mesh.volume_gate();
+  answer.force_error_bound = weight * mesh.rounding_bound();
   answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
 }
 

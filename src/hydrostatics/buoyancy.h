@@ -32,9 +32,10 @@ bool is_answered_by_bounds(const Solver& solver, Immersion immersion);
 // bounds alone, whatever the method; so does a wholly wet one with `hierarchical`.
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
-// health figure). Their bounds are rho g G_V and rho g G_V L_r (HydrostaticMesh::volume_gate); of `exact` and
-// `exact_surface` times 1 + depth/L for bodies deeper than L. Those of the approximations, and of
-// `hierarchical` within a tolerance, add what was left out (docs/mathematics.md, "Error bounds").
+// health figure). Their bounds are rho g times HydrostaticMesh::rounding_bound(), of torque times L_r; of
+// `exact` and `exact_surface` times 1 + 3 depth/L; of `hierarchical` with what the leaves that are cut add.
+// Those of the approximations, and of `hierarchical` within a tolerance, add what was left out
+// (docs/mathematics.md, "Error bounds").
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
 }  // namespace buoyancy

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/volume_elements.h"
@@ -9,6 +10,8 @@
 
 namespace buoyancy {
 namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // The part of x that is a whole multiple of unit (a power of two).
 double whole_multiples(double x, double unit) {
@@ -36,7 +39,8 @@ TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   return query;
 }
 
-Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const WaterPlane& plane) {
+Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
+                      const HydrostaticMesh& mesh) {
   const SurfaceMoments<double> wet = sum.wet_nodes.moments();
   const Vec3& k = plane.up_B;
   const double z_c = -plane.h_c;
@@ -69,17 +73,20 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
     U += offset_N_k + curved;
     result.left_out = rest.error;
   }
+  if (!mesh.holds_gate()) result.rounding = kEpsilon * mesh.diagonal * sum.rounding;
   result.moment = U - height * k;
   result.force = result.volume * k;
   result.torque = U.cross(k);
   return result;
 }
 
-// m^3: what may be left undecided so that with the rounding, G_V, all stays within the tolerance. Bounds are
+// m^3: what may be left undecided so that with the rounding all stays within the tolerance. Bounds are
 // held in float32: sizes beyond its range are answered exactly.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
-  return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.volume_gate(), 0.0) : 0.0;
+  double rounding = mesh.rounding_bound();
+  if (!mesh.holds_gate()) rounding += kEpsilon * mesh.diagonal * mesh.tree->rounding;
+  return in_range ? std::max(tolerance * std::abs(mesh.volume) - rounding, 0.0) : 0.0;
 }
 
 }  // namespace
@@ -97,7 +104,7 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
   TreeQuery query = make_tree_query(tree, plane);
   query.budget = tolerance > 0.0 ? budget(mesh, tolerance) : 0.0;
   query.half_diagonal = 0.5 * mesh.diagonal;
-  return read_out(sum_wet_tree(tree, query), query, plane);
+  return read_out(sum_wet_tree(tree, query), query, plane, mesh);
 }
 
 }  // namespace buoyancy

@@ -26,19 +26,46 @@ Vec3 round_to_coarse_grid(const Vec3& point, double largest) {
 struct Totals {
   VolumeElements elements;
   double twice_area = 0.0;
+  double twice_rounding_area = 0.0;
 
   Totals& operator+=(const Totals& other) {
     elements += other.elements;
     twice_area += other.twice_area;
+    twice_rounding_area += other.twice_rounding_area;
     return *this;
   }
 };
 
+// The same triangle, beginning opposite its longest edge; of edges of one length the first counts.
+Triangle beginning_opposite_the_longest_edge(const Triangle& triangle, const TriangleMesh& mesh) {
+  const Vec3 a = mesh.vertex(triangle[0]);
+  const Vec3 b = mesh.vertex(triangle[1]);
+  const Vec3 c = mesh.vertex(triangle[2]);
+  const double bc = (c - b).squaredNorm();
+  const double ca = (a - c).squaredNorm();
+  const double ab = (b - a).squaredNorm();
+  if (bc >= ca && bc >= ab) return triangle;
+  if (ca >= ab) return {triangle[1], triangle[2], triangle[0]};
+  return {triangle[2], triangle[0], triangle[1]};
+}
+
+double rounding(double volume, double diagonal, double area) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  return kEpsilon * (64.0 * std::abs(volume) + diagonal * area);
+}
+
 }  // namespace
 
 double HydrostaticMesh::volume_gate() const {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  return kEpsilon * (64.0 * std::abs(volume) + diagonal * area);
+  return rounding(volume, diagonal, area);
+}
+
+bool HydrostaticMesh::holds_gate() const {
+  return area >= diagonal * diagonal / 8.0 && rounding_area <= 4.0 / 3.0 * area;
+}
+
+double HydrostaticMesh::rounding_bound() const {
+  return 2.0 * rounding(volume, diagonal, rounding_area);
 }
 
 double HydrostaticMesh::largest_lever(const Vec3& reference_B) const {
@@ -55,7 +82,6 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   mesh.box_min = box.min_B - mesh.center_B;
   mesh.box_max = box.max_B - mesh.center_B;
   mesh.diagonal = box.diagonal();
-  mesh.surface.triangles = source.triangles;
   mesh.boundary_vertices = validated.boundary_vertices;
 
   const auto recentre = [](const std::vector<double>& from, double center) {
@@ -67,6 +93,10 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   mesh.surface.y = recentre(source.y, mesh.center_B.y());
   mesh.surface.z = recentre(source.z, mesh.center_B.z());
 
+  mesh.surface.triangles.reserve(source.triangles.size());
+  for (const Triangle& triangle : source.triangles)
+    mesh.surface.triangles.push_back(beginning_opposite_the_longest_edge(triangle, mesh.surface));
+
   PairwiseSum<Totals> sum;
   for (const Triangle& triangle : mesh.surface.triangles) {
     const Point<double> a = mesh.point(triangle[0]);
@@ -75,10 +105,12 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
     Totals term;
     term.elements.add(a, b, c, {0, 0, 0});
     term.twice_area = cross(b - a, c - a).vec3().norm();
+    term.twice_rounding_area = std::max(term.twice_area, (b - a).vec3().norm() * (c - a).vec3().norm());
     sum.add(term);
   }
   const Totals totals = sum.total();
   mesh.area = 0.5 * totals.twice_area;
+  mesh.rounding_area = 0.5 * totals.twice_rounding_area;
   mesh.volume = totals.elements.volume();
   const bool has_centroid = !mesh.open() && std::abs(mesh.volume) > mesh.volume_gate();
   mesh.centroid = has_centroid ? Vec3(totals.elements.moment(Vec3::Zero()) / mesh.volume)

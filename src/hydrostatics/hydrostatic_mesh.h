@@ -17,7 +17,9 @@
 namespace buoyancy {
 
 struct HydrostaticMesh {
-  TriangleMesh surface;                         // vertices in m, B axes, about center_B
+  // Vertices in m, B axes, about center_B; of a triangle the first corner lies opposite the longest edge, so
+  // that products of the edges from it are as small as they can be.
+  TriangleMesh surface;
   std::optional<MomentTree> tree;               // where asked for; `hierarchical` needs it
   std::vector<std::int32_t> boundary_vertices;  // of an accepted open mesh: all must be dry
 
@@ -26,6 +28,10 @@ struct HydrostaticMesh {
   Vec3 box_max = Vec3::Zero();   // m, about c
   double diagonal = 0.0;         // m: L
   double area = 0.0;             // m^2: A_s
+  // m^2: A_r, the area that rounding takes its share of. A face's area is a difference of products of its
+  // edges, of which each is rounded: of a needle or a sliver across the axes the products are larger than
+  // what is left.
+  double rounding_area = 0.0;
   double volume = 0.0;           // m^3: V_T; of an open mesh the sum about c, a scale and no more
   Vec3 centroid = Vec3::Zero();  // m, about c: centroid of the enclosed volume; box centre for open meshes
 
@@ -39,6 +45,12 @@ struct HydrostaticMesh {
 
   // The accuracy that the exact solvers hold in volume and force/(rho g), m^3: G_V = eps (64 V_T + L A_s).
   double volume_gate() const;
+  // Where G_V is promised: bodies neither slender nor made of thin faces, A_s >= L^2/8 and A_r <= 4/3 A_s. A
+  // body thinner than some 1 : 50 across the axes is known less well by as much.
+  bool holds_gate() const;
+  // What is published as a bound on rounding, m^3: 2 eps (64 V_T + L A_r), less than 4 G_V where that is
+  // promised; elsewhere `hierarchical` adds to it for the leaves that are cut (Displacement::rounding).
+  double rounding_bound() const;
   // Largest distance from a reference point to a corner of the bounding box, m: L_r. Torque is held to G_V
   // L_r.
   double largest_lever(const Vec3& reference_B) const;

@@ -284,6 +284,7 @@ class LeafSums {
     if (wet == 0) return LeafOutcome::kAdded;
     if (wet == vertices) return LeafOutcome::kAddLeaf;
 
+    rounding_ += static_cast<double>(leaf.rounding);
     VertexTable u;
     VertexTable v;
     project(leaf, query.u, query.u[0] * c[0] + query.u[1] * c[1] + query.u[2] * c[2], u);
@@ -297,6 +298,7 @@ class LeafSums {
 
   HWY_INLINE void finish(WetTreeSum& sum) const {
     const Reals d;
+    sum.rounding = rounding_;
     sum.volume6 = hn::GetLane(hn::SumOfLanes(d, volume6_));
     sum.moment_u24 = hn::GetLane(hn::SumOfLanes(d, moment_u24_));
     sum.moment_v24 = hn::GetLane(hn::SumOfLanes(d, moment_v24_));
@@ -411,6 +413,7 @@ class LeafSums {
   RealVector moment_u24_;
   RealVector moment_v24_;
   RealVector height24_;
+  double rounding_ = 0.0;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -48,6 +48,8 @@ struct WetTreeSum {
 
   UndecidedSum undecided;  // zero where the budget is
 
+  double rounding = 0.0;  // m^2: of the leaves clipped (TreeLeaf)
+
   std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_undecided = 0;
 };
 

@@ -19,7 +19,6 @@
 #include <string>
 #include <vector>
 
-#include "geometry/rounding_area.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wet_tree_sum.h"
@@ -33,17 +32,11 @@ namespace buoyancy {
 namespace {
 
 constexpr std::size_t kMostTriangles = 120;  // of a written mesh; the truth takes some 10 us for each
-// exact and exact_surface publish G_V (1 + depth/L) for bodies deeper than L, which their rounding was found
-// to pass by a tenth (corpus/wrench/plate_264_m_deep.hex).
-constexpr double kDeepSlack = 4.0;
 
 // A mesh, prepared, as the oracle and as the methods see it.
 struct Subject {
   TriangleMesh source;
   HydrostaticMesh mesh;
-  // Of the published bounds, which count rounding by the mesh's area. The errors of slanted needles from 1 :
-  // 50 on were found to pass them, by what rounding_area() is above the area.
-  double slack = 1.0;
 };
 
 std::optional<Subject> subject_of(const TriangleMesh& source, OpenPolicy open = OpenPolicy::kRefuse) {
@@ -51,9 +44,7 @@ std::optional<Subject> subject_of(const TriangleMesh& source, OpenPolicy open = 
   imported.mesh = source;
   const MeshValidation validation = validate_mesh(imported, "fuzz", {.open = open});
   if (!validation.mesh) return std::nullopt;
-  Subject subject{validation.mesh->mesh, make_hydrostatic_mesh(*validation.mesh)};
-  subject.slack = std::max(1.0, rounding_area(subject.source) / subject.mesh.area);
-  return subject;
+  return Subject{validation.mesh->mesh, make_hydrostatic_mesh(*validation.mesh)};
 }
 
 const std::vector<Subject>& subjects() {
@@ -153,15 +144,6 @@ class CaseReader {
   bool through_a_vertex_ = false;
 };
 
-// `exact` and `improved` take their apex above or below the centroid, which overlapping parts of opposite
-// signs can put far outside the body: errors were found to pass the bounds there.
-bool has_far_apex(const Solver& solver) {
-  const HydrostaticMesh& mesh = solver.mesh();
-  const bool inside = (mesh.centroid.array() >= mesh.box_min.array()).all() &&
-                      (mesh.centroid.array() <= mesh.box_max.array()).all();
-  return (solver.method() == Method::kExact || solver.method() == Method::kImproved) && !inside;
-}
-
 // What buoyancy() asks of its callers.
 bool may_be_asked(const Case& asked) {
   return asked.pose.p_WB.allFinite() && asked.pose.q_WB.coeffs().allFinite() &&
@@ -206,19 +188,14 @@ void check_answer(const BuoyancyAnswer& answer) {
   }
 }
 
-void check_method(const Solver& solver, const Case& asked, double slack, const TrueWrench* truth) {
+void check_method(const Solver& solver, const Case& asked, const TrueWrench* truth) {
   const BuoyancyAnswer answer = buoyancy(solver, asked.pose, asked.water, asked.reference_B);
   check_answer(answer);
   if (answer.status != BuoyancyStatus::kOk || truth == nullptr) return;
   law(std::isfinite(answer.force_error_bound) && std::isfinite(answer.torque_error_bound),
       "every method has bounds");
-  if (has_far_apex(solver)) return;
-  const bool deep = answer.immersion == Immersion::kWet && solver.method() != Method::kHierarchical;
-  if (deep) slack *= kDeepSlack;
-  check_within("force", solver.method(), truth->force_error(answer.force_W),
-               slack * answer.force_error_bound);
-  check_within("torque", solver.method(), truth->torque_error(answer.torque_W),
-               slack * answer.torque_error_bound);
+  check_within("force", solver.method(), truth->force_error(answer.force_W), answer.force_error_bound);
+  check_within("torque", solver.method(), truth->torque_error(answer.torque_W), answer.torque_error_bound);
 }
 
 void check_hydrostatics(const Case& asked, const Subject& subject, const TrueWrench* truth) {
@@ -230,7 +207,7 @@ void check_hydrostatics(const Case& asked, const Subject& subject, const TrueWre
       "hydrostatics are numbers");
   if (truth == nullptr) return;
   check_within("volume", Method::kHierarchical, truth->volume_error(found->volume),
-               subject.slack * subject.mesh.volume_gate());
+               subject.mesh.rounding_bound());
 }
 
 void check(FuzzBytes bytes) {
@@ -253,9 +230,8 @@ void check(FuzzBytes bytes) {
   std::optional<TrueWrench> known;
   if (is_moderate(asked, subject)) known.emplace(subject.source, asked.pose, asked.water, asked.reference_B);
   const TrueWrench* truth = known ? &*known : nullptr;
-  for (const Method method : kAllMethods)
-    check_method(Solver(subject.mesh, method), asked, subject.slack, truth);
-  check_method(Solver(subject.mesh, Method::kHierarchical, asked.tolerance), asked, subject.slack, truth);
+  for (const Method method : kAllMethods) check_method(Solver(subject.mesh, method), asked, truth);
+  check_method(Solver(subject.mesh, Method::kHierarchical, asked.tolerance), asked, truth);
   if (buoyancy(Solver(subject.mesh, Method::kHierarchical), asked.pose, asked.water, asked.reference_B)
           .status == BuoyancyStatus::kOk) {
     check_hydrostatics(asked, subject, truth);
