@@ -1,0 +1,21 @@
+// Closed meshes drawn at random, small enough for the oracle to judge thousands of poses a second: convex,
+// star-shaped, knotted, hollow, in several parts, with slivers and needles, stretched, of 1e-6 to 1e6 m, up
+// to 1e6 times their size from B's origin, in double and in float32 coordinates.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "geometry/mesh_validation.h"
+
+namespace buoyancy {
+
+struct RandomMesh {
+  std::string kind;  // "knot with slivers, 3.1e+02 m, far from B's origin"
+  ValidatedMesh validated;
+};
+
+// The same mesh for the same seed. Drawn again where validation refuses it.
+RandomMesh random_mesh(std::uint64_t seed);
+
+}  // namespace buoyancy
