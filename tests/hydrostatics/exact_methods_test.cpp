@@ -97,6 +97,23 @@ TEST_P(ExactMethods, MoveTheTorqueWithTheReferencePoint) {
   }
 }
 
+TEST_P(ExactMethods, PublishABoundFarBelowTheWholeOnMeshesOfAnySize) {
+  for (const int frequency : {16, 39, 122, 224}) {
+    const TriangleMesh rock = make_shape(RockShape{.frequency = frequency});
+    const auto with_tree = GetParam() == Method::kHierarchical ? WithTree::kYes : WithTree::kNo;
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}}, with_tree);
+    const Solver solver(mesh, GetParam());
+    RandomPoses random(15);
+    for (int i = 0; i < 4; ++i) {
+      const Pose pose = random.crossing(bounding_box(rock), kUnitWater);
+      const BuoyancyAnswer answer = buoyancy(solver, pose, kUnitWater, Vec3::Zero());
+      EXPECT_LE(answer.force_error_bound, 1e-11 * mesh.volume) << frequency;
+      EXPECT_LE(answer.torque_error_bound, 1e-11 * mesh.volume * mesh.largest_lever(Vec3::Zero()))
+          << frequency;
+    }
+  }
+}
+
 TEST_P(ExactMethods, ActAtTheCentreOfBuoyancy) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});

@@ -71,6 +71,8 @@ TEST_F(ReferenceMeshes, GiveTheReferenceVolumesAndCentresBelowEveryPlane) {
         EXPECT_LE((answer.center_of_buoyancy_W - vec3(plane.at("cb"))).norm(),
                   (cracked ? 1e-5 : 1e-9) * std::cbrt(mesh.volume))
             << where;
+        EXPECT_LE(answer.force_error_bound, 1e-11 * mesh.volume) << where;
+        EXPECT_LE(answer.torque_error_bound, 1e-11 * mesh.volume * mesh.largest_lever(Vec3::Zero())) << where;
       }
     }
   }
