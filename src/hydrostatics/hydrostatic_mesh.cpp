@@ -10,16 +10,15 @@
 namespace buoyancy {
 namespace {
 
-// The value nearest to x on a grid of 2^-22 of the largest coordinate's power of two. float32 coordinates and
-// such a centre are multiples of a common unit with few enough bits between them that their difference is
-// exact in double.
-Vec3 round_to_coarse_grid(const Vec3& point, double largest) {
-  if (!(largest > 0.0)) return point;
-  int exponent = 0;
-  std::frexp(largest, &exponent);
+// The value nearest to a point on a grid of 2^-22 of the largest coordinate's power of two. float32
+// coordinates and such a centre are multiples of a common unit with few enough bits between them that their
+// difference is exact in double. Of a mesh farther from its origin than 2^16 times its size the grid is 1/64
+// of its size: there coordinates and centre are so near to each other that their difference is exact anyway.
+Vec3 round_to_coarse_grid(const Vec3& point, double largest, double size) {
+  if (!(largest > 0.0) || !(size > 0.0)) return point;
+  const int unit = std::min(std::ilogb(largest) - 21, std::ilogb(size) - 6);
   Vec3 rounded;
-  for (int i = 0; i < 3; ++i)
-    rounded[i] = std::ldexp(std::nearbyint(std::ldexp(point[i], 22 - exponent)), exponent - 22);
+  for (int i = 0; i < 3; ++i) rounded[i] = std::ldexp(std::nearbyint(std::ldexp(point[i], -unit)), unit);
   return rounded;
 }
 
@@ -77,8 +76,8 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   const TriangleMesh& source = validated.mesh;
   const BoundingBox box = bounding_box(source);
   HydrostaticMesh mesh;
-  mesh.center_B =
-      round_to_coarse_grid(box.center(), box.min_B.cwiseAbs().cwiseMax(box.max_B.cwiseAbs()).maxCoeff());
+  mesh.center_B = round_to_coarse_grid(
+      box.center(), box.min_B.cwiseAbs().cwiseMax(box.max_B.cwiseAbs()).maxCoeff(), box.diagonal());
   mesh.box_min = box.min_B - mesh.center_B;
   mesh.box_max = box.max_B - mesh.center_B;
   mesh.diagonal = box.diagonal();

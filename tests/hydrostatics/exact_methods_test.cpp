@@ -97,6 +97,17 @@ TEST_P(ExactMethods, MoveTheTorqueWithTheReferencePoint) {
   }
 }
 
+// Found by the random search: the centre's grid was wider than such a mesh.
+TEST(HydrostaticMesh, IsCentredHoweverFarItLiesFromItsOrigin) {
+  const TriangleMesh box = make_shape(BoxShape{.size = {8, 4, 2}});
+  for (const double far : {0.0, 1e3, 1e6, 1e9, 1e12}) {
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({moved_and_scaled(box, {far, -0.7 * far, 0.1}), {}});
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_LE(std::max(-mesh.box_min[i], mesh.box_max[i]), 0.52 * mesh.diagonal) << far;
+    }
+  }
+}
+
 TEST_P(ExactMethods, PublishABoundFarBelowTheWholeOnMeshesOfAnySize) {
   for (const int frequency : {16, 39, 122, 224}) {
     const TriangleMesh rock = make_shape(RockShape{.frequency = frequency});
