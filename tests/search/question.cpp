@@ -41,7 +41,7 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
     case 2: {  // a face lies on the water, or nearly so
       const Vec3 normal = normal_of(mesh, face).normalized();
       if (!(normal.norm() > 0.5)) return random.rotation();
-      const Eigen::Quaterniond flat = Eigen::Quaterniond::FromTwoVectors(normal, sign(random) * up_W);
+      Eigen::Quaterniond flat = Eigen::Quaterniond::FromTwoVectors(normal, sign(random) * up_W);
       if (random.pick(2) == 0) return flat;
       const double tilt = power_of_ten(random, -17.0, -6.0);
       return flat * Eigen::Quaterniond(1.0, tilt, 0.0, tilt);
@@ -54,7 +54,7 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
 // A point of B that the water's surface is to pass through.
 Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& up_B, RandomPoses& random) {
   const BoundingBox box = bounding_box(mesh);
-  const Vec3 a = mesh.vertex(face[0]);
+  Vec3 a = mesh.vertex(face[0]);
   switch (random.pick(6)) {
     case 0:
       return a;

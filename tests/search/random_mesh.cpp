@@ -15,7 +15,7 @@ namespace buoyancy {
 namespace {
 
 std::int32_t count(RandomPoses& random, int least, int most) {
-  return least + static_cast<std::int32_t>(random.pick(static_cast<std::size_t>(most - least + 1)));
+  return least + static_cast<std::int32_t>(random.pick(static_cast<std::size_t>(most - least) + 1));
 }
 
 double power_of_ten(RandomPoses& random, double low, double high) {

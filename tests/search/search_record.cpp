@@ -89,7 +89,7 @@ Expected<Tally> load_all(const std::filesystem::path& directory) {
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
-    const Expected<Tally> tally = load(entry.path());
+    Expected<Tally> tally = load(entry.path());
     if (!tally) return tally;
     total += *tally;
   }
