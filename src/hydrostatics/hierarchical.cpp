@@ -21,62 +21,75 @@ double whole_multiples(double x, double unit) {
 TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   constexpr double kUnit = 0x1p-26;
   const Vec3& k = plane.up_B;
-  // A horizontal axis across the largest components of k, and the one that makes the frame right-handed.
-  const Vec3 u =
-      (std::abs(k.x()) > std::abs(k.z()) ? Vec3(-k.y(), k.x(), 0.0) : Vec3(0.0, -k.z(), k.y())).normalized();
-  const Vec3 v = k.cross(u);
   TreeQuery query{};
+  Vec3::Index a = 0;
+  k.cwiseAbs().maxCoeff(&a);
+  for (std::size_t n = 0; n < 3; ++n) query.axes[n] = (static_cast<std::size_t>(a) + n) % 3;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<std::size_t>(i);
     query.k[n] = k[i];
     query.k_high[n] = whole_multiples(k[i], kUnit);
     query.k_low[n] = (k[i] - query.k_high[n]) + plane.up_B_rest[i];
-    query.u[n] = u[i];
-    query.v[n] = v[i];
   }
   query.h_high = whole_multiples(plane.h_c, tree.grid * kUnit);
   query.h_low = (plane.h_c - query.h_high) + plane.h_c_rest;
   return query;
 }
 
+// Integrals with n_a dA over wet surface; int z dA is over what of it was summed as triangles and as nodes.
+struct AxisIntegrals {
+  double volume = 0.0;         // m^3: int z n_a dA
+  Vec3 moment = Vec3::Zero();  // m^4: int z y n_a dA
+  double height = 0.0;         // m^4: int z^2 n_a dA
+};
+
+// Of nodes, of which z is k . y + z_c.
+AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
+  const Vec3 N(moments.N[0], moments.N[1], moments.N[2]);
+  Vec3 k_P = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      k_P[static_cast<int>(j)] +=
+          k[static_cast<int>(i)] * moments.P[static_cast<std::size_t>(kSymmetricPair[i][j])];
+    }
+  }
+  const double k_N = k.dot(N);
+  return {k_N + z_c * moments.S, k_P + z_c * N, k.dot(k_P) + z_c * (2.0 * k_N + z_c * moments.S)};
+}
+
 Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
                       const HydrostaticMesh& mesh) {
-  const SurfaceMoments<double> wet = sum.wet_nodes.moments();
   const Vec3& k = plane.up_B;
   const double z_c = -plane.h_c;
-  const double k_S = k.dot(wet.S);
-  const Vec3 N_k = wet.N * k;
-  const Eigen::Matrix<double, 6, 1> P_k = wet.P * k;  // P_ijk k_k by pairs (i, j)
-  const double k_N_k = k.dot(N_k);
-  const Vec3 k_P_k(k.x() * P_k(0) + k.y() * P_k(3) + k.z() * P_k(4),
-                   k.x() * P_k(3) + k.y() * P_k(1) + k.z() * P_k(5),
-                   k.x() * P_k(4) + k.y() * P_k(5) + k.z() * P_k(2));
+  const auto a = static_cast<int>(query.axes[0]);
+  const auto b = static_cast<int>(query.axes[1]);
+  const auto c = static_cast<int>(query.axes[2]);
+  AxisIntegrals wet = integrals(sum.nodes, k, z_c);
+  wet.volume += sum.volume6 / 6.0;
+  wet.moment[b] += sum.moment_b24 / 24.0;
+  wet.moment[c] += sum.moment_c24 / 24.0;
+  wet.height += sum.height24 / 12.0;
 
-  const double cut_volume = sum.volume6 / 6.0;
-  const double cut_height = sum.height24 / 24.0;
-  const Vec3 u(query.u[0], query.u[1], query.u[2]);
-  const Vec3 v(query.v[0], query.v[1], query.v[2]);
   Displacement result;
-  result.volume = k_N_k + z_c * k_S + cut_volume;
-  double height = 0.5 * (k.dot(k_P_k) + z_c * (2.0 * k_N_k + z_c * k_S)) + cut_height;
-  // Along k the cut triangles' part of U is int z (z - z_c) n_k dA = 2 H - z_c V.
-  Vec3 U = k_P_k + z_c * N_k + (sum.moment_u24 / 24.0) * u + (sum.moment_v24 / 24.0) * v +
-           (2.0 * cut_height - z_c * cut_volume) * k;
   if (query.budget > 0.0) {
     const UndecidedSum& rest = sum.undecided;
-    const SurfaceMoments<double> offsets = rest.offsets.moments();
-    const Vec3 offset_N_k = offsets.N * k;
-    const double offset_k_S = k.dot(offsets.S);
-    const Vec3 curved(rest.moment[0], rest.moment[1], rest.moment[2]);
-    result.volume += offset_k_S + rest.volume;
-    height += 0.5 * (k.dot(offset_N_k) + z_c * offset_k_S + k.dot(curved) + z_c * rest.volume);
-    U += offset_N_k + curved;
+    const Vec3 offset_N(rest.offsets.N[0], rest.offsets.N[1], rest.offsets.N[2]);
+    wet.volume += rest.offsets.S + rest.volume;
+    wet.moment += offset_N + rest.moment;
+    wet.height += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
     result.left_out = rest.error;
   }
-  if (!mesh.holds_gate()) result.rounding = kEpsilon * mesh.diagonal * sum.rounding;
-  result.moment = U - height * k;
+  if (!mesh.holds_gate()) result.rounding = kEpsilon * sum.rounding;
+
+  // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;  k . M = H -
+  // z_c V.
+  result.volume = wet.volume / k[a];
+  result.moment[b] = wet.moment[b] / k[a];
+  result.moment[c] = wet.moment[c] / k[a];
+  const double along_k = 0.5 * wet.height / k[a] - z_c * result.volume;
+  result.moment[a] = (along_k - k[b] * result.moment[b] - k[c] * result.moment[c]) / k[a];
   result.force = result.volume * k;
-  result.torque = U.cross(k);
+  result.torque = result.moment.cross(k);
   return result;
 }
 
@@ -85,7 +98,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
   double rounding = mesh.rounding_bound();
-  if (!mesh.holds_gate()) rounding += kEpsilon * mesh.diagonal * mesh.tree->rounding;
+  if (!mesh.holds_gate()) rounding += kEpsilon * mesh.tree->rounding;
   return in_range ? std::max(tolerance * std::abs(mesh.volume) - rounding, 0.0) : 0.0;
 }
 

@@ -1,10 +1,11 @@
 // `hierarchical`: exact to rounding, at the cost of the waterline instead of the mesh.
 //
 // A descent of the moment tree (moment_tree.h): a wholly wet node adds its surface moments, a dry one
-// nothing, and the triangles of the leaves that the water crosses are clipped, many at a time. The read-out
-// is that of design (docs/mathematics.md, "Read-out"), of the sum of all wet pieces:
-//   V = k^T N k + z_c k . S,  U = k_i k_k P_ijk + z_c N k,  H = (k_i k_j k_k P_ijk + 2 z_c k^T N k + z_c^2 k
-//   . S) / 2, moment = U - k H,  F/(rho g) = V k,  torque_c/(rho g) = U x k,   z_c = -h_c.
+// nothing, and the triangles of the leaves that the water crosses are clipped, many at a time. All is
+// integrated with one component n_a of the normal, along B's axis nearest to up (docs/mathematics.md, "One
+// axis is enough"):
+//   int z n_a dA = k_a V,  int z y_j n_a dA = k_a M_j for j other than a,  int z^2 n_a dA = 2 k_a H,
+//   k . M = H - z_c V,  F/(rho g) = V k,  torque_c/(rho g) = M x k,   z = k . y + z_c,  z_c = -h_c.
 // A body above the water or below it is answered from its bounds and its constants.
 //
 // Error: within G_V and G_V L_r (HydrostaticMesh::volume_gate) at every depth. A leaf's heights are rounded

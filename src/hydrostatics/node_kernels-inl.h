@@ -20,10 +20,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Bounds = hn::CappedTag<float, kTreeWidth>;
 using Reals = hn::CappedTag<double, 8>;
+using RealVector = hn::Vec<Reals>;
 
 struct BoundsQuery {
   float kx, ky, kz, h, margin;
   float per_half_diagonal;  // 1/m: 2 / L
+  float per_k_a;            // 1 / |k_a|
 };
 
 HWY_INLINE BoundsQuery make_bounds_query(const MomentTree& tree, const TreeQuery& query) {
@@ -35,6 +37,7 @@ HWY_INLINE BoundsQuery make_bounds_query(const MomentTree& tree, const TreeQuery
   // float32 rounds k, h, each product and sum: at most 12 half-ulps of 3 reach + |h| together.
   bounds.margin = 1e-6F * (3.0F * tree.reach + std::abs(bounds.h));
   bounds.per_half_diagonal = static_cast<float>(1.0 / query.half_diagonal);
+  bounds.per_k_a = static_cast<float>(1.0 / std::abs(query.k[query.axes[0]]));
   return bounds;
 }
 
@@ -66,8 +69,12 @@ struct ChildMasks {
   std::uint32_t wet, crossing;
 };
 
+HWY_INLINE std::uint32_t present_children(const TreeNode& node) {
+  return (1U << node.children) - 1U;
+}
+
 HWY_INLINE ChildMasks child_masks(const TreeNode& node, std::uint32_t wet, std::uint32_t dry) {
-  const std::uint32_t present = (1U << node.children) - 1U;
+  const std::uint32_t present = present_children(node);
   return {wet & present, ~(wet | dry) & present};
 }
 
@@ -79,7 +86,8 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
 }
 
 // append_places writes first + i for every bit i of the mask, in order, append_children child[i]; behind them
-// anything, room for kTreeWidth in all. They return how many. leaf_children: a bit for each.
+// anything, room for kTreeWidth in all. They return how many. leaf_children: a bit for
+// each.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
 using ChildWords = hn::FixedTag<std::uint32_t, kTreeWidth>;
@@ -148,17 +156,6 @@ HWY_INLINE hn::Vec<D> load_upper_halves(D d, const std::array<std::uint16_t, kTr
                      hn::ShiftLeft<16>(hn::PromoteTo(words, hn::LoadU(half_words, halves.data() + first))));
 }
 
-// int |n . k| dA at most.
-template <class D>
-HWY_INLINE hn::Vec<D> projected_area(D d, const TreeNode& node, std::size_t first, const BoundsQuery& query) {
-  const auto along =
-      hn::MulAdd(hn::Set(d, query.kx), load_upper_halves(d, node.oriented_x, first),
-                 hn::MulAdd(hn::Set(d, query.ky), load_upper_halves(d, node.oriented_y, first),
-                            hn::Mul(hn::Set(d, query.kz), load_upper_halves(d, node.oriented_z, first))));
-  return hn::Min(hn::Add(hn::Abs(along), load_upper_halves(d, node.spread, first)),
-                 load_upper_halves(d, node.area, first));
-}
-
 // The line's error and the parabola's, m: undecided_node.h. radius: m.
 template <class D>
 struct FitErrors {
@@ -168,10 +165,15 @@ struct FitErrors {
 template <class D>
 HWY_INLINE FitErrors<D> fit_errors(D d, hn::Vec<D> below, hn::Vec<D> above, hn::Vec<D> radius,
                                    const BoundsQuery& query) {
+  const auto one = hn::Set(d, 1.0F);
+  const auto per_half_diagonal = hn::Set(d, query.per_half_diagonal);
   const auto line = hn::Mul(hn::Set(d, 0.5F), hn::Div(hn::Mul(below, above), hn::Add(below, above)));
-  const auto lever = hn::Mul(radius, hn::Set(d, query.per_half_diagonal));
-  const auto curved = hn::MulAdd(hn::Max(below, above), hn::Set(d, 1.0F / 16.0F), hn::Mul(line, lever));
-  return {line, curved};
+  const auto farthest = hn::Max(below, above);
+  const auto depth = hn::Mul(farthest, per_half_diagonal);
+  const auto lever = hn::Mul(hn::Set(d, 1.71F), hn::Mul(radius, per_half_diagonal));
+  const auto parabola = hn::Mul(farthest, hn::Set(d, 1.0F / 16.0F));
+  return {hn::Mul(line, hn::MulAdd(hn::Set(d, 0.71F), depth, one)),
+          hn::MulAdd(parabola, hn::MulAdd(hn::Set(d, 0.36F), depth, one), hn::Mul(line, lever))};
 }
 
 template <class D>
@@ -182,10 +184,10 @@ HWY_INLINE hn::Vec<D> radius(D d, const TreeNode& node, std::size_t first) {
   return hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
 }
 
-HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query,
+HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query, std::size_t a,
                                     UndecidedChildren& children) {
   const Bounds d;
-  const auto rounding = hn::Set(d, 1.00001F);
+  const auto scale = hn::Set(d, 1.00001F * query.per_k_a);  // for what float32 rounds
   std::uint32_t wet = 0;
   std::uint32_t dry = 0;
   for (std::size_t i = 0; i < kTreeWidth; i += hn::Lanes(d)) {
@@ -197,17 +199,47 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
     const auto errors = fit_errors(d, below, above, radius(d, node, i), query);
     hn::Store(below, d, children.below.data() + i);
     hn::Store(above, d, children.above.data() + i);
-    const auto area = hn::Mul(rounding, projected_area(d, node, i, query));
+    const auto area = hn::Mul(scale, load_upper_halves(d, node.projected_area[a], i));
     hn::Store(hn::Mul(area, errors.line), d, children.line_error.data() + i);
     hn::Store(hn::Mul(area, hn::Min(errors.line, errors.curved)), d, children.error.data() + i);
   }
   return child_masks(node, wet, dry);
 }
 
-// Sums of the first kCount node moments: plain within a block of 16, compensated from block to block.
-template <std::size_t kCount>
-class NodeSums {
+// How the ten moments of axis a are held in vectors: those of its line, then two of the last line. Vectors of
+// eight hold all of the last line, whatever belongs to the others.
+class AxisVectors {
  public:
+  static constexpr std::size_t kLanes = hn::MaxLanes(Reals());
+  static constexpr std::size_t kInLine = NodeMoments::kInLine / kLanes;
+  static constexpr std::size_t kVectors = kInLine + (kLanes == 1 ? 2 : 1);
+
+  HWY_INLINE explicit AxisVectors(std::size_t a)
+      : line_(NodeMoments::kInLine * a),
+        rest_(kLanes == 8 ? NodeMoments::kLastLine : NodeMoments::slot(a, NodeMoments::kInLine)),
+        skipped_(kLanes == 8 ? 2 * a : 0) {}
+
+  HWY_INLINE RealVector load(const NodeMoments& moments, std::size_t vector) const {
+    const double* const from = moments.values.data();
+    return vector < kInLine ? hn::Load(Reals(), from + line_ + vector * kLanes)
+                            : hn::LoadU(Reals(), from + rest_ + (vector - kInLine) * kLanes);
+  }
+
+  struct alignas(64) Values {
+    std::array<double, kVectors * kLanes> values{};
+  };
+  // Where moment n of AxisMoments lies among Values.
+  HWY_INLINE std::size_t slot(std::size_t n) const { return n < NodeMoments::kInLine ? n : n + skipped_; }
+
+ private:
+  std::size_t line_, rest_, skipped_;
+};
+
+// Sums of axis a's moments of nodes: plain within a block of 16, compensated from block to block.
+class AxisSums {
+ public:
+  HWY_INLINE explicit AxisSums(std::size_t a) : vectors_(a) {}
+
   // Those of moments that are listed.
   HWY_INLINE void add(const std::vector<NodeMoments>& moments, const std::uint32_t* list, std::size_t count) {
     for (std::size_t n = 0; n < count; n += kBlock) add_block(moments, list + n, std::min(kBlock, count - n));
@@ -216,113 +248,105 @@ class NodeSums {
   HWY_INLINE void add_weighted(const NodeMoments& moments, double weight) {
     const Reals d;
     const auto factor = hn::Set(d, weight);
-    for (std::size_t i = 0; i < kCount; i += hn::Lanes(d)) {
-      hn::Store(
-          hn::MulAdd(factor, hn::Load(d, moments.values.data() + i), hn::Load(d, block_.values.data() + i)),
-          d, block_.values.data() + i);
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+      double* const sum = block_.values.data() + v * AxisVectors::kLanes;
+      hn::Store(hn::MulAdd(factor, vectors_.load(moments, v), hn::Load(d, sum)), d, sum);
     }
     if (++in_block_ == kBlock) close_block();
   }
 
-  HWY_INLINE void finish(NodeMoments& sum) {
+  HWY_INLINE void finish(AxisMoments& sum) {
     close_block();
-    for (std::size_t i = 0; i < kCount; ++i) sum.values[i] = total_.values[i] + rest_.values[i];
+    std::size_t n = 0;
+    const auto next = [&] {
+      const std::size_t slot = vectors_.slot(n++);
+      return total_.values[slot] + rest_.values[slot];
+    };
+    sum.S = next();
+    for (double& value : sum.N) value = next();
+    for (double& value : sum.P) value = next();
   }
 
  private:
   static constexpr std::size_t kBlock = 16;
 
-  // Four vectors at a time, which stay in registers.
   HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const std::uint32_t* list,
                             std::size_t count) {
-    const Reals d;
-    const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t i = 0; i < kCount; i += 4 * lanes) {
-      auto sum0 = hn::Zero(d);
-      auto sum1 = hn::Zero(d);
-      auto sum2 = hn::Zero(d);
-      auto sum3 = hn::Zero(d);
-      for (std::size_t n = 0; n < count; ++n) {
-        const double* const from = moments[list[n]].values.data() + i;
-        sum0 = hn::Add(sum0, hn::Load(d, from));
-        sum1 = hn::Add(sum1, hn::Load(d, from + lanes));
-        sum2 = hn::Add(sum2, hn::Load(d, from + 2 * lanes));
-        sum3 = hn::Add(sum3, hn::Load(d, from + 3 * lanes));
+    RealVector sum[AxisVectors::kVectors];
+    for (RealVector& vector : sum) vector = hn::Zero(Reals());
+    for (std::size_t n = 0; n < count; ++n) {
+      const NodeMoments& from = moments[list[n]];
+      for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+        sum[v] = hn::Add(sum[v], vectors_.load(from, v));
       }
-      add_compensated(i, sum0);
-      add_compensated(i + lanes, sum1);
-      add_compensated(i + 2 * lanes, sum2);
-      add_compensated(i + 3 * lanes, sum3);
     }
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) add_compensated(v, sum[v]);
   }
 
-  HWY_INLINE void add_compensated(std::size_t i, hn::Vec<Reals> block) {
+  HWY_INLINE void add_compensated(std::size_t vector, RealVector block) {
     const Reals d;
-    const auto total = hn::Load(d, total_.values.data() + i);
+    double* const at = total_.values.data() + vector * AxisVectors::kLanes;
+    double* const rest = rest_.values.data() + vector * AxisVectors::kLanes;
+    const auto total = hn::Load(d, at);
     const auto sum = hn::Add(total, block);
     const auto block_part = hn::Sub(sum, total);
     const auto error = hn::Add(hn::Sub(total, hn::Sub(sum, block_part)), hn::Sub(block, block_part));
-    hn::Store(sum, d, total_.values.data() + i);
-    hn::Store(hn::Add(hn::Load(d, rest_.values.data() + i), error), d, rest_.values.data() + i);
+    hn::Store(sum, d, at);
+    hn::Store(hn::Add(hn::Load(d, rest), error), d, rest);
   }
 
   HWY_INLINE void close_block() {
     const Reals d;
-    for (std::size_t i = 0; i < kCount; i += hn::Lanes(d)) {
-      add_compensated(i, hn::Load(d, block_.values.data() + i));
-      hn::Store(hn::Zero(d), d, block_.values.data() + i);
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+      double* const sum = block_.values.data() + v * AxisVectors::kLanes;
+      add_compensated(v, hn::Load(d, sum));
+      hn::Store(hn::Zero(d), d, sum);
     }
     in_block_ = 0;
   }
 
-  struct alignas(64) Values {
-    std::array<double, kCount> values{};
-  };
-  Values block_, total_, rest_;
+  AxisVectors vectors_;
+  AxisVectors::Values block_, total_, rest_;
   std::size_t in_block_ = 0;
 };
 
-// S and N, and what it takes to fill the vectors.
-inline constexpr std::size_t kOffsetMoments = 16;
-
-// Weights with which a node's moments give int n_k dA, int z n_k dA and int z^2 n_k dA for heights z over the
-// mesh's centre.
+// Weights with which a node's moments of axis a give int n_a dA, int z n_a dA and int z^2 n_a dA for heights
+// z over the mesh's centre.
 class CurvatureWeights {
  public:
-  explicit CurvatureWeights(const TreeQuery& query) : z_c_(-(query.h_high + query.h_low)) {
+  explicit CurvatureWeights(const TreeQuery& query)
+      : vectors_(query.axes[0]), z_c_(-(query.h_high + query.h_low)) {
     const auto& k = query.k;
-    std::size_t slot = 0;
-    for (std::size_t n = 0; n < 3; ++n) areas_.values[slot++] = k[n];
+    areas_.values[vectors_.slot(0)] = 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t n = 0; n < 3; ++n) firsts_.values[slot++] = k[i] * k[n];
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
+      firsts_.values[vectors_.slot(1 + i)] = k[i];
       for (std::size_t j = i; j < 3; ++j) {
         const auto pair = static_cast<std::size_t>(kSymmetricPair[i][j]);
-        const double weight = (i == j ? 1.0 : 2.0) * k[i] * k[j];
-        for (std::size_t n = 0; n < 3; ++n) seconds_.values[slot + 3 * pair + n] = weight * k[n];
+        seconds_.values[vectors_.slot(4 + pair)] = (i == j ? 1.0 : 2.0) * k[i] * k[j];
       }
     }
   }
 
-  // int (p2 - p1) n_k dA.
+  // int (p2 - p1) n_a dA.
   HWY_INLINE double integral(const NodeMoments& moments, const PressureFit& fit) const {
     const Reals d;
     const auto area = hn::Set(d, fit.constant + z_c_ * (fit.linear + z_c_ * fit.quadratic));
     const auto first = hn::Set(d, fit.linear + 2.0 * z_c_ * fit.quadratic);
     const auto second = hn::Set(d, fit.quadratic);
     auto sum = hn::Zero(d);
-    for (std::size_t i = 0; i < NodeMoments::kCount; i += hn::Lanes(d)) {
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+      const std::size_t i = v * AxisVectors::kLanes;
       const auto weight = hn::MulAdd(area, hn::Load(d, areas_.values.data() + i),
                                      hn::MulAdd(first, hn::Load(d, firsts_.values.data() + i),
                                                 hn::Mul(second, hn::Load(d, seconds_.values.data() + i))));
-      sum = hn::MulAdd(weight, hn::Load(d, moments.values.data() + i), sum);
+      sum = hn::MulAdd(weight, vectors_.load(moments, v), sum);
     }
     return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
  private:
-  NodeMoments areas_, firsts_, seconds_;
+  AxisVectors vectors_;
+  AxisVectors::Values areas_, firsts_, seconds_;
   double z_c_;
 };
 

@@ -3,20 +3,27 @@
 //
 // The pressure of a point at height z is min(z, 0). Over a node whose heights lie in [-below, above] it is
 // replaced by polynomials that the node's moments integrate without its triangles:
-//   line      p1(z) = a (z - above / 2),   a = below / (below + above),         |p1 - min(z, 0)| <= a above /
+//   line      p1(z) = s (z - above / 2),   s = below / (below + above),         |p1 - min(z, 0)| <= s above /
 //   2 parabola  p2(z) = z / 2 - z^2 / (2 d) - d / 16,  d = max(below, above),     |p2 - min(z, 0)| <= d / 16
 // The volume and the lever of the node's middle y_m take p2, which is up to four times as good; what the
 // node's points are away from its middle, up to `radius`, takes p1, since the moments know no third powers of
 // y:
-//   U = y_m int p2 n_k dA + int (y - y_m) p1 n_k dA.
-// So its errors are at most e in volume and e L_r in torque/(rho g) about any point, with
-//   e = (d / 16 + (a above / 2) radius / (L / 2)) int |n_k| dA,
-// as L_r >= L / 2; or a above / 2 int |n_k| dA where the line serves both, whichever is less
+//   int z y n_a dA  ~  y_m int p2 n_a dA + int (y - y_m) p1 n_a dA.
+// With q = 1/|k_a| int |n_a| dA volume is then wrong by at most q d / 16. Torque about any point is wrong by
+// that times L_r, by q s above / 2 times the radius, and by what the height's integral H takes along: the
+// read-out divides it by k_a and crosses the axis with k, at most sqrt 2 times its error, half of (height of
+// y_m) q d / 16 + radius q s above / 2. As L_r >= L / 2 and y_m is no higher than d / 2, both are within e
+// and e L_r with
+//   e = (d / 16 (1 + 0.36 d / (L / 2)) + s above / 2 (1.71 radius / (L / 2))) q;
+// where the line serves both, with (s above / 2) (1 + 0.71 d / (L / 2)) q, whichever is less
 // (docs/mathematics.md, "Tolerance").
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
+
+#include "geometry/moment_tree.h"
 
 namespace buoyancy {
 
@@ -27,6 +34,21 @@ struct UndecidedNode {
   float below, above;    // m, >= 0
   float error;           // m^3: e
   float line_error;      // m^3: where the line serves both, which is cheaper; not less than error
+};
+
+// What a descent within a budget writes down, kept by each thread: a level holds every node at most once, and
+// whole vectors are written.
+struct BudgetLists {
+  std::vector<std::uint32_t> inner, next_inner;  // nodes to look into
+  std::vector<UndecidedNode> open, undecided;    // their children that the water may cross
+
+  void make_room(const MomentTree& tree) {
+    if (open.size() >= tree.moments.size()) return;
+    inner.resize(tree.nodes.size() + kTreeWidth);
+    next_inner.resize(tree.nodes.size() + kTreeWidth);
+    open.resize(tree.moments.size());
+    undecided.resize(tree.moments.size());
+  }
 };
 
 // p1 = slope z + offset and p2 - p1 = quadratic z^2 + linear z + constant; the latter zero where p1 serves

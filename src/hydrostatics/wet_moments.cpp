@@ -75,12 +75,11 @@ class WetSurfaceWalk {
   void visit(const TreeLeaf& leaf) {
     const Vec3 center(leaf.center[0], leaf.center[1], leaf.center[2]);
     const double center_height = exact_height(center);
-    const auto vertex = [&](std::size_t i) { return Vec3(leaf.x[i], leaf.y[i], leaf.z[i]); };
     std::array<double, kLeafVertices> heights;
     std::size_t wet = 0;
     std::size_t first_wet = leaf.vertices;
     for (std::size_t i = 0; i < leaf.vertices; ++i) {
-      heights[i] = center_height + plane_.up_B.dot(vertex(i));
+      heights[i] = center_height + plane_.up_B.dot(leaf.vertex(i));
       if (!(heights[i] < 0.0)) continue;
       ++wet;
       first_wet = std::min(first_wet, i);
@@ -91,13 +90,13 @@ class WetSurfaceWalk {
       return;
     }
     if (!point_) {
-      point_ = center + vertex(first_wet);
+      point_ = center + leaf.vertex(first_wet);
       height_ = center_height + plane_.up_B.dot(*point_ - center);
     }
 
     const Vec3 from_point = center - *point_;
     const auto corner = [&](std::uint8_t i) {
-      return Corner<double>{Point<double>::from(from_point + vertex(i)), heights[i]};
+      return Corner<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
     };
     for (std::size_t t = 0; t < leaf.triangles; ++t) {
       const Corner<double> a = corner(leaf.a[t]);

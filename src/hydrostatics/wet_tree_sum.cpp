@@ -4,6 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "hydrostatics/undecided_node.h"
 
@@ -24,9 +26,10 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE void prefetch_node(const TreeNode& node) {
+// As far as a descent reads it.
+HWY_INLINE void prefetch_node(const TreeNode& node, std::size_t bytes) {
   const auto* const line = reinterpret_cast<const unsigned char*>(&node);
-  for (std::size_t byte = 0; byte < sizeof(TreeNode); byte += 64) __builtin_prefetch(line + byte);
+  for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(line + byte);
 }
 
 // What both descents share. Found nodes and leaves are queued and used when a queue is full: memory is then
@@ -34,7 +37,12 @@ HWY_INLINE void prefetch_node(const TreeNode& node) {
 class Descent {
  public:
   HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum)
-      : tree_(tree), query_(query), sum_(sum), bounds_(make_bounds_query(tree, query)) {}
+      : tree_(tree),
+        query_(query),
+        sum_(sum),
+        bounds_(make_bounds_query(tree, query)),
+        node_sums_(query.axes[0]),
+        offset_sums_(query.axes[0]) {}
 
   HWY_INLINE const BoundsQuery& bounds() const { return bounds_; }
 
@@ -51,17 +59,21 @@ class Descent {
   }
 
   HWY_INLINE void prefetch_moments(std::uint32_t index) const {
-    const NodeMoments& moments = tree_.moments[index];
-    for (std::size_t i = 0; i < NodeMoments::kCount; i += 8) __builtin_prefetch(moments.values.data() + i);
+    const double* const values = tree_.moments[index].values.data();
+    __builtin_prefetch(values + NodeMoments::kInLine * query_.axes[0]);
+    __builtin_prefetch(values + NodeMoments::kLastLine);
   }
 
   // leaf: with kLeafBit.
-  HWY_INLINE void clip(std::uint32_t leaf) { leaf_queue_[leaves_++] = leaf; }
+  HWY_INLINE void clip(std::uint32_t leaf) {
+    leaf_queue_[leaves_++] = leaf;
+    make_room();
+  }
 
   // After every node.
-  HWY_INLINE void make_room() {
+  HWY_INLINE void visited() {
     sum_.nodes_visited += 1;
-    if (leaves_ >= kQueue || wets_ >= kQueue) drain();
+    make_room();
   }
 
   // Not inlined: once per query for all but the largest waterlines.
@@ -70,11 +82,17 @@ class Descent {
     sum_.nodes_added += static_cast<std::int64_t>(wets_);
     for (std::size_t i = 0; i < wets_; ++i) prefetch_moments(wet_queue_[i]);
     for (std::size_t i = 0; i < std::min(kAhead, leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
-    for (std::size_t i = 0; i < leaves_; ++i) {
-      if (i + kAhead < leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
-      const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
-      if (leaf_sums_.add(leaf, query_) == LeafOutcome::kAddLeaf) wet_queue_[wets_++] = leaf.moments;
-      if (wets_ == wet_queue_.size()) add_queued();
+    for (std::size_t first = 0; first < leaves_; first += LeafBatch::kRoom) {
+      const std::size_t end = std::min(leaves_, first + LeafBatch::kRoom);
+      batch_.clear();
+      for (std::size_t i = first; i < end; ++i) {
+        if (i + kAhead < leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
+        const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
+        queue_wet(leaf, batch_.add(leaf, query_));
+      }
+      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
+      leaf_sums_.add(batch_, query_.axes);
+      if (wets_ >= kQueue) add_queued();
     }
     add_queued();
     leaves_ = 0;
@@ -95,9 +113,8 @@ class Descent {
     if (curved) {
       const double volume = weights.integral(moments, fit);
       sum_.undecided.volume += volume;
-      sum_.undecided.moment[0] += volume * static_cast<double>(parent.center_x[node.place]);
-      sum_.undecided.moment[1] += volume * static_cast<double>(parent.center_y[node.place]);
-      sum_.undecided.moment[2] += volume * static_cast<double>(parent.center_z[node.place]);
+      sum_.undecided.moment += volume * Vec3(parent.center_x[node.place], parent.center_y[node.place],
+                                             parent.center_z[node.place]);
     }
     sum_.undecided.error += static_cast<double>(node.error);
     sum_.nodes_undecided += 1;
@@ -106,7 +123,7 @@ class Descent {
   HWY_INLINE void finish() {
     drain();
     leaf_sums_.finish(sum_);
-    node_sums_.finish(sum_.wet_nodes);
+    node_sums_.finish(sum_.nodes);
     if (query_.budget > 0.0) offset_sums_.finish(sum_.undecided.offsets);
   }
 
@@ -119,6 +136,15 @@ class Descent {
     for (std::size_t byte = 0; byte < sizeof(TreeLeaf); byte += 64) __builtin_prefetch(line + byte);
   }
 
+  HWY_INLINE void make_room() {
+    if (leaves_ >= kQueue || wets_ >= kQueue) drain();
+  }
+
+  HWY_INLINE void queue_wet(const TreeLeaf& leaf, bool wet) {
+    wet_queue_[wets_] = leaf.moments;
+    wets_ += static_cast<std::size_t>(wet);
+  }
+
   HWY_INLINE void add_queued() {
     node_sums_.add(tree_.moments, wet_queue_.data(), wets_);
     wets_ = 0;
@@ -128,91 +154,124 @@ class Descent {
   const TreeQuery& query_;
   WetTreeSum& sum_;
   BoundsQuery bounds_;
+  LeafBatch batch_;
   LeafSums leaf_sums_;
-  NodeSums<NodeMoments::kCount> node_sums_;
-  NodeSums<kOffsetMoments> offset_sums_;
+  AxisSums node_sums_;
+  AxisSums offset_sums_;
   std::size_t leaves_ = 0, wets_ = 0;
   std::array<std::uint32_t, kQueue + kTreeWidth> leaf_queue_;
-  std::array<std::uint32_t, kQueue + kTreeWidth> wet_queue_;
+  std::array<std::uint32_t, kQueue + 2 * LeafBatch::kRoom + kTreeWidth> wet_queue_;
 };
 
-// Depth first: every node that the water crosses is looked into.
+// Every node that the water crosses is looked into, the deepest first, some at a time: none of them waits for
+// what the others lead to.
 void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum) {
-  constexpr std::size_t kStack = 256;
-  std::array<std::uint32_t, kStack + kTreeWidth> stack;
+  constexpr std::size_t kTogether = 8;
+  // Nodes of a level are only found when none deeper are left: a level holds kTogether kTreeWidth at most.
+  constexpr std::size_t kLevels = 16;
+  constexpr std::size_t kRead = offsetof(TreeNode, projected_area);
+  std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
+  std::array<std::uint32_t, kTogether> together;
   std::size_t depth = 0;
   Descent descent(tree, query, sum);
   stack[depth++] = 0;
   while (depth > 0) {
-    const TreeNode& node = tree.nodes[stack[--depth]];
-    const ChildMasks masks = test_children(node, descent.bounds());
-    descent.add_wet(node, masks.wet);
-    const std::size_t found = descent.add_crossing(node, masks.crossing, stack.data() + depth);
-    for (std::size_t i = 0; i < found; ++i) prefetch_node(tree.nodes[stack[depth + i]]);
-    depth += found;
-    assert(depth <= kStack);
-    descent.make_room();
+    const std::size_t count = std::min(depth, kTogether);
+    depth -= count;
+    for (std::size_t n = 0; n < count; ++n) {
+      together[n] = stack[depth + n];
+      prefetch_node(tree.nodes[together[n]], kRead);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      const TreeNode& node = tree.nodes[together[n]];
+      const ChildMasks masks = test_children(node, descent.bounds());
+      descent.add_wet(node, masks.wet);
+      depth += descent.add_crossing(node, masks.crossing, stack.data() + depth);
+      assert(depth + kTreeWidth <= stack.size());
+      descent.visited();
+    }
   }
   descent.finish();
 }
 
 // Level by level: as soon as all that is undecided fits into what is left of the budget, it stays so. Until
-// then each node has an equal share: those that need less stay undecided, the others are looked into.
-void sum_within_budget(const MomentTree& tree, const TreeQuery& query, UndecidedNode* level,
-                       UndecidedNode* next, WetTreeSum& sum) {
+// then each node has an equal share: those that need less stay undecided, the others are looked into. What
+// can stay undecided is only asked where there is hope: from a level to the next all errors together fall
+// about eightfold, and undecided a leaf costs nearly as much as summed.
+void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists, WetTreeSum& sum) {
+  constexpr double kFall = 8.0;
+  constexpr double kHopeless = 4.0;  // times what is left: few nodes have an error below their share
+  const std::size_t a = query.axes[0];
   Descent descent(tree, query, sum);
   const CurvatureWeights weights(query);
-  std::size_t found = 0;
-  double found_error = 0.0;
-  const auto look_into = [&](std::uint32_t index, UndecidedNode* into) {
-    const TreeNode& node = tree.nodes[index];
-    UndecidedChildren children;
-    const ChildMasks masks = test_children(node, descent.bounds(), children);
-    descent.add_wet(node, masks.wet);
-    for (std::uint32_t rest = masks.crossing; rest != 0; rest &= rest - 1) {
-      const auto place = static_cast<std::uint32_t>(__builtin_ctz(rest));
-      into[found++] = {node.child[place],
-                       index,
-                       place,
-                       children.below[place],
-                       children.above[place],
-                       children.error[place],
-                       children.line_error[place]};
-      found_error += static_cast<double>(children.error[place]);
-    }
-    descent.make_room();
-  };
+  std::uint32_t* inner = lists.inner.data();
+  std::uint32_t* next_inner = lists.next_inner.data();
+  UndecidedNode* const open = lists.open.data();
+  UndecidedNode* const undecided = lists.undecided.data();
 
+  std::size_t to_look_into = 0;
+  inner[to_look_into++] = 0;
   double left = query.budget;
-  look_into(0, level);
-  while (found > 0) {
-    const bool all_fit = found_error <= left;
-    const auto share = static_cast<float>(0.999999 * left / static_cast<double>(found));
+  double error = std::numeric_limits<double>::infinity();  // of all to look into, or what may be expected
+  while (to_look_into > 0) {
+    std::size_t open_nodes = 0;
+    std::size_t next_to_look_into = 0;
+    double open_error = 0.0;
+    const bool root = inner[0] == 0;
+    const bool leaves_may_fit = root || error <= kFall * left;
+    const bool nodes_may_fit = root || error <= kFall * kHopeless * left;
+    for (std::size_t i = 0; i < to_look_into; ++i) prefetch_node(tree.nodes[inner[i]], sizeof(TreeNode));
+    for (std::size_t i = 0; i < to_look_into; ++i) {
+      const TreeNode& node = tree.nodes[inner[i]];
+      const bool only_leaves = leaf_children(node) == present_children(node);
+      if (only_leaves ? !leaves_may_fit : !nodes_may_fit) {
+        const ChildMasks masks = test_children(node, descent.bounds());
+        descent.add_wet(node, masks.wet);
+        next_to_look_into += descent.add_crossing(node, masks.crossing, next_inner + next_to_look_into);
+        descent.visited();
+        continue;
+      }
+      UndecidedChildren children;
+      const ChildMasks masks = test_children(node, descent.bounds(), a, children);
+      descent.add_wet(node, masks.wet);
+      for (std::uint32_t rest = masks.crossing; rest != 0; rest &= rest - 1) {
+        const auto place = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        open[open_nodes++] = {node.child[place],
+                              inner[i],
+                              place,
+                              children.below[place],
+                              children.above[place],
+                              children.error[place],
+                              children.line_error[place]};
+        open_error += static_cast<double>(children.error[place]);
+      }
+      descent.visited();
+    }
+
     // First decide and fetch, then use: memory answers many at once.
-    std::size_t to_look_into = 0;
-    std::size_t undecided = 0;
-    for (std::size_t i = 0; i < found; ++i) {
-      UndecidedNode node = level[i];
+    const bool all_fit = open_error <= left;
+    const auto share = static_cast<float>(0.999999 * left / static_cast<double>(open_nodes));
+    std::size_t decided = 0;
+    error = nodes_may_fit ? 0.0 : error / kFall;
+    for (std::size_t i = 0; i < open_nodes; ++i) {
+      UndecidedNode node = open[i];
       if (!all_fit && node.line_error <= share) node.error = node.line_error;
       if (all_fit || node.error <= share) {
         descent.prefetch_undecided(node);
-        next[undecided++] = node;
+        undecided[decided++] = node;
       } else if ((node.child & TreeNode::kLeafBit) != 0) {
         descent.clip(node.child);
-        descent.make_room();
       } else {
-        prefetch_node(tree.nodes[node.child]);
-        level[to_look_into++] = node;
+        error += static_cast<double>(node.error);
+        next_inner[next_to_look_into++] = node.child;
       }
     }
-    for (std::size_t i = 0; i < undecided; ++i) {
-      left -= static_cast<double>(next[i].error);
-      descent.add_undecided(next[i], weights);
+    for (std::size_t i = 0; i < decided; ++i) {
+      left -= static_cast<double>(undecided[i].error);
+      descent.add_undecided(undecided[i], weights);
     }
-    found = 0;
-    found_error = 0.0;
-    for (std::size_t i = 0; i < to_look_into; ++i) look_into(level[i].child, next);
-    std::swap(level, next);
+    to_look_into = next_to_look_into;
+    std::swap(inner, next_inner);
   }
   descent.finish();
 }
@@ -230,14 +289,9 @@ HWY_EXPORT(sum_within_budget);
 WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query) {
   WetTreeSum sum;
   if (query.budget > 0.0) {
-    // A level holds every node at most once.
-    thread_local std::vector<UndecidedNode> level;
-    thread_local std::vector<UndecidedNode> next;
-    if (level.size() < tree.moments.size()) {
-      level.resize(tree.moments.size());
-      next.resize(tree.moments.size());
-    }
-    HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, level.data(), next.data(), sum);
+    thread_local BudgetLists lists;
+    lists.make_room(tree);
+    HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, lists, sum);
   } else {
     HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, sum);
   }

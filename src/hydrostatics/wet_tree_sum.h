@@ -20,35 +20,37 @@ namespace buoyancy {
 // k = k_high + k_low with k_high of 26 bits, h = h_high + h_low with h_high a multiple of grid 2^-26.
 struct TreeQuery {
   std::array<double, 3> k, k_high, k_low;  // up in B
-  std::array<double, 3> u, v;              // horizontal axes in B: (u, v, k) orthonormal and right-handed
   double h_high, h_low;                    // m
+  // The axis a of B whose component of the normal all is integrated with, and b and c, right-handed. k_a must
+  // not be 0; the nearer to 1, the less is lost in the division by it.
+  std::array<std::size_t, 3> axes;
   // m^3: how much may be left undecided, in volume and in torque/(rho g L_r); 0: nothing.
   double budget;
   double half_diagonal;  // m: L / 2; read where budget > 0
 };
 
 // What undecided nodes (undecided_node.h) add besides their slopes times their moments, which are among
-// wet_nodes.
+// WetTreeSum::nodes.
 struct UndecidedSum {
-  NodeMoments offsets;             // m times moments: offset times S and N; the rest is unused
-  double volume = 0.0;             // m^3: int (p2 - p1) n_k dA
-  std::array<double, 3> moment{};  // m^4: the same times y_m
+  AxisMoments offsets;         // m times moments: offset times S and N; the rest is unused
+  double volume = 0.0;         // m^3: int (p2 - p1) n_a dA
+  Vec3 moment = Vec3::Zero();  // m^4: the same times y_m
   double error = 0.0;  // m^3: bound on what all of it can be wrong in volume, and in torque/(rho g L_r)
 };
 
-// Integrals over the wet surface, in two parts that the read-out adds.
+// Integrals over the wet surface with n_a dA, in two parts that the read-out adds.
 struct WetTreeSum {
-  NodeMoments wet_nodes;  // surface moments about c of the wholly wet nodes
+  AxisMoments nodes;  // about c, of the wholly wet nodes
 
   // Of the triangles of crossing leaves, with z the height and y about c:
-  double volume6 = 0.0;     // m^3: 6 int z n_k dA
-  double moment_u24 = 0.0;  // m^4: 24 int z y_u n_k dA
-  double moment_v24 = 0.0;  // m^4: 24 int z y_v n_k dA
-  double height24 = 0.0;    // m^4: 24 H = 12 int z^2 n_k dA
+  double volume6 = 0.0;     // m^3: 6 int z n_a dA
+  double moment_b24 = 0.0;  // m^4: 24 int z y_b n_a dA
+  double moment_c24 = 0.0;  // m^4: 24 int z y_c n_a dA
+  double height24 = 0.0;    // m^4: 12 int z^2 n_a dA
 
   UndecidedSum undecided;  // zero where the budget is
 
-  double rounding = 0.0;  // m^2: of the leaves clipped (TreeLeaf)
+  double rounding = 0.0;  // m^3: of the leaves clipped (TreeLeaf)
 
   std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_undecided = 0;
 };

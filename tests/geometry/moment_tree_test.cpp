@@ -34,7 +34,7 @@ void collect_leaves(const MomentTree& tree, std::uint32_t child, std::vector<std
 }
 
 Vec3 leaf_vertex(const TreeLeaf& leaf, std::size_t i) {
-  return Vec3(leaf.x[i], leaf.y[i], leaf.z[i]) + Vec3(leaf.center[0], leaf.center[1], leaf.center[2]);
+  return leaf.vertex(i) + Vec3(leaf.center[0], leaf.center[1], leaf.center[2]);
 }
 
 std::vector<TriangleMesh> surfaces() {

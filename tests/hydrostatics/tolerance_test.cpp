@@ -108,8 +108,7 @@ TEST(Tolerance, LooksAtLessOfTheMeshTheMoreItAllows) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 122}), {}});
   TreeQuery query{};
   query.k = query.k_high = {0, 0, 1};
-  query.u = {1, 0, 0};
-  query.v = {0, 1, 0};
+  query.axes = {2, 0, 1};
   query.half_diagonal = 0.5 * mesh.diagonal;
   std::int64_t visited = sum_wet_tree(*mesh.tree, query).nodes_visited;
   for (const double tolerance : {1e-4, 1e-3, 1e-2}) {
