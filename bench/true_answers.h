@@ -37,8 +37,9 @@ struct SolverErrors {
   double bound_median = 0.0;  // likewise
 };
 
-// Asks the solver for every pose and compares. Every answer must keep its bounds; of an exact method the
-// bound of force must be at most the solver's tolerance or 4 G_V, whichever is larger.
+// Asks the solver for every pose and compares. Every answer must keep its bounds. The bound of force must be
+// at most the tolerance or 4 G_V of `hierarchical`, whichever is larger, and 1e-11 of the whole of the
+// paper's exact methods, whose grow with the depth.
 //
 // Errors: a pose whose answer is farther from the truth than its own bound, or whose bound is too large;
 // names the mesh, the method and the pose.

@@ -97,9 +97,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
 // held in float32: sizes beyond its range are answered exactly.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
-  double rounding = mesh.rounding_bound();
-  if (!mesh.holds_gate()) rounding += kEpsilon * mesh.tree->rounding;
-  return in_range ? std::max(tolerance * std::abs(mesh.volume) - rounding, 0.0) : 0.0;
+  return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.largest_rounding_bound(), 0.0) : 0.0;
 }
 
 }  // namespace

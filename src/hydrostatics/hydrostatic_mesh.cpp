@@ -48,8 +48,9 @@ Triangle beginning_opposite_the_longest_edge(const Triangle& triangle, const Tri
   return {triangle[2], triangle[0], triangle[1]};
 }
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
 double rounding(double volume, double diagonal, double area) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   return kEpsilon * (64.0 * std::abs(volume) + diagonal * area);
 }
 
@@ -65,6 +66,10 @@ bool HydrostaticMesh::holds_gate() const {
 
 double HydrostaticMesh::rounding_bound() const {
   return 2.0 * rounding(volume, diagonal, rounding_area);
+}
+
+double HydrostaticMesh::largest_rounding_bound() const {
+  return rounding_bound() + (holds_gate() ? 0.0 : kEpsilon * tree->rounding);
 }
 
 double HydrostaticMesh::largest_lever(const Vec3& reference_B) const {

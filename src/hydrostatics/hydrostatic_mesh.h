@@ -51,6 +51,9 @@ struct HydrostaticMesh {
   // What is published as a bound on rounding, m^3: 2 eps (64 V_T + L A_r), less than 4 G_V where that is
   // promised; elsewhere `hierarchical` adds to it for the leaves that are cut (Displacement::rounding).
   double rounding_bound() const;
+  // The most that `hierarchical` publishes where it leaves nothing out, m^3: with all leaves cut. Needs the
+  // tree.
+  double largest_rounding_bound() const;
   // Largest distance from a reference point to a corner of the bounding box, m: L_r. Torque is held to G_V
   // L_r.
   double largest_lever(const Vec3& reference_B) const;

@@ -194,6 +194,19 @@ void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum
   descent.finish();
 }
 
+// m^3: the errors of all undecided leaves together, as far as the root's children tell. Errors go with the
+// square of the size of the nodes, and so with one over their number.
+double expected_of_leaves(const MomentTree& tree, const TreeQuery& query) {
+  const TreeNode& root = tree.nodes[0];
+  UndecidedChildren children;
+  std::uint32_t rest = test_children(root, make_bounds_query(tree, query), query.axes[0], children).crossing;
+  double error = 0.0;
+  for (; rest != 0; rest &= rest - 1) {
+    error += static_cast<double>(children.error[static_cast<std::size_t>(__builtin_ctz(rest))]);
+  }
+  return error * static_cast<double>(root.children) / static_cast<double>(tree.leaves.size());
+}
+
 // Level by level: as soon as all that is undecided fits into what is left of the budget, it stays so. Until
 // then each node has an equal share: those that need less stay undecided, the others are looked into. What
 // can stay undecided is only asked where there is hope: from a level to the next all errors together fall
@@ -202,6 +215,10 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
   constexpr double kFall = 8.0;
   constexpr double kHopeless = 4.0;  // times what is left: few nodes have an error below their share
   const std::size_t a = query.axes[0];
+  if (expected_of_leaves(tree, query) > kHopeless * query.budget) {
+    sum_exactly(tree, query, sum);
+    return;
+  }
   Descent descent(tree, query, sum);
   const CurvatureWeights weights(query);
   std::uint32_t* inner = lists.inner.data();

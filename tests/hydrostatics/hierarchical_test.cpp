@@ -197,11 +197,11 @@ TriangleMesh bulged_box() {
 TEST(Hierarchical, HasTheSameBitsFromEveryCompilerAndBuildTypePerInstructionSet) {
   const TriangleMesh source = bulged_box();
   const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
-  const std::map<std::string, std::uint64_t> golden{{"AVX3", 0x12cbabe7389d22a8},
-                                                    {"AVX2", 0x99a959c37a198358},
-                                                    {"SSE4", 0x848ad3e94373b10b},
-                                                    {"SSSE3", 0x848ad3e94373b10b},
-                                                    {"SCALAR", 0x35f1cbb9b3ac8e96}};
+  const std::map<std::string, std::uint64_t> golden{{"AVX3", 0xaf19f7e7b6c2db96},
+                                                    {"AVX2", 0x1b27d605ee34b20f},
+                                                    {"SSE4", 0xff2080ffef41cd54},
+                                                    {"SSSE3", 0xff2080ffef41cd54},
+                                                    {"SCALAR", 0x1fb31eef893fa6}};
   for (const std::string& target : simd_targets()) {
     const auto known = golden.find(target);
     if (known == golden.end()) continue;  // an instruction set that we have never run on
@@ -212,7 +212,7 @@ TEST(Hierarchical, HasTheSameBitsFromEveryCompilerAndBuildTypePerInstructionSet)
       const Pose pose{Vec3(3.0 * a, -a, 0.06 * (i % 32) - 0.9),
                       Eigen::Quaterniond(1.0 - 0.3 * a, 0.5 - a, 0.2 * a, 0.7 * a - 0.1)};
       const WaterPlane plane = water_plane_in_body(pose, {}, mesh.center_B);
-      for (const double tolerance : {0.0, 1e-3}) {
+      for (const double tolerance : {0.0, 1e-2}) {
         const Displacement found = hierarchical(mesh, plane, tolerance);
         hash.add(found.volume);
         hash.add(found.moment);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
 #include "tests/hydrostatics/ball.h"
@@ -11,7 +10,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // A ball's radius counts as error: as a share of what the error is compared with.
 constexpr double kWidest = 0.01;
 
@@ -107,9 +105,7 @@ class Judge {
       const Method method = method_of(given.answerer);
       const Gates gate = gates(method, mesh_, asked_);
       if (given.answerer == Answerer::kTolerance) {
-        const double least = mesh_.holds_gate()
-                                 ? 4.0 * mesh_.volume_gate()
-                                 : mesh_.rounding_bound() + kEpsilon * mesh_.diagonal * mesh_.tree->rounding;
+        const double least = mesh_.holds_gate() ? 4.0 * mesh_.volume_gate() : mesh_.largest_rounding_bound();
         const double most = std::max(asked_.tolerance * mesh_.volume, least) * weight_;
         if (!(answer.force_error_bound <= most * (1.0 + 1e-12)))
           violations.push_back(line(given, "the bound of force", answer.force_error_bound, "at most", most));
