@@ -2,17 +2,20 @@
 // wrenches in time and late.
 //
 // A wall-sided body that heaves within its sides is an exact harmonic oscillator, w^2 = rho g A_wp / m, and
-// both integrators have closed forms on it (integrator_test).
+// both integrators have closed forms on it (integrator_test). Tests that are rows of the stress catalogue put
+// their largest figures into the report (docs/stability.md, "In time").
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "client/run_warnings.h"
 #include "tests/client/embedded_run.h"
+#include "tests/stress/stress_case.h"
 
 namespace buoyancy {
 namespace {
@@ -74,11 +77,14 @@ TEST(UndampedBob, KeepsItsEnergyWithinTheIntegratorsSwingOverAMillionSteps) {
   const Scene scene = bob.scene();
   const double step = 0.01;
   const double wh = bob.frequency() * step;
+  StressCase stress("undamped bob, 1e6 steps: energy bounded", "the integrators' closed forms",
+                    "the integrator's swing + 5 %; in the last tenth that of the first + 5 %");
   for (const Integrator integrator : kBoth) {
     const EnergyErrors errors = energy_errors(scene, integrator, step, 1'000'000);
     const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
-    EXPECT_LT(errors.early, 1.05 * swing * bob.swing()) << name(integrator);
-    EXPECT_LT(errors.late, 1.05 * errors.early) << name(integrator);
+    const std::string at(name(integrator));
+    stress.check(errors.early, 1.05 * swing * bob.swing(), at + ", first tenth");
+    stress.check(errors.late, 1.05 * errors.early, at + ", last tenth");
   }
 }
 
@@ -123,8 +129,13 @@ double fitted_order(Integrator integrator) {
 }
 
 TEST(UndampedBob, ConvergesWithOrderOneAndTwoInTheStep) {
-  EXPECT_NEAR(fitted_order(Integrator::kSemiImplicitEuler), 1.0, 0.05);
-  EXPECT_NEAR(fitted_order(Integrator::kVelocityVerlet), 2.0, 0.05);
+  StressCase stress("undamped bob: order in the step", "closed form; steps of 1/200 to 1/3200 s",
+                    "order 1 (semi-implicit Euler), 2 (Verlet), +- 0.05");
+  const auto check = [&](Integrator integrator, double order) {
+    stress.check(std::abs(fitted_order(integrator) - order), 0.05, std::string(name(integrator)));
+  };
+  check(Integrator::kSemiImplicitEuler, 1.0);
+  check(Integrator::kVelocityVerlet, 2.0);
 }
 
 // From the first to the last upward crossing of the rest position.
@@ -158,6 +169,8 @@ TEST(UndampedBob, HasThePeriodOfItsMassAndWaterplaneWhateverItsWallSidedShape) {
       {R"({ type = "cylinder", radius = 0.5, height = 0.4, segments = 24, stacks = 2 })",
        12.0 * 0.25 * std::sin(2.0 * std::numbers::pi / 24.0), 0.4},
   };
+  StressCase stress("bob period: wall-sided bodies", "2 pi sqrt(m / (rho g A_wp)), less Verlet's own share",
+                    "1e-6 of the period");
   for (const auto& shape : shapes) {
     for (const double relative_density : {0.2, 0.5, 0.9}) {
       // Centre of mass and rest: the body's centre is (1/2 - s) H over the level.
@@ -178,8 +191,8 @@ TEST(UndampedBob, HasThePeriodOfItsMassAndWaterplaneWhateverItsWallSidedShape) {
       });
       // Verlet's own period is T (1 - (w h)^2 / 24).
       const double wh = 2.0 * std::numbers::pi / period * step;
-      EXPECT_NEAR(meter.mean(), period * (1.0 - wh * wh / 24.0), 1e-6 * period)
-          << shape.shape << " " << relative_density;
+      stress.check(std::abs(meter.mean() - period * (1.0 - wh * wh / 24.0)), 1e-6 * period,
+                   shape.shape + ", relative density " + std::to_string(relative_density));
       EXPECT_NEAR(meter.mean(), period, wh * wh / 23.0 * period) << shape.shape << " " << relative_density;
     }
   }
@@ -212,15 +225,19 @@ LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t late_steps,
 
 TEST(LateWrench, KeepsTheEnergyWithinOnePercentOverAMinuteWithALeadTime) {
   const Bob bob;
+  StressCase stress("wrench one and five steps late, `lead_time` set, alpha = w delay <= 0.02",
+                    "the energy at the start, over 60 s", "1 % (Euler: and its own swing)");
   for (const std::int64_t late_steps : {1, 5}) {
     for (const double alpha : {0.02, 0.01}) {
+      const std::string at =
+          ", " + std::to_string(late_steps) + " late, alpha " + (alpha == 0.02 ? "0.02" : "0.01");
       const LateRun verlet =
           late_run(bob, Integrator::kVelocityVerlet, late_steps, alpha / bob.frequency(), true);
-      EXPECT_LT(verlet.largest_error, 0.01) << late_steps << " steps, alpha " << alpha;
+      stress.check(verlet.largest_error, 0.01, "Verlet" + at);
       // Beside what this integrator's energy swings by on its own.
       const LateRun euler =
           late_run(bob, Integrator::kSemiImplicitEuler, late_steps, alpha / bob.frequency(), true);
-      EXPECT_LT(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(late_steps));
+      stress.check(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(late_steps), "Euler" + at);
       EXPECT_FALSE(verlet.warned || euler.warned);
     }
   }
@@ -231,13 +248,16 @@ TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
   // steps.
   const Bob bob{5.0, 20.0};
   const double delay = std::log(3.0) / (60.0 * bob.frequency() * bob.frequency());
+  StressCase stress("the same delay without and with `lead_time`: threefold energy in 60 s, or as it was",
+                    "exp(w^2 delay t)", "+- 0.05; +- 0.01; warned of without");
   for (const Integrator integrator : kBoth) {
     for (const std::int64_t late_steps : {1, 5}) {
       const LateRun late = late_run(bob, integrator, late_steps, delay, false);
-      EXPECT_NEAR(late.final_growth, 3.0, 0.05) << name(integrator) << " " << late_steps;
-      EXPECT_TRUE(late.warned);
+      const std::string at = std::string(name(integrator)) + ", " + std::to_string(late_steps) + " late";
+      stress.check(std::abs(late.final_growth - 3.0), 0.05, at);
+      stress.require(late.warned, at + ", warning");
       const LateRun led = late_run(bob, integrator, late_steps, delay, true);
-      EXPECT_NEAR(led.final_growth, 1.0, 0.01) << name(integrator) << " " << late_steps;
+      stress.check(std::abs(led.final_growth - 1.0), 0.01, at + ", led");
     }
   }
 }

@@ -1,4 +1,5 @@
 // Damped bodies come to rest where closed forms say: at their drafts, and at a square bar's angle of loll.
+// Rows of the stress catalogue (docs/stability.md, "In time").
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -8,6 +9,7 @@
 #include "client/run_summary.h"
 #include "hydrostatics/buoyancy.h"
 #include "tests/client/embedded_run.h"
+#include "tests/stress/stress_case.h"
 
 namespace buoyancy {
 namespace {
@@ -37,15 +39,21 @@ double roll_of_bar(double relative_density) {
 }
 
 TEST(LongSquareBar, SettlesAtItsAngleOfLollUpToADensityOfAQuarter) {
+  StressCase stress("long square bar of relative density 0.215 to 0.25", "tan^2 theta = 12 s (1 - s) - 2",
+                    "1e-4 rad");
   for (const double s : {0.215, 0.22, 0.235, 0.245, 0.249, 0.2499, 0.25}) {
-    EXPECT_NEAR(roll_of_bar(s), std::atan(std::sqrt(12.0 * s * (1.0 - s) - 2.0)), 1e-4) << s;
+    stress.check(std::abs(roll_of_bar(s) - std::atan(std::sqrt(12.0 * s * (1.0 - s) - 2.0))), 1e-4,
+                 "s = " + std::to_string(s));
   }
   EXPECT_NEAR(roll_of_bar(0.25) * kDegrees, 26.565, 0.001);
 }
 
 TEST(LongSquareBar, FloatsFlatBelowItsCriticalDensity) {
   const double critical = (3.0 - std::sqrt(3.0)) / 6.0;
-  for (const double s : {0.1, 0.15, 0.2, critical - 0.005}) EXPECT_NEAR(roll_of_bar(s), 0.0, 1e-4) << s;
+  StressCase stress("long square bar below relative density (3 - sqrt 3) / 6", "flat", "1e-4 rad");
+  for (const double s : {0.1, 0.15, 0.2, critical - 0.005}) {
+    stress.check(std::abs(roll_of_bar(s)), 1e-4, "s = " + std::to_string(s));
+  }
 }
 
 struct Floater {
@@ -76,29 +84,34 @@ double draft_of(const Floater& floater) {
   return body.draft;
 }
 
+constexpr const char* kDraftGate = "1e-6 L";
+
 TEST(Drafts, OfABoxAndACylinderAreTheirHeightTimesTheirRelativeDensity) {
+  StressCase stress("draft of a box, a cylinder", "height times relative density", kDraftGate);
   for (const double density : {150.0, 500.0, 850.0}) {
     const Floater box{R"({ type = "box", size = [1.2, 1, 0.5], segments = [3, 2, 2] })", 1.64, density, -0.1};
-    EXPECT_NEAR(draft_of(box), 0.5 * density / 1000.0, 1e-6 * box.length) << density;
+    stress.check(std::abs(draft_of(box) - 0.5 * density / 1000.0), 1e-6 * box.length, "box");
     const Floater cylinder{R"({ type = "cylinder", radius = 0.5, height = 0.6, segments = 48 })", 1.54,
                            density, -0.15};
-    EXPECT_NEAR(draft_of(cylinder), 0.6 * density / 1000.0, 1e-6 * cylinder.length) << density;
+    stress.check(std::abs(draft_of(cylinder) - 0.6 * density / 1000.0), 1e-6 * cylinder.length, "cylinder");
   }
 }
 
 TEST(Drafts, OfAConeFollowTheCubeRootOfItsRelativeDensityEitherWayUp) {
+  StressCase stress("draft of a cone, either way up", "cube roots of the relative density", kDraftGate);
   // What is cut off a cone, or off the pyramid that its mesh is, is similar to it.
   for (const double s : {0.2, 0.5, 0.8}) {
     Floater cone{R"({ type = "cone", radius = 0.5, height = 0.8, segments = 32 })", 1.63, 1000.0 * s, 0.1,
                  100.0};
-    EXPECT_NEAR(draft_of(cone), 0.8 * (1.0 - std::cbrt(1.0 - s)), 1e-6 * cone.length) << s;
+    stress.check(std::abs(draft_of(cone) - 0.8 * (1.0 - std::cbrt(1.0 - s))), 1e-6 * cone.length, "upright");
     cone.upside_down = true;
     cone.center = 0.7;
-    EXPECT_NEAR(draft_of(cone), 0.8 * std::cbrt(s), 1e-6 * cone.length) << s;
+    stress.check(std::abs(draft_of(cone) - 0.8 * std::cbrt(s)), 1e-6 * cone.length, "upside down");
   }
 }
 
 TEST(Drafts, OfAWigleyHullIsThatAtWhichItsMeshDisplacesItsMass) {
+  StressCase stress("draft of a Wigley hull", "bisection on the same mesh", kDraftGate);
   for (const double density : {300.0, 450.0, 600.0}) {
     const Floater hull{R"({ type = "wigley", length = 4, beam = 1, draft = 0.5, freeboard = 0.3 })", 4.2,
                        density, -0.35};
@@ -112,7 +125,7 @@ TEST(Drafts, OfAWigleyHullIsThatAtWhichItsMeshDisplacesItsMass) {
       const Pose pose{{0, 0, middle}, Eigen::Quaterniond::Identity()};
       (buoyancy(body.solver, pose, scene.water(), Vec3::Zero()).volume > displaced ? deep : high) = middle;
     }
-    EXPECT_NEAR(draft_of(hull), 0.5 - deep, 1e-6 * hull.length) << density;
+    stress.check(std::abs(draft_of(hull) - (0.5 - deep)), 1e-6 * hull.length, "Wigley hull");
   }
 }
 
