@@ -2,9 +2,10 @@
 // looked into.
 //
 // The pressure of a point at height z is min(z, 0). Over a node whose heights lie in [-below, above] it is
-// replaced by polynomials that the node's moments integrate without its triangles:
-//   line      p1(z) = s (z - above / 2),   s = below / (below + above),         |p1 - min(z, 0)| <= s above /
-//   2 parabola  p2(z) = z / 2 - z^2 / (2 d) - d / 16,  d = max(below, above),     |p2 - min(z, 0)| <= d / 16
+// replaced by polynomials that the node's moments integrate without its triangles. With
+// s = below / (below + above) and d = max(below, above)
+//   the line      p1(z) = s (z - above / 2)              is off by at most s above / 2,
+//   the parabola  p2(z) = z / 2 - z^2 / (2 d) - d / 16   by at most d / 16.
 // The volume and the lever of the node's middle y_m take p2, which is up to four times as good; what the
 // node's points are away from its middle, up to `radius`, takes p1, since the moments know no third powers of
 // y:
