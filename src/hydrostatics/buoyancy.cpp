@@ -39,7 +39,7 @@ double far_reach(const Solver& solver, const WaterPlane& plane) {
       return std::abs(plane.h_c);
     case Method::kImproved:
     case Method::kExact:
-      return std::max(std::abs(plane.h_c), apex_on_water(mesh.centroid, plane).norm());
+      return std::max(std::abs(plane.h_c), apex_on_water(mesh, plane).norm());
   }
   return 0.0;
 }

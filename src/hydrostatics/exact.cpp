@@ -6,7 +6,7 @@
 namespace buoyancy {
 
 Displacement exact(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  const Vec3 apex = apex_on_water(mesh.centroid, plane);
+  const Vec3 apex = apex_on_water(mesh, plane);
   const auto o = Point<double>::from(apex);
   const auto sum = sum_over_whole_wet_surface<VolumeElements>(
       mesh, plane, [o](VolumeElements& block, const auto& a, const auto& b, const auto& c) {

@@ -22,7 +22,7 @@ struct ElementSum {
 }  // namespace
 
 Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  const Vec3 apex = apex_on_water(mesh.centroid, plane);
+  const Vec3 apex = apex_on_water(mesh, plane);
   const auto o = Point<double>::from(apex);
   const auto sum = sum_over_wet_surface<ElementSum>(
       mesh, plane,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "hydrostatics/displacement.h"
+#include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/water_plane.h"
 
@@ -41,9 +42,14 @@ struct VolumeElements {
 };
 
 // The apex of `improved` and `exact`: the volume's centroid projected onto the water, so that the water's
-// surface, which closes the wet part, contributes nothing (section 4.2). About c, m.
-inline Vec3 apex_on_water(const Vec3& centroid, const WaterPlane& plane) {
-  return centroid - plane.height(centroid) * plane.up_B;
+// surface, which closes the wet part, contributes nothing (section 4.2). About c, m. Where overlapping parts
+// of opposite signs put the centroid outside of the mesh's box, the box's middle stands in for it: any point
+// of the water serves, and digits of the torque go with the square of its distance.
+inline Vec3 apex_on_water(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  const bool inside = (mesh.centroid.array() >= mesh.box_min.array()).all() &&
+                      (mesh.centroid.array() <= mesh.box_max.array()).all();
+  const Vec3 from = inside ? mesh.centroid : Vec3(0.5 * (mesh.box_min + mesh.box_max));
+  return from - plane.height(from) * plane.up_B;
 }
 
 // Displacement of a volume V with first moment M about c; the wrench is Archimedes': F = V k at the centroid.
