@@ -36,7 +36,7 @@ TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   return query;
 }
 
-// Integrals with n_a dA over wet surface; int z dA is over what of it was summed as triangles and as nodes.
+// Integrals with n_a dA over wet surface.
 struct AxisIntegrals {
   double volume = 0.0;         // m^3: int z n_a dA
   Vec3 moment = Vec3::Zero();  // m^4: int z y n_a dA
@@ -81,8 +81,8 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
   }
   if (!mesh.holds_gate()) result.rounding = kEpsilon * sum.rounding;
 
-  // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;  k . M = H -
-  // z_c V.
+  // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;
+  // k . M = H - z_c V.
   result.volume = wet.volume / k[a];
   result.moment[b] = wet.moment[b] / k[a];
   result.moment[c] = wet.moment[c] / k[a];
