@@ -25,52 +25,68 @@ BodyAnswers::BodyAnswers(const Scene& scene, unsigned threads)
   for (const Body& body : scene.bodies()) expected_time_.push_back(expected_time(body.solver));
 }
 
+void BodyAnswers::Remembered::evaluated_at(const Pose& at) {
+  valid = outcome.wrench.status == BodyStatus::kOk;
+  pose = pose_bits(at);
+}
+
 void BodyAnswers::answer(const Question& question, std::vector<BodyWrench>& wrenches, Counters& counters) {
   const std::size_t bodies = question.bodies.size();
-  if (outcomes_.size() < bodies) outcomes_.resize(bodies);
   pending_.clear();
-  for (std::size_t i = 0; i < bodies; ++i) answer_or_postpone(question.bodies[i], question.lead_time, i);
-  compute_pending();
-  wrenches.clear();
+  wrenches.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) {
-    count(outcomes_[i], counters);
-    wrenches.push_back(outcomes_[i].wrench);
+    if (const BodyOutcome* outcome = answer_or_postpone(question.bodies[i], question.lead_time, i)) {
+      wrenches[i] = outcome->wrench;
+      count(*outcome, counters);
+    }
+  }
+  compute_pending();
+  // In order: a question may name a body twice.
+  for (const Pending& pending : pending_) {
+    wrenches[pending.state] = pending.outcome.wrench;
+    count(pending.outcome, counters);
+    Remembered& last = remembered_[pending.body];
+    last.outcome = pending.outcome;
+    last.evaluated_at(pending.asked.pose);
   }
 }
 
-void BodyAnswers::answer_or_postpone(const BodyState& state, double lead_time, std::size_t i) {
-  const std::optional<std::size_t> index = scene_->index_of(state.body_id);
+std::optional<std::size_t> BodyAnswers::body_of(std::int32_t id, std::size_t i) const {
+  // Whoever asks about a whole scene tends to do so in its order.
+  if (i < scene_->bodies().size() && scene_->bodies()[i].id == id) return i;
+  return scene_->index_of(id);
+}
+
+const BodyOutcome* BodyAnswers::answer_or_postpone(const BodyState& state, double lead_time, std::size_t i) {
+  const std::optional<std::size_t> index = body_of(state.body_id, i);
   if (!index) {
-    outcomes_[i] = not_answered(state.body_id, BodyStatus::kUnknownBody);
-    return;
+    refused_ = not_answered(state.body_id, BodyStatus::kUnknownBody);
+    return &refused_;
   }
   const AskedPose asked = asked_pose(state, lead_time);
   if (asked.status != BodyStatus::kOk) {
-    outcomes_[i] = not_answered(state.body_id, asked.status, asked.quaternion_normalised);
-    return;
+    refused_ = not_answered(state.body_id, asked.status, asked.quaternion_normalised);
+    return &refused_;
   }
-  const Remembered& last = remembered_[*index];
-  if (last.valid && last.pose == pose_bits(asked.pose)) {
-    outcomes_[i] = last.outcome;
-    outcomes_[i].unchanged = true;
-    return;
+  Remembered& last = remembered_[*index];
+  if (last.valid && same(last.pose, pose_bits(asked.pose))) {
+    last.outcome.unchanged = true;
+    return &last.outcome;
   }
-  const Body& body = scene_->bodies()[*index];
-  if (is_answered_by_bounds(body.solver,
-                            immersion_at_a_glance(body.solver.mesh(), asked.pose, scene_->water()))) {
-    outcomes_[i] = evaluate(body, scene_->water(), asked);
-    remember(*index, asked.pose, outcomes_[i]);
-    return;
+  if (evaluate_by_bounds(scene_->bodies()[*index], scene_->water(), asked, last.outcome)) {
+    last.evaluated_at(asked.pose);
+    return &last.outcome;
   }
-  pending_.push_back({i, *index, asked});
+  pending_.push_back({.state = i, .body = *index, .asked = asked, .outcome = {}});
+  return nullptr;
 }
 
 void BodyAnswers::compute_pending() {
   double work = 0.0;
   for (const Pending& pending : pending_) work += expected_time_[pending.body];
   const auto compute = [this](std::size_t n) {
-    const Pending& pending = pending_[n];
-    outcomes_[pending.state] = evaluate(scene_->bodies()[pending.body], scene_->water(), pending.asked);
+    Pending& pending = pending_[n];
+    pending.outcome = evaluate(scene_->bodies()[pending.body], scene_->water(), pending.asked);
   };
   if (pending_.size() > 1 && work > kWorthSharing && workers_.threads() > 1) {
     const double each = work / static_cast<double>(pending_.size());
@@ -78,18 +94,6 @@ void BodyAnswers::compute_pending() {
   } else {
     for (std::size_t n = 0; n < pending_.size(); ++n) compute(n);
   }
-  // Afterwards and in order: a question may name a body twice.
-  for (const Pending& pending : pending_) {
-    remember(pending.body, pending.asked.pose, outcomes_[pending.state]);
-  }
-}
-
-void BodyAnswers::remember(std::size_t body, const Pose& pose, const BodyOutcome& outcome) {
-  Remembered& last = remembered_[body];
-  last.valid = outcome.wrench.status == BodyStatus::kOk;
-  if (!last.valid) return;
-  last.pose = pose_bits(pose);
-  last.outcome = outcome;
 }
 
 }  // namespace buoyancy

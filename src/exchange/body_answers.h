@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "exchange/body_exchange.h"
@@ -27,29 +28,34 @@ class BodyAnswers {
   unsigned threads() const { return workers_.threads(); }
 
  private:
-  // A body's last answer that was kOk.
+  // A body's last outcome.
   struct Remembered {
-    bool valid = false;
+    bool valid = false;  // it was kOk: the same pose gets it again
     PoseBits pose{};
     BodyOutcome outcome;
+
+    void evaluated_at(const Pose& at);  // says that outcome is this pose's
   };
   // What has to be computed.
   struct Pending {
     std::size_t state = 0;  // index into the question's bodies
     std::size_t body = 0;   // index into the scene's
     AskedPose asked;
+    BodyOutcome outcome;
   };
 
-  void answer_or_postpone(const BodyState& state, double lead_time, std::size_t i);
+  // Valid until the next call; nullptr: left to compute_pending().
+  const BodyOutcome* answer_or_postpone(const BodyState& state, double lead_time, std::size_t i);
   void compute_pending();
-  void remember(std::size_t body, const Pose& pose, const BodyOutcome& outcome);
+  // Index into the scene's bodies of the one that a question names in place i; nullopt: there is none.
+  std::optional<std::size_t> body_of(std::int32_t id, std::size_t i) const;
 
   const Scene* scene_;
   Workers workers_;
   std::vector<double> expected_time_;  // ns, by body: of a query that crosses the water, roughly
   std::vector<Remembered> remembered_;
-  std::vector<BodyOutcome> outcomes_;  // of the question at hand
-  std::vector<Pending> pending_;       // likewise
+  std::vector<Pending> pending_;  // of the question at hand
+  BodyOutcome refused_;           // of a state that names no body, or no pose
 };
 
 }  // namespace buoyancy

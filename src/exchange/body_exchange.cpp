@@ -9,9 +9,12 @@
 namespace buoyancy {
 namespace {
 
+// Without a branch for each: infinity less itself is no number.
 template <std::size_t kSize>
 bool all_finite(const std::array<double, kSize>& values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  double sum = 0.0;
+  for (const double value : values) sum += value - value;
+  return sum == 0.0;
 }
 
 bool all_finite(const Pose& pose) {
@@ -47,6 +50,27 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
+// In place: an outcome is large, and a scene may have thousands that say nothing.
+void write_outcome(const BuoyancyAnswer& answer, std::int32_t body_id, const AskedPose& asked,
+                   BodyOutcome& outcome) {
+  outcome = {};
+  outcome.wrench.body_id = body_id;
+  outcome.wrench.status = as_body_status(answer.status);
+  outcome.quaternion_normalised = asked.quaternion_normalised;
+  if (answer.status != BuoyancyStatus::kOk) return;
+  outcome.immersion = answer.immersion;
+  if (answer.immersion == Immersion::kDry) return;  // zeros
+  outcome.dropped_force = answer.dropped_force;
+  outcome.dropped_torque = answer.dropped_torque;
+  BodyWrench& wrench = outcome.wrench;
+  wrench.force = as_array(answer.force_W);
+  wrench.torque = as_array(answer.torque_W);
+  wrench.submerged_volume = answer.volume;
+  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
+  wrench.force_error_bound = answer.force_error_bound;
+  wrench.torque_error_bound = answer.torque_error_bound;
+}
+
 }  // namespace
 
 AskedPose asked_pose(const BodyState& state, double lead_time) {
@@ -69,8 +93,8 @@ AskedPose asked_pose(const BodyState& state, double lead_time) {
   if (lead_time != 0.0) {
     asked.pose =
         extrapolate(asked.pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
+    if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
   }
-  if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
   return asked;
 }
 
@@ -78,6 +102,12 @@ PoseBits pose_bits(const Pose& pose) {
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   return {bits(pose.p_WB.x()), bits(pose.p_WB.y()), bits(pose.p_WB.z()), bits(pose.q_WB.w()),
           bits(pose.q_WB.x()), bits(pose.q_WB.y()), bits(pose.q_WB.z())};
+}
+
+bool same(const PoseBits& a, const PoseBits& b) {
+  std::uint64_t difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
+  return difference == 0;
 }
 
 BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised) {
@@ -89,20 +119,15 @@ BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternio
 }
 
 BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked) {
-  const BuoyancyAnswer answer = buoyancy(body.solver, asked.pose, water, body.reference_B);
-  BodyOutcome outcome = not_answered(body.id, as_body_status(answer.status), asked.quaternion_normalised);
-  if (answer.status != BuoyancyStatus::kOk) return outcome;
-  outcome.immersion = answer.immersion;
-  outcome.dropped_force = answer.dropped_force;
-  outcome.dropped_torque = answer.dropped_torque;
-  BodyWrench& wrench = outcome.wrench;
-  wrench.force = as_array(answer.force_W);
-  wrench.torque = as_array(answer.torque_W);
-  wrench.submerged_volume = answer.volume;
-  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
-  wrench.force_error_bound = answer.force_error_bound;
-  wrench.torque_error_bound = answer.torque_error_bound;
+  BodyOutcome outcome;
+  write_outcome(buoyancy(body.solver, asked.pose, water, body.reference_B), body.id, asked, outcome);
   return outcome;
+}
+
+bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome) {
+  const auto answer = buoyancy_by_bounds(body.solver, asked.pose, water, body.reference_B);
+  if (answer) write_outcome(*answer, body.id, asked, outcome);
+  return answer.has_value();
 }
 
 void count(const BodyOutcome& outcome, Counters& counters) {

@@ -31,6 +31,7 @@ AskedPose asked_pose(const BodyState& state, double lead_time);
 // Two poses are the same if these are: the bits of p_WB and q_WB.
 using PoseBits = std::array<std::uint64_t, 7>;
 PoseBits pose_bits(const Pose& pose);
+bool same(const PoseBits& a, const PoseBits& b);
 
 // A wrench, and what the status counts of it.
 struct BodyOutcome {
@@ -46,6 +47,9 @@ struct BodyOutcome {
 BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised = false);
 // asked.status: kOk. Allocates nothing.
 BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked);
+// The same where the body's bounds alone say it (buoyancy_by_bounds); false: they do not, outcome is as it
+// was.
+bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome);
 void count(const BodyOutcome& outcome, Counters& counters);
 
 // The hydrostatics of a body whose outputs name them, at the pose of its wrench. status: of that wrench;

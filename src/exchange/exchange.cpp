@@ -117,7 +117,7 @@ void Exchange::compute_hydrostatics() {
     LastHydrostatics& last = last_hydrostatics_[*index];
     const Pose pose = asked_pose(state, question_.lead_time).pose;
     const PoseBits bits = pose_bits(pose);
-    if (status != BodyStatus::kOk || !last.valid || last.pose != bits) {
+    if (status != BodyStatus::kOk || !last.valid || !same(last.pose, bits)) {
       last.hydrostatics =
           hydrostatics_of_body(scene_->bodies()[*index], scene_->water(), pose, status, counters_);
       last.pose = bits;

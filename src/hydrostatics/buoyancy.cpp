@@ -60,18 +60,29 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Di
   return {force, force * lever};
 }
 
+// q v q* / |q|^2: no square root for a quaternion of any norm. In named scalars, since a scene of many bodies
+// waits for Eigen's arrays to be stored and read again.
+Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, const Vec3& v) {
+  const Point<double> u{q.x(), q.y(), q.z()};
+  const Point<double> p = Point<double>::from(v);
+  const Point<double> across = cross(u, p);
+  return p + two_by_norm_squared * (q.w() * across + cross(u, across));
+}
+
 // The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
 void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
                        const Vec3& reference_B, BuoyancyAnswer& answer) {
   const double weight = water.density * water.gravity;  // N/m^3
-  const Eigen::Quaterniond q_WB = pose.q_WB.normalized();
+  const Eigen::Quaterniond& q = pose.q_WB;
+  const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
+  const auto up = Point<double>::from(water.up_W);
   // In this order: a reference point near the body, both far from B's origin, loses nothing.
   const Vec3 lever_B = (mesh.center_B - reference_B) + mesh.centroid;
   answer.volume = mesh.volume;
   answer.force_W = (weight * mesh.volume) * water.up_W;
-  const Vec3 torque_W = (weight * mesh.volume) * (q_WB * lever_B).cross(water.up_W);
-  answer.torque_W = torque_W - water.up_W.dot(torque_W) * water.up_W;
-  answer.center_of_buoyancy_W = q_WB * (mesh.center_B + mesh.centroid);
+  const Point<double> torque_W = (weight * mesh.volume) * cross(rotate(q, two_by_norm_squared, lever_B), up);
+  answer.torque_W = (torque_W - dot(up, torque_W) * up).vec3();
+  answer.center_of_buoyancy_W = rotate(q, two_by_norm_squared, mesh.center_B + mesh.centroid).vec3();
   answer.force_error_bound = weight * mesh.rounding_bound();
   answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
 }
@@ -117,35 +128,52 @@ BuoyancyAnswer not_answered(BuoyancyStatus status, Immersion where) {
   return answer;
 }
 
-}  // namespace
-
+// True where immersion says enough for an answer: a dry body, or a wholly wet one with `hierarchical`.
 bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
   return immersion == Immersion::kDry ||
          (immersion == Immersion::kWet && solver.method() == Method::kHierarchical);
 }
 
-BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  const HydrostaticMesh& mesh = solver.mesh();
-  BuoyancyAnswer answer;
-  answer.immersion = immersion_at_a_glance(mesh, pose, water);
-  if (!is_answered_by_bounds(solver, answer.immersion)) {
-    const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-    if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
-      return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
-    }
-    answer.immersion = immersion(mesh, plane);
-    if (answer.immersion != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
-      return not_answered(BuoyancyStatus::kOpenEdgeWet, answer.immersion);
-    }
-    if (!is_answered_by_bounds(solver, answer.immersion)) {
-      answer_from_displacement(solver, plane, pose, water, reference_B, answer);
-      if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, answer.immersion);
-      return answer;
-    }
+// Of such a body; answer: as constructed.
+void answer_by_bounds(const Solver& solver, Immersion immersion, const Pose& pose, const Water& water,
+                      const Vec3& reference_B, BuoyancyAnswer& answer) {
+  answer.immersion = immersion;
+  if (immersion == Immersion::kDry) return;  // nothing to sum: every method says zero, exactly
+  answer_wholly_wet(solver.mesh(), pose, water, reference_B, answer);
+  if (!finite(answer)) answer = not_answered(BuoyancyStatus::kOutOfRange, immersion);
+}
+
+}  // namespace
+
+std::optional<BuoyancyAnswer> buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water,
+                                                 const Vec3& reference_B) {
+  const Immersion glance = immersion_at_a_glance(solver.mesh(), pose, water);
+  std::optional<BuoyancyAnswer> answer;
+  if (is_answered_by_bounds(solver, glance)) {
+    answer_by_bounds(solver, glance, pose, water, reference_B, answer.emplace());
   }
-  if (answer.immersion == Immersion::kDry) return answer;  // nothing to sum: every method says zero, exactly
-  answer_wholly_wet(mesh, pose, water, reference_B, answer);
-  if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, answer.immersion);
+  return answer;
+}
+
+BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
+  if (const auto answer = buoyancy_by_bounds(solver, pose, water, reference_B)) return *answer;
+  const HydrostaticMesh& mesh = solver.mesh();
+  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+  if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
+    return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
+  }
+  const Immersion where = immersion(mesh, plane);
+  if (where != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
+    return not_answered(BuoyancyStatus::kOpenEdgeWet, where);
+  }
+  BuoyancyAnswer answer;
+  if (is_answered_by_bounds(solver, where)) {
+    answer_by_bounds(solver, where, pose, water, reference_B, answer);
+    return answer;
+  }
+  answer.immersion = where;
+  answer_from_displacement(solver, plane, pose, water, reference_B, answer);
+  if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, where);
   return answer;
 }
 

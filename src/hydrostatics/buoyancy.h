@@ -2,6 +2,8 @@
 // end in.
 #pragma once
 
+#include <optional>
+
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/solver.h"
 
@@ -24,18 +26,21 @@ struct BuoyancyAnswer {
   double dropped_torque = 0.0;  // exact methods: |part of torque along up| / (rho g V_T L), likewise
 };
 
-// True where immersion says enough for an answer: a dry body, or a wholly wet one with `hierarchical`.
-bool is_answered_by_bounds(const Solver& solver, Immersion immersion);
-
 // pose: finite, quaternion not zero. reference_B: m, the point that torque is about.
 // Anything but kOk leaves force, torque, volume and centre zero. Allocates nothing. A dry body costs its
 // bounds alone, whatever the method; so does a wholly wet one with `hierarchical`.
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
 // health figure). Their bounds are rho g times HydrostaticMesh::rounding_bound(), of torque times L_r; of
-// `exact` and `exact_surface` times 1 + 3 depth/L; of `hierarchical` with what the leaves that are cut add.
+// `exact` and `exact_surface` times 1 + 3 depth/L; of slender bodies and thin faces with what those that are
+// cut add.
 // Those of the approximations, and of `hierarchical` within a tolerance, add what was left out
 // (docs/mathematics.md, "Error bounds").
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
+
+// What buoyancy() answers, where immersion_at_a_glance() says enough for it: of a dry body, and with
+// `hierarchical` of a wholly wet one. nullopt: it takes more. O(1).
+std::optional<BuoyancyAnswer> buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water,
+                                                 const Vec3& reference_B);
 
 }  // namespace buoyancy

@@ -12,7 +12,9 @@ Displacement exact(const HydrostaticMesh& mesh, const WaterPlane& plane) {
       mesh, plane, [o](VolumeElements& block, const auto& a, const auto& b, const auto& c) {
         block.add(a.y, b.y, c.y, o);
       });
-  return displacement_of_volume(sum.volume(), sum.moment(apex), plane);
+  Displacement result = displacement_of_volume(sum.volume(), sum.moment(apex), plane);
+  result.rounding = rounding_of_cut_faces(mesh, plane);
+  return result;
 }
 
 }  // namespace buoyancy

@@ -10,7 +10,9 @@ Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane)
   const auto sum = sum_over_whole_wet_surface<PressureElements>(
       mesh, plane,
       [k](PressureElements& block, const auto& a, const auto& b, const auto& c) { block.add(a, b, c, k); });
-  return sum.displacement(plane);
+  Displacement result = sum.displacement(plane);
+  result.rounding = rounding_of_cut_faces(mesh, plane);
+  return result;
 }
 
 }  // namespace buoyancy

@@ -49,7 +49,7 @@ struct HydrostaticMesh {
   // body thinner than some 1 : 50 across the axes is known less well by as much.
   bool holds_gate() const;
   // What is published as a bound on rounding, m^3: 2 eps (64 V_T + L A_r), less than 4 G_V where that is
-  // promised; elsewhere `hierarchical` adds to it for the leaves that are cut (Displacement::rounding).
+  // promised; elsewhere the exact methods add to it for what is cut (Displacement::rounding).
   double rounding_bound() const;
   // The most that `hierarchical` publishes where it leaves nothing out, m^3: with all leaves cut. Needs the
   // tree.

@@ -26,15 +26,18 @@ Immersion immersion_at_a_glance(const HydrostaticMesh& mesh, const Pose& pose, c
   const Vec3 u = q.vec();
   const double u_squared = u.squaredNorm();
   const double w_squared = q.w() * q.w();
-  const Vec3 k =
-      ((w_squared - u_squared) * up + 2.0 * (u.dot(up) * u - q.w() * u.cross(up))) / (w_squared + u_squared);
+  // All heights times |q|^2, which spares the divisions. Where the squares overflow no comparison holds;
+  // where they underflow their margin would not be one.
+  const double norm_squared = w_squared + u_squared;
+  if (!(norm_squared > 1e-100)) return Immersion::kCrossing;
+  const Vec3 k = (w_squared - u_squared) * up + 2.0 * (u.dot(up) * u - q.w() * u.cross(up));
   const Vec3 middle = mesh.center_B + 0.5 * (mesh.box_min + mesh.box_max);
   const Vec3 half = 0.5 * (mesh.box_max - mesh.box_min);
-  const double height = up.dot(pose.p_WB) - water.level + k.dot(middle);
+  const double height = norm_squared * (up.dot(pose.p_WB) - water.level) + k.dot(middle);
   const double reach = k.cwiseAbs().dot(half);
   // k is off by at most 16 epsilon, every product and sum by half of one of its terms' sum.
-  const double margin =
-      32.0 * kEpsilon * (pose.p_WB.lpNorm<1>() + std::abs(water.level) + middle.lpNorm<1>() + mesh.diagonal);
+  const double margin = 32.0 * kEpsilon * norm_squared *
+                        (pose.p_WB.lpNorm<1>() + std::abs(water.level) + middle.lpNorm<1>() + mesh.diagonal);
   if (height - reach > margin) return Immersion::kDry;
   if (height + reach < -margin && !mesh.open()) return Immersion::kWet;
   return Immersion::kCrossing;

@@ -1,5 +1,6 @@
 #include "hydrostatics/wet_surface.h"
 
+#include <limits>
 #include <vector>
 
 namespace buoyancy {
@@ -22,6 +23,15 @@ VertexHeights vertex_heights(const TriangleMesh& surface, const WaterPlane& plan
   for (std::size_t i = 0; i < count; ++i) height[i] = dot(k, Point<double>{x[i], y[i], z[i]}) - h_c;
   for (std::size_t i = 0; i < count; ++i) is_wet[i] = height[i] < 0.0;
   return {height, is_wet};
+}
+
+double rounding_of_cut_faces(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  if (mesh.holds_gate()) return 0.0;
+  // The longest edge of HydrostaticMesh's triangles lies opposite their first corner.
+  const auto edges_squared = sum_over_wet_surface<double>(
+      mesh, plane, [](double&, const auto&, const auto&, const auto&) {},
+      [](double& sum, const auto&, const auto& b, const auto& c) { sum += dot(c.y - b.y, c.y - b.y); });
+  return std::numeric_limits<double>::epsilon() * mesh.diagonal * edges_squared;
 }
 
 }  // namespace buoyancy

@@ -95,4 +95,11 @@ Sum sum_over_whole_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& pl
       });
 }
 
+// What `exact` and `exact_surface` publish beside the mesh's rounding_bound(), m^3: 0 where the gate is
+// promised, else eps L sum (longest edge)^2 of the triangles that are cut. The area of what is left of one
+// may be a product of two such edges, with an error of 1.5 eps of it; a sixth of that, for each of two
+// triangles, times a distance from the apex of at most 2 L. O(vertices + triangles), of slender bodies and
+// thin faces alone.
+double rounding_of_cut_faces(const HydrostaticMesh& mesh, const WaterPlane& plane);
+
 }  // namespace buoyancy

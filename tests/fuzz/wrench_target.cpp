@@ -207,7 +207,7 @@ void check_hydrostatics(const Case& asked, const Subject& subject, const TrueWre
       "hydrostatics are numbers");
   if (truth == nullptr) return;
   check_within("volume", Method::kHierarchical, truth->volume_error(found->volume),
-               subject.mesh.rounding_bound());
+               subject.mesh.largest_rounding_bound());
 }
 
 void check(FuzzBytes bytes) {
