@@ -53,7 +53,8 @@ BodyStatus as_body_status(BuoyancyStatus status) {
 // In place: an outcome is large, and a scene may have thousands that say nothing.
 void write_outcome(const BuoyancyAnswer& answer, std::int32_t body_id, const AskedPose& asked,
                    BodyOutcome& outcome) {
-  outcome = {};
+  static constexpr BodyOutcome kNothing{};
+  outcome = kNothing;
   outcome.wrench.body_id = body_id;
   outcome.wrench.status = as_body_status(answer.status);
   outcome.quaternion_normalised = asked.quaternion_normalised;

@@ -78,11 +78,14 @@ void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Wate
   const auto up = Point<double>::from(water.up_W);
   // In this order: a reference point near the body, both far from B's origin, loses nothing.
   const Vec3 lever_B = (mesh.center_B - reference_B) + mesh.centroid;
+  const Vec3 centroid_B = mesh.center_B + mesh.centroid;
+  const Point<double> lever_W = rotate(q, two_by_norm_squared, lever_B);
+  const Point<double> torque_W = (weight * mesh.volume) * cross(lever_W, up);
   answer.volume = mesh.volume;
   answer.force_W = (weight * mesh.volume) * water.up_W;
-  const Point<double> torque_W = (weight * mesh.volume) * cross(rotate(q, two_by_norm_squared, lever_B), up);
   answer.torque_W = (torque_W - dot(up, torque_W) * up).vec3();
-  answer.center_of_buoyancy_W = rotate(q, two_by_norm_squared, mesh.center_B + mesh.centroid).vec3();
+  answer.center_of_buoyancy_W =
+      (lever_B == centroid_B ? lever_W : rotate(q, two_by_norm_squared, centroid_B)).vec3();
   answer.force_error_bound = weight * mesh.rounding_bound();
   answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
 }
