@@ -342,7 +342,7 @@ TEST_F(Replay, FailsWith1WhereTheOutputCannotBeWritten) {
 
 TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
   write("scene.toml",
-        "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [100, 100, 100] }\n"
+        "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [20, 20, 20] }\n"
         "method = \"exact\"\n");
   std::string poses = kPoseHeader;
   for (int i = 0; i < 200'000; ++i) poses += pose_row(i, 1e-5 * i);
