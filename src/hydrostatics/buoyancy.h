@@ -32,9 +32,8 @@ struct BuoyancyAnswer {
 //
 // Exact methods publish F = rho g V up and a torque without component along up (design: what they drop is a
 // health figure). Their bounds are rho g times HydrostaticMesh::rounding_bound(), of torque times L_r; of
-// `exact` and `exact_surface` times 1 + 3 depth/L; of slender bodies and thin faces with what those that are
-// cut add.
-// Those of the approximations, and of `hierarchical` within a tolerance, add what was left out
+// `exact` and `exact_surface` times 1 + 3 depth/L; of slender bodies and thin faces with what the cut faces
+// add. Those of the approximations, and of `hierarchical` within a tolerance, add what was left out
 // (docs/mathematics.md, "Error bounds").
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
