@@ -161,7 +161,7 @@ std::optional<BuoyancyAnswer> buoyancy_by_bounds(const Solver& solver, const Pos
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
   if (const auto answer = buoyancy_by_bounds(solver, pose, water, reference_B)) return *answer;
   const HydrostaticMesh& mesh = solver.mesh();
-  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+  const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
     return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
   }

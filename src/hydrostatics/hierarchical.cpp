@@ -57,6 +57,12 @@ AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
   return {k_N + z_c * moments.S, k_P + z_c * N, k.dot(k_P) + z_c * (2.0 * k_N + z_c * moments.S)};
 }
 
+// m^2: where heights are off by d, volume and torque/(rho g L_r) are by at most this times d. No section of a
+// body is larger than half its surface, and k, off by d / L, turns the lever of V_T.
+double sensitivity(const HydrostaticMesh& mesh) {
+  return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
+}
+
 Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
                       const HydrostaticMesh& mesh) {
   const Vec3& k = plane.up_B;
@@ -79,6 +85,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
     wet.height += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
     result.left_out = rest.error;
   }
+  if (plane.error > 0.0) result.left_out += sensitivity(mesh) * plane.error;
   if (!mesh.holds_gate()) result.rounding = kEpsilon * sum.rounding;
 
   // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;
@@ -93,7 +100,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
   return result;
 }
 
-// m^3: what may be left undecided so that with the rounding all stays within the tolerance. Bounds are
+// m^3: what may be left out so that with the rounding all stays within the tolerance. Bounds are
 // held in float32: sizes beyond its range are answered exactly.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
@@ -101,6 +108,13 @@ double budget(const HydrostaticMesh& mesh, double tolerance) {
 }
 
 }  // namespace
+
+double plane_error_within(const HydrostaticMesh& mesh, double tolerance) {
+  constexpr double kShare = 0.01;
+  // Whether an open edge is wet is asked of the plane itself.
+  if (!(tolerance > 0.0) || mesh.open()) return 0.0;
+  return kShare * budget(mesh, tolerance) / sensitivity(mesh);
+}
 
 Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, double tolerance) {
   const MomentTree& tree = *mesh.tree;
@@ -113,7 +127,9 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
       break;
   }
   TreeQuery query = make_tree_query(tree, plane);
-  query.budget = tolerance > 0.0 ? budget(mesh, tolerance) : 0.0;
+  if (tolerance > 0.0) {
+    query.budget = std::max(budget(mesh, tolerance) - sensitivity(mesh) * plane.error, 0.0);
+  }
   query.half_diagonal = 0.5 * mesh.diagonal;
   return read_out(sum_wet_tree(tree, query), query, plane, mesh);
 }

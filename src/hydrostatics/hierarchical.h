@@ -27,4 +27,8 @@ namespace buoyancy {
 // largest_rounding_bound() / V_T it is as 0.
 Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, double tolerance = 0.0);
 
+// m: how far the plane's heights over the body may be off (WaterPlane::error) so that this costs a hundredth
+// of the tolerance at most; 0 where it has to be exact. It is counted in the bound.
+double plane_error_within(const HydrostaticMesh& mesh, double tolerance);
+
 }  // namespace buoyancy

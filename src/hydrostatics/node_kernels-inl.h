@@ -69,12 +69,13 @@ struct ChildMasks {
   std::uint32_t wet, crossing;
 };
 
-HWY_INLINE std::uint32_t present_children(const TreeNode& node) {
-  return (1U << node.children) - 1U;
+// A bit for each of the first `count` of eight.
+HWY_INLINE std::uint32_t first_bits(std::size_t count) {
+  return (1U << std::min(count, std::size_t{kTreeWidth})) - 1U;
 }
 
 HWY_INLINE ChildMasks child_masks(const TreeNode& node, std::uint32_t wet, std::uint32_t dry) {
-  const std::uint32_t present = present_children(node);
+  const std::uint32_t present = first_bits(node.children);
   return {wet & present, ~(wet | dry) & present};
 }
 
@@ -85,45 +86,50 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return bits[0];
 }
 
-// append_places writes first + i for every bit i of the mask, in order, append_children child[i]; behind them
-// anything, room for kTreeWidth in all. They return how many. leaf_children: a bit for
-// each.
+// append writes those of eight items whose bit in the mask is set, in order, append_places first + i for
+// every bit i; behind them anything, room for kTreeWidth in all. They return how many. leaf_bits: a bit for
+// each of eight children that is a leaf.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
-using ChildWords = hn::FixedTag<std::uint32_t, kTreeWidth>;
+template <class T>
+using EightOf = hn::FixedTag<T, kTreeWidth>;
 
-HWY_INLINE std::size_t append_words(hn::Vec<ChildWords> words, std::uint32_t mask, std::uint32_t* to) {
-  const ChildWords d;
-  hn::StoreU(hn::Compress(words, hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&mask))), d, to);
+template <class D>
+HWY_INLINE std::size_t append_lanes(D d, hn::Vec<D> items, std::uint32_t mask, hn::TFromD<D>* to) {
+  hn::StoreU(hn::Compress(items, hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&mask))), d, to);
   return static_cast<std::size_t>(__builtin_popcount(mask));
 }
+template <class T>
+HWY_INLINE std::size_t append(const T* from, std::uint32_t mask, T* to) {
+  const EightOf<T> d;
+  return append_lanes(d, hn::LoadU(d, from), mask, to);
+}
 HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
-  const ChildWords d;
-  return append_words(hn::Add(hn::Iota(d, 0), hn::Set(d, first)), mask, to);
+  const EightOf<std::uint32_t> d;
+  return append_lanes(d, hn::Add(hn::Iota(d, 0), hn::Set(d, first)), mask, to);
 }
-HWY_INLINE std::size_t append_children(const TreeNode& node, std::uint32_t mask, std::uint32_t* to) {
-  return append_words(hn::Load(ChildWords(), node.child.data()), mask, to);
-}
-HWY_INLINE std::uint32_t leaf_children(const TreeNode& node) {
-  const hn::FixedTag<std::int32_t, kTreeWidth> d;
-  return mask_bits(d, hn::Lt(hn::BitCast(d, hn::Load(ChildWords(), node.child.data())), hn::Zero(d)));
+HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
+  const EightOf<std::int32_t> d;
+  const EightOf<std::uint32_t> words;
+  return mask_bits(d, hn::Lt(hn::BitCast(d, hn::LoadU(words, children)), hn::Zero(d)));
 }
 
 #else
 
+template <class T>
+HWY_INLINE std::size_t append(const T* from, std::uint32_t mask, T* to) {
+  std::size_t count = 0;
+  for (; mask != 0; mask &= mask - 1) to[count++] = from[__builtin_ctz(mask)];
+  return count;
+}
 HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, std::uint32_t* to) {
   std::size_t count = 0;
   for (; mask != 0; mask &= mask - 1) to[count++] = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
   return count;
 }
-HWY_INLINE std::size_t append_children(const TreeNode& node, std::uint32_t mask, std::uint32_t* to) {
-  std::size_t count = 0;
-  for (; mask != 0; mask &= mask - 1) to[count++] = node.child[static_cast<std::size_t>(__builtin_ctz(mask))];
-  return count;
-}
-HWY_INLINE std::uint32_t leaf_children(const TreeNode& node) {
+HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
   std::uint32_t leaves = 0;
-  for (std::size_t i = 0; i < kTreeWidth; ++i) leaves |= node.child[i] >> 31U << i;
+  for (std::size_t i = 0; i < kTreeWidth; ++i) leaves |= children[i] >> 31U << i;
   return leaves;
 }
 
@@ -141,10 +147,9 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
   return child_masks(node, wet, dry);
 }
 
-// What is known of a node's children while they are undecided (undecided_node.h).
+// What is known of a node's children while they are undecided, as in UndecidedNodes.
 struct alignas(32) UndecidedChildren {
-  std::array<float, kTreeWidth> below, above;       // m
-  std::array<float, kTreeWidth> error, line_error;  // m^3
+  std::array<float, kTreeWidth> below, above, error, curved;
 };
 
 template <class D>
@@ -200,10 +205,91 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
     hn::Store(below, d, children.below.data() + i);
     hn::Store(above, d, children.above.data() + i);
     const auto area = hn::Mul(scale, load_upper_halves(d, node.projected_area[a], i));
-    hn::Store(hn::Mul(area, errors.line), d, children.line_error.data() + i);
     hn::Store(hn::Mul(area, hn::Min(errors.line, errors.curved)), d, children.error.data() + i);
+    hn::Store(hn::IfThenElseZero(hn::Lt(errors.curved, errors.line), hn::Set(d, 1.0F)), d,
+              children.curved.data() + i);
   }
   return child_masks(node, wet, dry);
+}
+
+HWY_INLINE void append_undecided(const TreeNode& node, std::uint32_t mask, const UndecidedChildren& children,
+                                 UndecidedNodes& nodes) {
+  const std::size_t at = nodes.size;
+  append(node.child.data(), mask, nodes.child.data() + at);
+  append(children.below.data(), mask, nodes.below.data() + at);
+  append(children.above.data(), mask, nodes.above.data() + at);
+  append(children.error.data(), mask, nodes.error.data() + at);
+  append(children.curved.data(), mask, nodes.curved.data() + at);
+  append(node.center_x.data(), mask, nodes.center[0].data() + at);
+  append(node.center_y.data(), mask, nodes.center[1].data() + at);
+  append(node.center_z.data(), mask, nodes.center[2].data() + at);
+  nodes.size += append_places(mask, node.first_moments, nodes.moments.data() + at);
+}
+
+// Keeps those of eight nodes, from `from` on, whose bit in the mask is set: writes them from nodes.size on,
+// which is no farther.
+HWY_INLINE void keep_undecided(UndecidedNodes& nodes, std::size_t from, std::uint32_t mask) {
+  const std::size_t at = nodes.size;
+  for (auto* const numbers : {&nodes.below, &nodes.above, &nodes.error, &nodes.curved, &nodes.center[0],
+                              &nodes.center[1], &nodes.center[2]}) {
+    append(numbers->data() + from, mask, numbers->data() + at);
+  }
+  append(nodes.child.data() + from, mask, nodes.child.data() + at);
+  nodes.size += append(nodes.moments.data() + from, mask, nodes.moments.data() + at);
+}
+
+// What has to be known of nodes to decide which of them stay undecided. m^3, but for `leaves`.
+struct ErrorSurvey {
+  // Limits to one node's error, in equal shares of what is left of the budget.
+  static constexpr std::array<float, 5> kLimits{1.5F, 2.0F, 3.0F, 4.5F, 7.0F};
+
+  float share = 0.0F;
+  double all = 0.0;                            // errors together
+  std::array<float, kLimits.size()> within{};  // those within a limit, together; float32 rounds
+  std::size_t leaves = 0;                      // how many of the nodes are
+};
+
+// nodes: one or more.
+HWY_INLINE ErrorSurvey survey_errors(UndecidedNodes& nodes, double left) {
+  const Reals d;
+  const hn::Rebind<float, Reals> narrow;
+  std::fill_n(nodes.error.data() + nodes.size, kTreeWidth, 0.0F);
+  auto all = hn::Zero(d);
+  hn::Vec<decltype(narrow)> within[ErrorSurvey::kLimits.size()];
+  for (auto& sum : within) sum = hn::Zero(narrow);
+  ErrorSurvey survey;
+  survey.share = static_cast<float>(left / static_cast<double>(nodes.size));
+  for (std::size_t first = 0; first < nodes.size; first += kTreeWidth) {
+    for (std::size_t i = first; i < first + kTreeWidth; i += hn::Lanes(d)) {
+      const auto error = hn::LoadU(narrow, nodes.error.data() + i);
+      all = hn::Add(all, hn::PromoteTo(d, error));
+      for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
+        const auto fits = hn::Le(error, hn::Set(narrow, ErrorSurvey::kLimits[limit] * survey.share));
+        within[limit] = hn::Add(within[limit], hn::IfThenElseZero(fits, error));
+      }
+    }
+    const std::uint32_t leaves = leaf_bits(nodes.child.data() + first) & first_bits(nodes.size - first);
+    survey.leaves += static_cast<std::size_t>(__builtin_popcount(leaves));
+  }
+  survey.all = hn::GetLane(hn::SumOfLanes(d, all));
+  for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
+    survey.within[limit] = hn::GetLane(hn::SumOfLanes(narrow, within[limit]));
+  }
+  return survey;
+}
+
+// m^3: to the error of one node that stays undecided, so that all fit into what is left. Where most are
+// leaves, behind which there is nothing to save for, as many as fit; else those that need no more than their
+// share.
+HWY_INLINE float limit_to_errors(const ErrorSurvey& survey, std::size_t nodes, double left) {
+  float limit = 0.999999F * survey.share;
+  if (2 * survey.leaves > nodes) {
+    for (std::size_t i = 0; i < survey.within.size(); ++i) {
+      if (static_cast<double>(survey.within[i]) <= 0.999 * left)
+        limit = ErrorSurvey::kLimits[i] * survey.share;
+    }
+  }
+  return limit;
 }
 
 // How the ten moments of axis a are held in vectors: those of its line, then two of the last line. Vectors of
@@ -225,6 +311,11 @@ class AxisVectors {
                             : hn::LoadU(Reals(), from + rest_ + (vector - kInLine) * kLanes);
   }
 
+  HWY_INLINE void prefetch(const NodeMoments& moments) const {
+    __builtin_prefetch(moments.values.data() + line_);
+    __builtin_prefetch(moments.values.data() + NodeMoments::kLastLine);
+  }
+
   struct alignas(64) Values {
     std::array<double, kVectors * kLanes> values{};
   };
@@ -240,23 +331,19 @@ class AxisSums {
  public:
   HWY_INLINE explicit AxisSums(std::size_t a) : vectors_(a) {}
 
+  HWY_INLINE void prefetch(const NodeMoments& moments) const { vectors_.prefetch(moments); }
+
   // Those of moments that are listed.
   HWY_INLINE void add(const std::vector<NodeMoments>& moments, const std::uint32_t* list, std::size_t count) {
     for (std::size_t n = 0; n < count; n += kBlock) add_block(moments, list + n, std::min(kBlock, count - n));
   }
 
-  HWY_INLINE void add_weighted(const NodeMoments& moments, double weight) {
-    const Reals d;
-    const auto factor = hn::Set(d, weight);
-    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
-      double* const sum = block_.values.data() + v * AxisVectors::kLanes;
-      hn::Store(hn::MulAdd(factor, vectors_.load(moments, v), hn::Load(d, sum)), d, sum);
-    }
-    if (++in_block_ == kBlock) close_block();
+  // The sums of a block.
+  HWY_INLINE void add(const RealVector (&block)[AxisVectors::kVectors]) {
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) add_compensated(v, block[v]);
   }
 
-  HWY_INLINE void finish(AxisMoments& sum) {
-    close_block();
+  HWY_INLINE void finish(AxisMoments& sum) const {
     std::size_t n = 0;
     const auto next = [&] {
       const std::size_t slot = vectors_.slot(n++);
@@ -280,7 +367,7 @@ class AxisSums {
         sum[v] = hn::Add(sum[v], vectors_.load(from, v));
       }
     }
-    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) add_compensated(v, sum[v]);
+    add(sum);
   }
 
   HWY_INLINE void add_compensated(std::size_t vector, RealVector block) {
@@ -295,59 +382,148 @@ class AxisSums {
     hn::Store(hn::Add(hn::Load(d, rest), error), d, rest);
   }
 
-  HWY_INLINE void close_block() {
-    const Reals d;
-    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
-      double* const sum = block_.values.data() + v * AxisVectors::kLanes;
-      add_compensated(v, hn::Load(d, sum));
-      hn::Store(hn::Zero(d), d, sum);
-    }
-    in_block_ = 0;
-  }
-
   AxisVectors vectors_;
-  AxisVectors::Values block_, total_, rest_;
-  std::size_t in_block_ = 0;
+  AxisVectors::Values total_, rest_;
 };
 
-// Weights with which a node's moments of axis a give int n_a dA, int z n_a dA and int z^2 n_a dA for heights
-// z over the mesh's centre.
-class CurvatureWeights {
+// What nodes contribute that stay undecided.
+class UndecidedSums {
  public:
-  explicit CurvatureWeights(const TreeQuery& query)
-      : vectors_(query.axes[0]), z_c_(-(query.h_high + query.h_low)) {
+  HWY_INLINE explicit UndecidedSums(const TreeQuery& query)
+      : vectors_(query.axes[0]),
+        z_c_(-(query.h_high + query.h_low)),
+        offsets_(query.axes[0]),
+        volume_(hn::Zero(Reals())),
+        moment_{hn::Zero(Reals()), hn::Zero(Reals()), hn::Zero(Reals())} {
     const auto& k = query.k;
-    areas_.values[vectors_.slot(0)] = 1.0;
+    one_.values[vectors_.slot(0)] = 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      firsts_.values[vectors_.slot(1 + i)] = k[i];
+      height_.values[vectors_.slot(1 + i)] = k[i];
       for (std::size_t j = i; j < 3; ++j) {
         const auto pair = static_cast<std::size_t>(kSymmetricPair[i][j]);
-        seconds_.values[vectors_.slot(4 + pair)] = (i == j ? 1.0 : 2.0) * k[i] * k[j];
+        height_squared_.values[vectors_.slot(4 + pair)] = (i == j ? 1.0 : 2.0) * k[i] * k[j];
       }
     }
   }
 
-  // int (p2 - p1) n_a dA.
-  HWY_INLINE double integral(const NodeMoments& moments, const PressureFit& fit) const {
-    const Reals d;
-    const auto area = hn::Set(d, fit.constant + z_c_ * (fit.linear + z_c_ * fit.quadratic));
-    const auto first = hn::Set(d, fit.linear + 2.0 * z_c_ * fit.quadratic);
-    const auto second = hn::Set(d, fit.quadratic);
-    auto sum = hn::Zero(d);
-    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
-      const std::size_t i = v * AxisVectors::kLanes;
-      const auto weight = hn::MulAdd(area, hn::Load(d, areas_.values.data() + i),
-                                     hn::MulAdd(first, hn::Load(d, firsts_.values.data() + i),
-                                                hn::Mul(second, hn::Load(d, seconds_.values.data() + i))));
-      sum = hn::MulAdd(weight, vectors_.load(moments, v), sum);
+  // slopes: takes their slopes times their moments.
+  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+                      AxisSums& slopes) {
+    prefetch(moments, nodes, 0, 2 * kBlock);
+    for (std::size_t first = 0; first < nodes.size; first += kBlock) {
+      prefetch(moments, nodes, first + 2 * kBlock, first + 3 * kBlock);
+      add_block(moments, nodes, first, std::min(kBlock, nodes.size - first), slopes);
     }
-    return hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+
+  HWY_INLINE void finish(UndecidedSum& sum) const {
+    const Reals d;
+    offsets_.finish(sum.offsets);
+    sum.volume = hn::GetLane(hn::SumOfLanes(d, volume_));
+    for (int i = 0; i < 3; ++i) sum.moment[i] = hn::GetLane(hn::SumOfLanes(d, moment_[i]));
   }
 
  private:
+  static constexpr std::size_t kBlock = UndecidedNodes::kMore;
+  // Of AxisVectors, those that hold S and N.
+  static constexpr std::size_t kOffsetVectors = (4 + AxisVectors::kLanes - 1) / AxisVectors::kLanes;
+
+  // Of each node p1 = slope z + offset, and p2 - p1, zero where the line serves both, as a polynomial of the
+  // height over the mesh's centre; m about c: its middle.
+  struct alignas(64) Fits {
+    std::array<double, kBlock> slope, offset, constant, linear, quadratic;
+    std::array<std::array<double, kBlock>, 3> middle;
+  };
+
+  HWY_INLINE void prefetch(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+                           std::size_t first, std::size_t end) const {
+    for (std::size_t i = first; i < std::min(end, nodes.size); ++i)
+      vectors_.prefetch(moments[nodes.moments[i]]);
+  }
+
+  // Of kBlock nodes, whatever lies behind the last.
+  HWY_INLINE void fit(const UndecidedNodes& nodes, std::size_t first, Fits& fits) const {
+    const Reals d;
+    const hn::Rebind<float, Reals> narrow;
+    const auto half = hn::Set(d, 0.5);
+    const auto z_c = hn::Set(d, z_c_);
+    for (std::size_t i = 0; i < kBlock; i += hn::Lanes(d)) {
+      const auto read = [&](const std::vector<float>& numbers) {
+        return hn::PromoteTo(d, hn::LoadU(narrow, numbers.data() + first + i));
+      };
+      const auto below = read(nodes.below);
+      const auto above = read(nodes.above);
+      const auto curved = read(nodes.curved);
+      const auto farthest = hn::Max(below, above);
+      const auto range = hn::Add(below, above);
+      const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(range, farthest));
+      const auto slope = hn::Mul(hn::Mul(below, farthest), inverse);
+      const auto offset = hn::Neg(hn::Mul(half, hn::Mul(slope, above)));
+      const auto quadratic = hn::Neg(hn::Mul(curved, hn::Mul(half, hn::Mul(range, inverse))));
+      const auto linear = hn::Mul(curved, hn::Sub(half, slope));
+      const auto constant = hn::Neg(hn::Mul(curved, hn::MulAdd(farthest, hn::Set(d, 1.0 / 16.0), offset)));
+      // From heights over the water to those over the mesh's centre.
+      const auto moved = hn::Mul(quadratic, z_c);
+      hn::Store(slope, d, fits.slope.data() + i);
+      hn::Store(offset, d, fits.offset.data() + i);
+      hn::Store(hn::MulAdd(z_c, hn::Add(linear, moved), constant), d, fits.constant.data() + i);
+      hn::Store(hn::Add(linear, hn::Add(moved, moved)), d, fits.linear.data() + i);
+      hn::Store(quadratic, d, fits.quadratic.data() + i);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        hn::Store(read(nodes.center[axis]), d, fits.middle[axis].data() + i);
+      }
+    }
+  }
+
+  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+                            std::size_t first, std::size_t count, AxisSums& slope_sums) {
+    const Reals d;
+    Fits fits;
+    fit(nodes, first, fits);
+    RealVector slopes[AxisVectors::kVectors];
+    RealVector offsets[AxisVectors::kVectors];
+    RealVector one[AxisVectors::kVectors];
+    RealVector height[AxisVectors::kVectors];
+    RealVector height_squared[AxisVectors::kVectors];
+    for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+      slopes[v] = hn::Zero(d);
+      offsets[v] = hn::Zero(d);
+      one[v] = hn::Load(d, one_.values.data() + v * AxisVectors::kLanes);
+      height[v] = hn::Load(d, height_.values.data() + v * AxisVectors::kLanes);
+      height_squared[v] = hn::Load(d, height_squared_.values.data() + v * AxisVectors::kLanes);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      const NodeMoments& node = moments[nodes.moments[first + n]];
+      const auto slope = hn::Set(d, fits.slope[n]);
+      const auto offset = hn::Set(d, fits.offset[n]);
+      const auto constant = hn::Set(d, fits.constant[n]);
+      const auto linear = hn::Set(d, fits.linear[n]);
+      const auto quadratic = hn::Set(d, fits.quadratic[n]);
+      auto volume = hn::Zero(d);  // int (p2 - p1) n_a dA
+      for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
+        const auto values = vectors_.load(node, v);
+        slopes[v] = hn::MulAdd(slope, values, slopes[v]);
+        if (v < kOffsetVectors) offsets[v] = hn::MulAdd(offset, values, offsets[v]);
+        const auto weight = hn::MulAdd(constant, one[v],
+                                       hn::MulAdd(linear, height[v], hn::Mul(quadratic, height_squared[v])));
+        volume = hn::MulAdd(weight, values, volume);
+      }
+      volume_ = hn::Add(volume_, volume);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        moment_[axis] = hn::MulAdd(hn::Set(d, fits.middle[axis][n]), volume, moment_[axis]);
+      }
+    }
+    slope_sums.add(slopes);
+    offsets_.add(offsets);
+  }
+
   AxisVectors vectors_;
-  AxisVectors::Values areas_, firsts_, seconds_;
   double z_c_;
+  AxisSums offsets_;
+  RealVector volume_;
+  RealVector moment_[3];
+  // Weights with which moments of axis a give int n_a dA, int (k . y) n_a dA and int (k . y)^2 n_a dA.
+  AxisVectors::Values one_, height_, height_squared_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -40,6 +40,22 @@ bool is_exact(Method method) {
 Solver::Solver(const HydrostaticMesh& mesh, Method method, double tolerance)
     : mesh_(&mesh), method_(method), tolerance_(tolerance) {
   if (method == Method::kFast) fast_.emplace(mesh);
+  if (method == Method::kHierarchical) plane_error_ = plane_error_within(mesh, tolerance);
+}
+
+WaterPlane Solver::plane_in_body(const Pose& pose, const Water& water) const {
+  if (plane_error_ > 0.0) {
+    const RoughWaterPlane rough = rough_water_plane_in_body(pose, water, mesh_->center_B, mesh_->diagonal);
+    if (rough.norm_squared > 1e-100 && rough.norm_squared < 1e100 &&
+        rough.error <= plane_error_ * rough.norm_squared) {
+      WaterPlane plane;
+      plane.up_B = rough.up_B / rough.norm_squared;
+      plane.h_c = rough.h_c / rough.norm_squared;
+      plane.error = rough.error / rough.norm_squared;
+      return plane;
+    }
+  }
+  return water_plane_in_body(pose, water, mesh_->center_B);
 }
 
 Displacement Solver::displacement(const WaterPlane& plane) const {

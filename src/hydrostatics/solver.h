@@ -44,6 +44,10 @@ class Solver {
 
   Displacement displacement(const WaterPlane& plane) const;
 
+  // The water as the method needs it: exact, or where a tolerance allows it in plain double, which spares a
+  // tenth of a query.
+  WaterPlane plane_in_body(const Pose& pose, const Water& water) const;
+
   const HydrostaticMesh& mesh() const { return *mesh_; }
   Method method() const { return method_; }
   double tolerance() const { return tolerance_; }
@@ -52,6 +56,7 @@ class Solver {
   const HydrostaticMesh* mesh_;
   Method method_;
   double tolerance_;
+  double plane_error_ = 0.0;  // m: as much as is allowed
   std::optional<FastTable> fast_;
 };
 

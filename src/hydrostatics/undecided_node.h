@@ -16,11 +16,12 @@
 // y_m) q d / 16 + radius q s above / 2. As L_r >= L / 2 and y_m is no higher than d / 2, both are within e
 // and e L_r with
 //   e = (d / 16 (1 + 0.36 d / (L / 2)) + s above / 2 (1.71 radius / (L / 2))) q;
-// where the line serves both, with (s above / 2) (1 + 0.71 d / (L / 2)) q, whichever is less
+// where the line serves both, with (s above / 2) (1 + 0.71 d / (L / 2)) q. Whichever is less is taken
 // (docs/mathematics.md, "Tolerance").
 #pragma once
 
-#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,49 +29,40 @@
 
 namespace buoyancy {
 
-struct UndecidedNode {
-  std::uint32_t child;   // as in TreeNode
-  std::uint32_t parent;  // index of the node whose child it is
-  std::uint32_t place;   // among the parent's children
-  float below, above;    // m, >= 0
-  float error;           // m^3: e
-  float line_error;      // m^3: where the line serves both, which is cheaper; not less than error
+// Nodes that the water may cross, side by side. Whole vectors are read and written: there is room for some
+// more than there are.
+struct UndecidedNodes {
+  static constexpr std::size_t kMore = 16;
+
+  std::size_t size = 0;
+  std::vector<std::uint32_t> child;          // as in TreeNode
+  std::vector<std::uint32_t> moments;        // index of their own
+  std::vector<float> below, above;           // m, >= 0
+  std::vector<float> error;                  // m^3: e
+  std::vector<float> curved;                 // 1: with a parabola; 0: the line serves both
+  std::array<std::vector<float>, 3> center;  // m, about c: of their bounds
+
+  void make_room(std::size_t nodes) {
+    child.resize(nodes + kMore);
+    moments.resize(nodes + kMore);
+    for (auto* const numbers : {&below, &above, &error, &curved, &center[0], &center[1], &center[2]}) {
+      numbers->resize(nodes + kMore);
+    }
+  }
 };
 
-// What a descent within a budget writes down, kept by each thread: a level holds every node at most once, and
-// whole vectors are written.
+// What a descent within a budget writes down, kept by each thread: a level holds every node at most once.
 struct BudgetLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to look into
-  std::vector<UndecidedNode> open, undecided;    // their children that the water may cross
+  UndecidedNodes open;                           // their children that the water may cross
 
   void make_room(const MomentTree& tree) {
-    if (open.size() >= tree.moments.size()) return;
+    const std::size_t nodes = tree.moments.size();
+    if (open.child.size() >= nodes + UndecidedNodes::kMore) return;
     inner.resize(tree.nodes.size() + kTreeWidth);
     next_inner.resize(tree.nodes.size() + kTreeWidth);
-    open.resize(tree.moments.size());
-    undecided.resize(tree.moments.size());
+    open.make_room(nodes);
   }
 };
-
-// p1 = slope z + offset and p2 - p1 = quadratic z^2 + linear z + constant; the latter zero where p1 serves
-// both.
-struct PressureFit {
-  double slope, offset;
-  double quadratic, linear, constant;
-};
-
-// curved: with a parabola; else the line serves both.
-inline PressureFit fit_pressure(double below, double above, bool curved) {
-  PressureFit fit{};
-  fit.slope = below / (below + above);
-  fit.offset = -0.5 * fit.slope * above;
-  if (curved) {
-    const double d = std::max(below, above);
-    fit.quadratic = -0.5 / d;
-    fit.linear = 0.5 - fit.slope;
-    fit.constant = -d / 16.0 - fit.offset;
-  }
-  return fit;
-}
 
 }  // namespace buoyancy

@@ -87,6 +87,36 @@ TEST(Tolerance, HoldsOnEveryInstructionSetAndOnLargeMeshes) {
   }
 }
 
+TEST(Tolerance, TakesTheWaterInPlainDoubleOnlyWhereThatIsFarBelowIt) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 16}), {}});
+  const Solver exactly(mesh, Method::kHierarchical);
+  const Solver within(mesh, Method::kHierarchical, 1e-6);
+  const Eigen::Quaterniond rotation = Eigen::Quaterniond(0.9, 0.1, 0.3, -0.2).normalized();
+  const auto plane_error = [&](const Solver& solver, double distance) {
+    return solver.plane_in_body({Vec3(distance, -distance, 0.3), rotation}, kUnitWater).error;
+  };
+  EXPECT_EQ(plane_error(exactly, 0.0), 0.0);
+  EXPECT_GT(plane_error(within, 0.0), 0.0);
+  EXPECT_LT(plane_error(within, 1e5), 1e-8 * mesh.diagonal);
+  EXPECT_EQ(plane_error(within, 1e9), 0.0) << "exact where plain double would be off by more";
+
+  // In all of this the bound knows of it.
+  RandomPoses random(43);
+  for (int i = 0; i < 400; ++i) {
+    Water water = kUnitWater;
+    water.up_W = random.direction();
+    const Vec3 aside = std::pow(10.0, random.uniform(0, 10)) * random.direction();
+    Pose pose{aside - (water.up_W.dot(aside) - random.uniform(-1, 1)) * water.up_W, random.rotation()};
+    const BuoyancyAnswer answer = buoyancy(within, pose, water, mesh.center_B);
+    const BuoyancyAnswer truth = buoyancy(exactly, pose, water, mesh.center_B);
+    const double gate = mesh.volume_gate();
+    EXPECT_LE((answer.force_W - truth.force_W).norm(), answer.force_error_bound + gate);
+    EXPECT_LE((answer.torque_W - truth.torque_W).norm(),
+              answer.torque_error_bound + gate * mesh.largest_lever(mesh.center_B));
+    EXPECT_LE(answer.force_error_bound, 1e-6 * mesh.volume);
+  }
+}
+
 TEST(Tolerance, OfZeroOrBelowTheRoundingGivesTheExactAnswersBits) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 16});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});

@@ -38,6 +38,32 @@ TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
   }
 }
 
+TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
+  RandomPoses random(5);
+  for (int i = 0; i < 2000; ++i) {
+    Water water;
+    water.up_W = random.direction();
+    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
+    Pose pose;
+    pose.q_WB = random.rotation();
+    pose.q_WB.coeffs() *= std::pow(10.0, random.uniform(-20, 20));
+    pose.p_WB = random.direction() * std::pow(10.0, random.uniform(-3, 9));
+    const Vec3 c_B = random.direction() * std::pow(10.0, random.uniform(-3, 6));
+    const double reach = std::pow(10.0, random.uniform(-3, 3));
+    const Vec3 y = reach * random.direction();
+
+    const RoughWaterPlane rough = rough_water_plane_in_body(pose, water, c_B, reach);
+    const double height = (rough.up_B.dot(y) - rough.h_c) / rough.norm_squared;
+
+    const Vec3T<Rational> k = exact_plane<Rational>(pose, water).up_B;
+    const Rational true_height = k.dot(c_B.cast<Rational>() + y.cast<Rational>()) +
+                                 water.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
+                                 Rational(water.level);
+    const double error = std::abs(Rational(height - true_height).convert_to<double>());
+    EXPECT_LE(error, rough.error / rough.norm_squared);
+  }
+}
+
 TEST(WaterPlane, HasTheSameBitsForQAndMinusQ) {
   RandomPoses random(2);
   for (int i = 0; i < 1000; ++i) {
