@@ -58,7 +58,8 @@ AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
 }
 
 // m^2: where heights are off by d, volume and torque/(rho g L_r) are by at most this times d. No section of a
-// body is larger than half its surface, and k, off by d / L, turns the lever of V_T.
+// body is larger than half its surface, and k, off by d / L, turns the lever of V_T; the other half is for
+// overlapping parts, of which more is turned.
 double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }

@@ -16,8 +16,8 @@ Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 // The same before the plane is known, in plain double, at a tenth of the cost of computing the plane: a scene
 // pays no more for its bodies that are out of the water or deep in it. What this calls dry or wet the other
-// calls so too. A pose that is not finite, or of a quaternion whose norm is below 1e-50 or squares to
-// infinity, is kCrossing. O(1).
+// calls so too, of the exact plane. A pose that is not finite, or of a quaternion whose norm is below 1e-50
+// or squares to infinity, is kCrossing. O(1).
 Immersion immersion_at_a_glance(const HydrostaticMesh& mesh, const Pose& pose, const Water& water);
 
 }  // namespace buoyancy

@@ -1,5 +1,6 @@
 // The SIMD kernels for the inner nodes of the moment tree: children tested eight at once, node moments
-// summed. Included once per instruction set (wet_tree_sum.cpp), after highway.h.
+// summed, and what stays undecided chosen and summed. Included once per instruction set (wet_tree_sum.cpp),
+// after highway.h.
 #if defined(BUOYANCY_NODE_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_NODE_KERNELS_INL_H
 #undef BUOYANCY_NODE_KERNELS_INL_H
@@ -244,27 +245,27 @@ struct ErrorSurvey {
   static constexpr std::array<float, 5> kLimits{1.5F, 2.0F, 3.0F, 4.5F, 7.0F};
 
   float share = 0.0F;
-  double all = 0.0;                            // errors together
-  std::array<float, kLimits.size()> within{};  // those within a limit, together; float32 rounds
-  std::size_t leaves = 0;                      // how many of the nodes are
+  double all = 0.0;                             // errors together
+  std::array<double, kLimits.size()> within{};  // those within a limit, together
+  std::size_t leaves = 0;                       // how many of the nodes are
 };
 
-// nodes: one or more.
 HWY_INLINE ErrorSurvey survey_errors(UndecidedNodes& nodes, double left) {
   const Reals d;
   const hn::Rebind<float, Reals> narrow;
   std::fill_n(nodes.error.data() + nodes.size, kTreeWidth, 0.0F);
   auto all = hn::Zero(d);
-  hn::Vec<decltype(narrow)> within[ErrorSurvey::kLimits.size()];
-  for (auto& sum : within) sum = hn::Zero(narrow);
+  RealVector within[ErrorSurvey::kLimits.size()];
+  for (RealVector& sum : within) sum = hn::Zero(d);
   ErrorSurvey survey;
-  survey.share = static_cast<float>(left / static_cast<double>(nodes.size));
+  survey.share = static_cast<float>(left / static_cast<double>(std::max<std::size_t>(nodes.size, 1)));
   for (std::size_t first = 0; first < nodes.size; first += kTreeWidth) {
     for (std::size_t i = first; i < first + kTreeWidth; i += hn::Lanes(d)) {
-      const auto error = hn::LoadU(narrow, nodes.error.data() + i);
-      all = hn::Add(all, hn::PromoteTo(d, error));
+      const auto error = hn::PromoteTo(d, hn::LoadU(narrow, nodes.error.data() + i));
+      all = hn::Add(all, error);
       for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
-        const auto fits = hn::Le(error, hn::Set(narrow, ErrorSurvey::kLimits[limit] * survey.share));
+        const float most = ErrorSurvey::kLimits[limit] * survey.share;
+        const auto fits = hn::Le(error, hn::Set(d, static_cast<double>(most)));
         within[limit] = hn::Add(within[limit], hn::IfThenElseZero(fits, error));
       }
     }
@@ -273,20 +274,19 @@ HWY_INLINE ErrorSurvey survey_errors(UndecidedNodes& nodes, double left) {
   }
   survey.all = hn::GetLane(hn::SumOfLanes(d, all));
   for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
-    survey.within[limit] = hn::GetLane(hn::SumOfLanes(narrow, within[limit]));
+    survey.within[limit] = hn::GetLane(hn::SumOfLanes(d, within[limit]));
   }
   return survey;
 }
 
 // m^3: to the error of one node that stays undecided, so that all fit into what is left. Where most are
-// leaves, behind which there is nothing to save for, as many as fit; else those that need no more than their
-// share.
+// leaves, behind which there is nothing to save for, as many as the limits allow; else those that need no
+// more than their share.
 HWY_INLINE float limit_to_errors(const ErrorSurvey& survey, std::size_t nodes, double left) {
   float limit = 0.999999F * survey.share;
   if (2 * survey.leaves > nodes) {
     for (std::size_t i = 0; i < survey.within.size(); ++i) {
-      if (static_cast<double>(survey.within[i]) <= 0.999 * left)
-        limit = ErrorSurvey::kLimits[i] * survey.share;
+      if (survey.within[i] <= 0.999999 * left) limit = ErrorSurvey::kLimits[i] * survey.share;
     }
   }
   return limit;

@@ -13,7 +13,8 @@
 // A triangle is wholly wet if its three vertices are below the water (z < 0).
 //
 // A Solver is immutable after construction: any number of threads may ask it at once. A query allocates
-// nothing. Complexity of each: O(vertices + triangles) per query.
+// nothing, but for the first within a tolerance on a tree larger than the thread has seen. Complexity of
+// each: O(vertices + triangles) per query.
 #pragma once
 
 #include <array>

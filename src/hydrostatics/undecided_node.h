@@ -43,6 +43,7 @@ struct UndecidedNodes {
   std::array<std::vector<float>, 3> center;  // m, about c: of their bounds
 
   void make_room(std::size_t nodes) {
+    if (child.size() >= nodes + kMore) return;
     child.resize(nodes + kMore);
     moments.resize(nodes + kMore);
     for (auto* const numbers : {&below, &above, &error, &curved, &center[0], &center[1], &center[2]}) {
@@ -56,12 +57,12 @@ struct BudgetLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to look into
   UndecidedNodes open;                           // their children that the water may cross
 
+  // Each on its own: of two trees one may have more nodes and the other more inner ones.
   void make_room(const MomentTree& tree) {
-    const std::size_t nodes = tree.moments.size();
-    if (open.child.size() >= nodes + UndecidedNodes::kMore) return;
-    inner.resize(tree.nodes.size() + kTreeWidth);
-    next_inner.resize(tree.nodes.size() + kTreeWidth);
-    open.make_room(nodes);
+    const std::size_t inners = tree.nodes.size() + kTreeWidth;
+    if (inner.size() < inners) inner.resize(inners);
+    if (next_inner.size() < inners) next_inner.resize(inners);
+    open.make_room(tree.moments.size());
   }
 };
 

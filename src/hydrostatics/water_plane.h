@@ -50,13 +50,13 @@ struct WaterPlane {
 WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B);
 
 // The plane in plain double, at a tenth of the cost, for whoever can do with an error that grows with the
-// distances of the pose and of c. All times |q|^2, which spares divisions; finite and within its error where
-// norm_squared is above 1e-100 and below infinity.
+// distances of the pose and of c. All times |q|^2, which spares divisions. Where norm_squared is above 1e-100
+// it is within its error, unless the squares or their products with the distances overflow.
 struct RoughWaterPlane {
-  Vec3 up_B;            // k
-  double h_c;           // m
+  Vec3 up_B;            // |q|^2 k
+  double h_c;           // m |q|^2
   double norm_squared;  // |q|^2
-  double error;         // m: no height over a point within `reach` of c is farther off
+  double error;         // m |q|^2: no height over a point within `reach` of c is farther off
 };
 
 inline RoughWaterPlane rough_water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B,

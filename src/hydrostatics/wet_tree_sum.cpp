@@ -214,41 +214,37 @@ HWY_INLINE double keep_within(float limit, UndecidedNodes& open, std::uint32_t* 
 // where there is hope: from a level to the next all errors together fall about eightfold.
 void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists, WetTreeSum& sum) {
   constexpr double kFall = 8.0;
-  constexpr double kHopeless =
-      6.0;  // times what is left: too few nodes would stay undecided to save anything
+  constexpr double kHopeless = 6.0;  // times what is left: too few would stay undecided
   Descent descent(tree, query, sum);
   UndecidedNodes& open = lists.open;
   std::uint32_t* inner = lists.inner.data();
   std::uint32_t* next_inner = lists.next_inner.data();
   std::size_t to_look_into = 0;
-
   const TreeNode& root = tree.nodes[0];
   open.size = 0;
   descent.look_into(root, open);
   double left = query.budget;
+  ErrorSurvey survey = survey_errors(open, left);
   // Errors go with the square of the size of the nodes, and so with one over their number.
   const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.leaves.size());
-  if (open.size > 0 && survey_errors(open, left).all * per_leaf > kHopeless * left) {
-    keep_within(-1.0F, open, inner, to_look_into, descent);
+  if (survey.all * per_leaf > kHopeless * left) {
+    to_look_into = descent.add_crossing(open.child.data(), first_bits(open.size), inner);
     descend_exactly(tree, inner, to_look_into, descent);
     descent.finish();
     return;
   }
 
   UndecidedSums undecided(query);
-  double error = 0.0;  // m^3: of all nodes to look into, or what may be expected
+  double error = 0.0;  // m^3: of all that did not stay undecided, or what may be expected
   for (;;) {
-    if (open.size > 0) {
-      const ErrorSurvey survey = survey_errors(open, left);
-      double kept = survey.all;
-      if (kept > left) {
-        const float limit = limit_to_errors(survey, open.size, left);
-        kept = keep_within(limit, open, next_inner, to_look_into, descent);
-        error += survey.all - kept;
-      }
-      left -= kept;
-      descent.add_undecided(open, kept, undecided);
+    double kept = survey.all;
+    if (kept > left) {
+      const float limit = limit_to_errors(survey, open.size, left);
+      kept = keep_within(limit, open, next_inner, to_look_into, descent);
+      error += survey.all - kept;
     }
+    left -= kept;
+    descent.add_undecided(open, kept, undecided);
     if (to_look_into == 0) break;
 
     std::swap(inner, next_inner);
@@ -265,6 +261,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
         to_look_into += descent.look_into(node, next_inner + to_look_into);
       }
     }
+    survey = survey_errors(open, left);
   }
   undecided.finish(sum.undecided);
   descent.finish();

@@ -8,6 +8,7 @@
 
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hierarchical.h"
+#include "hydrostatics/undecided_node.h"
 #include "hydrostatics/wet_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
@@ -114,6 +115,46 @@ TEST(Tolerance, TakesTheWaterInPlainDoubleOnlyWhereThatIsFarBelowIt) {
     EXPECT_LE((answer.torque_W - truth.torque_W).norm(),
               answer.torque_error_bound + gate * mesh.largest_lever(mesh.center_B));
     EXPECT_LE(answer.force_error_bound, 1e-6 * mesh.volume);
+  }
+}
+
+// One inside the other: the water crosses nearly all nodes, of which many are inner ones.
+TriangleMesh nested_tetrahedra(int count) {
+  TriangleMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const double size = 1.0 + 1.0 / count * i;
+    const auto first = static_cast<std::int32_t>(mesh.x.size());
+    for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(-1, -1, 1), Vec3(-1, 1, -1), Vec3(1, -1, -1)}) {
+      mesh.x.push_back(size * corner.x());
+      mesh.y.push_back(size * corner.y());
+      mesh.z.push_back(size * corner.z());
+    }
+    for (const Triangle& face :
+         {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}}) {
+      mesh.triangles.push_back({first + face[0], first + face[1], first + face[2]});
+    }
+  }
+  return mesh;
+}
+
+TEST(Tolerance, HasRoomForEveryTreeAfterOneOfMoreNodesAndFewerInnerOnes) {
+  const HydrostaticMesh wide = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 39}), {}});
+  const HydrostaticMesh deep = make_hydrostatic_mesh({nested_tetrahedra(2030), {}});
+  ASSERT_GT(wide.tree->moments.size(), deep.tree->moments.size());
+  ASSERT_LT(wide.tree->nodes.size(), deep.tree->nodes.size());
+  BudgetLists lists;
+  lists.make_room(*wide.tree);
+  lists.make_room(*deep.tree);
+  EXPECT_GE(lists.inner.size(), deep.tree->nodes.size());
+  EXPECT_GE(lists.next_inner.size(), deep.tree->nodes.size());
+
+  const Pose pose{Vec3(0, 0, 0.3), Eigen::Quaterniond::Identity()};
+  for (const HydrostaticMesh* const mesh : {&wide, &deep}) {
+    const Solver within(*mesh, Method::kHierarchical, 0.1);
+    const Solver exactly(*mesh, Method::kHierarchical);
+    const BuoyancyAnswer answer = buoyancy(within, pose, kUnitWater, Vec3::Zero());
+    const BuoyancyAnswer truth = buoyancy(exactly, pose, kUnitWater, Vec3::Zero());
+    EXPECT_LE((answer.force_W - truth.force_W).norm(), answer.force_error_bound);
   }
 }
 
