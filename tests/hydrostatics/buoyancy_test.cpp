@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "hydrostatics/immersion.h"
 #include "tests/allocation_count.h"
+#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
@@ -20,6 +23,56 @@ const HydrostaticMesh& unit_box() {
 
 Pose at_height(double z) {
   return {Vec3(0, 0, z), Eigen::Quaterniond::Identity()};
+}
+
+TEST(Immersion, AtAGlanceOrOfARoughPlaneIsCertainHoweverCloseTheBodyGrazes) {
+  const TriangleMesh source = make_shape(BoxShape{.size = {1.0, 0.7, 0.4}});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
+  const Solver within(mesh, Method::kHierarchical, 1e-2);
+  RandomPoses random(61);
+  int dry = 0;
+  int wet = 0;
+  int rough = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Water water;
+    water.up_W = i % 2 == 0 ? Vec3::UnitZ() : random.direction();
+    water.level = random.uniform(-10, 10);
+    Pose pose{std::pow(10.0, random.uniform(-1, 9)) * random.direction(), random.rotation()};
+    const bool above = i % 4 < 2;
+    const Vec3 up_B = pose.q_WB.conjugate() * water.up_W;
+    double grazing = above ? 1e300 : -1e300;
+    for (std::size_t v = 0; v < source.vertex_count(); ++v) {
+      const double height = up_B.dot(source.vertex(static_cast<std::int32_t>(v)));
+      grazing = above ? std::min(grazing, height) : std::max(grazing, height);
+    }
+    const double gap = std::pow(10.0, random.uniform(-17, -6)) * (above ? 1.0 : -1.0);
+    pose.p_WB += (water.level - water.up_W.dot(pose.p_WB) - grazing + gap) * water.up_W;
+
+    const ExactPlane<Rational> exact = exact_plane<Rational>(pose, water);
+    int below = 0;
+    for (std::size_t v = 0; v < source.vertex_count(); ++v) {
+      const Vec3T<Rational> y = source.vertex(static_cast<std::int32_t>(v)).cast<Rational>();
+      below += static_cast<int>(exact.up_B.dot(y) < exact.h);
+    }
+    const auto expect_certain = [&](Immersion immersion) {
+      if (immersion == Immersion::kDry) {
+        EXPECT_EQ(below, 0) << i;
+      } else if (immersion == Immersion::kWet) {
+        EXPECT_EQ(below, static_cast<int>(source.vertex_count())) << i;
+      }
+    };
+    const Immersion glance = immersion_at_a_glance(mesh, pose, water);
+    expect_certain(glance);
+    const WaterPlane plane = within.plane_in_body(pose, water);
+    expect_certain(immersion(mesh, plane));
+    expect_certain(immersion(mesh, water_plane_in_body(pose, water, mesh.center_B)));
+    dry += static_cast<int>(glance == Immersion::kDry);
+    wet += static_cast<int>(glance == Immersion::kWet);
+    rough += static_cast<int>(plane.error > 0.0);
+  }
+  EXPECT_GT(dry, 300);
+  EXPECT_GT(wet, 300);
+  EXPECT_GT(rough, 1000);
 }
 
 TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
