@@ -86,7 +86,6 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
     wet.height += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
     result.left_out = rest.error;
   }
-  if (plane.error > 0.0) result.left_out += sensitivity(mesh) * plane.error;
   if (!mesh.holds_gate()) result.rounding = kEpsilon * sum.rounding;
 
   // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;
@@ -128,11 +127,12 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
       break;
   }
   TreeQuery query = make_tree_query(tree, plane);
-  if (tolerance > 0.0) {
-    query.budget = std::max(budget(mesh, tolerance) - sensitivity(mesh) * plane.error, 0.0);
-  }
+  const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // m^3
+  if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
   query.half_diagonal = 0.5 * mesh.diagonal;
-  return read_out(sum_wet_tree(tree, query), query, plane, mesh);
+  Displacement result = read_out(sum_wet_tree(tree, query), query, plane, mesh);
+  result.left_out += from_plane;
+  return result;
 }
 
 }  // namespace buoyancy

@@ -231,12 +231,9 @@ HWY_INLINE void append_undecided(const TreeNode& node, std::uint32_t mask, const
 // which is no farther.
 HWY_INLINE void keep_undecided(UndecidedNodes& nodes, std::size_t from, std::uint32_t mask) {
   const std::size_t at = nodes.size;
-  for (auto* const numbers : {&nodes.below, &nodes.above, &nodes.error, &nodes.curved, &nodes.center[0],
-                              &nodes.center[1], &nodes.center[2]}) {
-    append(numbers->data() + from, mask, numbers->data() + at);
-  }
-  append(nodes.child.data() + from, mask, nodes.child.data() + at);
-  nodes.size += append(nodes.moments.data() + from, mask, nodes.moments.data() + at);
+  for (auto* const list : nodes.numbers()) append(list->data() + from, mask, list->data() + at);
+  for (auto* const list : nodes.indices()) append(list->data() + from, mask, list->data() + at);
+  nodes.size += static_cast<std::size_t>(__builtin_popcount(mask));
 }
 
 // What has to be known of nodes to decide which of them stay undecided. m^3, but for `leaves`.

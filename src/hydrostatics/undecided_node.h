@@ -42,13 +42,15 @@ struct UndecidedNodes {
   std::vector<float> curved;                 // 1: with a parabola; 0: the line serves both
   std::array<std::vector<float>, 3> center;  // m, about c: of their bounds
 
+  std::array<std::vector<std::uint32_t>*, 2> indices() { return {&child, &moments}; }
+  std::array<std::vector<float>*, 7> numbers() {
+    return {&below, &above, &error, &curved, &center[0], &center[1], &center[2]};
+  }
+
   void make_room(std::size_t nodes) {
     if (child.size() >= nodes + kMore) return;
-    child.resize(nodes + kMore);
-    moments.resize(nodes + kMore);
-    for (auto* const numbers : {&below, &above, &error, &curved, &center[0], &center[1], &center[2]}) {
-      numbers->resize(nodes + kMore);
-    }
+    for (auto* const list : indices()) list->resize(nodes + kMore);
+    for (auto* const list : numbers()) list->resize(nodes + kMore);
   }
 };
 

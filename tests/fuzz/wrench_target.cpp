@@ -52,7 +52,7 @@ const std::vector<Subject>& subjects() {
     const TriangleMesh box = make_shape(BoxShape{});
     const TriangleMesh rock = make_shape(RockShape{.frequency = 2, .roughness = 0.5, .seed = 3});
     const TriangleMesh fine_box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
-    const TriangleMesh cavity = moved_and_scaled(turned_inside_out(box), {0.125, 0, 0}, 0.5);
+    const TriangleMesh cavity = moved_and_scaled(inside_out(box), {0.125, 0, 0}, 0.5);
     std::vector<Subject> list;
     for (const TriangleMesh& mesh :
          {box, fine_box, rock, make_shape(BoxShape{.size = {1, 1, 1e-8}, .segments = {2, 2, 1}}),

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
 
 namespace buoyancy {
 
@@ -19,20 +19,6 @@ inline TriangleMesh moved_and_scaled(TriangleMesh mesh, const Vec3& by, double s
   for (double& y : mesh.y) y = y * scale + by.y();
   for (double& z : mesh.z) z = z * scale + by.z();
   return mesh;
-}
-
-inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
-  for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  return mesh;
-}
-
-inline TriangleMesh joined(TriangleMesh first, const TriangleMesh& second) {
-  const auto offset = static_cast<std::int32_t>(first.vertex_count());
-  for (std::size_t i = 0; i < second.vertex_count(); ++i)
-    first.add_vertex(second.vertex(static_cast<std::int32_t>(i)));
-  for (const Triangle& t : second.triangles)
-    first.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  return first;
 }
 
 inline std::vector<NamedMesh> closed_test_meshes() {
@@ -53,7 +39,7 @@ inline std::vector<NamedMesh> closed_test_meshes() {
       {"rock 1e3 m from its origin", moved_and_scaled(rock, {600, -800, 100})},
       {"rock 1e6 m from its origin", moved_and_scaled(rock, {6e5, -8e5, 1e5})},
       {"box with a cavity", joined(make_shape(BoxShape{.size = {2, 2, 2}, .segments = {3, 3, 3}}),
-                                   turned_inside_out(make_shape(SphereShape{.radius = 0.8, .segments = 8})))},
+                                   inside_out(make_shape(SphereShape{.radius = 0.8, .segments = 8})))},
       {"two boxes apart",
        joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 1}))},
   };

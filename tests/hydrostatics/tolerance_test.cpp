@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -123,16 +124,8 @@ TriangleMesh nested_tetrahedra(int count) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
     const double size = 1.0 + 1.0 / count * i;
-    const auto first = static_cast<std::int32_t>(mesh.x.size());
-    for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(-1, -1, 1), Vec3(-1, 1, -1), Vec3(1, -1, -1)}) {
-      mesh.x.push_back(size * corner.x());
-      mesh.y.push_back(size * corner.y());
-      mesh.z.push_back(size * corner.z());
-    }
-    for (const Triangle& face :
-         {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{1, 2, 3}}) {
-      mesh.triangles.push_back({first + face[0], first + face[1], first + face[2]});
-    }
+    mesh = joined(std::move(mesh),
+                  moved_mesh(tetrahedron_mesh(), size * Mat3::Identity(), Vec3::Constant(-0.25 * size)));
   }
   return mesh;
 }

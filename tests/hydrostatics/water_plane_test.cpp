@@ -14,51 +14,53 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+// Water, pose and centre over many orders of magnitude, and the plane that they make, exactly.
+struct FarQuestion {
+  Water water;
+  Pose pose;
+  Vec3 c_B = Vec3::Zero();
+  ExactPlane<Rational> exact;  // about c
+
+  FarQuestion(RandomPoses& random, double quaternion_norm) {
+    const auto somewhere = [&](double largest_exponent) {
+      return Vec3(random.direction() * std::pow(10.0, random.uniform(-3, largest_exponent)));
+    };
+    water.up_W = random.direction();
+    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
+    pose.q_WB = random.rotation();
+    pose.q_WB.coeffs() *= quaternion_norm;
+    pose.p_WB = somewhere(9);
+    c_B = somewhere(6);
+    exact = exact_plane<Rational>(pose, water, c_B);
+  }
+};
+
 TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
   RandomPoses random(1);
   for (int i = 0; i < 2000; ++i) {
-    Water water;
-    water.up_W = random.direction();
-    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
-    Pose pose;
-    pose.q_WB = random.rotation();
-    pose.q_WB.coeffs() *= random.uniform(0.999, 1.001);
-    pose.p_WB = random.direction() * std::pow(10.0, random.uniform(-3, 9));
-    const Vec3 c_B = random.direction() * std::pow(10.0, random.uniform(-3, 6));
+    const FarQuestion asked(random, random.uniform(0.999, 1.001));
+    const WaterPlane plane = water_plane_in_body(asked.pose, asked.water, asked.c_B);
 
-    const WaterPlane plane = water_plane_in_body(pose, water, c_B);
-
-    const Vec3T<Rational> k = exact_plane<Rational>(pose, water).up_B;
-    const Rational h_c = Rational(water.level) - water.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
-                         k.dot(c_B.cast<Rational>());
-    for (int axis = 0; axis < 3; ++axis)
-      EXPECT_LE(std::abs(Rational(plane.up_B[axis] - k[axis]).convert_to<double>()), kEpsilon);
-    const double error = std::abs(Rational(plane.h_c - h_c).convert_to<double>());
-    EXPECT_LE(error, kEpsilon * std::abs(plane.h_c) + 1e-29 * (pose.p_WB.norm() + c_B.norm()));
+    for (int axis = 0; axis < 3; ++axis) {
+      const Rational error = plane.up_B[axis] - asked.exact.up_B[axis];
+      EXPECT_LE(std::abs(error.convert_to<double>()), kEpsilon);
+    }
+    const double error = std::abs(Rational(plane.h_c - asked.exact.h).convert_to<double>());
+    EXPECT_LE(error, kEpsilon * std::abs(plane.h_c) + 1e-29 * (asked.pose.p_WB.norm() + asked.c_B.norm()));
   }
 }
 
 TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
   RandomPoses random(5);
   for (int i = 0; i < 2000; ++i) {
-    Water water;
-    water.up_W = random.direction();
-    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
-    Pose pose;
-    pose.q_WB = random.rotation();
-    pose.q_WB.coeffs() *= std::pow(10.0, random.uniform(-20, 20));
-    pose.p_WB = random.direction() * std::pow(10.0, random.uniform(-3, 9));
-    const Vec3 c_B = random.direction() * std::pow(10.0, random.uniform(-3, 6));
+    const FarQuestion asked(random, std::pow(10.0, random.uniform(-20, 20)));
     const double reach = std::pow(10.0, random.uniform(-3, 3));
     const Vec3 y = reach * random.direction();
 
-    const RoughWaterPlane rough = rough_water_plane_in_body(pose, water, c_B, reach);
+    const RoughWaterPlane rough = rough_water_plane_in_body(asked.pose, asked.water, asked.c_B, reach);
     const double height = (rough.up_B.dot(y) - rough.h_c) / rough.norm_squared;
 
-    const Vec3T<Rational> k = exact_plane<Rational>(pose, water).up_B;
-    const Rational true_height = k.dot(c_B.cast<Rational>() + y.cast<Rational>()) +
-                                 water.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
-                                 Rational(water.level);
+    const Rational true_height = asked.exact.up_B.dot(y.cast<Rational>()) - asked.exact.h;
     const double error = std::abs(Rational(height - true_height).convert_to<double>());
     EXPECT_LE(error, rough.error / rough.norm_squared);
   }

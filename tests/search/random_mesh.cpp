@@ -67,7 +67,7 @@ NamedShape random_shape(RandomPoses& random) {
     case 5:
       return {"cylinder or cone", round_shape(random)};
     case 6: {
-      const TriangleMesh cavity = turned_inside_out(random.pick(2) == 0 ? box(random) : rock(random, 0.3));
+      const TriangleMesh cavity = inside_out(random.pick(2) == 0 ? box(random) : rock(random, 0.3));
       return {"hollow box", joined(make_shape(BoxShape{.size = {3, 3, 3}, .segments = {2, 1, 2}}),
                                    moved_and_scaled(cavity, 0.3 * random.direction(), 0.7))};
     }

@@ -44,9 +44,9 @@ TEST(StressMeshPolicy, WhatIsInsideOutIsTurnedAndSaidSo) {
     bool whole;  // all of it was inside out
   };
   const std::vector<InsideOut> cases{
-      {"rock inside out", turned_inside_out(rock), rock, true},
-      {"crate inside out beside a rock", joined(rock, turned_inside_out(crate)), joined(rock, crate), false},
-      {"rock inside out beside a crate", joined(crate, turned_inside_out(rock)), joined(crate, rock), false}};
+      {"rock inside out", inside_out(rock), rock, true},
+      {"crate inside out beside a rock", joined(rock, inside_out(crate)), joined(rock, crate), false},
+      {"rock inside out beside a crate", joined(crate, inside_out(rock)), joined(crate, rock), false}};
   for (const InsideOut& one : cases) {
     const MeshValidation validation = validate(one.given);
     ASSERT_TRUE(validation.mesh) << one.name;
@@ -135,7 +135,7 @@ TEST(StressMeshPolicy, CavitiesComponentsAndShellsAddUp) {
   StressCase stress("cavities, several components, nested shells", "additivity: the parts by themselves",
                     "G_V, G_V L_r");
   const TriangleMesh hull = make_shape(BoxShape{.size = {4, 4, 4}, .segments = {2, 2, 2}});
-  const TriangleMesh hole = turned_inside_out(make_shape(BoxShape{.size = {3, 3, 3}, .segments = {2, 2, 2}}));
+  const TriangleMesh hole = inside_out(make_shape(BoxShape{.size = {3, 3, 3}, .segments = {2, 2, 2}}));
   const TriangleMesh core = make_shape(RockShape{.frequency = 3, .roughness = 0.3});
   const TriangleMesh aside = moved_and_scaled(core, {5, 1, 0.5});
   struct Parts {

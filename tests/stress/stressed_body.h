@@ -61,7 +61,7 @@ inline const std::vector<StressedBody>& stressed_bodies() {
     made.emplace_back("torus knot", make_shape(TorusKnotShape{.tubular = 40, .radial = 5}));
     made.emplace_back("box with a cavity",
                       joined(make_shape(BoxShape{.size = {2, 2, 2}, .segments = {3, 3, 3}}),
-                             turned_inside_out(make_shape(SphereShape{.radius = 0.8, .segments = 6}))));
+                             inside_out(make_shape(SphereShape{.radius = 0.8, .segments = 6}))));
     made.emplace_back("two boxes apart",
                       joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 1})));
     made.emplace_back("plate 1 : 1000", make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {6, 6, 1}}));
