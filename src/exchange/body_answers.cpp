@@ -26,7 +26,7 @@ BodyAnswers::BodyAnswers(const Scene& scene, unsigned threads)
 }
 
 void BodyAnswers::Remembered::evaluated_at(const Pose& at) {
-  valid = outcome.wrench.status == BodyStatus::kOk;
+  valid = outcome.status == BodyStatus::kOk;
   pose = pose_bits(at);
 }
 
@@ -35,15 +35,16 @@ void BodyAnswers::answer(const Question& question, std::vector<BodyWrench>& wren
   pending_.clear();
   wrenches.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) {
-    if (const BodyOutcome* outcome = answer_or_postpone(question.bodies[i], question.lead_time, i)) {
-      wrenches[i] = outcome->wrench;
+    const BodyState& state = question.bodies[i];
+    if (const BodyOutcome* outcome = answer_or_postpone(state, question.lead_time, i)) {
+      wrenches[i] = wrench_of(state.body_id, *outcome);
       count(*outcome, counters);
     }
   }
   compute_pending();
   // In order: a question may name a body twice.
   for (const Pending& pending : pending_) {
-    wrenches[pending.state] = pending.outcome.wrench;
+    wrenches[pending.state] = wrench_of(question.bodies[pending.state].body_id, pending.outcome);
     count(pending.outcome, counters);
     Remembered& last = remembered_[pending.body];
     last.outcome = pending.outcome;
@@ -60,12 +61,12 @@ std::optional<std::size_t> BodyAnswers::body_of(std::int32_t id, std::size_t i) 
 const BodyOutcome* BodyAnswers::answer_or_postpone(const BodyState& state, double lead_time, std::size_t i) {
   const std::optional<std::size_t> index = body_of(state.body_id, i);
   if (!index) {
-    refused_ = not_answered(state.body_id, BodyStatus::kUnknownBody);
+    refused_ = {.status = BodyStatus::kUnknownBody, .answer = {}};
     return &refused_;
   }
   const AskedPose asked = asked_pose(state, lead_time);
   if (asked.status != BodyStatus::kOk) {
-    refused_ = not_answered(state.body_id, asked.status, asked.quaternion_normalised);
+    refused_ = {.status = asked.status, .quaternion_normalised = asked.quaternion_normalised, .answer = {}};
     return &refused_;
   }
   Remembered& last = remembered_[*index];
@@ -86,7 +87,7 @@ void BodyAnswers::compute_pending() {
   for (const Pending& pending : pending_) work += expected_time_[pending.body];
   const auto compute = [this](std::size_t n) {
     Pending& pending = pending_[n];
-    pending.outcome = evaluate(scene_->bodies()[pending.body], scene_->water(), pending.asked);
+    evaluate(scene_->bodies()[pending.body], scene_->water(), pending.asked, pending.outcome);
   };
   if (pending_.size() > 1 && work > kWorthSharing && workers_.threads() > 1) {
     const double each = work / static_cast<double>(pending_.size());

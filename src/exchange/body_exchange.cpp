@@ -50,52 +50,37 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-// In place: an outcome is large, and a scene may have thousands that say nothing.
-void write_outcome(const BuoyancyAnswer& answer, std::int32_t body_id, const AskedPose& asked,
-                   BodyOutcome& outcome) {
-  static constexpr BodyOutcome kNothing{};
-  outcome = kNothing;
-  outcome.wrench.body_id = body_id;
-  outcome.wrench.status = as_body_status(answer.status);
+// Of what outcome.answer has become.
+void judge(const AskedPose& asked, BodyOutcome& outcome) {
+  outcome.status = as_body_status(outcome.answer.status);
   outcome.quaternion_normalised = asked.quaternion_normalised;
-  if (answer.status != BuoyancyStatus::kOk) return;
-  outcome.immersion = answer.immersion;
-  if (answer.immersion == Immersion::kDry) return;  // zeros
-  outcome.dropped_force = answer.dropped_force;
-  outcome.dropped_torque = answer.dropped_torque;
-  BodyWrench& wrench = outcome.wrench;
-  wrench.force = as_array(answer.force_W);
-  wrench.torque = as_array(answer.torque_W);
-  wrench.submerged_volume = answer.volume;
-  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
-  wrench.force_error_bound = answer.force_error_bound;
-  wrench.torque_error_bound = answer.torque_error_bound;
+  outcome.unchanged = false;
 }
 
 }  // namespace
 
 AskedPose asked_pose(const BodyState& state, double lead_time) {
   AskedPose asked;
-  const auto fail = [&asked](BodyStatus status) {
-    asked.status = status;
-    return asked;
-  };
-  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz))
-    return fail(BodyStatus::kNonFinitePose);
+  asked.status = BodyStatus::kNonFinitePose;
+  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz)) return asked;
+  asked.status = BodyStatus::kBadQuaternion;
   const double defect = norm_defect(state.quaternion_wxyz);
-  if (defect > kQuaternionTolerance) return fail(BodyStatus::kBadQuaternion);
+  if (defect > kQuaternionTolerance) return asked;
   asked.quaternion_normalised = defect > kQuaternionNoteworthy;
-  if (!std::isfinite(lead_time)) return fail(BodyStatus::kBadLeadTime);
-  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity))) {
-    return fail(BodyStatus::kNonFiniteTwist);
-  }
+  asked.status = BodyStatus::kBadLeadTime;
+  if (!std::isfinite(lead_time)) return asked;
+  asked.status = BodyStatus::kNonFiniteTwist;
+  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity)))
+    return asked;
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   asked.pose = {.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
   if (lead_time != 0.0) {
+    asked.status = BodyStatus::kOutOfRange;
     asked.pose =
         extrapolate(asked.pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
-    if (!all_finite(asked.pose)) return fail(BodyStatus::kOutOfRange);
+    if (!all_finite(asked.pose)) return asked;
   }
+  asked.status = BodyStatus::kOk;
   return asked;
 }
 
@@ -111,32 +96,35 @@ bool same(const PoseBits& a, const PoseBits& b) {
   return difference == 0;
 }
 
-BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised) {
-  BodyOutcome outcome;
-  outcome.wrench.body_id = body_id;
-  outcome.wrench.status = status;
-  outcome.quaternion_normalised = quaternion_normalised;
-  return outcome;
-}
-
-BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked) {
-  BodyOutcome outcome;
-  write_outcome(buoyancy(body.solver, asked.pose, water, body.reference_B), body.id, asked, outcome);
-  return outcome;
+void evaluate(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome) {
+  outcome.answer = buoyancy(body.solver, asked.pose, water, body.reference_B);
+  judge(asked, outcome);
 }
 
 bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome) {
-  const auto answer = buoyancy_by_bounds(body.solver, asked.pose, water, body.reference_B);
-  if (answer) write_outcome(*answer, body.id, asked, outcome);
-  return answer.has_value();
+  if (!buoyancy_by_bounds(body.solver, asked.pose, water, body.reference_B, outcome.answer)) return false;
+  judge(asked, outcome);
+  return true;
+}
+
+BodyWrench wrench_of(std::int32_t body_id, const BodyOutcome& outcome) {
+  const BuoyancyAnswer& answer = outcome.answer;
+  return {.body_id = body_id,
+          .status = outcome.status,
+          .force = as_array(answer.force_W),
+          .torque = as_array(answer.torque_W),
+          .submerged_volume = answer.volume,
+          .center_of_buoyancy = as_array(answer.center_of_buoyancy_W),
+          .force_error_bound = answer.force_error_bound,
+          .torque_error_bound = answer.torque_error_bound};
 }
 
 void count(const BodyOutcome& outcome, Counters& counters) {
-  ++counters.bodies[static_cast<std::size_t>(outcome.wrench.status)];
+  ++counters.bodies[static_cast<std::size_t>(outcome.status)];
   counters.quaternions_normalised += static_cast<std::int64_t>(outcome.quaternion_normalised);
-  if (outcome.wrench.status != BodyStatus::kOk) return;
+  if (outcome.status != BodyStatus::kOk) return;
   counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
-  switch (outcome.immersion) {
+  switch (outcome.answer.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;
       break;
@@ -147,8 +135,8 @@ void count(const BodyOutcome& outcome, Counters& counters) {
       ++counters.bodies_crossing;
       break;
   }
-  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.dropped_force);
-  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.dropped_torque);
+  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.answer.dropped_force);
+  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.answer.dropped_torque);
 }
 
 BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,

@@ -33,23 +33,20 @@ using PoseBits = std::array<std::uint64_t, 7>;
 PoseBits pose_bits(const Pose& pose);
 bool same(const PoseBits& a, const PoseBits& b);
 
-// A wrench, and what the status counts of it.
+// A body's answer, and what the status counts of it.
 struct BodyOutcome {
-  BodyWrench wrench;  // anything but kOk: zeros
+  BodyStatus status = BodyStatus::kOk;
   bool quaternion_normalised = false;
-  bool unchanged = false;                      // taken from the body's last answer
-  Immersion immersion = Immersion::kCrossing;  // this and the following: where the status is kOk
-  double dropped_force = 0.0;                  // BuoyancyAnswer
-  double dropped_torque = 0.0;
+  bool unchanged = false;  // taken from the body's last answer
+  BuoyancyAnswer answer;   // status other than kOk: zeros
 };
 
-// An outcome without a wrench.
-BodyOutcome not_answered(std::int32_t body_id, BodyStatus status, bool quaternion_normalised = false);
 // asked.status: kOk. Allocates nothing.
-BodyOutcome evaluate(const Body& body, const Water& water, const AskedPose& asked);
+void evaluate(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome);
 // The same where the body's bounds alone say it (buoyancy_by_bounds); false: they do not, outcome is as it
 // was.
 bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome);
+BodyWrench wrench_of(std::int32_t body_id, const BodyOutcome& outcome);
 void count(const BodyOutcome& outcome, Counters& counters);
 
 // The hydrostatics of a body whose outputs name them, at the pose of its wrench. status: of that wrench;

@@ -13,10 +13,13 @@ bool boundary_is_dry(const HydrostaticMesh& mesh, const WaterPlane& plane) {
                       [&](std::int32_t i) { return plane.height(mesh.vertex(i)) < 0.0; });
 }
 
+// Without a branch for each number: infinity less itself is no number.
 bool finite(const BuoyancyAnswer& answer) {
-  return answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-         answer.center_of_buoyancy_W.allFinite() && std::isfinite(answer.force_error_bound) &&
-         std::isfinite(answer.torque_error_bound);
+  const auto none = [](double value) { return value - value; };
+  const auto nothing = [none](const Vec3& v) { return none(v.x()) + none(v.y()) + none(v.z()); };
+  return nothing(answer.force_W) + nothing(answer.torque_W) + nothing(answer.center_of_buoyancy_W) +
+             none(answer.volume) + none(answer.force_error_bound) + none(answer.torque_error_bound) ==
+         0.0;
 }
 
 // Bounds on the norms of the errors of force/(rho g) and torque/(rho g).
@@ -81,6 +84,8 @@ void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Wate
   const Vec3 centroid_B = mesh.center_B + mesh.centroid;
   const Point<double> lever_W = rotate(q, two_by_norm_squared, lever_B);
   const Point<double> torque_W = (weight * mesh.volume) * cross(lever_W, up);
+  answer.status = BuoyancyStatus::kOk;
+  answer.immersion = Immersion::kWet;
   answer.volume = mesh.volume;
   answer.force_W = (weight * mesh.volume) * water.up_W;
   answer.torque_W = (torque_W - dot(up, torque_W) * up).vec3();
@@ -88,6 +93,8 @@ void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Wate
       (lever_B == centroid_B ? lever_W : rotate(q, two_by_norm_squared, centroid_B)).vec3();
   answer.force_error_bound = weight * mesh.rounding_bound();
   answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
+  answer.dropped_force = 0.0;
+  answer.dropped_torque = 0.0;
 }
 
 // What the body displaces, as forces in the world.
@@ -137,29 +144,31 @@ bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
          (immersion == Immersion::kWet && solver.method() == Method::kHierarchical);
 }
 
-// Of such a body; answer: as constructed.
+// Of such a body.
 void answer_by_bounds(const Solver& solver, Immersion immersion, const Pose& pose, const Water& water,
                       const Vec3& reference_B, BuoyancyAnswer& answer) {
-  answer.immersion = immersion;
-  if (immersion == Immersion::kDry) return;  // nothing to sum: every method says zero, exactly
+  if (immersion == Immersion::kDry) {  // nothing to sum: every method says zero, exactly
+    answer = {};
+    answer.immersion = immersion;
+    return;
+  }
   answer_wholly_wet(solver.mesh(), pose, water, reference_B, answer);
   if (!finite(answer)) answer = not_answered(BuoyancyStatus::kOutOfRange, immersion);
 }
 
 }  // namespace
 
-std::optional<BuoyancyAnswer> buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water,
-                                                 const Vec3& reference_B) {
+bool buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B,
+                        BuoyancyAnswer& answer) {
   const Immersion glance = immersion_at_a_glance(solver.mesh(), pose, water);
-  std::optional<BuoyancyAnswer> answer;
-  if (is_answered_by_bounds(solver, glance)) {
-    answer_by_bounds(solver, glance, pose, water, reference_B, answer.emplace());
-  }
-  return answer;
+  if (!is_answered_by_bounds(solver, glance)) return false;
+  answer_by_bounds(solver, glance, pose, water, reference_B, answer);
+  return true;
 }
 
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  if (const auto answer = buoyancy_by_bounds(solver, pose, water, reference_B)) return *answer;
+  BuoyancyAnswer answer;
+  if (buoyancy_by_bounds(solver, pose, water, reference_B, answer)) return answer;
   const HydrostaticMesh& mesh = solver.mesh();
   const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
@@ -169,7 +178,6 @@ BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& wat
   if (where != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
     return not_answered(BuoyancyStatus::kOpenEdgeWet, where);
   }
-  BuoyancyAnswer answer;
   if (is_answered_by_bounds(solver, where)) {
     answer_by_bounds(solver, where, pose, water, reference_B, answer);
     return answer;

@@ -2,8 +2,6 @@
 // end in.
 #pragma once
 
-#include <optional>
-
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/solver.h"
 
@@ -38,8 +36,8 @@ struct BuoyancyAnswer {
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
 // What buoyancy() answers, where immersion_at_a_glance() says enough for it: of a dry body, and with
-// `hierarchical` of a wholly wet one. nullopt: it takes more. O(1).
-std::optional<BuoyancyAnswer> buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water,
-                                                 const Vec3& reference_B);
+// `hierarchical` of a wholly wet one. False: it takes more, and answer is as it was. O(1).
+bool buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B,
+                        BuoyancyAnswer& answer);
 
 }  // namespace buoyancy

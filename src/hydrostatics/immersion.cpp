@@ -24,10 +24,11 @@ Immersion immersion_at_a_glance(const HydrostaticMesh& mesh, const Pose& pose, c
   const RoughWaterPlane plane = rough_water_plane_in_body(pose, water, mesh.center_B, mesh.diagonal);
   // Where the squares overflow no comparison holds; where they underflow their error would not be one.
   if (!(plane.norm_squared > 1e-100)) return Immersion::kCrossing;
-  const Vec3 middle = 0.5 * (mesh.box_min + mesh.box_max);
-  const Vec3 half = 0.5 * (mesh.box_max - mesh.box_min);
-  const double height = plane.up_B.dot(middle) - plane.h_c;
-  const double reach = plane.up_B.cwiseAbs().dot(half);
+  const auto box_min = Point<double>::from(mesh.box_min);
+  const auto box_max = Point<double>::from(mesh.box_max);
+  const Point<double>& up = plane.up_B;
+  const double height = dot(up, 0.5 * (box_min + box_max)) - plane.h_c;
+  const double reach = dot({std::abs(up.x), std::abs(up.y), std::abs(up.z)}, 0.5 * (box_max - box_min));
   if (height - reach > plane.error) return Immersion::kDry;
   if (height + reach < -plane.error && !mesh.open()) return Immersion::kWet;
   return Immersion::kCrossing;

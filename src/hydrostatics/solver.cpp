@@ -49,7 +49,7 @@ WaterPlane Solver::plane_in_body(const Pose& pose, const Water& water) const {
     if (rough.norm_squared > 1e-100 && rough.norm_squared < 1e100 &&
         rough.error <= plane_error_ * rough.norm_squared) {
       WaterPlane plane;
-      plane.up_B = rough.up_B / rough.norm_squared;
+      plane.up_B = rough.up_B.vec3() / rough.norm_squared;
       plane.h_c = rough.h_c / rough.norm_squared;
       plane.error = rough.error / rough.norm_squared;
       return plane;

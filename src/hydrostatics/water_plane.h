@@ -16,6 +16,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/vec3.h"
+#include "hydrostatics/point.h"
 
 namespace buoyancy {
 
@@ -53,7 +54,7 @@ WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3&
 // distances of the pose and of c. All times |q|^2, which spares divisions. Where norm_squared is above 1e-100
 // it is within its error, unless the squares or their products with the distances overflow.
 struct RoughWaterPlane {
-  Vec3 up_B;            // |q|^2 k
+  Point<double> up_B;   // |q|^2 k
   double h_c;           // m |q|^2
   double norm_squared;  // |q|^2
   double error;         // m |q|^2: no height over a point within `reach` of c is farther off
@@ -62,14 +63,15 @@ struct RoughWaterPlane {
 inline RoughWaterPlane rough_water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B,
                                                  double reach) {
   const Eigen::Quaterniond& q = pose.q_WB;
-  const Vec3& up = water.up_W;
-  const Vec3 u = q.vec();
-  const double u_squared = u.squaredNorm();
+  const auto up = Point<double>::from(water.up_W);
+  const Point<double> u{q.x(), q.y(), q.z()};
+  const double u_squared = dot(u, u);
   const double w_squared = q.w() * q.w();
   RoughWaterPlane plane;
   plane.norm_squared = w_squared + u_squared;
-  plane.up_B = (w_squared - u_squared) * up + 2.0 * (u.dot(up) * u - q.w() * u.cross(up));
-  plane.h_c = plane.norm_squared * (water.level - up.dot(pose.p_WB)) - plane.up_B.dot(c_B);
+  plane.up_B = (w_squared - u_squared) * up + 2.0 * (dot(u, up) * u - q.w() * cross(u, up));
+  plane.h_c = plane.norm_squared * (water.level - dot(up, Point<double>::from(pose.p_WB))) -
+              dot(plane.up_B, Point<double>::from(c_B));
   // k is off by at most 16 epsilon, every product and sum by half of one of its terms' sum.
   plane.error = 32.0 * std::numeric_limits<double>::epsilon() * plane.norm_squared *
                 (pose.p_WB.lpNorm<1>() + std::abs(water.level) + c_B.lpNorm<1>() + reach);

@@ -58,7 +58,7 @@ TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
     const Vec3 y = reach * random.direction();
 
     const RoughWaterPlane rough = rough_water_plane_in_body(asked.pose, asked.water, asked.c_B, reach);
-    const double height = (rough.up_B.dot(y) - rough.h_c) / rough.norm_squared;
+    const double height = (rough.up_B.vec3().dot(y) - rough.h_c) / rough.norm_squared;
 
     const Rational true_height = asked.exact.up_B.dot(y.cast<Rational>()) - asked.exact.h;
     const double error = std::abs(Rational(height - true_height).convert_to<double>());
