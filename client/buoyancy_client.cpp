@@ -9,12 +9,12 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <random>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <signal.h>
 
+#include "asking/client.h"
 #include "client/run_csv.h"
 #include "client/run_summary.h"
 #include "client/run_warnings.h"
@@ -137,12 +137,6 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
                     "questions would be taken for answers", ""});
   }
   return check_lcm_url(link.lcm_url);
-}
-
-std::int64_t draw_session_id() {
-  std::random_device device;
-  const std::uint64_t bits = (std::uint64_t{device()} << 32U) | device();
-  return static_cast<std::int64_t>(bits >> 1U);
 }
 
 int report(const Error& error, int exit_code) {

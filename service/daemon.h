@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "exchange/exchange.h"
-#include "exchange/latency_histogram.h"
 #include "geometry/error.h"
+#include "messages/latency_histogram.h"
 #include "scene/scene.h"
 #include "service/latest_questions.h"
 #include "service/termination_signals.h"

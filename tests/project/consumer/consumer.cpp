@@ -1,10 +1,12 @@
 // Asks the installed libraries for the buoyancy of a half-submerged cube, through the core and through the
-// exchange, with a question encoded by the installed message types. Exit code 0 if both answers are right.
+// exchange, with a question encoded by the installed message types; and opens a client of a service that
+// cannot be. Exit code 0 if both answers are right and the client says what is wrong.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
 
+#include <buoyancy/asking/client.h>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 #include <buoyancy/exchange/exchange.h>
@@ -58,5 +60,11 @@ int main() {
   if (wrenches.num_bodies != 1) return 1;
 
   const bool both = right("core", direct.force_W.z()) & right("exchange", wrenches.bodies[0].force[2]);
+
+  buoyancy::ClientOptions nowhere;
+  nowhere.link.lcm_url = "nowhere://";
+  const auto client = buoyancy::Client::open(nowhere);
+  if (client) return 1;
+  std::printf("client: %s\n", client.error().message().c_str());
   return both ? 0 : 1;
 }

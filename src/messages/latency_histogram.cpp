@@ -1,4 +1,4 @@
-#include "exchange/latency_histogram.h"
+#include "messages/latency_histogram.h"
 
 #include <algorithm>
 #include <cmath>

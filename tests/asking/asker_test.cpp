@@ -1,83 +1,18 @@
 // What the askers take for an answer and what not, against a peer that the test plays itself, over UDP
 // multicast in a network namespace of each test's own.
-#include "client/asker.h"
+#include "asking/asker.h"
 
-#include <functional>
-#include <thread>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
-#include <poll.h>
+
+#include "tests/asking/peer.h"
 
 namespace buoyancy {
 namespace {
-
-using Replies = std::vector<std::vector<std::uint8_t>>;
-using Reply = std::function<Replies(const Question& question)>;
-
-LcmConnection open_or_die() {
-  Expected<LcmConnection> connection = LcmConnection::open("");
-  if (!connection) {
-    ADD_FAILURE() << connection.error().message();
-    std::abort();
-  }
-  return std::move(*connection);
-}
-
-// Publishes what `reply` makes of every question, from a thread of its own.
-class Peer {
- public:
-  explicit Peer(Reply reply) : connection_(open_or_die()), reply_(std::move(reply)) {
-    const Expected<void> subscribed =
-        connection_.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
-          Question question;
-          if (decode(bytes, question)) return;
-          ++questions_;
-          for (const auto& answer : reply_(question)) {
-            EXPECT_TRUE(connection_.publish(std::string(kWrenchesChannel), answer));
-          }
-        });
-    EXPECT_TRUE(subscribed);
-    thread_ = std::thread([this] {
-      while (!stop_) {
-        pollfd waiting{connection_.fileno(), POLLIN, 0};
-        if (poll(&waiting, 1, 20) > 0) connection_.handle_one();
-      }
-    });
-  }
-  Peer(const Peer&) = delete;
-  Peer& operator=(const Peer&) = delete;
-  ~Peer() {
-    stop_ = true;
-    thread_.join();
-  }
-
-  int questions() const { return questions_; }
-
- private:
-  LcmConnection connection_;
-  Reply reply_;
-  std::atomic<bool> stop_{false};
-  std::atomic<int> questions_{0};
-  std::thread thread_;
-};
-
-Answer answer_to(const Question& question, double force) {
-  Answer answer;
-  answer.key = question.key;
-  for (const BodyState& body : question.bodies) {
-    BodyWrench wrench;
-    wrench.body_id = body.body_id;
-    wrench.force = {0, 0, force};
-    answer.bodies.push_back(wrench);
-  }
-  return answer;
-}
-
-std::vector<std::uint8_t> bytes_of(const Answer& answer) {
-  std::vector<std::uint8_t> bytes;
-  encode(answer, bytes);
-  return bytes;
-}
 
 Question question_number(std::int64_t seq) {
   Question question;

@@ -1,4 +1,4 @@
-// The client's end of the LCM connection: sends the questions of one session and keeps the newest answer to
+// The asking end of the LCM connection: sends the questions of one session and keeps the newest answer to
 // them.
 //
 // An answer belongs to the session if its session_id is the session's and its seq is that of a question

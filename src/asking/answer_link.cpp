@@ -1,4 +1,4 @@
-#include "client/answer_link.h"
+#include "asking/answer_link.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,71 @@
+// What the examples float: the box of scenes/box.toml. The service knows its mesh and the water, the
+// simulator its mass, gravity and damping. Everything that the two engines do not do differently is here.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "asking/client.h"
+
+namespace crate {
+
+inline constexpr std::int32_t kBodyId = 1;                             // as in the scene
+inline constexpr std::array<double, 3> kSize{1.0, 1.0, 0.5};           // m
+inline constexpr double kMass = 256.25;                                // kg: half of what the box displaces
+inline constexpr double kGravity = 9.80665;                            // m/s^2
+inline constexpr double kLinearDamping = 500.0;                        // N/(m/s)
+inline constexpr double kAngularDamping = 40.0;                        // N m/(rad/s)
+inline constexpr std::array<double, 3> kStart{0.0, 0.0, 0.75};         // m
+inline constexpr std::array<double, 4> kTurned{0.98, 0.15, 0.1, 0.0};  // (w, x, y, z), not normalised
+inline constexpr double kStep = 1e-3;                                  // s
+inline constexpr std::int64_t kSteps = 20'000;
+
+// Where the crate came to rest and how fast it got there. tilt_cosine: z of the crate's own z axis.
+inline void report(const buoyancy::AskerStatistics& asked, double height, double tilt_cosine,
+                   std::chrono::steady_clock::duration took) {
+  const double seconds = std::chrono::duration<double>(took).count();
+  std::printf("height %.6f m, tilt %.6f rad after %.3g s of simulated time\n", height,
+              std::acos(std::fmin(tilt_cosine, 1.0)), kStep * static_cast<double>(kSteps));
+  std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld questions sent again\n",
+              static_cast<double>(kSteps) / seconds, 1e6 * asked.round_trip.percentiles().p50,
+              1e6 * asked.round_trip.percentiles().p99, static_cast<long long>(asked.retries));
+}
+
+// All that a simulator does. World is an engine with a crate in it: state(), step_with(wrench), height(),
+// tilt_cosine(). lcm_url: "" for what LCM's own tools would take. Returns main's exit code.
+template <typename World>
+int float_crate(World& world, const std::string& lcm_url) {
+  buoyancy::ClientOptions options;
+  options.link.lcm_url = lcm_url;
+  buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open(options);
+  if (!client) {
+    std::fprintf(stderr, "%s\n", client.error().message().c_str());
+    return 1;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    // Of simulated time, from the step's number: the same run asks the same.
+    const std::int64_t utime = std::llround(1e6 * kStep * static_cast<double>(step));
+    // Once per step, at the step's own pose: the engines then integrate semi-implicitly, which keeps energy
+    // bounded.
+    const std::array states{world.state()};
+    const auto answer = client->ask(utime, states);
+    if (!answer) {
+      std::fprintf(stderr, "%s\n", answer.error().message().c_str());
+      return 1;
+    }
+    if (const auto* wrong = buoyancy::first_not_ok(**answer)) {
+      std::fprintf(stderr, "body %d is answered with status %s\n", wrong->body_id, name(wrong->status));
+      return 1;
+    }
+    world.step_with((*answer)->bodies[0]);
+  }
+  report(client->statistics(), world.height(), world.tilt_cosine(), std::chrono::steady_clock::now() - start);
+  return 0;
+}
+
+}  // namespace crate

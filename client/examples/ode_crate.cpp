@@ -1,0 +1,73 @@
+// The crate of bullet_crate.cpp in another engine, ODE (package libode-dev, which calculates with 64 bits):
+// only what reads a pose and applies a wrench is different.
+//
+//   buoyancyd --scene scenes/box.toml &
+//   ode_crate [LCM URL]
+#include <ode/ode.h>
+
+#include "client/examples/crate.h"
+
+static_assert(sizeof(dReal) == sizeof(double), "ODE built for 32 bits knows poses to 7 digits only");
+
+namespace {
+
+class World {
+ public:
+  World() {
+    dInitODE();
+    world_ = dWorldCreate();
+    dWorldSetGravity(world_, 0, 0, -crate::kGravity);
+    body_ = dBodyCreate(world_);
+    dMass mass;
+    dMassSetBoxTotal(&mass, crate::kMass, crate::kSize[0], crate::kSize[1], crate::kSize[2]);
+    dBodySetMass(body_, &mass);
+    dBodySetPosition(body_, crate::kStart[0], crate::kStart[1], crate::kStart[2]);
+    dQuaternion turned{crate::kTurned[0], crate::kTurned[1], crate::kTurned[2], crate::kTurned[3]};
+    dSafeNormalize4(turned);
+    dBodySetQuaternion(body_, turned);
+  }
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+  ~World() {
+    dWorldDestroy(world_);
+    dCloseODE();
+  }
+
+  // ODE's origin of a body is its centre of mass; see bullet_crate.cpp for where that is not the mesh's
+  // origin.
+  buoyancy::BodyState state() const {
+    const dReal* p = dBodyGetPosition(body_);
+    const dReal* q = dBodyGetQuaternion(body_);
+    return {.body_id = crate::kBodyId,
+            .position = {p[0], p[1], p[2]},
+            .quaternion_wxyz = {q[0], q[1], q[2], q[3]},
+            .linear_velocity = {},  // read only with a lead_time
+            .angular_velocity = {}};
+  }
+
+  void step_with(const buoyancy::BodyWrench& water) {
+    const dReal* v = dBodyGetLinearVel(body_);
+    const dReal* w = dBodyGetAngularVel(body_);
+    dBodyAddForce(body_, water.force[0] - crate::kLinearDamping * v[0],
+                  water.force[1] - crate::kLinearDamping * v[1],
+                  water.force[2] - crate::kLinearDamping * v[2]);
+    dBodyAddTorque(body_, water.torque[0] - crate::kAngularDamping * w[0],
+                   water.torque[1] - crate::kAngularDamping * w[1],
+                   water.torque[2] - crate::kAngularDamping * w[2]);
+    dWorldStep(world_, crate::kStep);
+  }
+
+  double height() const { return dBodyGetPosition(body_)[2]; }
+  double tilt_cosine() const { return dBodyGetRotation(body_)[10]; }  // row 2, column 2 of rows of 4
+
+ private:
+  dWorldID world_;
+  dBodyID body_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  World world;
+  return crate::float_crate(world, argc > 1 ? argv[1] : "");
+}

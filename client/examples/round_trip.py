@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""Asks buoyancyd from Python, with the standard library and what lcm-gen makes of our message definitions:
+
+    lcm-gen -p --ppath types lcmtypes/*.lcm
+    buoyancyd --scene scenes/box.toml &
+    PYTHONPATH=types client/examples/round_trip.py
+
+LCM's own Python module does the same with fewer lines where it is installed. Here the wire is plain to see: a datagram is
+"LC02", a number that counts up, the channel, a zero byte, and the message. Messages of more than 65,499 bytes come in
+several datagrams ("LC03"); this client asks for so few bodies that none does.
+"""
+import argparse
+import random
+import socket
+import struct
+import time
+
+import buoyancy
+
+MAGIC = 0x4C433032  # "LC02"
+STATES, WRENCHES = "BUOYANCY_STATES", "BUOYANCY_WRENCHES"
+
+
+class Client:
+    """One session in lock-step: a question is sent again until its answer is there."""
+
+    def __init__(self, group="239.255.76.67", port=7667, ttl=0, timeout=0.1, retries=50):
+        self.address = (group, port)
+        self.timeout, self.retries = timeout, retries
+        self.session_id = random.getrandbits(63)
+        self.seq = 0
+        self.datagrams = 0
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        self.socket.bind(("", port))
+        member = struct.pack("4s4s", socket.inet_aton(group), socket.inet_aton("0.0.0.0"))
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+
+    def ask(self, utime, states, lead_time=0.0):
+        """states: body_state_t's. Returns their body_wrench_t's, in the same order."""
+        question = buoyancy.body_states_t()
+        question.utime, question.session_id, question.seq = utime, self.session_id, self.seq
+        question.lead_time, question.num_bodies, question.bodies = lead_time, len(states), states
+        self.seq += 1
+        encoded = question.encode()
+        for _ in range(1 + self.retries):
+            self.publish(STATES, encoded)
+            answer = self.wait_for(question)
+            if answer is not None:
+                return answer.bodies
+        raise TimeoutError(
+            f"no answer to question {question.seq} in {(1 + self.retries) * self.timeout:g} s: is buoyancyd running "
+            f"on {self.address[0]}:{self.address[1]}?")
+
+    def publish(self, channel, message):
+        header = struct.pack(">II", MAGIC, self.datagrams)
+        self.datagrams = (self.datagrams + 1) & 0xFFFFFFFF
+        self.socket.sendto(header + channel.encode() + b"\0" + message, self.address)
+
+    def wait_for(self, question):
+        """The answer with the question's session and number; None: not in time."""
+        deadline = time.monotonic() + self.timeout
+        while (left := deadline - time.monotonic()) > 0:
+            self.socket.settimeout(left)
+            try:
+                datagram = self.socket.recv(65536)
+            except TimeoutError:
+                return None
+            message = self.message_on(WRENCHES, datagram)
+            if message is None:
+                continue
+            try:
+                answer = buoyancy.body_wrenches_t.decode(message)
+            except (ValueError, struct.error):
+                continue  # not ours
+            if (answer.session_id, answer.seq) == (question.session_id, question.seq):
+                return answer
+        return None
+
+    @staticmethod
+    def message_on(channel, datagram):
+        end = datagram.find(b"\0", 8)
+        if len(datagram) < 8 or struct.unpack(">I", datagram[:4])[0] != MAGIC or end < 0:
+            return None
+        return datagram[end + 1:] if datagram[8:end] == channel.encode() else None
+
+
+def main():
+    parser = argparse.ArgumentParser(description="One round trip: the force on a body at some height.")
+    parser.add_argument("--body", type=int, default=1, help="its id in the scene (default: 1)")
+    parser.add_argument("--height", type=float, default=0.0, help="m, of its origin (default: 0)")
+    arguments = parser.parse_args()
+
+    state = buoyancy.body_state_t()
+    state.body_id = arguments.body
+    state.position = [0.0, 0.0, arguments.height]
+    state.quaternion_wxyz = [1.0, 0.0, 0.0, 0.0]
+    wrench, = Client().ask(utime=0, states=[state])
+    print(f"status {wrench.status}, force {wrench.force[0]:.6g} {wrench.force[1]:.6g} {wrench.force[2]:.6f} N, "
+          f"submerged volume {wrench.submerged_volume:.9f} m^3")
+
+
+if __name__ == "__main__":
+    main()
