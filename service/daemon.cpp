@@ -59,7 +59,8 @@ Daemon::Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelN
       connection_(std::move(connection)),
       exchange_(scene, {.max_sessions = kMaxSessions, .threads = threads}),
       latest_(kMaxSessions),
-      instance_id_(random_id()) {}
+      instance_id_(random_id()),
+      other_instances_(instance_id_) {}
 
 Expected<void> Daemon::run(TerminationSignals& signals) {
   const FileDescriptor timer = one_hertz_timer();
@@ -77,6 +78,11 @@ Expected<void> Daemon::run(TerminationSignals& signals) {
         }
       },
       kQueueCapacity);
+  if (subscribed) {
+    subscribed = connection_.subscribe(
+        channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
+        kQueueCapacity);
+  }
   if (!subscribed) return subscribed;
   spdlog::info(
       "ready: {} bodies; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
@@ -168,6 +174,12 @@ void Daemon::report() {
          status_bytes_);
   publish(channels_.status, status_bytes_);
   for (const std::string& trouble : describe_troubles(reported_, counters)) spdlog::warn("{}", trouble);
+  for (const std::int64_t other : other_instances_.take_new()) {
+    spdlog::warn(
+        "another buoyancyd, instance {}, is on {}: if it also hears {}, every question is answered twice. "
+        "Stop one of the two, or give each its own channels",
+        other, channels_.status, channels_.states);
+  }
   if (!publish_error_.empty()) spdlog::warn("{}", publish_error_);
   publish_error_.clear();
   reported_ = counters;

@@ -15,6 +15,7 @@
 #include "messages/latency_histogram.h"
 #include "scene/scene.h"
 #include "service/latest_questions.h"
+#include "service/other_instances.h"
 #include "service/termination_signals.h"
 #include "transport/lcm_connection.h"
 
@@ -55,6 +56,7 @@ class Daemon {
   LatestQuestions latest_;
   LatencyHistogram latency_;
   std::int64_t instance_id_;
+  OtherInstances other_instances_;
   std::string publish_error_;  // the newest since the last report; empty: none
   Counters reported_;
   std::vector<std::uint8_t> status_bytes_;  // reused

@@ -107,6 +107,16 @@ TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
   EXPECT_EQ(hear(socket).seq, 1);
 }
 
+TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
+  RunningService first;
+  RawLcmSocket bus;
+  for (int heard = 0; heard < 3; ++heard) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kPatience));
+  EXPECT_EQ(first.log().find("another buoyancyd"), std::string::npos) << first.log();  // its own status
+  RunningService second;
+  EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kPatience)) << first.log();
+  EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kPatience)) << second.log();
+}
+
 TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
   const ScratchDirectory directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
