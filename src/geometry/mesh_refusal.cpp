@@ -116,7 +116,13 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
 std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
   const double rounding_error = std::numeric_limits<double>::epsilon() *
                                 (64.0 * std::abs(volume) + report.diagonal * rounding_area(mesh));
-  if (std::abs(volume) > rounding_error) return std::nullopt;
+  if (volume > rounding_error) return std::nullopt;
+  if (volume < -rounding_error) {
+    return Error{report.name, "encloses " + number(volume) + " m^3",
+                 "cavities that take away less than the parts around them hold",
+                 "cavities that overlap each other, or parts that overlap themselves",
+                 "Join what overlaps into one surface (a boolean union)"};
+  }
   return Error{report.name,
                "encloses " + number(volume) + " m^3, which is not above the rounding error of " +
                    number(rounding_error) + " m^3",

@@ -23,8 +23,8 @@ std::optional<Error> refuse_size(const MeshReport& report);
 std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& topology,
                                   const MeshReport& report, OpenPolicy open);
 
-// volume, m^3: that the mesh encloses, or would with its holes closed; must be above its own rounding error
-// eps (64 |V| + L A), A the mesh's rounding_area().
+// volume, m^3: that the mesh encloses, or would with its holes closed, cavities taken away; must be above its
+// own rounding error eps (64 |V| + L A), A the mesh's rounding_area().
 std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);
 
 }  // namespace buoyancy

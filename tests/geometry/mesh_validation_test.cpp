@@ -173,6 +173,15 @@ TEST(MeshValidation, RefusesWhatEnclosesNoVolumeHoweverThinItsFacesAre) {
   }
 }
 
+// Found by the fuzzer: a mesh of negative volume was accepted, and would have been pulled down by the water.
+TEST(MeshValidation, RefusesCavitiesThatTakeAwayMoreThanThereIs) {
+  const TriangleMesh one_cavity = joined(cube_mesh(2), inside_out(cube_mesh(1.8, Vec3(0.05, 0, 0))));
+  ASSERT_TRUE(validate(one_cavity).mesh);
+  const TriangleMesh overlapping = joined(one_cavity, inside_out(cube_mesh(1.8, Vec3(-0.05, 0, 0))));
+  expect_refused(validate(overlapping), "encloses -3.664 m^3");
+  expect_refused(validate(inside_out(overlapping)), "encloses -3.664 m^3");
+}
+
 TEST(MeshValidation, AcceptsAPlateAsThinAsItsRoundingErrorAllows) {
   EXPECT_TRUE(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-8))).mesh);
 }
