@@ -36,8 +36,7 @@ class Client {
   // The wrenches on bodies in these states: one per state, in the same order, valid until the next call.
   // utime: us, of the simulation; it comes back in the answer's key. lead_time: s, the wrenches are those at
   // the poses extrapolated by this much; 0 as they are. A body that cannot be answered has a status other
-  // than kOk and zeros; first_not_ok() finds it. Errors: the asker's. Allocates nothing of its own once a
-  // question has been as large.
+  // than kOk and zeros; first_not_ok() finds it. Errors: the asker's.
   Expected<const Answer*> ask(std::int64_t utime, std::span<const BodyState> states, double lead_time = 0.0);
 
   AskerStatistics statistics() const;

@@ -50,7 +50,7 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-// Of what outcome.answer has become.
+// What goes beside the answer that the outcome now holds.
 void judge(const AskedPose& asked, BodyOutcome& outcome) {
   outcome.status = as_body_status(outcome.answer.status);
   outcome.quaternion_normalised = asked.quaternion_normalised;

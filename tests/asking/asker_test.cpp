@@ -2,7 +2,6 @@
 // multicast in a network namespace of each test's own.
 #include "asking/asker.h"
 
-#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,12 +23,7 @@ Question question_number(std::int64_t seq) {
 }
 
 AnswerLink open_link() {
-  Expected<AnswerLink> link = AnswerLink::open({});
-  if (!link) {
-    ADD_FAILURE() << link.error().message();
-    std::abort();
-  }
-  return std::move(*link);
+  return value_or_die(AnswerLink::open({}));
 }
 
 constexpr Patience kPatient{0.5, 40};

@@ -16,12 +16,7 @@ constexpr Patience kPatient{0.5, 40};
 
 Client open_client(ClientOptions options = {}) {
   options.patience = kPatient;
-  Expected<Client> client = Client::open(options);
-  if (!client) {
-    ADD_FAILURE() << client.error().message();
-    std::abort();
-  }
-  return std::move(*client);
+  return value_or_die(Client::open(options));
 }
 
 std::array<BodyState, 2> two_states() {

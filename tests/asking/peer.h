@@ -22,19 +22,19 @@ namespace buoyancy {
 using Replies = std::vector<std::vector<std::uint8_t>>;
 using Reply = std::function<Replies(const Question& question)>;
 
-inline LcmConnection open_or_die() {
-  Expected<LcmConnection> connection = LcmConnection::open("");
-  if (!connection) {
-    ADD_FAILURE() << connection.error().message();
+template <typename T>
+T value_or_die(Expected<T> expected) {
+  if (!expected) {
+    ADD_FAILURE() << expected.error().message();
     std::abort();
   }
-  return std::move(*connection);
+  return std::move(*expected);
 }
 
 // Publishes what `reply` makes of every question, from a thread of its own.
 class Peer {
  public:
-  explicit Peer(Reply reply) : connection_(open_or_die()), reply_(std::move(reply)) {
+  explicit Peer(Reply reply) : connection_(value_or_die(LcmConnection::open(""))), reply_(std::move(reply)) {
     const Expected<void> subscribed =
         connection_.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
           Question question;

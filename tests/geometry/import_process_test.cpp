@@ -75,6 +75,7 @@ TEST_F(ImportProcess, OutlivesAnImporterThatCrashes) {
 }
 
 TEST_F(ImportProcess, StopsAnImporterThatEatsMemory) {
+  // The importer's limit is RLIMIT_AS, and these sanitizers reserve terabytes of addresses before main().
   if (kShadowMemory) GTEST_SKIP() << "address space cannot be limited under a sanitizer with shadow memory";
   ImportLimits limits;
   limits.memory_bytes = 200'000'000;

@@ -201,6 +201,7 @@ TEST_F(MeshImportRefusal, GivesAMeshOrOneClearErrorForFilesWithWrongBytes) {
 TEST_F(MeshImportRefusal, RefusesTheMalformedFilesBesideTheProject) {
   const fs::path malformed = shared_mesh_file("malformed");
   if (!fs::exists(malformed)) {
+    // Their licences keep them out of the project (shared_mesh_files.h).
     GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(malformed)) refusal(entry.path());

@@ -239,6 +239,7 @@ TEST(MeshImportOfRealFiles, StoresAsManyTrianglesAndVerticesAsMeasuredElsewhere)
       SharedMesh{"wheels_2comp_78164.obj", 78'164, 234'492},
   };
   if (!fs::exists(shared_mesh_file(kMeshes[0].name))) {
+    // Their licences keep them out of the project (shared_mesh_files.h).
     GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
   }
   for (const SharedMesh& expected : kMeshes) {
@@ -250,6 +251,7 @@ TEST(MeshImportOfRealFiles, StoresAsManyTrianglesAndVerticesAsMeasuredElsewhere)
 
 TEST(MeshImportOfRealFiles, ReadsTheDuck) {
   const fs::path duck = kTestModels / "Collada/duck.dae";
+  // scripts/test installs it; not everybody who builds by hand does.
   if (!fs::exists(duck)) GTEST_SKIP() << "package assimp-testmodels is not installed";
   const ImportedMesh found = imported(duck);
   EXPECT_EQ(found.mesh.triangles.size(), 4'212U);
