@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -20,6 +21,12 @@ struct ChildCommand {
   std::string standard_output;  // a path such as "/dev/full"; empty: captured
   std::string directory;        // to run in; empty: the test's own
 };
+
+inline ChildCommand command_of(std::vector<std::string> arguments) {
+  ChildCommand command;
+  command.arguments = std::move(arguments);
+  return command;
+}
 
 class ChildProcess {
  public:

@@ -84,17 +84,19 @@ void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Wate
   const Vec3 centroid_B = mesh.center_B + mesh.centroid;
   const Point<double> lever_W = rotate(q, two_by_norm_squared, lever_B);
   const Point<double> torque_W = (weight * mesh.volume) * cross(lever_W, up);
-  answer.status = BuoyancyStatus::kOk;
-  answer.immersion = Immersion::kWet;
-  answer.volume = mesh.volume;
-  answer.force_W = (weight * mesh.volume) * water.up_W;
-  answer.torque_W = (torque_W - dot(up, torque_W) * up).vec3();
-  answer.center_of_buoyancy_W =
-      (lever_B == centroid_B ? lever_W : rotate(q, two_by_norm_squared, centroid_B)).vec3();
-  answer.force_error_bound = weight * mesh.rounding_bound();
-  answer.torque_error_bound = answer.force_error_bound * mesh.largest_lever(reference_B);
-  answer.dropped_force = 0.0;
-  answer.dropped_torque = 0.0;
+  const Point<double> center_W = lever_B == centroid_B ? lever_W : rotate(q, two_by_norm_squared, centroid_B);
+  const double force_error_bound = weight * mesh.rounding_bound();
+  // Every field, so that none is left from what stood there before.
+  answer = {.status = BuoyancyStatus::kOk,
+            .immersion = Immersion::kWet,
+            .force_W = (weight * mesh.volume) * water.up_W,
+            .torque_W = (torque_W - dot(up, torque_W) * up).vec3(),
+            .volume = mesh.volume,
+            .center_of_buoyancy_W = center_W.vec3(),
+            .force_error_bound = force_error_bound,
+            .torque_error_bound = force_error_bound * mesh.largest_lever(reference_B),
+            .dropped_force = 0.0,
+            .dropped_torque = 0.0};
 }
 
 // What the body displaces, as forces in the world.

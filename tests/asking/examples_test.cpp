@@ -25,12 +25,6 @@ class Service {
   ChildProcess child_;
 };
 
-ChildCommand command(std::vector<std::string> arguments) {
-  ChildCommand command;
-  command.arguments = std::move(arguments);
-  return command;
-}
-
 // The engines and Python are optional for a build. scripts/test installs them, so there none of these is
 // skipped; whoever builds by hand without one is told which, instead of being kept from the other tests.
 constexpr const char* kNoBullet = "Bullet for 64 bits (libbullet-dev) was not there when this was configured";
@@ -39,7 +33,7 @@ constexpr const char* kNoPython = "python3 was not there when this was configure
 
 void comes_to_rest_level(const std::string& program) {
   const Service service;
-  const FinishedProcess run = run_to_end(command({program}), kSeconds);
+  const FinishedProcess run = run_to_end(command_of({program}), kSeconds);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   double height = NAN;
   double tilt = NAN;
@@ -61,7 +55,7 @@ TEST(Examples, OdesCrateComesToRestLevelInTheWater) {
 
 TEST(Examples, SayWhatIsWrongWhereNothingAnswers) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
-  const FinishedProcess run = run_to_end(command({BULLET_CRATE, "memq://"}), kSeconds);
+  const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://"}), kSeconds);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.standard_error.find("no buoyancyd is running"), std::string::npos) << run.standard_error;
 }
@@ -73,13 +67,13 @@ TEST(Examples, PythonGetsTheForceOfAHalfSubmergedBox) {
   for (const auto& entry : std::filesystem::directory_iterator(kSources + "/lcmtypes")) {
     if (entry.path().extension() == ".lcm") generate.push_back(entry.path());
   }
-  const FinishedProcess generated = run_to_end(command(generate), kSeconds);
+  const FinishedProcess generated = run_to_end(command_of(generate), kSeconds);
   ASSERT_EQ(generated.exit_code, 0) << generated.standard_error;
 
   const Service service;
   for (const double height : {0.0, 0.1, 1.0}) {
     ChildCommand ask =
-        command({PYTHON, kSources + "/client/examples/round_trip.py", "--height", std::to_string(height)});
+        command_of({PYTHON, kSources + "/client/examples/round_trip.py", "--height", std::to_string(height)});
     ask.environment = {"PYTHONPATH=" + directory.path(""), "PYTHONDONTWRITEBYTECODE=1"};
     const FinishedProcess asked = run_to_end(ask, kSeconds);
     ASSERT_EQ(asked.exit_code, 0) << asked.standard_error;

@@ -44,9 +44,7 @@ class Replay : public testing::Test {
  protected:
   static ChildCommand command(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), BUOYANCY_REPLAY);
-    ChildCommand command;
-    command.arguments = std::move(arguments);
-    return command;
+    return command_of(std::move(arguments));
   }
   FinishedProcess run(std::vector<std::string> arguments) const {
     return run_to_end(command(std::move(arguments)), kPatience);

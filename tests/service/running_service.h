@@ -38,12 +38,6 @@ method = "exact"
 reference_point = [0.5, -0.25, 0.0]
 )";
 
-inline ChildCommand command_of(std::vector<std::string> arguments) {
-  ChildCommand command;
-  command.arguments = std::move(arguments);
-  return command;
-}
-
 // The same box, whose hydrostatics are asked for.
 inline constexpr const char* kHydrostaticBoxScene = R"(
 [world]
