@@ -22,7 +22,11 @@ double expected_time(const Solver& solver) {
 BodyAnswers::BodyAnswers(const Scene& scene, unsigned threads)
     : scene_(&scene), workers_(threads), remembered_(scene.bodies().size()) {
   expected_time_.reserve(scene.bodies().size());
-  for (const Body& body : scene.bodies()) expected_time_.push_back(expected_time(body.solver));
+  wholly_wet_.reserve(scene.bodies().size());
+  for (const Body& body : scene.bodies()) {
+    expected_time_.push_back(expected_time(body.solver));
+    wholly_wet_.push_back(wholly_wet(body.solver.mesh(), scene.water(), body.reference_B));
+  }
 }
 
 void BodyAnswers::Remembered::evaluated_at(const Pose& at) {
@@ -74,7 +78,8 @@ const BodyOutcome* BodyAnswers::answer_or_postpone(const BodyState& state, doubl
     last.outcome.unchanged = true;
     return &last.outcome;
   }
-  if (evaluate_by_bounds(scene_->bodies()[*index], scene_->water(), asked, last.outcome)) {
+  if (evaluate_by_bounds(scene_->bodies()[*index], wholly_wet_[*index], scene_->water(), asked,
+                         last.outcome)) {
     last.evaluated_at(asked.pose);
     return &last.outcome;
   }

@@ -52,6 +52,7 @@ class BodyAnswers {
 
   const Scene* scene_;
   Workers workers_;
+  std::vector<WhollyWet> wholly_wet_;  // by body
   std::vector<double> expected_time_;  // ns, by body: of a query that crosses the water, roughly
   std::vector<Remembered> remembered_;
   std::vector<Pending> pending_;  // of the question at hand

@@ -101,8 +101,9 @@ void evaluate(const Body& body, const Water& water, const AskedPose& asked, Body
   judge(asked, outcome);
 }
 
-bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome) {
-  if (!buoyancy_by_bounds(body.solver, asked.pose, water, body.reference_B, outcome.answer)) return false;
+bool evaluate_by_bounds(const Body& body, const WhollyWet& wet, const Water& water, const AskedPose& asked,
+                        BodyOutcome& outcome) {
+  if (!buoyancy_by_bounds(body.solver, wet, asked.pose, water, outcome.answer)) return false;
   judge(asked, outcome);
   return true;
 }

@@ -45,7 +45,8 @@ struct BodyOutcome {
 void evaluate(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome);
 // The same where the body's bounds alone say it (buoyancy_by_bounds); false: they do not, outcome is as it
 // was.
-bool evaluate_by_bounds(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome);
+bool evaluate_by_bounds(const Body& body, const WhollyWet& wet, const Water& water, const AskedPose& asked,
+                        BodyOutcome& outcome);
 BodyWrench wrench_of(std::int32_t body_id, const BodyOutcome& outcome);
 void count(const BodyOutcome& outcome, Counters& counters);
 

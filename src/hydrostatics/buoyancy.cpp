@@ -73,28 +73,23 @@ Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, co
 }
 
 // The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
-void answer_wholly_wet(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
-                       const Vec3& reference_B, BuoyancyAnswer& answer) {
-  const double weight = water.density * water.gravity;  // N/m^3
+void answer_wholly_wet(const WhollyWet& wet, const Pose& pose, const Water& water, BuoyancyAnswer& answer) {
   const Eigen::Quaterniond& q = pose.q_WB;
   const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   const auto up = Point<double>::from(water.up_W);
-  // In this order: a reference point near the body, both far from B's origin, loses nothing.
-  const Vec3 lever_B = (mesh.center_B - reference_B) + mesh.centroid;
-  const Vec3 centroid_B = mesh.center_B + mesh.centroid;
-  const Point<double> lever_W = rotate(q, two_by_norm_squared, lever_B);
-  const Point<double> torque_W = (weight * mesh.volume) * cross(lever_W, up);
-  const Point<double> center_W = lever_B == centroid_B ? lever_W : rotate(q, two_by_norm_squared, centroid_B);
-  const double force_error_bound = weight * mesh.rounding_bound();
+  const Point<double> lever_W = rotate(q, two_by_norm_squared, wet.lever_B);
+  const Point<double> center_W =
+      wet.lever_B == wet.centroid_B ? lever_W : rotate(q, two_by_norm_squared, wet.centroid_B);
+  const Point<double> torque_W = wet.lift * cross(lever_W, up);
   // Every field, so that none is left from what stood there before.
   answer = {.status = BuoyancyStatus::kOk,
             .immersion = Immersion::kWet,
-            .force_W = (weight * mesh.volume) * water.up_W,
+            .force_W = wet.force_W,
             .torque_W = (torque_W - dot(up, torque_W) * up).vec3(),
-            .volume = mesh.volume,
+            .volume = wet.volume,
             .center_of_buoyancy_W = center_W.vec3(),
-            .force_error_bound = force_error_bound,
-            .torque_error_bound = force_error_bound * mesh.largest_lever(reference_B),
+            .force_error_bound = wet.force_error_bound,
+            .torque_error_bound = wet.torque_error_bound,
             .dropped_force = 0.0,
             .dropped_torque = 0.0};
 }
@@ -147,31 +142,50 @@ bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
 }
 
 // Of such a body.
-void answer_by_bounds(const Solver& solver, Immersion immersion, const Pose& pose, const Water& water,
-                      const Vec3& reference_B, BuoyancyAnswer& answer) {
+void answer_by_bounds(const WhollyWet& wet, Immersion immersion, const Pose& pose, const Water& water,
+                      BuoyancyAnswer& answer) {
   if (immersion == Immersion::kDry) {  // nothing to sum: every method says zero, exactly
     answer = {};
     answer.immersion = immersion;
     return;
   }
-  answer_wholly_wet(solver.mesh(), pose, water, reference_B, answer);
+  answer_wholly_wet(wet, pose, water, answer);
   if (!finite(answer)) answer = not_answered(BuoyancyStatus::kOutOfRange, immersion);
 }
 
 }  // namespace
 
-bool buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B,
+WhollyWet wholly_wet(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
+  const double weight = water.density * water.gravity;  // N/m^3
+  const double force_error_bound = weight * mesh.rounding_bound();
+  const double lift = weight * mesh.volume;
+  return {.volume = mesh.volume,
+          .lift = lift,
+          .force_W = lift * water.up_W,
+          // In this order: a reference point near the body, both far from B's origin, loses nothing.
+          .lever_B = (mesh.center_B - reference_B) + mesh.centroid,
+          .centroid_B = mesh.center_B + mesh.centroid,
+          .force_error_bound = force_error_bound,
+          .torque_error_bound = force_error_bound * mesh.largest_lever(reference_B)};
+}
+
+bool buoyancy_by_bounds(const Solver& solver, const WhollyWet& wet, const Pose& pose, const Water& water,
                         BuoyancyAnswer& answer) {
   const Immersion glance = immersion_at_a_glance(solver.mesh(), pose, water);
   if (!is_answered_by_bounds(solver, glance)) return false;
-  answer_by_bounds(solver, glance, pose, water, reference_B, answer);
+  answer_by_bounds(wet, glance, pose, water, answer);
   return true;
 }
 
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  BuoyancyAnswer answer;
-  if (buoyancy_by_bounds(solver, pose, water, reference_B, answer)) return answer;
   const HydrostaticMesh& mesh = solver.mesh();
+  BuoyancyAnswer answer;
+  const auto by_bounds = [&](Immersion immersion) {
+    answer_by_bounds(wholly_wet(mesh, water, reference_B), immersion, pose, water, answer);
+    return answer;
+  };
+  const Immersion glance = immersion_at_a_glance(mesh, pose, water);
+  if (is_answered_by_bounds(solver, glance)) return by_bounds(glance);
   const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
     return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
@@ -180,10 +194,7 @@ BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& wat
   if (where != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
     return not_answered(BuoyancyStatus::kOpenEdgeWet, where);
   }
-  if (is_answered_by_bounds(solver, where)) {
-    answer_by_bounds(solver, where, pose, water, reference_B, answer);
-    return answer;
-  }
+  if (is_answered_by_bounds(solver, where)) return by_bounds(where);
   answer.immersion = where;
   answer_from_displacement(solver, plane, pose, water, reference_B, answer);
   if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, where);

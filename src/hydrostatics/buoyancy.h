@@ -35,9 +35,23 @@ struct BuoyancyAnswer {
 // (docs/mathematics.md, "Error bounds").
 BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
+// What no pose changes in the answer of a wholly wet body.
+struct WhollyWet {
+  double volume = 0.0;              // m^3
+  double lift = 0.0;                // N
+  Vec3 force_W = Vec3::Zero();      // N
+  Vec3 lever_B = Vec3::Zero();      // m, from the reference point to the volume's centroid
+  Vec3 centroid_B = Vec3::Zero();   // m, from B's origin
+  double force_error_bound = 0.0;   // N
+  double torque_error_bound = 0.0;  // N m
+};
+
+WhollyWet wholly_wet(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
+
 // What buoyancy() answers, where immersion_at_a_glance() says enough for it: of a dry body, and with
 // `hierarchical` of a wholly wet one. False: it takes more, and answer is as it was. O(1).
-bool buoyancy_by_bounds(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B,
+// wet: of the solver's mesh in this water, about the point that torque is about.
+bool buoyancy_by_bounds(const Solver& solver, const WhollyWet& wet, const Pose& pose, const Water& water,
                         BuoyancyAnswer& answer);
 
 }  // namespace buoyancy
