@@ -16,9 +16,9 @@ namespace {
 using namespace buoyancy;
 
 constexpr int kTroublesShown = 20;
+constexpr std::int64_t kFirstPoseSession = 1;  // the same in every replay: so are the bytes
 
-int answer_all(const CLI::App& app, const ReplayOptions& options, const Scene& scene, ReplayInput& input,
-               ReplayOutput& output) {
+int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message
   ProgressBar progress("questions");
@@ -34,7 +34,7 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const Scene& s
                                 [&](std::int64_t done, std::int64_t total, std::int64_t questions) {
                                   progress.update(done, total, questions);
                                 }};
-  const Expected<ReplaySummary> summary = replay(scene, input, output, signals, listener);
+  const Expected<ReplaySummary> summary = replay(task, signals, listener);
   progress.clear();
   if (!summary) {
     print_error(app, summary.error());
@@ -44,8 +44,11 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const Scene& s
     print_error(app, std::string("ended by ") + summary->ended_by + "; " + options.output.string() +
                          " holds what was answered until then");
   }
-  if (!print_output(app, options.json ? summary_json(*summary) : summary_text(*summary))) return kFailed;
-  return summary->complete() ? kDone : kFailed;
+  const std::string text =
+      options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
+  if (!print_output(app, text)) return kFailed;
+  const bool agrees = task.comparison == nullptr || task.comparison->agrees();
+  return summary->complete() && agrees ? kDone : kFailed;
 }
 
 }  // namespace
@@ -64,10 +67,36 @@ int main(int argc, char** argv) {
   const Expected<Scene> scene =
       plan->single_mesh ? Scene::prepare(*plan->single_mesh) : Scene::load(options.scene);
   if (!scene) return refuse(scene.error(), kWrongInput);
-  Expected<ReplayInput> input = ReplayInput::open(options.input, plan->input_format, options.states_channel);
+  OutputLayout layout{plan->output_format, options.wrenches_channel, options.hydrostatics_channel};
+  std::vector<std::string> answers{layout.wrenches_channel, layout.hydrostatics_channel};
+  std::vector<std::string> taken{options.states_channel};
+  taken.insert(taken.end(), answers.begin(), answers.end());
+  Expected<PoseChannels> named = pose_channels(options.poses, *scene, taken);
+  if (!named) return refuse(named.error(), kWrongInput);
+  PoseQuestions poses(*std::move(named), kFirstPoseSession);
+  for (const PoseChannel& pose : poses.channels()) answers.push_back(pose.force_torque_channel);
+  Expected<ReplayChannels> channels =
+      ReplayChannels::make(options.states_channel, poses.channels(), options.copied, std::move(answers));
+  if (!channels) return refuse(channels.error(), kWrongInput);
+  Expected<ReplayInput> input =
+      ReplayInput::open(options.input, plan->input_format,
+                        [&channels](std::string_view channel) { return channels->use_of(channel).any(); });
   if (!input) return refuse(input.error(), kWrongInput);
-  Expected<ReplayOutput> output = ReplayOutput::create(
-      options.output, plan->output_format, {options.wrenches_channel, options.hydrostatics_channel});
+  std::optional<Comparison> comparison;
+  if (!options.earlier.empty()) {
+    Expected<Comparison> opened = Comparison::open(options.earlier, options.wrenches_channel);
+    if (!opened) return refuse(opened.error(), kWrongInput);
+    comparison = *std::move(opened);
+  }
+  Expected<ReplayOutput> output = ReplayOutput::create(options.output, plan->output_format);
   if (!output) return refuse(output.error(), kFailed);
-  return answer_all(app, options, *scene, *input, *output);
+  return answer_all(app, options,
+                    {.scene = *scene,
+                     .input = *input,
+                     .channels = *channels,
+                     .poses = poses,
+                     .output = *output,
+                     .layout = std::move(layout),
+                     .comparison = comparison ? &*comparison : nullptr,
+                     .jobs = options.jobs});
 }

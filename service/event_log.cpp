@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "messages/bot_core.h"
 #include "messages/layout.h"
 
 namespace buoyancy {
@@ -10,31 +11,43 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::size_t kHeaderSize = 28;
-constexpr std::int32_t kLongestChannel = 999;              // liblcm's own bound for logs
-constexpr std::int32_t kLargestQuestion = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
+constexpr std::int32_t kLongestChannel = 999;             // liblcm's own bound for logs
+constexpr std::int32_t kLargestMessage = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
 
 bool starts_with_magic(Bytes bytes) {
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
 }
 
-}  // namespace
-
-Expected<EventLogReader> EventLogReader::open(const std::filesystem::path& path,
-                                              const std::string& states_channel) {
-  Expected<InputWindow> file = InputWindow::open(path);
-  if (!file) return tl::unexpected(file.error());
-  return EventLogReader(std::move(*file), states_channel);
+std::string_view as_text(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-EventLogReader::EventLogReader(InputWindow file, std::string states_channel)
-    : file_(std::move(file)), states_channel_(std::move(states_channel)) {}
+// Whole by itself, whatever follows it.
+bool is_question_or_pose(Bytes data) {
+  return peek_key(data).has_value() || decode_bot_pose(data).has_value();
+}
+
+}  // namespace
+
+ChannelFilter only_channel(std::string channel) {
+  return [channel = std::move(channel)](std::string_view other) { return other == channel; };
+}
+
+Expected<EventLogReader> EventLogReader::open(const std::filesystem::path& path, ChannelFilter wanted) {
+  Expected<InputWindow> file = InputWindow::open(path);
+  if (!file) return tl::unexpected(file.error());
+  return EventLogReader(std::move(*file), std::move(wanted));
+}
+
+EventLogReader::EventLogReader(InputWindow file, ChannelFilter wanted)
+    : file_(std::move(file)), wanted_(std::move(wanted)) {}
 
 InputItem EventLogReader::next() {
   while (offset_ < size()) {
     const tl::expected<Frame, std::string> frame = frame_at(offset_);
     if (!frame) return skip_damage(frame.error());
     const std::int64_t start = offset_;
-    if (!frame->ours) {
+    if (!frame->wanted) {
       if (!header_or_end_at(frame->next)) return skip_damage("no event follows where one should");
       offset_ = frame->next;
       continue;
@@ -44,9 +57,10 @@ InputItem EventLogReader::next() {
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    if (!followed && !peek_key(data)) return skip_damage("no event follows where one should");
+    if (!followed && !is_question_or_pose(data)) return skip_damage("no event follows where one should");
     offset_ = frame->next;
-    return RecordedQuestion{frame->timestamp, data};
+    const Bytes channel = event.subspan(kHeaderSize, frame->data_start - kHeaderSize);
+    return RecordedEvent{frame->timestamp, as_text(channel), data};
   }
   if (file_.read_error()) {
     offset_ = size();
@@ -78,10 +92,9 @@ tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::i
     return Reason("the file ends within an event: " + std::to_string(frame.next - size()) +
                   " bytes are missing");
   }
-  const Bytes channel = header.subspan(kHeaderSize, static_cast<std::size_t>(channel_size));
-  frame.ours = std::equal(channel.begin(), channel.end(), states_channel_.begin(), states_channel_.end());
-  if (frame.ours && data_size > kLargestQuestion) {
-    return Reason("a question of " + std::to_string(data_size) + " bytes");
+  frame.wanted = wanted_(as_text(header.subspan(kHeaderSize, static_cast<std::size_t>(channel_size))));
+  if (frame.wanted && data_size > kLargestMessage) {
+    return Reason("a message of " + std::to_string(data_size) + " bytes");
   }
   return frame;
 }
@@ -116,6 +129,10 @@ void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view 
   const auto after_header = bytes.begin() + static_cast<std::ptrdiff_t>(kHeaderSize);
   const auto after_channel = std::copy(channel.begin(), channel.end(), after_header);
   std::copy(data.begin(), data.end(), after_channel);
+}
+
+void renumber_event(std::int64_t number, std::span<std::uint8_t> event) {
+  BigEndianWriter{event.data() + kMagic.size()}(number);
 }
 
 }  // namespace buoyancy

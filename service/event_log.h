@@ -5,11 +5,12 @@
 // Read here and not through liblcm, whose reader loses the good event before a damage, takes a damaged length
 // for an order to allocate and to skip the rest of the file, and cannot tell the end from a damage. The law
 // here: an event counts if it is followed by another one's header or by the end of the file, or if it is a
-// valid question; whatever else stands in the file is skipped up to the next such event and reported.
+// valid question or pose; whatever else stands in the file is skipped up to the next such event and reported.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,10 +22,14 @@
 
 namespace buoyancy {
 
+// Is a channel's event wanted? Asked for every event of a log.
+using ChannelFilter = std::function<bool(std::string_view channel)>;
+ChannelFilter only_channel(std::string channel);
+
 class EventLogReader {
  public:
-  // Reads the questions on states_channel; events of other channels are passed over.
-  static Expected<EventLogReader> open(const std::filesystem::path& path, const std::string& states_channel);
+  // Reads the events on the channels that are wanted; others are passed over.
+  static Expected<EventLogReader> open(const std::filesystem::path& path, ChannelFilter wanted);
 
   InputItem next();
   std::int64_t offset() const { return offset_; }  // bytes read
@@ -33,24 +38,27 @@ class EventLogReader {
  private:
   struct Frame {
     std::int64_t timestamp = 0;
-    bool ours = false;           // on states_channel
+    bool wanted = false;
     std::size_t data_start = 0;  // from the event's start
     std::size_t data_size = 0;
     std::int64_t next = 0;  // the file's offset after the event
   };
 
-  EventLogReader(InputWindow file, std::string states_channel);
+  EventLogReader(InputWindow file, ChannelFilter wanted);
   tl::expected<Frame, std::string> frame_at(std::int64_t offset);  // or what is wrong with it
   bool header_or_end_at(std::int64_t offset);
   Damage skip_damage(const std::string& reason);
 
   InputWindow file_;
-  std::string states_channel_;
+  ChannelFilter wanted_;
   std::int64_t offset_ = 0;
 };
 
 // Replaces bytes by an event as above.
 void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view channel, Bytes data,
                   std::vector<std::uint8_t>& bytes);
+
+// Gives an encoded event another number.
+void renumber_event(std::int64_t number, std::span<std::uint8_t> event);
 
 }  // namespace buoyancy

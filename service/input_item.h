@@ -1,23 +1,26 @@
-// One thing that a reader of recorded questions found.
+// One thing that a reader of recorded messages found.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include "messages/wire.h"
 
 namespace buoyancy {
 
-struct RecordedQuestion {
+struct RecordedEvent {
   std::int64_t timestamp = 0;  // us: of the log's event; of CSV the rows' utime
-  Bytes bytes;                 // valid until the reader is asked again; not yet validated
+  std::string_view channel;    // of the log's event; of CSV empty: a question
+  Bytes bytes;                 // not yet validated
+  // Both views are valid until the reader is asked again.
 };
 struct Damage {
   std::string description;  // what could not be read, where, and how much of it was skipped
 };
 struct EndOfInput {};
 
-using InputItem = std::variant<RecordedQuestion, Damage, EndOfInput>;
+using InputItem = std::variant<RecordedEvent, Damage, EndOfInput>;
 
 }  // namespace buoyancy

@@ -1,14 +1,18 @@
 // The replay: every recorded question through the same Exchange as in the live service, offline, as fast as
-// it goes. The same input gives the same output, byte for byte.
+// it goes, on as many threads as there are. The same input gives the same output, byte for byte, whatever
+// their number.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include "exchange/pose_questions.h"
 #include "geometry/error.h"
 #include "messages/status.h"
 #include "scene/scene.h"
+#include "service/comparison.h"
+#include "service/replay_channels.h"
 #include "service/replay_input.h"
 #include "service/replay_output.h"
 #include "service/termination_signals.h"
@@ -17,6 +21,7 @@ namespace buoyancy {
 
 struct ReplaySummary {
   Counters counters;
+  std::int64_t copied = 0;    // events
   std::int64_t damages = 0;   // places of the input that could not be read
   const char* ended_by = "";  // a signal's name; empty: the end of the input
   double seconds = 0.0;
@@ -30,9 +35,21 @@ struct ReplayListener {
   std::function<void(std::int64_t offset, std::int64_t size, std::int64_t questions)> on_progress;
 };
 
-// Ends at the end of the input or, between two questions, after a signal. Errors: the output cannot be
-// written.
-Expected<ReplaySummary> replay(const Scene& scene, ReplayInput& input, ReplayOutput& output,
-                               TerminationSignals& signals, const ReplayListener& listener);
+// What a replay works with; all outlive it.
+struct ReplayTask {
+  const Scene& scene;
+  ReplayInput& input;
+  ReplayChannels& channels;
+  PoseQuestions& poses;
+  ReplayOutput& output;
+  OutputLayout layout;
+  Comparison* comparison = nullptr;  // nullptr: none
+  unsigned jobs = 0;                 // threads: 1 or more; 0: as many as the processor runs at once
+};
+
+// Ends at the end of the input or, between two questions, after a signal. Memory: jobs times a bounded number
+// of questions. Errors: the output cannot be written.
+Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
+                               const ReplayListener& listener);
 
 }  // namespace buoyancy

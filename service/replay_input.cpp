@@ -1,15 +1,17 @@
 #include "service/replay_input.h"
 
+#include <utility>
+
 namespace buoyancy {
 
 Expected<ReplayInput> ReplayInput::open(const std::filesystem::path& path, FileFormat format,
-                                        const std::string& states_channel) {
+                                        ChannelFilter wanted) {
   if (format == FileFormat::kCsv) {
     Expected<StateCsvReader> reader = StateCsvReader::open(path);
     if (!reader) return tl::unexpected(reader.error());
     return ReplayInput(std::move(*reader));
   }
-  Expected<EventLogReader> reader = EventLogReader::open(path, states_channel);
+  Expected<EventLogReader> reader = EventLogReader::open(path, std::move(wanted));
   if (!reader) return tl::unexpected(reader.error());
   return ReplayInput(std::move(*reader));
 }

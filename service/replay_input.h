@@ -1,9 +1,9 @@
-// What a replay reads: questions, as bytes, from an LCM log or from CSV, and word of what could not be read.
+// What a replay reads: recorded messages from an LCM log, or questions from CSV, and word of what could not
+// be read.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
 #include <variant>
 
 #include "geometry/error.h"
@@ -17,10 +17,9 @@ enum class FileFormat { kCsv, kLcmLog };
 
 class ReplayInput {
  public:
-  // states_channel: of the events that are questions, in a log. Errors: not readable, a CSV header that is
-  // none.
+  // wanted: of a log's channels. Errors: not readable, a CSV header that is none.
   static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
-                                    const std::string& states_channel);
+                                    ChannelFilter wanted);
 
   InputItem next() {
     return std::visit([](auto& reader) { return reader.next(); }, reader_);

@@ -34,6 +34,26 @@ Expected<FileFormat> output_format(const std::filesystem::path& path, FileFormat
   return format_by_extension(path);
 }
 
+Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& plan) {
+  const bool from_log = plan.input_format == FileFormat::kLcmLog;
+  const bool to_log = plan.output_format == FileFormat::kLcmLog;
+  if (!options.poses.poses.empty() && !from_log) {
+    return failure({"--pose", options.input.string(), "an .lcmlog as INPUT", "CSV has no channels", ""});
+  }
+  if (!options.poses.force_torques.empty() && !to_log) {
+    return failure({"--force-torque", options.output.string(), "an .lcmlog as OUTPUT", "", ""});
+  }
+  if (!options.copied.empty() && !(from_log && to_log)) {
+    return failure({"--copy", options.input.string() + " to " + options.output.string(),
+                    "an .lcmlog as INPUT and as OUTPUT", "", ""});
+  }
+  if (!options.earlier.empty() && !options.poses.force_torques.empty()) {
+    return failure({"--compare", "together with --force-torque", "answers as body_wrenches_t",
+                    "a six_axis_force_torque_t has no error bound to compare by", ""});
+  }
+  return {};
+}
+
 }  // namespace
 
 void declare_options(CLI::App& app, ReplayOptions& options) {
@@ -41,11 +61,15 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
       "Answers recorded body poses with the buoyant force and torque on each body, as buoyancyd would.\n"
       "CSV in: utime,body_id,px,py,pz,qw,qx,qy,qz and, if they are there, vx,vy,vz,wx,wy,wz; a row per row "
       "comes\n"
-      "out; rows with the same utime are one question. LCM logs: the questions on one channel; other "
-      "channels\n"
-      "are not copied.\n"
-      "Exit codes: 0 every question of INPUT has its answer in OUTPUT, 1 it ran and some have not, 2 wrong\n"
-      "arguments, scene, mesh or INPUT.");
+      "out; rows with the same utime are one question. LCM logs: the questions on one channel, and poses of "
+      "single\n"
+      "bodies on others (--pose); answers keep the timestamps of what they answer; other channels are copied "
+      "on\n"
+      "request (--copy).\n"
+      "Exit codes: 0 every question of INPUT has its answer in OUTPUT, 1 it ran and some have not, or they "
+      "do "
+      "not\n"
+      "agree with those compared with, 2 wrong arguments, scene, mesh or INPUT.");
   app.set_version_flag("--version", "buoyancy-replay " BUOYANCY_VERSION);
   auto* from = app.add_option_group("scene", "What floats: one of");
   from->add_option("--scene", options.scene, "The scene file (TOML): water and bodies");
@@ -70,6 +94,21 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
          "Channel of the hydrostatics in an LCM log, of bodies whose outputs in the scene name them; a CSV "
          "file holds wrenches alone")
       ->capture_default_str();
+  declare_options(app, options.poses);
+  app.add_option(
+         "--copy", options.copied,
+         "Copies the events of channels whose whole name matches, of an LCM log to an LCM log; '.*' copies "
+         "all but the channels that answers go to. May be given again")
+      ->option_text("REGEX");
+  app.add_option(
+         "--compare", options.earlier,
+         "An earlier OUTPUT, an LCM log: prints the largest differences by body, and fails where they "
+         "exceed the error bounds of both answers")
+      ->option_text("LCMLOG");
+  app.add_option("--jobs", options.jobs,
+                 "Threads; 0: as many as the processor runs at once. OUTPUT does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N [0]");
   app.add_flag("--json", options.json, "The summary as JSON");
   app.add_option("INPUT", options.input, "A .csv or .lcmlog file")->required();
   app.add_option("OUTPUT", options.output, "A .csv or .lcmlog file; overwritten")->required();
@@ -84,7 +123,10 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   if (!written_format) return tl::unexpected(written_format.error());
   plan.output_format = *written_format;
 
-  for (const std::filesystem::path& read : {options.input, options.scene, options.mesh}) {
+  if (const Expected<void> checked = check_formats(options, plan); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  for (const std::filesystem::path& read : {options.input, options.scene, options.mesh, options.earlier}) {
     std::error_code no_such_file;
     if (std::filesystem::equivalent(read, options.output, no_such_file)) {
       return failure({options.output.string(), "the same file as " + read.string(), "an OUTPUT of its own",

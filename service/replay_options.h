@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "scene/scene_file.h"
+#include "service/pose_options.h"
 #include "service/replay_input.h"
 
 namespace buoyancy {
@@ -24,6 +26,10 @@ struct ReplayOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string hydrostatics_channel{kHydrostaticsChannel};
+  PoseOptions poses;
+  std::vector<std::string> copied;  // regular expressions
+  std::filesystem::path earlier;    // an earlier OUTPUT to compare with; empty: none
+  unsigned jobs = 0;                // 0: as many as the processor runs at once
   bool json = false;
 };
 
@@ -38,7 +44,7 @@ struct ReplayPlan {
 };
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
-// carry, one channel for wrenches and hydrostatics, an unknown method.
+// carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
 
 }  // namespace buoyancy

@@ -1,8 +1,9 @@
 #include "service/replay_output.h"
 
 #include <cassert>
-#include <string_view>
+#include <span>
 
+#include "exchange/pose_questions.h"
 #include "service/event_log.h"
 #include "service/wrench_csv.h"
 
@@ -15,8 +16,42 @@ Bytes bytes_of(std::string_view text) {
 
 }  // namespace
 
-Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format,
-                                            Channels channels) {
+void OutputRecords::clear() {
+  bytes_.clear();
+  ends_.clear();
+}
+
+void OutputRecords::append(Bytes record) {
+  bytes_.insert(bytes_.end(), record.begin(), record.end());
+  ends_.push_back(bytes_.size());
+}
+
+void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
+  encode_event(0, timestamp, channel, bytes, event_);
+  append(event_);
+}
+
+void OutputRecords::add_answer(std::int64_t timestamp, Bytes answer, Bytes hydrostatics,
+                               std::string_view force_torque_channel) {
+  if (layout_.format == FileFormat::kLcmLog) {
+    if (force_torque_channel.empty()) {
+      add_event(timestamp, layout_.wrenches_channel, answer);
+    } else {
+      force_torque_of(answer, answer_, message_);
+      add_event(timestamp, force_torque_channel, message_);
+    }
+    if (!hydrostatics.empty()) add_event(timestamp, layout_.hydrostatics_channel, hydrostatics);
+    return;
+  }
+  [[maybe_unused]] const auto rejected = decode(answer, answer_);
+  assert(!rejected);  // we encoded it
+  for (const BodyWrench& wrench : answer_.bodies) {
+    format_wrench_row(answer_.key.utime, wrench, row_);
+    append(bytes_of(row_));
+  }
+}
+
+Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format) {
   Expected<RecordFile> file = RecordFile::create(path);
   if (!file) return tl::unexpected(file.error());
   if (format == FileFormat::kCsv) {
@@ -24,28 +59,17 @@ Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, F
       return tl::unexpected(written.error());
     }
   }
-  return ReplayOutput(std::move(*file), format, std::move(channels));
+  return ReplayOutput(std::move(*file), format);
 }
 
-ReplayOutput::ReplayOutput(RecordFile file, FileFormat format, Channels channels)
-    : file_(std::move(file)), format_(format), channels_(std::move(channels)) {}
-
-Expected<void> ReplayOutput::write_event(std::int64_t timestamp, const std::string& channel, Bytes bytes) {
-  encode_event(events_++, timestamp, channel, bytes, event_);
-  return file_.append(event_);
-}
-
-Expected<void> ReplayOutput::write(std::int64_t timestamp, Bytes answer, Bytes hydrostatics) {
-  if (format_ == FileFormat::kLcmLog) {
-    Expected<void> written = write_event(timestamp, channels_.wrenches, answer);
-    if (!written || hydrostatics.empty()) return written;
-    return write_event(timestamp, channels_.hydrostatics, hydrostatics);
-  }
-  [[maybe_unused]] const auto rejected = decode(answer, answer_);
-  assert(!rejected);  // we encoded it
-  for (const BodyWrench& wrench : answer_.bodies) {
-    format_wrench_row(answer_.key.utime, wrench, row_);
-    if (Expected<void> written = file_.append(bytes_of(row_)); !written) return written;
+Expected<void> ReplayOutput::write(OutputRecords& records) {
+  const std::span<std::uint8_t> bytes(records.bytes_);
+  std::size_t start = 0;
+  for (const std::size_t end : records.ends_) {
+    const std::span<std::uint8_t> record = bytes.subspan(start, end - start);
+    if (format_ == FileFormat::kLcmLog) renumber_event(events_++, record);
+    if (Expected<void> written = file_.append(record); !written) return written;
+    start = end;
   }
   return {};
 }

@@ -3,11 +3,14 @@
 
 #include <string>
 
+#include "service/comparison.h"
 #include "service/replay.h"
 
 namespace buoyancy {
 
-std::string summary_text(const ReplaySummary& summary);  // lines for a terminal, with a final newline
-std::string summary_json(const ReplaySummary& summary);  // one JSON object, with a final newline
+// comparison: nullptr where there was none. Lines for a terminal, with a final newline.
+std::string summary_text(const ReplaySummary& summary, const Comparison* comparison);
+// One JSON object, with a final newline. A difference over bounds of 0 is null.
+std::string summary_json(const ReplaySummary& summary, const Comparison* comparison);
 
 }  // namespace buoyancy

@@ -96,7 +96,7 @@ InputItem StateCsvReader::next() {
   if (!question_.bodies.empty()) {
     encode(question_, bytes_);
     ++question_.key.seq;
-    return RecordedQuestion{question_.key.utime, bytes_};
+    return RecordedEvent{question_.key.utime, {}, bytes_};
   }
   if (damage_) return next();
   if (file_.read_error() && offset_ < size()) {

@@ -1,7 +1,11 @@
 #include "exchange/arena.h"
 
 #ifdef BUOYANCY_WITH_TBB
+#include <optional>
+#include <thread>
+
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -12,11 +16,17 @@ namespace buoyancy {
 
 struct Arena::Threads {
   tbb::task_arena arena;
+  // Where more are asked for than the processor runs at once, TBB would say so on standard error.
+  std::optional<tbb::global_control> more_allowed;
 };
 
 Arena::Arena(unsigned threads)
     : of_tbb_(new Threads{
-          tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads))}) {}
+          tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)), {}}) {
+  if (threads > std::thread::hardware_concurrency()) {
+    of_tbb_->more_allowed.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
+}
 
 unsigned Arena::threads() const {
   return static_cast<unsigned>(of_tbb_->arena.max_concurrency());

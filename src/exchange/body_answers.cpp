@@ -56,6 +56,10 @@ void BodyAnswers::answer(const Question& question, std::vector<BodyWrench>& wren
   }
 }
 
+void BodyAnswers::forget() {
+  for (Remembered& last : remembered_) last.valid = false;
+}
+
 std::optional<std::size_t> BodyAnswers::body_of(std::int32_t id, std::size_t i) const {
   // Whoever asks about a whole scene tends to do so in its order.
   if (i < scene_->bodies().size() && scene_->bodies()[i].id == id) return i;

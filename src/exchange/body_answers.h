@@ -25,6 +25,9 @@ class BodyAnswers {
   // largest question.
   void answer(const Question& question, std::vector<BodyWrench>& wrenches, Counters& counters);
 
+  // No body's last answer is given again.
+  void forget();
+
   unsigned threads() const { return workers_.threads(); }
 
  private:

@@ -54,6 +54,13 @@ Bytes Exchange::answer(Bytes question) {
   return session.last_answer;
 }
 
+void Exchange::begin_anew() {
+  sessions_.clear();
+  answered_.reset();
+  body_answers_.forget();
+  for (LastHydrostatics& last : last_hydrostatics_) last.valid = false;
+}
+
 std::optional<std::int64_t> Exchange::newest_seq(std::int64_t session_id) const {
   const auto known = std::ranges::find(sessions_, session_id, &Session::id);
   if (known == sessions_.end()) return std::nullopt;

@@ -45,6 +45,10 @@ class Exchange {
   // For mode latest: a question that arrived after a newer one of its session was answered; counted, not
   // answered.
   void count_stale() { ++counters_.questions, ++counters_.stale; }
+  // For bytes that should have become a question and did not: counted by cause, like a rejected question.
+  void count_rejected(Rejection cause) { ++counters_.questions, count_rejection(cause); }
+  // Forgets sessions and answers, as if it had just been made; what it has counted stays.
+  void begin_anew();
   // The newest seq answered in the session; nullopt: no such session.
   std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
 

@@ -25,6 +25,31 @@ FixedSizes fixed_sizes(const ServiceStatus& status) {
 
 }  // namespace
 
+Counters& Counters::operator+=(const Counters& other) {
+  questions += other.questions;
+  answered += other.answered;
+  repeated += other.repeated;
+  changed_repeats += other.changed_repeats;
+  stale += other.stale;
+  overtaken += other.overtaken;
+  sessions += other.sessions;
+  sessions_forgotten += other.sessions_forgotten;
+  rejected_truncated += other.rejected_truncated;
+  rejected_fingerprint += other.rejected_fingerprint;
+  rejected_count += other.rejected_count;
+  rejected_length += other.rejected_length;
+  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] += other.bodies[i];
+  quaternions_normalised += other.quaternions_normalised;
+  bodies_dry += other.bodies_dry;
+  bodies_wet += other.bodies_wet;
+  bodies_crossing += other.bodies_crossing;
+  bodies_unchanged += other.bodies_unchanged;
+  hydrostatics += other.hydrostatics;
+  largest_dropped_force = std::max(largest_dropped_force, other.largest_dropped_force);
+  largest_dropped_torque = std::max(largest_dropped_torque, other.largest_dropped_torque);
+  return *this;
+}
+
 SimdTarget simd_target_from_name(std::string_view name) {
   if (name == "SCALAR") return SimdTarget::kScalar;
   if (name == "SSSE3") return SimdTarget::kSsse3;

@@ -39,6 +39,8 @@ struct Counters {
   std::int64_t rejected() const {
     return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length;
   }
+  // Totals add up, of the largest the larger stays.
+  Counters& operator+=(const Counters& other);
 };
 
 struct LatencyPercentiles {  // s

@@ -50,7 +50,7 @@ std::int64_t utime_of(std::string_view line) {
   return std::strtoll(std::string(line.substr(0, line.find(','))).c_str(), nullptr, 10);
 }
 
-Question question_of(const RecordedQuestion& recorded, std::size_t number) {
+Question question_of(const RecordedEvent& recorded, std::size_t number) {
   Question question;
   law(!decode(recorded.bytes, question), "a question from CSV is a message of ours");
   law(!question.bodies.empty() && question.bodies.size() <= kMostRowsPerQuestion, "a question has bodies");
@@ -71,7 +71,7 @@ std::vector<Question> read_all(StateCsvReader& reader, const std::vector<std::st
     offset = reader.offset();
     if (std::holds_alternative<EndOfInput>(item)) break;
     law(next_line < lines.size(), "a file has no more rows and reports than lines");
-    if (const auto* recorded = std::get_if<RecordedQuestion>(&item)) {
+    if (const auto* recorded = std::get_if<RecordedEvent>(&item)) {
       questions.push_back(question_of(*recorded, questions.size()));
       const Question& question = questions.back();
       law(question.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");

@@ -7,6 +7,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "tests/allocation_count.h"
+#include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
 
 namespace buoyancy {
@@ -84,9 +85,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.latency_p99 = status.latency.p99;
   message.latency_p999 = status.latency.p999;
   message.latency_max = status.latency.max;
-  ByteVector bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
-  return bytes;
+  return encoded_by_lcm(message);
 }
 
 ByteVector encoded(const ServiceStatus& status) {

@@ -11,6 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "tests/allocation_count.h"
+#include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
 
 namespace buoyancy {
@@ -28,13 +29,6 @@ template <typename Message>
 ByteVector encoded(const Message& message) {
   ByteVector bytes;
   encode(message, bytes);
-  return bytes;
-}
-
-template <typename Generated>
-ByteVector encoded_by_lcm(const Generated& message) {
-  ByteVector bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
   return bytes;
 }
 

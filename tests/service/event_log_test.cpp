@@ -51,7 +51,7 @@ struct Found {
 
 Found read_all(const std::string& contents) {
   const ScratchDirectory directory;
-  auto reader = EventLogReader::open(directory.write("x.lcmlog", contents), "BUOYANCY_STATES");
+  auto reader = EventLogReader::open(directory.write("x.lcmlog", contents), only_channel("BUOYANCY_STATES"));
   if (!reader) throw std::runtime_error(reader.error().message());
   Found found;
   while (true) {
@@ -60,7 +60,7 @@ Found read_all(const std::string& contents) {
     if (const auto* damage = std::get_if<Damage>(&item)) {
       found.damages.push_back(damage->description);
     } else {
-      const auto key = peek_key(std::get<RecordedQuestion>(item).bytes);
+      const auto key = peek_key(std::get<RecordedEvent>(item).bytes);
       found.seqs.push_back(key ? key->seq : -1);
     }
   }
@@ -105,10 +105,10 @@ TEST(EventLog, ReadsWhatLcmWrites) {
   ASSERT_EQ(lcm_eventlog_write_event(log, &event), 0);
   lcm_eventlog_destroy(log);
 
-  auto reader = EventLogReader::open(path, "BUOYANCY_STATES");
+  auto reader = EventLogReader::open(path, only_channel("BUOYANCY_STATES"));
   ASSERT_TRUE(reader);
   const InputItem item = reader->next();
-  const auto& found = std::get<RecordedQuestion>(item);
+  const auto& found = std::get<RecordedEvent>(item);
   EXPECT_EQ(found.timestamp, 77);
   EXPECT_EQ(std::vector<std::uint8_t>(found.bytes.begin(), found.bytes.end()), data);
   EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
@@ -201,9 +201,9 @@ TEST(EventLog, HandsOnBytesThatAreNoQuestionForTheExchangeToReject) {
 
 TEST(EventLog, RefusesWhatIsNoRegularFile) {
   const ScratchDirectory directory;
-  EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), "A"));
-  EXPECT_FALSE(EventLogReader::open(directory.path("."), "A"));
-  EXPECT_FALSE(EventLogReader::open("/dev/null", "A"));
+  EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), only_channel("A")));
+  EXPECT_FALSE(EventLogReader::open(directory.path("."), only_channel("A")));
+  EXPECT_FALSE(EventLogReader::open("/dev/null", only_channel("A")));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "service/event_log.h"
+#include "tests/service/replaying.h"
 #include "tests/service/running_service.h"
 
 namespace buoyancy {
@@ -12,15 +12,9 @@ namespace {
 
 // Of a log that may be being written: what is not whole yet is left out.
 std::vector<RawBytes> events(const std::string& path, const std::string& channel) {
-  auto reader = EventLogReader::open(path, channel);
-  if (!reader) throw std::runtime_error(reader.error().message());
   std::vector<RawBytes> found;
-  while (true) {
-    const InputItem item = reader->next();
-    if (std::holds_alternative<EndOfInput>(item)) return found;
-    const auto* event = std::get_if<RecordedQuestion>(&item);
-    if (event != nullptr) found.emplace_back(event->bytes.begin(), event->bytes.end());
-  }
+  for (LoggedEvent& event : events_of(path, only_channel(channel))) found.push_back(std::move(event.bytes));
+  return found;
 }
 
 TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {

@@ -11,58 +11,20 @@
 
 #include "messages/wire.h"
 #include "service/event_log.h"
-#include "tests/child_process.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/service/replaying.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kPatience = 60.0;
 constexpr const char* kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
 constexpr const char* kWrenchHeader =
     "utime,body_id,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,force_error_bound,torque_error_bound\n";
-
-// A box of 2 x 3 x 4 m about its origin, in water of 1000 kg/m^3 and 10 m/s^2.
-constexpr const char* kScene = R"(
-[world]
-gravity = 10.0
-[water]
-density = 1000.0
-[[body]]
-id = 1
-shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
-method = "exact"
-)";
 
 // A unit cube about its origin, as OBJ.
 constexpr const char* kCube =
     "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5\n"
     "v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5\n"
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-
-class Replay : public testing::Test {
- protected:
-  static ChildCommand command(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BUOYANCY_REPLAY);
-    return command_of(std::move(arguments));
-  }
-  FinishedProcess run(std::vector<std::string> arguments) const {
-    return run_to_end(command(std::move(arguments)), kPatience);
-  }
-  FinishedProcess replay(const std::string& input, const std::string& output,
-                         const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments{"--scene", scene_, input, output};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return run(std::move(arguments));
-  }
-  std::string path(const std::string& name) const { return directory_.path(name); }
-  std::string write(const std::string& name, const std::string& contents) const {
-    return directory_.write(name, contents);
-  }
-
-  ScratchDirectory directory_;
-  std::string scene_ = directory_.write("scene.toml", kScene);
-};
 
 using Row = std::vector<std::string>;
 
@@ -81,30 +43,6 @@ std::string pose_row(int utime, double height) {
   std::ostringstream row;
   row << utime << ",1,7,8," << height << ",1,0,0,0\n";
   return row.str();
-}
-
-std::vector<std::uint8_t> question(std::int64_t utime, double height) {
-  Question question;
-  question.key = {utime, 0, utime};
-  question.bodies.resize(1);
-  question.bodies[0].body_id = 1;
-  question.bodies[0].position = {7.0, 8.0, height};
-  question.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
-  std::vector<std::uint8_t> bytes;
-  encode(question, bytes);
-  return bytes;
-}
-
-std::string event(const std::string& channel, std::int64_t timestamp, const std::vector<std::uint8_t>& data) {
-  std::vector<std::uint8_t> bytes;
-  encode_event(0, timestamp, channel, data, bytes);
-  return {bytes.begin(), bytes.end()};
-}
-
-std::string log_of_questions(int count) {
-  std::string log;
-  for (int i = 0; i < count; ++i) log += event("BUOYANCY_STATES", 500 + i, question(i, 0.125 * i));
-  return log;
 }
 
 TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
@@ -136,11 +74,8 @@ TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
 TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
   replay(write("in.csv", std::string(kPoseHeader) + "0,1,0,0,0.1,0.9998,0.02,0,0\n"), path("out.csv"));
   replay(path("in.csv"), path("out.lcmlog"));
-  auto reader = EventLogReader::open(path("out.lcmlog"), "BUOYANCY_WRENCHES");
-  ASSERT_TRUE(reader);
-  const InputItem item = reader->next();
   Answer answer;
-  ASSERT_FALSE(decode(std::get<RecordedQuestion>(item).bytes, answer));
+  ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, answer));
   const Row row = rows(contents_of(path("out.csv"))).at(1);
   const BodyWrench& wrench = answer.bodies.at(0);
   EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
@@ -155,24 +90,22 @@ TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
   const std::string log = event("OTHER", 1, {1, 2}) + event("BUOYANCY_STATES", 2, question(20, 0.0)) +
                           event("BUOYANCY_WRENCHES", 3, {3}) + event("BUOYANCY_STATES", 4, question(40, 1.0));
   ASSERT_EQ(replay(write("in.lcmlog", log), path("out.lcmlog")).exit_code, 0);
-  auto reader = EventLogReader::open(path("out.lcmlog"), "BUOYANCY_WRENCHES");
-  ASSERT_TRUE(reader);
-  for (const std::int64_t timestamp : {2, 4}) {
-    const InputItem item = reader->next();
-    const auto* found = std::get_if<RecordedQuestion>(&item);
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->timestamp, timestamp);
+  const std::vector<LoggedEvent> answers = events_of(path("out.lcmlog"));
+  ASSERT_EQ(answers.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto timestamp = static_cast<std::int64_t>(2 * i + 2);
+    EXPECT_EQ(answers[i].channel, "BUOYANCY_WRENCHES");
+    EXPECT_EQ(answers[i].timestamp, timestamp);
     Answer answer;
-    ASSERT_FALSE(decode(found->bytes, answer));
+    ASSERT_FALSE(decode(answers[i].bytes, answer));
     EXPECT_EQ(answer.key.utime, 10 * timestamp);
     EXPECT_DOUBLE_EQ(answer.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
   }
-  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
 }
 
 TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
   const std::string asking =
-      write("asking.toml", std::string(kScene) + "outputs = [\"wrench\", \"hydrostatics\"]\n");
+      write("asking.toml", std::string(kReplayedScene) + "outputs = [\"wrench\", \"hydrostatics\"]\n");
   const auto replay_asking = [&](const std::string& output, const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"--scene", asking, path("in.lcmlog"), output};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -180,19 +113,16 @@ TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
   };
   write("in.lcmlog", log_of_questions(3));
   ASSERT_EQ(replay_asking(path("out.lcmlog"), {"--hydrostatics-channel", "H"}), 0);
-  auto reader = EventLogReader::open(path("out.lcmlog"), "H");
-  ASSERT_TRUE(reader);
-  for (int i = 0; i < 3; ++i) {
-    const InputItem item = reader->next();
-    const auto* found = std::get_if<RecordedQuestion>(&item);
-    ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->timestamp, 500 + i);
+  const std::vector<LoggedEvent> found = events_of(path("out.lcmlog"), only_channel("H"));
+  ASSERT_EQ(found.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto seq = static_cast<std::int64_t>(i);
+    EXPECT_EQ(found[i].timestamp, 500 + seq);
     BodiesHydrostatics hydrostatics;
-    ASSERT_FALSE(decode(found->bytes, hydrostatics));
-    EXPECT_EQ(hydrostatics.key.seq, i);
+    ASSERT_FALSE(decode(found[i].bytes, hydrostatics));
+    EXPECT_EQ(hydrostatics.key.seq, seq);
     EXPECT_DOUBLE_EQ(hydrostatics.bodies.at(0).waterplane_area, 6.0);
   }
-  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
 
   ASSERT_EQ(replay_asking(path("asked.csv"), {}), 0);
   ASSERT_EQ(replay(path("in.lcmlog"), path("not_asked.csv")).exit_code, 0);

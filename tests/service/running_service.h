@@ -10,12 +10,11 @@
 
 #include "messages/status.h"
 #include "tests/child_process.h"
+#include "tests/service/patience.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
-
-inline constexpr double kPatience = 60.0;  // s; nothing here takes long, but the machine may be busy
 
 inline constexpr double kDensity = 1000.0;
 inline constexpr double kGravity = 10.0;

@@ -29,7 +29,7 @@ Found read_all(const std::string& contents) {
     if (const auto* damage = std::get_if<Damage>(&item)) {
       found.damages.push_back(damage->description);
     } else {
-      const auto& recorded = std::get<RecordedQuestion>(item);
+      const auto& recorded = std::get<RecordedEvent>(item);
       Question question;
       EXPECT_FALSE(decode(recorded.bytes, question));
       EXPECT_EQ(recorded.timestamp, question.key.utime);

@@ -1,0 +1,207 @@
+// A replay beside the least that could be done with the same log: read, decode, encode and write it with no
+// solver in between. One simple body, a box that crosses the water. Markdown on standard output.
+//
+//   replay_speed DIRECTORY [LARGE_LOG_MB]
+//
+// The answers are checked before anything is timed. The last table replays a log of LARGE_LOG_MB (default
+// 2048) and says what the process's memory grew by. Exit 1 where an answer is wrong or the disk is full.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <sys/resource.h>
+
+#include "median.h"
+#include "service/replay.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr int kRuns = 5;
+constexpr std::int64_t kEvents = 300'000;
+constexpr double kMust = 0.5;
+
+template <typename T>
+T value_of(Expected<T> expected) {
+  if (!expected) throw std::runtime_error(expected.error().message());
+  return *std::move(expected);
+}
+void check(const Expected<void>& expected) {
+  if (!expected) throw std::runtime_error(expected.error().message());
+}
+
+double height_at(std::int64_t event) {
+  return 0.9 * std::sin(1e-3 * static_cast<double>(event));
+}
+
+void write_log(const std::string& path, std::int64_t events) {
+  RecordFile file = value_of(RecordFile::create(path));
+  Question question;
+  question.bodies.resize(1);
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> event;
+  for (std::int64_t i = 0; i < events; ++i) {
+    question.key = {.utime = i, .session_id = 1, .seq = i};
+    const double half_angle = 1e-4 * static_cast<double>(i);
+    question.bodies[0] = {.body_id = 1,
+                          .position = {0.0, 0.0, height_at(i)},
+                          .quaternion_wxyz = {std::cos(half_angle), 0.0, 0.0, std::sin(half_angle)}};
+    encode(question, bytes);
+    encode_event(i, i, kStatesChannel, bytes, event);
+    check(file.append(event));
+  }
+  check(file.flush());
+}
+
+void read_and_write(const std::string& input, const std::string& output) {
+  EventLogReader reader = value_of(EventLogReader::open(input, only_channel(std::string(kStatesChannel))));
+  RecordFile file = value_of(RecordFile::create(output));
+  Question question;
+  Answer answer;
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> event;
+  std::int64_t number = 0;
+  while (true) {
+    const InputItem item = reader.next();
+    const auto* recorded = std::get_if<RecordedEvent>(&item);
+    if (recorded == nullptr) break;
+    if (decode(recorded->bytes, question)) throw std::runtime_error("not a question");
+    answer.key = question.key;
+    answer.bodies.resize(question.bodies.size());
+    for (std::size_t i = 0; i < answer.bodies.size(); ++i)
+      answer.bodies[i].body_id = question.bodies[i].body_id;
+    encode(answer, bytes);
+    encode_event(number++, recorded->timestamp, kWrenchesChannel, bytes, event);
+    check(file.append(event));
+  }
+  check(file.flush());
+}
+
+void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
+  ReplayChannels channels = value_of(ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
+  PoseQuestions poses({}, 1);
+  ReplayInput reader =
+      value_of(ReplayInput::open(input, FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
+  ReplayOutput writer = value_of(ReplayOutput::create(output, FileFormat::kLcmLog));
+  TerminationSignals signals;
+  const ReplaySummary summary = value_of(replay(
+      {.scene = scene,
+       .input = reader,
+       .channels = channels,
+       .poses = poses,
+       .output = writer,
+       .layout = {FileFormat::kLcmLog, std::string(kWrenchesChannel), std::string(kHydrostaticsChannel)},
+       .jobs = jobs},
+      signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
+  if (!summary.complete()) throw std::runtime_error("the replay was not complete");
+}
+
+void check_answers(const std::string& path) {
+  EventLogReader reader = value_of(EventLogReader::open(path, only_channel(std::string(kWrenchesChannel))));
+  Answer answer;
+  for (std::int64_t i = 0; i < kEvents; ++i) {
+    const InputItem item = reader.next();
+    const auto* recorded = std::get_if<RecordedEvent>(&item);
+    if (recorded == nullptr || decode(recorded->bytes, answer))
+      throw std::runtime_error("an answer is missing");
+    const double volume = 2.0 * 3.0 * (1.0 - height_at(i));
+    if (!(std::abs(answer.bodies.at(0).submerged_volume - volume) < 1e-12)) {
+      throw std::runtime_error("answer " + std::to_string(i) + " is wrong");
+    }
+  }
+}
+
+struct Seconds {
+  double wall, processor;  // of all threads
+};
+
+Seconds seconds_of(const std::function<void()>& task) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const std::clock_t processor_start = std::clock();
+  task();
+  return {std::chrono::duration<double>(Clock::now() - start).count(),
+          static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
+}
+
+// Of the same task, several times.
+struct Times {
+  std::vector<double> wall, processor;
+
+  void add(const Seconds& seconds) {
+    wall.push_back(seconds.wall);
+    processor.push_back(seconds.processor);
+  }
+};
+
+double peak_megabytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void run(const std::string& directory, std::int64_t large_megabytes) {
+  SceneDescription description = value_of(
+      parse_scene("[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 2] }\n", "a box", directory));
+  const Scene scene = value_of(Scene::prepare(description));
+  const std::string input = directory + "/in.lcmlog";
+  const std::string output = directory + "/out.lcmlog";
+  write_log(input, kEvents);
+  replay_log(scene, input, output, 0);
+  check_answers(output);
+
+  Times bare;
+  Times one;
+  Times all;
+  for (int i = 0; i < kRuns; ++i) {
+    bare.add(seconds_of([&] { read_and_write(input, output); }));
+    one.add(seconds_of([&] { replay_log(scene, input, output, 1); }));
+    all.add(seconds_of([&] { replay_log(scene, input, output, 0); }));
+  }
+  std::printf(
+      "| %lld questions about a box | per second | processor time each, us | of the first row's speed |  |\n",
+      static_cast<long long>(kEvents));
+  std::printf("|---|---:|---:|---:|---|\n");
+  const auto row = [&bare](const char* what, const Times& times, bool held) {
+    const double events = static_cast<double>(kEvents);
+    const double ratio = median(bare.wall) / median(times.wall);
+    std::printf("| %s | %.0f | %.2f | %.2f | %s |\n", what, events / median(times.wall),
+                1e6 * median(times.processor) / events, ratio,
+                !held            ? ""
+                : ratio >= kMust ? "at least 0.5: met"
+                                 : "at least 0.5: MISSED");
+  };
+  row("read, decode, encode, write; no solver", bare, false);
+  row("replay, one job", one, true);
+  row("replay, all processors", all, true);
+
+  const double before = peak_megabytes();
+  constexpr std::int64_t kBytesPerEvent = 207;  // of write_log()
+  write_log(input, large_megabytes * 1'048'576 / kBytesPerEvent);
+  const double large = seconds_of([&] { replay_log(scene, input, output, 0); }).wall;
+  std::printf("\nA log of %lld MB took %.0f s; the most memory in use grew from %.1f to %.1f MB.\n",
+              static_cast<long long>(large_megabytes), large, before, peak_megabytes());
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: replay_speed DIRECTORY [LARGE_LOG_MB]\n");
+    return 2;
+  }
+  try {
+    buoyancy::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "replay_speed: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,54 @@
+#include "service/replay_channels.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kMostKnown = 4096;  // a damaged log may hold any number of names
+
+}  // namespace
+
+Expected<ReplayChannels> ReplayChannels::make(std::string states_channel,
+                                              const std::vector<PoseChannel>& poses,
+                                              const std::vector<std::string>& copied,
+                                              std::vector<std::string> answers) {
+  std::vector<std::regex> expressions;
+  for (const std::string& text : copied) {
+    try {
+      expressions.emplace_back(text, std::regex::ECMAScript | std::regex::optimize);
+    } catch (const std::regex_error& error) {
+      return failure(
+          {"--copy " + text, error.what(), "a regular expression, '.*' for every channel", "", ""});
+    }
+  }
+  return ReplayChannels(std::move(states_channel), poses, std::move(expressions), std::move(answers));
+}
+
+ReplayChannels::ReplayChannels(std::string states_channel, const std::vector<PoseChannel>& poses,
+                               std::vector<std::regex> copied, std::vector<std::string> answers)
+    : states_channel_(std::move(states_channel)), copied_(std::move(copied)), answers_(std::move(answers)) {
+  for (const PoseChannel& pose : poses) poses_.push_back(pose.channel);
+}
+
+ReplayChannels::Use ReplayChannels::use_of(std::string_view channel) {
+  if (const auto known = known_.find(channel); known != known_.end()) return known->second;
+  if (known_.size() >= kMostKnown) known_.clear();
+  return known_.emplace(channel, look_up(channel)).first->second;
+}
+
+ReplayChannels::Use ReplayChannels::look_up(std::string_view channel) const {
+  Use use;
+  use.question = channel == states_channel_;
+  if (const auto pose = std::ranges::find(poses_, channel); pose != poses_.end()) {
+    use.pose = static_cast<std::size_t>(pose - poses_.begin());
+  }
+  use.copied = std::ranges::find(answers_, channel) == answers_.end() &&
+               std::ranges::any_of(copied_, [channel](const std::regex& expression) {
+                 return std::regex_match(channel.begin(), channel.end(), expression);
+               });
+  return use;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,54 @@
+#include "exchange/pose_questions.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace buoyancy {
+namespace {
+
+std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_B) {
+  const auto& [w, x, y, z] = q_WB;
+  const Eigen::Vector3d v_W = Eigen::Quaterniond(w, x, y, z).normalized() * Eigen::Vector3d(v_B.data());
+  return {v_W.x(), v_W.y(), v_W.z()};
+}
+
+}  // namespace
+
+PoseQuestions::PoseQuestions(PoseChannels poses, std::int64_t first_session)
+    : poses_(std::move(poses)), first_session_(first_session), asked_(poses_.channels.size()) {
+  question_.lead_time = poses_.lead_time;
+  question_.bodies.resize(1);
+}
+
+std::optional<std::size_t> PoseQuestions::index_of(std::string_view channel) const {
+  const auto found = std::ranges::find(poses_.channels, channel, &PoseChannel::channel);
+  if (found == poses_.channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - poses_.channels.begin());
+}
+
+tl::expected<Bytes, Rejection> PoseQuestions::question(std::size_t index, Bytes pose) {
+  const tl::expected<BotPose, Rejection> read = decode_bot_pose(pose);
+  if (!read) return tl::unexpected(read.error());
+  question_.key = {read->utime, first_session_ + static_cast<std::int64_t>(index), asked_[index]++};
+  BodyState& state = question_.bodies.front();
+  state = {poses_.channels[index].body_id, read->position, read->quaternion_wxyz, read->velocity,
+           read->rotation_rate};
+  if (poses_.velocity_frame == VelocityFrame::kBody) {
+    state.linear_velocity = to_world(read->quaternion_wxyz, read->velocity);
+    state.angular_velocity = to_world(read->quaternion_wxyz, read->rotation_rate);
+  }
+  encode(question_, bytes_);
+  return Bytes(bytes_);
+}
+
+void force_torque_of(Bytes answer, Answer& read, std::vector<std::uint8_t>& bytes) {
+  [[maybe_unused]] const auto rejected = decode(answer, read);
+  assert(!rejected && read.bodies.size() == 1);
+  const BodyWrench& wrench = read.bodies.front();
+  encode_six_axis_force_torque(read.key.utime, wrench.force, wrench.torque, bytes);
+}
+
+}  // namespace buoyancy

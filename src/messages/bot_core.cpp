@@ -1,0 +1,53 @@
+#include "messages/bot_core.h"
+
+#include <limits>
+
+#include "messages/layout.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::uint64_t kPose = 0x2e16efb052b0105e;
+constexpr std::uint64_t kRigidTransform = 0xea9ffbf2acc5c5ae;
+constexpr std::uint64_t kSixAxisForceTorque = 0xf70790658aea38ec;
+
+// With their fingerprints.
+constexpr std::size_t kPoseSize = 8 + 8 + 16 * sizeof(double);
+constexpr std::size_t kRigidTransformSize = 8 + 8 + 7 * sizeof(double);
+constexpr std::size_t kSixAxisForceTorqueSize = 8 + 8 + 6 * sizeof(double);
+
+constexpr std::array<double, 3> unknown() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return {kNone, kNone, kNone};
+}
+
+}  // namespace
+
+tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes) {
+  std::uint64_t fingerprint = 0;
+  if (bytes.size() < sizeof fingerprint) return tl::unexpected(Rejection::kTruncated);
+  BigEndianReader reader(bytes.data());
+  reader(fingerprint);
+  if (fingerprint != kPose && fingerprint != kRigidTransform) return tl::unexpected(Rejection::kFingerprint);
+  const std::size_t size = fingerprint == kPose ? kPoseSize : kRigidTransformSize;
+  if (bytes.size() < size) return tl::unexpected(Rejection::kTruncated);
+  if (bytes.size() > size) return tl::unexpected(Rejection::kLength);
+  BotPose pose;
+  if (fingerprint == kPose) {
+    reader(pose.utime, pose.position, pose.velocity, pose.quaternion_wxyz, pose.rotation_rate);
+  } else {
+    reader(pose.utime, pose.position, pose.quaternion_wxyz);
+    pose.velocity = unknown();
+    pose.rotation_rate = unknown();
+  }
+  return pose;
+}
+
+void encode_six_axis_force_torque(std::int64_t utime, const std::array<double, 3>& force,
+                                  const std::array<double, 3>& torque, std::vector<std::uint8_t>& bytes) {
+  bytes.resize(kSixAxisForceTorqueSize);
+  BigEndianWriter writer(bytes.data());
+  writer(kSixAxisForceTorque, utime, force, torque);
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,291 @@
+// Logs of other projects: bot_core's poses, as their own generator writes them.
+#include <cmath>
+
+#include <bot_core/pose_t.hpp>
+#include <bot_core/rigid_transform_t.hpp>
+#include <bot_core/six_axis_force_torque_t.hpp>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/service/replaying.h"
+
+namespace buoyancy {
+namespace {
+
+using ReplayPoses = Replay;
+
+// Upright, its centre at this height.
+bot_core::pose_t pose_at(double height, std::int64_t utime) {
+  bot_core::pose_t pose{};
+  pose.utime = utime;
+  pose.pos[2] = height;
+  pose.orientation[0] = 1.0;
+  return pose;
+}
+
+std::string pose_event(std::int64_t timestamp, double height) {
+  return event("POSE", timestamp, encoded_by_lcm(pose_at(height, 10 * timestamp)));
+}
+
+std::string log_of_poses(int count) {
+  std::string log;
+  for (int i = 0; i < count; ++i) log += pose_event(500 + i, 0.01 * i - 2.0);
+  return log;
+}
+
+// Of the box of 2 x 3 x 4 m, N.
+double force_at(double height) {
+  return 10'000.0 * 6.0 * (2.0 - height);
+}
+
+std::vector<Answer> answers_in(const std::string& path) {
+  std::vector<Answer> answers;
+  for (const LoggedEvent& event : events_of(path, only_channel("BUOYANCY_WRENCHES"))) {
+    EXPECT_FALSE(decode(event.bytes, answers.emplace_back()));
+  }
+  return answers;
+}
+
+TEST_F(ReplayPoses, AreAnsweredAsWrenchesOfTheBodyThatTheirChannelIsGivenTo) {
+  write("in.lcmlog", log_of_poses(20));
+  const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  const std::vector<LoggedEvent> events = events_of(path("out.lcmlog"));
+  const std::vector<Answer> answers = answers_in(path("out.lcmlog"));
+  ASSERT_EQ(answers.size(), 20U);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const auto timestamp = static_cast<std::int64_t>(500 + i);
+    EXPECT_EQ(events[i].timestamp, timestamp);
+    EXPECT_EQ(answers[i].key.utime, 10 * timestamp);
+    ASSERT_EQ(answers[i].bodies.size(), 1U);
+    EXPECT_EQ(answers[i].bodies[0].body_id, 1);
+    EXPECT_NEAR(answers[i].bodies[0].force[2], force_at(0.01 * static_cast<double>(i) - 2.0), 1e-7);
+  }
+}
+
+TEST_F(ReplayPoses, ABodyIsNamedByItsIdOrItsName) {
+  write("scene.toml", "[[body]]\nid = 7\nname = \"hull=A\"\nshape = { type = \"box\", size = [1, 1, 1] }\n");
+  write("in.lcmlog", log_of_poses(2));
+  for (const char* body : {"POSE=7", "POSE=hull=A"}) {
+    // The last '=' parts channel and body, so that a channel may hold one; a name that holds one cannot be
+    // used.
+    const bool has_two = std::string(body) == "POSE=hull=A";
+    const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", body});
+    EXPECT_EQ(finished.exit_code, has_two ? 2 : 0) << finished.standard_error;
+  }
+  write("scene.toml", "[[body]]\nid = 7\nname = \"hull\"\nshape = { type = \"box\", size = [1, 1, 1] }\n");
+  EXPECT_EQ(replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=hull"}).exit_code, 0);
+  EXPECT_EQ(answers_in(path("out.lcmlog")).at(0).bodies.at(0).body_id, 7);
+}
+
+TEST_F(ReplayPoses, RigidTransformsAreAnsweredAsForceAndTorqueOnTheirOwnChannel) {
+  std::string log;
+  for (int i = 0; i < 5; ++i) {
+    bot_core::rigid_transform_t transform{};
+    transform.utime = i;
+    transform.trans[2] = 0.1 * i;
+    transform.quat[0] = 1.0;
+    log += event("HULL_TO_LOCAL", 100 + i, encoded_by_lcm(transform));
+  }
+  write("in.lcmlog", log);
+  const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"),
+                                          {"--pose", "HULL_TO_LOCAL=1", "--force-torque", "HULL_BUOYANCY=1"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  const std::vector<LoggedEvent> events = events_of(path("out.lcmlog"));
+  ASSERT_EQ(events.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(events[i].channel, "HULL_BUOYANCY");
+    EXPECT_EQ(events[i].timestamp, static_cast<std::int64_t>(100 + i));
+    bot_core::six_axis_force_torque_t message{};
+    const auto size = static_cast<int>(events[i].bytes.size());
+    ASSERT_EQ(message.decode(events[i].bytes.data(), 0, size), size);
+    EXPECT_EQ(message.utime, static_cast<std::int64_t>(i));
+    EXPECT_NEAR(message.force[2], force_at(0.1 * static_cast<double>(i)), 1e-7);
+    EXPECT_EQ(message.force[0], 0.0);
+    EXPECT_NEAR(message.moment[1], 0.0, 1e-9);
+  }
+}
+
+TEST_F(ReplayPoses, VelocitiesAreReadInTheFrameThatTheUserSays) {
+  // Turned by a quarter about y: the body's -x is the world's +z.
+  bot_core::pose_t pose = pose_at(0.0, 1);
+  pose.orientation[0] = pose.orientation[2] = std::sqrt(0.5);
+  pose.vel[0] = -1.0;
+  write("in.lcmlog", event("POSE", 1, encoded_by_lcm(pose)));
+  const auto volume = [&](const char* frame) {
+    const FinishedProcess finished =
+        replay(path("in.lcmlog"), path("out.lcmlog"),
+               {"--pose", "POSE=1", "--lead-time", "0.5", "--velocity-frame", frame});
+    EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
+    return answers_in(path("out.lcmlog")).at(0).bodies.at(0).submerged_volume;
+  };
+  // On its side the box is 4 x 3 m wide and 2 m high.
+  EXPECT_NEAR(volume("world"), 12.0, 1e-9) << "moves along the surface";
+  EXPECT_NEAR(volume("body"), 12.0 - 12.0 * 0.5, 1e-9) << "rises by 0.5 m";
+}
+
+TEST_F(ReplayPoses, ALeadTimeNeedsVelocities) {
+  bot_core::rigid_transform_t transform{};
+  transform.quat[0] = 1.0;
+  write("in.lcmlog", event("POSE", 1, encoded_by_lcm(transform)));
+  const FinishedProcess finished =
+      replay(path("in.lcmlog"), path("out.lcmlog"),
+             {"--pose", "POSE=1", "--lead-time", "0.5", "--velocity-frame", "world", "--json"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
+  EXPECT_EQ(answers_in(path("out.lcmlog")).at(0).bodies.at(0).status, BodyStatus::kNonFiniteTwist);
+}
+
+TEST_F(ReplayPoses, MessagesThatAreNoPoseAreReportedAndCounted) {
+  write("in.lcmlog", pose_event(1, 0.0) + event("POSE", 2, {1, 2, 3}) + event("POSE", 3, question(1, 0.0)) +
+                         pose_event(4, 0.0));
+  const FinishedProcess finished =
+      replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--json"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("event at 2 us is no pose: shorter"), std::string::npos)
+      << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("event at 3 us is no pose: fingerprint"), std::string::npos)
+      << finished.standard_error;
+  const auto summary = nlohmann::json::parse(finished.standard_output);
+  EXPECT_EQ(summary["questions"], 4);
+  EXPECT_EQ(summary["answered"], 2);
+  EXPECT_EQ(summary["rejected"]["truncated"], 1);
+  EXPECT_EQ(summary["rejected"]["fingerprint"], 1);
+}
+
+TEST_F(ReplayPoses, APoseBeforeADamageIsAnsweredAndTheDamageHasItsOffset) {
+  const std::string before = log_of_poses(10);
+  write("in.lcmlog", before + "garbage" + log_of_poses(10));
+  const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("damaged at byte " + std::to_string(before.size())),
+            std::string::npos)
+      << finished.standard_error;
+  EXPECT_EQ(answers_in(path("out.lcmlog")).size(), 20U);
+}
+
+TEST_F(ReplayPoses, OtherChannelsAreCopiedOnRequestInTheirPlace) {
+  write("in.lcmlog", event("LIDAR", 1, {1, 2}) + pose_event(2, 0.0) + event("BUOYANCY_WRENCHES", 3, {3}) +
+                         event("LIDAR_STATUS", 4, {4}) + pose_event(5, 1.0));
+  const auto channels = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all{"--pose", "POSE=1"};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_EQ(replay(path("in.lcmlog"), path("out.lcmlog"), all).exit_code, 0);
+    std::string found;
+    for (const LoggedEvent& event : events_of(path("out.lcmlog"))) {
+      found += event.channel + "@" + std::to_string(event.timestamp) + " ";
+    }
+    return found;
+  };
+  EXPECT_EQ(channels({}), "BUOYANCY_WRENCHES@2 BUOYANCY_WRENCHES@5 ");
+  EXPECT_EQ(channels({"--copy", "LIDAR"}), "LIDAR@1 BUOYANCY_WRENCHES@2 BUOYANCY_WRENCHES@5 ");
+  EXPECT_EQ(channels({"--copy", ".*"}),
+            "LIDAR@1 POSE@2 BUOYANCY_WRENCHES@2 LIDAR_STATUS@4 POSE@5 BUOYANCY_WRENCHES@5 ")
+      << "an answer of the recording's own service is not taken along";
+}
+
+TEST_F(ReplayPoses, OutputAndSummaryDoNotDependOnTheNumberOfJobs) {
+  std::string log;
+  for (int i = 0; i < 6000; ++i) {
+    log += pose_event(i, 0.001 * i - 3.0);
+    if (i % 3 == 0) log += event("BUOYANCY_STATES", i, question(i, 0.0005 * i));
+    if (i % 7 == 0) log += event("OTHER", i, {1, 2, 3});
+    if (i % 500 == 0) log += event("POSE", i, {1});
+    if (i % 1000 == 0) log += "garbage";
+  }
+  write("in.lcmlog", log);
+  const auto outcome = [&](const char* jobs) {
+    const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"),
+                                            {"--pose", "POSE=1", "--copy", "OTHER", "--jobs", jobs});
+    EXPECT_EQ(finished.exit_code, 1);
+    const std::string& summary = finished.standard_output;
+    return contents_of(path("out.lcmlog")) + finished.standard_error +
+           summary.substr(0, summary.find("seconds"));
+  };
+  const std::string of_one = outcome("1");
+  EXPECT_GT(of_one.size(), 1'000'000U);
+  for (const char* jobs : {"2", "3", "8"}) EXPECT_TRUE(outcome(jobs) == of_one) << jobs << " jobs";
+}
+
+TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
+  write("in.lcmlog", log_of_poses(3000));
+  ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
+  const auto compared = [&](const std::string& earlier, int exit_code) {
+    const FinishedProcess finished =
+        replay(path("in.lcmlog"), "/dev/null", {"--pose", "POSE=1", "--compare", path(earlier), "--json"});
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
+    return nlohmann::json::parse(finished.standard_output)["compared"];
+  };
+  const auto same = compared("earlier.lcmlog", 0);
+  EXPECT_EQ(same["agrees"], true);
+  EXPECT_EQ(same["bodies"][0]["answers"], 3000);
+  EXPECT_EQ(same["bodies"][0]["force"], 0.0);
+
+  // Another exact method differs by rounding, an approximation by what its bound allows, other water by more.
+  const std::string scene = contents_of(scene_);
+  const auto with = [&](const std::string& what, const std::string& instead) {
+    std::string changed = scene;
+    changed.replace(changed.find(what), what.size(), instead);
+    write("scene.toml", changed);
+  };
+  with("\"exact\"", "\"hierarchical\"");
+  EXPECT_EQ(compared("earlier.lcmlog", 0)["agrees"], true);
+  with("density = 1000.0", "density = 1001.0");
+  const auto denser = compared("earlier.lcmlog", 1);
+  EXPECT_EQ(denser["agrees"], false);
+  EXPECT_NEAR(denser["bodies"][0]["force"], 24.0 * 10.0, 1e-6) << "a thousandth of the whole displacement";
+  EXPECT_EQ(denser["bodies"][0]["volume"], 0.0);
+  EXPECT_GT(denser["bodies"][0]["force_in_bounds"], 1e6);
+  write("scene.toml", scene);
+
+  const std::string earlier = contents_of(path("earlier.lcmlog"));
+  const std::size_t one = earlier.size() / 3000;
+  write("shorter.lcmlog", earlier.substr(0, 10 * one) + earlier.substr(11 * one));
+  EXPECT_EQ(compared("shorter.lcmlog", 1)["only_now"], 1);
+  write("longer.lcmlog", earlier + event("BUOYANCY_WRENCHES", 1, {1}) + earlier.substr(0, one));
+  const auto longer = compared("longer.lcmlog", 1);
+  EXPECT_EQ(longer["only_earlier"], 1);
+  EXPECT_EQ(longer["unreadable"], 1);
+}
+
+TEST_F(ReplayPoses, WrongChannelsAndBodiesAreRefusedWith2) {
+  const std::string in = write("in.lcmlog", log_of_poses(1));
+  const std::string out = path("out.lcmlog");
+  const std::vector<std::vector<std::string>> wrong{
+      {"--pose", "POSE"},
+      {"--pose", "=1"},
+      {"--pose", "POSE=2"},
+      {"--pose", "POSE="},
+      {"--pose", std::string(64, 'a') + "=1"},
+      {"--pose", "POSE=1", "--pose", "POSE=1"},
+      {"--pose", "BUOYANCY_STATES=1"},
+      {"--pose", "BUOYANCY_WRENCHES=1"},
+      {"--force-torque", "FT=1"},
+      {"--pose", "POSE=1", "--force-torque", "POSE=1"},
+      {"--pose", "POSE=1", "--force-torque", "A=1", "--force-torque", "B=1"},
+      {"--pose", "POSE=1", "--lead-time", "0.1"},
+      {"--pose", "POSE=1", "--lead-time", "inf", "--velocity-frame", "body"},
+      {"--pose", "POSE=1", "--velocity-frame", "sideways"},
+      {"--copy", "("},
+      {"--jobs", "-1"},
+      {"--compare", path("gone.lcmlog")},
+      {"--compare", out},
+      {"--pose", "POSE=1", "--force-torque", "FT=1", "--compare", in},
+  };
+  write("out.lcmlog", "");
+  for (const std::vector<std::string>& options : wrong) {
+    const FinishedProcess finished = replay(in, out, options);
+    std::string shown;
+    for (const std::string& option : options) shown += option + " ";
+    EXPECT_EQ(finished.exit_code, 2) << shown << finished.standard_error;
+    EXPECT_EQ(finished.standard_error.rfind("buoyancy-replay: ", 0), 0U) << shown;
+  }
+  const std::string csv = write("in.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n");
+  EXPECT_EQ(replay(csv, out, {"--pose", "POSE=1"}).exit_code, 2);
+  EXPECT_EQ(replay(csv, out, {"--copy", ".*"}).exit_code, 2);
+  EXPECT_EQ(replay(in, path("out.csv"), {"--pose", "POSE=1", "--force-torque", "FT=1"}).exit_code, 2);
+  EXPECT_EQ(replay(in, path("out.csv"), {"--copy", ".*"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace buoyancy
