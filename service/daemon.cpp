@@ -1,10 +1,12 @@
 #include "service/daemon.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include <poll.h>
 #include <spdlog/spdlog.h>
@@ -52,22 +54,19 @@ std::string_view name(Mode mode) {
   return mode == Mode::kLockstep ? "lockstep" : "latest";
 }
 
-Daemon::Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels,
+Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mode mode, ChannelNames channels,
                unsigned threads)
-    : mode_(mode),
+    : scene_(std::move(scene)),
+      loader_(scene_->name()),
+      mode_(mode),
       channels_(std::move(channels)),
       connection_(std::move(connection)),
-      exchange_(scene, {.max_sessions = kMaxSessions, .threads = threads}),
+      exchange_(*scene_, {.max_sessions = kMaxSessions, .threads = threads}),
       latest_(kMaxSessions),
       instance_id_(random_id()),
       other_instances_(instance_id_) {}
 
-Expected<void> Daemon::run(TerminationSignals& signals) {
-  const FileDescriptor timer = one_hertz_timer();
-  if (!timer.valid() || signals.fileno() < 0) {
-    return failure({"timer and signals", std::generic_category().message(errno), "two file descriptors",
-                    "too many open files", ""});
-  }
+Expected<void> Daemon::subscribe() {
   Expected<void> subscribed = connection_.subscribe(
       channels_.states,
       [this](Bytes question, std::string_view) {
@@ -78,29 +77,39 @@ Expected<void> Daemon::run(TerminationSignals& signals) {
         }
       },
       kQueueCapacity);
-  if (subscribed) {
-    subscribed = connection_.subscribe(
-        channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
-        kQueueCapacity);
-  }
   if (!subscribed) return subscribed;
+  return connection_.subscribe(
+      channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
+      kQueueCapacity);
+}
+
+Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& reload) {
+  const FileDescriptor timer = one_hertz_timer();
+  std::array<pollfd, 5> waiting{pollfd{termination.fileno(), POLLIN, 0}, pollfd{reload.fileno(), POLLIN, 0},
+                                pollfd{loader_.fileno(), POLLIN, 0}, pollfd{timer.value(), POLLIN, 0},
+                                pollfd{connection_.fileno(), POLLIN, 0}};
+  const auto& [end, hang_up, loaded, tick, messages] = waiting;
+  if (std::ranges::any_of(waiting, [](const pollfd& one) { return one.fd < 0; })) {
+    return failure({"timer and signals", std::generic_category().message(errno), "a few file descriptors",
+                    "too many open files", ""});
+  }
+  if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   spdlog::info(
       "ready: {} bodies; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
       "instance {}",
-      exchange_.scene().bodies().size(), channels_.states, channels_.wrenches, channels_.hydrostatics,
-      channels_.status, connection_.url(), name(mode_), instance_id_);
+      scene_->bodies().size(), channels_.states, channels_.wrenches, channels_.hydrostatics, channels_.status,
+      connection_.url(), name(mode_), instance_id_);
   report();
 
-  std::array<pollfd, 3> waiting{pollfd{connection_.fileno(), POLLIN, 0}, pollfd{signals.fileno(), POLLIN, 0},
-                                pollfd{timer.value(), POLLIN, 0}};
-  const auto& [messages, signal, tick] = waiting;
   while (true) {
     if (::poll(waiting.data(), waiting.size(), -1) < 0) {
       if (errno == EINTR) continue;  // a debugger, a stop and go
       return failure(
           {"waiting for messages", std::generic_category().message(errno), "poll to work", "", ""});
     }
-    if (signal.revents != 0) break;
+    if (end.revents != 0) break;
+    if (hang_up.revents != 0 && reload.take()) begin_reload();
+    if (loaded.revents != 0) end_reload();
     if (tick.revents != 0) {
       std::uint64_t expirations = 0;
       if (::read(timer.value(), &expirations, sizeof expirations) > 0) report();
@@ -110,7 +119,7 @@ Expected<void> Daemon::run(TerminationSignals& signals) {
     }
   }
   report();
-  spdlog::info("ended by {}; {}", signals.take(),
+  spdlog::info("ended by {}; {}", termination.take(),
                describe_totals(exchange_.counters(), latency_.percentiles()));
   return {};
 }
@@ -148,8 +157,14 @@ void Daemon::answer_waiting() {
 }
 
 void Daemon::answer(Bytes question, double arrival) {
+  const Counters& counters = exchange_.counters();
+  const std::int64_t sessions_before = counters.sessions + counters.sessions_forgotten;
   const Bytes bytes = exchange_.answer(question);
   if (bytes.empty()) return;
+  if (counters.sessions + counters.sessions_forgotten != sessions_before) {
+    const QuestionKey key = peek_key(question).value();
+    spdlog::debug("session {} starts with seq {}", key.session_id, key.seq);
+  }
   if (publish(channels_.wrenches, bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
@@ -158,8 +173,29 @@ void Daemon::answer(Bytes question, double arrival) {
 
 bool Daemon::publish(const std::string& channel, Bytes bytes) {
   const Expected<void> published = connection_.publish(channel, bytes);
-  if (!published) publish_error_ = published.error().message();
+  if (!published) troubles_.add({"messages not sent", 1, published.error().message()}, seconds_now());
   return published.has_value();
+}
+
+void Daemon::begin_reload() {
+  if (loader_.busy()) spdlog::debug("a load is under way: one more follows it");
+  loader_.request();
+  spdlog::info("SIGHUP: loading {} again; the scene at hand answers until the new one is ready",
+               scene_->name());
+}
+
+void Daemon::end_reload() {
+  std::optional<SceneLoader::Loaded> loaded = loader_.take();
+  if (!loaded) return;
+  if (!*loaded) {
+    spdlog::error("reload failed, the scene at hand goes on answering: {}", loaded->error().message());
+    return;
+  }
+  const std::size_t bodies_before = scene_->bodies().size();
+  exchange_.use(***loaded);
+  loader_.discard(std::exchange(scene_, std::move(**loaded)));
+  spdlog::info("reloaded: {} bodies (before: {}) from {}", scene_->bodies().size(), bodies_before,
+               scene_->name());
 }
 
 void Daemon::report() {
@@ -173,15 +209,15 @@ void Daemon::report() {
                        .latency = latency_.percentiles()},
          status_bytes_);
   publish(channels_.status, status_bytes_);
-  for (const std::string& trouble : describe_troubles(reported_, counters)) spdlog::warn("{}", trouble);
+  const double now = seconds_now();
+  for (const Trouble& trouble : troubles_between(reported_, counters)) troubles_.add(trouble, now);
+  for (const std::string& line : troubles_.take(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : other_instances_.take_new()) {
     spdlog::warn(
         "another buoyancyd, instance {}, is on {}: if it also hears {}, every question is answered twice. "
         "Stop one of the two, or give each its own channels",
         other, channels_.status, channels_.states);
   }
-  if (!publish_error_.empty()) spdlog::warn("{}", publish_error_);
-  publish_error_.clear();
   reported_ = counters;
 }
 

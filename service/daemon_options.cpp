@@ -12,6 +12,7 @@ namespace buoyancy {
 void declare_options(CLI::App& app, DaemonOptions& options) {
   app.description(
       "Answers body poses heard on LCM with the buoyant force and torque on each body.\n"
+      "SIGHUP: reads the scene again, without dropping a session.\n"
       "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
       "mesh.");
   app.set_version_flag("--version", "buoyancyd " BUOYANCY_VERSION);

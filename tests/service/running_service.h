@@ -68,6 +68,10 @@ class RunningService {
   ChildProcess& child() { return child_; }
   std::string log() const { return child_.standard_error(); }
 
+  // Beside the scene, which is "scene.toml".
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  void write(const std::string& name, const std::string& contents) const { directory_.write(name, contents); }
+
  private:
   static ChildCommand command(std::vector<std::string> options, const std::string& scene) {
     options.insert(options.begin(), {BUOYANCYD, "--scene", scene});
