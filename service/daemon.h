@@ -23,13 +23,13 @@
 #include "service/latest_questions.h"
 #include "service/other_instances.h"
 #include "service/scene_loader.h"
+#include "service/service_manager.h"
 #include "service/termination_signals.h"
 #include "service/trouble_log.h"
 #include "transport/lcm_connection.h"
 
 namespace buoyancy {
 
-enum class Mode { kLockstep, kLatest };
 std::string_view name(Mode mode);  // "lockstep"
 
 struct ChannelNames {
@@ -57,6 +57,7 @@ class Daemon {
  private:
   Expected<void> subscribe();
   Expected<void> receive();
+  void note_queue_wait();
   void take_in(Bytes question, double arrival);
   void answer_waiting();
   void answer(Bytes question, double arrival);
@@ -73,9 +74,16 @@ class Daemon {
   Exchange exchange_;
   LatestQuestions latest_;
   LatencyHistogram latency_;
+  double start_;  // s, as all times here of the steady clock
   std::int64_t instance_id_;
+  std::int64_t reloads_ = 0;
+  std::int64_t reloads_failed_ = 0;
+  bool last_reload_failed_ = false;
+  std::int64_t not_sent_ = 0;
+  double queue_wait_ = 0.0;  // s, the longest since the last report
   OtherInstances other_instances_;
   TroubleLog troubles_;
+  ServiceManager manager_;
   Counters reported_;
   std::vector<std::uint8_t> status_bytes_;  // reused
 };
