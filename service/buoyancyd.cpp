@@ -5,8 +5,6 @@
 #include <optional>
 
 #include <CLI/App.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "scene/scene.h"
 #include "scene/scene_report.h"
@@ -14,6 +12,7 @@
 #include "service/command_line.h"
 #include "service/daemon.h"
 #include "service/daemon_options.h"
+#include "service/log_output.h"
 #include "service/termination_signals.h"
 
 namespace {
@@ -51,8 +50,7 @@ int main(int argc, char** argv) {
     print_error(app, checked.error());
     return kWrongInput;
   }
-  spdlog::set_default_logger(spdlog::stderr_color_st("buoyancyd"));
-  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  start_logging("buoyancyd", options.log_level);
 
   std::optional<BlockedSignals> reload;
   if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // one that comes early waits

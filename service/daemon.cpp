@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/timerfd.h>
 
+#include "geometry/wording.h"
 #include "hydrostatics/wet_tree_sum.h"
 #include "messages/status.h"
 #include "service/file_descriptor.h"
@@ -39,6 +40,10 @@ std::int64_t utime_now() {
 std::int64_t random_id() {
   std::random_device device;
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32U | device());
+}
+
+std::string in_words(const std::vector<Body>& bodies) {
+  return counted(static_cast<std::int64_t>(bodies.size()), "body", "bodies");
 }
 
 FileDescriptor timer_of(std::chrono::microseconds interval) {
@@ -109,10 +114,10 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
   }
   if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   spdlog::info(
-      "ready: {} bodies; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
+      "ready: {}; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
       "instance {}",
-      scene_->bodies().size(), channels_.states, channels_.wrenches, channels_.hydrostatics, channels_.status,
-      connection_.url(), name(mode_), instance_id_);
+      in_words(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
+      channels_.status, connection_.url(), name(mode_), instance_id_);
   report();
   manager_.ready();
 
@@ -219,7 +224,7 @@ void Daemon::end_reload() {
     const std::size_t bodies_before = scene_->bodies().size();
     exchange_.use(***loaded);
     loader_.discard(std::exchange(scene_, std::move(**loaded)));
-    spdlog::info("reloaded: {} bodies (before: {}) from {}", scene_->bodies().size(), bodies_before,
+    spdlog::info("reloaded: {} (before: {}) from {}", in_words(scene_->bodies()), bodies_before,
                  scene_->name());
   }
   if (!loader_.busy()) manager_.ready();
@@ -245,8 +250,8 @@ void Daemon::report() {
                        .queue_wait = std::exchange(queue_wait_, 0.0)},
          status_bytes_);
   publish(channels_.status, status_bytes_);
-  manager_.status(fmt::format("{} bodies, {} questions answered{}", scene_->bodies().size(),
-                              counters.answered + counters.repeated,
+  manager_.status(fmt::format("{}, {} answered{}", in_words(scene_->bodies()),
+                              counted(counters.answered + counters.repeated, "question", "questions"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : ""));
   for (const Trouble& trouble : troubles_between(reported_, counters)) troubles_.add(trouble, now);
   for (const std::string& line : troubles_.take(now)) spdlog::warn("{}", line);

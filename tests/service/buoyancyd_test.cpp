@@ -164,6 +164,26 @@ INSTANTIATE_TEST_SUITE_P(Levels, LogLevel,
                                          std::pair{"off", std::set<std::string>{}}),
                          [](const auto& level) { return level.param.first; });
 
+TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  const auto started = [&scene](const std::string& journal_stream) {
+    return command_of({"bash", "-c",
+                       "export JOURNAL_STREAM=" + journal_stream + "; exec \"$0\" --scene \"$1\"", BUOYANCYD,
+                       scene});
+  };
+  ChildProcess child(started("$(stat -L -c %d:%i /dev/stderr)"));
+  ASSERT_TRUE(child.wait_for_text("ready:", kPatience)) << child.standard_error();
+  EXPECT_TRUE(child.standard_error().starts_with("<6>ready: 2 bodies;")) << child.standard_error();
+  directory.write("scene.toml", "nothing");
+  child.send_signal(SIGHUP);
+  EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kPatience)) << child.standard_error();
+
+  directory.write("scene.toml", kBoxScene);
+  ChildProcess redirected(started("1:2"));
+  ASSERT_TRUE(redirected.wait_for_text("[info] ready:", kPatience)) << redirected.standard_error();
+}
+
 TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;

@@ -3,7 +3,6 @@
 
 #include <csignal>
 #include <string>
-#include <string_view>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -21,11 +20,8 @@ class HeldFile {
     held_ = ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;
   }
   bool held() const { return held_; }  // false: the file system has no leases
-  void replace(std::string_view contents) {
-    if (::ftruncate(file_.value(), 0) == 0) {
-      [[maybe_unused]] const auto written = ::pwrite(file_.value(), contents.data(), contents.size(), 0);
-    }
-  }
+  // Does somebody wait for it?
+  bool awaited() const { return ::fcntl(file_.value(), F_GETLEASE) != F_WRLCK; }
   void let_go() { ::fcntl(file_.value(), F_SETLEASE, F_UNLCK); }
 
  private:

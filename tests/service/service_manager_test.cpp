@@ -80,7 +80,7 @@ TEST_F(ServiceManaged, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
   ASSERT_TRUE(manager_.hears("READY=1"));
   ask(socket_, one_body(1, 1, 0.0));
   EXPECT_EQ(hear(socket_).seq, 1);
-  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 1 questions answered"));
+  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 1 question answered"));
 }
 
 TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
