@@ -1,32 +1,42 @@
 // buoyancyd: the program around Daemon.
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
 #include <CLI/App.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "scene/scene.h"
 #include "scene/scene_report.h"
+#include "service/blocked_signals.h"
 #include "service/command_line.h"
 #include "service/daemon.h"
 #include "service/daemon_options.h"
+#include "service/log_output.h"
 #include "service/termination_signals.h"
 
 namespace {
 
 using namespace buoyancy;
 
-int serve(const CLI::App& app, const DaemonOptions& options, const Scene& scene) {
-  TerminationSignals signals;  // before the connection, whose thread must not get them
+int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, BlockedSignals& reload) {
+  TerminationSignals termination;  // before the connection, whose thread must not get them
   Expected<LcmConnection> connection = LcmConnection::open(options.lcm_url);
   if (!connection) {
     print_error(app, connection.error());
     return kFailed;
   }
-  Daemon daemon(scene, std::move(*connection), options.mode, options.channels, options.threads);
-  if (const Expected<void> ended = daemon.run(signals); !ended) {
+  Daemon daemon(std::make_unique<const Scene>(std::move(scene)), std::move(*connection), options.mode,
+                options.channels, options.threads);
+  ExitCode exit_code = kDone;
+  if (const Expected<void> ended = daemon.run(termination, reload); !ended) {
     print_error(app, ended.error());
-    return kFailed;
+    exit_code = kFailed;
   }
-  return kDone;
+  // Nobody waits for a scene that nobody will be answered from: the load's thread ends with the process, and
+  // the child that imports a mesh with the thread.
+  if (daemon.loading()) std::_Exit(exit_code);
+  return exit_code;
 }
 
 }  // namespace
@@ -40,10 +50,11 @@ int main(int argc, char** argv) {
     print_error(app, checked.error());
     return kWrongInput;
   }
-  spdlog::set_default_logger(spdlog::stderr_color_st("buoyancyd"));
-  spdlog::set_level(spdlog::level::from_str(options.log_level));
+  start_logging("buoyancyd", options.log_level);
 
-  const Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
+  std::optional<BlockedSignals> reload;
+  if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // one that comes early waits
+  Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
   if (!scene) {
     print_error(app, scene.error());
     return kWrongInput;
@@ -52,5 +63,5 @@ int main(int argc, char** argv) {
     const std::string report = options.json ? scene_report_json(*scene) + "\n" : scene_report_text(*scene);
     return print_output(app, report) ? kDone : kFailed;
   }
-  return serve(app, options, *scene);
+  return serve(app, options, std::move(*scene), *reload);
 }

@@ -1,15 +1,18 @@
 #include "service/daemon.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/timerfd.h>
 
+#include "geometry/wording.h"
 #include "hydrostatics/wet_tree_sum.h"
 #include "messages/status.h"
 #include "service/file_descriptor.h"
@@ -39,11 +42,23 @@ std::int64_t random_id() {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32U | device());
 }
 
-FileDescriptor one_hertz_timer() {
+std::string in_words(const std::vector<Body>& bodies) {
+  return counted(static_cast<std::int64_t>(bodies.size()), "body", "bodies");
+}
+
+FileDescriptor timer_of(std::chrono::microseconds interval) {
   FileDescriptor timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
-  const itimerspec every_second{{1, 0}, {1, 0}};
-  if (timer.valid()) ::timerfd_settime(timer.value(), 0, &every_second, nullptr);
+  constexpr std::int64_t kPerSecond = 1'000'000;
+  const timespec each{interval.count() / kPerSecond, interval.count() % kPerSecond * 1'000};
+  const itimerspec periodic{each, each};
+  if (timer.valid()) ::timerfd_settime(timer.value(), 0, &periodic, nullptr);
   return timer;
+}
+
+// Has the timer run out since the last call?
+bool take_expiration(const FileDescriptor& timer) {
+  std::uint64_t expirations = 0;
+  return ::read(timer.value(), &expirations, sizeof expirations) > 0;
 }
 
 }  // namespace
@@ -52,25 +67,24 @@ std::string_view name(Mode mode) {
   return mode == Mode::kLockstep ? "lockstep" : "latest";
 }
 
-Daemon::Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels,
+Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mode mode, ChannelNames channels,
                unsigned threads)
-    : mode_(mode),
+    : scene_(std::move(scene)),
+      loader_(scene_->name()),
+      mode_(mode),
       channels_(std::move(channels)),
       connection_(std::move(connection)),
-      exchange_(scene, {.max_sessions = kMaxSessions, .threads = threads}),
+      exchange_(*scene_, {.max_sessions = kMaxSessions, .threads = threads}),
       latest_(kMaxSessions),
+      start_(seconds_now()),
       instance_id_(random_id()),
       other_instances_(instance_id_) {}
 
-Expected<void> Daemon::run(TerminationSignals& signals) {
-  const FileDescriptor timer = one_hertz_timer();
-  if (!timer.valid() || signals.fileno() < 0) {
-    return failure({"timer and signals", std::generic_category().message(errno), "two file descriptors",
-                    "too many open files", ""});
-  }
+Expected<void> Daemon::subscribe() {
   Expected<void> subscribed = connection_.subscribe(
       channels_.states,
       [this](Bytes question, std::string_view) {
+        note_queue_wait();
         if (mode_ == Mode::kLockstep) {
           answer(question, seconds_now());
         } else {
@@ -78,39 +92,53 @@ Expected<void> Daemon::run(TerminationSignals& signals) {
         }
       },
       kQueueCapacity);
-  if (subscribed) {
-    subscribed = connection_.subscribe(
-        channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
-        kQueueCapacity);
-  }
   if (!subscribed) return subscribed;
+  return connection_.subscribe(
+      channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
+      kQueueCapacity);
+}
+
+Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& reload) {
+  const FileDescriptor every_second = timer_of(std::chrono::seconds(1));
+  // Where no watchdog waits, as rarely as there is no harm in it.
+  const auto watchdog = ServiceManager::watchdog_interval();
+  const FileDescriptor watchdog_timer = timer_of(watchdog.value_or(std::chrono::hours(1)));
+  std::array<pollfd, 6> waiting{
+      pollfd{termination.fileno(), POLLIN, 0},   pollfd{reload.fileno(), POLLIN, 0},
+      pollfd{loader_.fileno(), POLLIN, 0},       pollfd{every_second.value(), POLLIN, 0},
+      pollfd{watchdog_timer.value(), POLLIN, 0}, pollfd{connection_.fileno(), POLLIN, 0}};
+  const auto& [end, hang_up, loaded, second, beat, messages] = waiting;
+  if (std::ranges::any_of(waiting, [](const pollfd& one) { return one.fd < 0; })) {
+    return failure({"timers and signals", std::generic_category().message(errno), "a few file descriptors",
+                    "too many open files", ""});
+  }
+  if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   spdlog::info(
-      "ready: {} bodies; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
+      "ready: {}; questions on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
       "instance {}",
-      exchange_.scene().bodies().size(), channels_.states, channels_.wrenches, channels_.hydrostatics,
+      in_words(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
       channels_.status, connection_.url(), name(mode_), instance_id_);
   report();
+  manager_.ready();
 
-  std::array<pollfd, 3> waiting{pollfd{connection_.fileno(), POLLIN, 0}, pollfd{signals.fileno(), POLLIN, 0},
-                                pollfd{timer.value(), POLLIN, 0}};
-  const auto& [messages, signal, tick] = waiting;
   while (true) {
     if (::poll(waiting.data(), waiting.size(), -1) < 0) {
       if (errno == EINTR) continue;  // a debugger, a stop and go
       return failure(
           {"waiting for messages", std::generic_category().message(errno), "poll to work", "", ""});
     }
-    if (signal.revents != 0) break;
-    if (tick.revents != 0) {
-      std::uint64_t expirations = 0;
-      if (::read(timer.value(), &expirations, sizeof expirations) > 0) report();
-    }
+    if (end.revents != 0) break;
+    if (hang_up.revents != 0 && reload.take()) begin_reload();
+    if (loaded.revents != 0) end_reload();
+    if (second.revents != 0 && take_expiration(every_second)) report();
+    if (beat.revents != 0 && take_expiration(watchdog_timer) && watchdog) manager_.watchdog_beat();
     if (messages.revents != 0) {
       if (Expected<void> received = receive(); !received) return received;
     }
   }
+  manager_.stopping();
   report();
-  spdlog::info("ended by {}; {}", signals.take(),
+  spdlog::info("ended by {}; {}", termination.take(),
                describe_totals(exchange_.counters(), latency_.percentiles()));
   return {};
 }
@@ -126,6 +154,12 @@ Expected<void> Daemon::receive() {
     answer_waiting();
   }
   return {};
+}
+
+void Daemon::note_queue_wait() {
+  constexpr double kSecondsPerMicrosecond = 1e-6;
+  const std::int64_t waited = utime_now() - connection_.received_utime();
+  queue_wait_ = std::max(queue_wait_, static_cast<double>(waited) * kSecondsPerMicrosecond);
 }
 
 void Daemon::take_in(Bytes question, double arrival) {
@@ -148,8 +182,14 @@ void Daemon::answer_waiting() {
 }
 
 void Daemon::answer(Bytes question, double arrival) {
+  const Counters& counters = exchange_.counters();
+  const std::int64_t sessions_before = counters.sessions + counters.sessions_forgotten;
   const Bytes bytes = exchange_.answer(question);
   if (bytes.empty()) return;
+  if (counters.sessions + counters.sessions_forgotten != sessions_before) {
+    const QuestionKey key = peek_key(question).value();
+    spdlog::debug("session {} starts with seq {}", key.session_id, key.seq);
+  }
   if (publish(channels_.wrenches, bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
@@ -158,30 +198,69 @@ void Daemon::answer(Bytes question, double arrival) {
 
 bool Daemon::publish(const std::string& channel, Bytes bytes) {
   const Expected<void> published = connection_.publish(channel, bytes);
-  if (!published) publish_error_ = published.error().message();
-  return published.has_value();
+  if (published) return true;
+  ++not_sent_;
+  troubles_.add({"messages not sent", 1, published.error().message()}, seconds_now());
+  return false;
+}
+
+void Daemon::begin_reload() {
+  if (loader_.busy()) spdlog::debug("a load is under way: one more follows it");
+  loader_.request();
+  manager_.reloading();
+  spdlog::info("SIGHUP: loading {} again; the scene at hand answers until the new one is ready",
+               scene_->name());
+}
+
+void Daemon::end_reload() {
+  std::optional<SceneLoader::Loaded> loaded = loader_.take();
+  if (!loaded) return;
+  last_reload_failed_ = !loaded->has_value();
+  if (last_reload_failed_) {
+    ++reloads_failed_;
+    spdlog::error("reload failed, the scene at hand goes on answering: {}", loaded->error().message());
+  } else {
+    ++reloads_;
+    const std::size_t bodies_before = scene_->bodies().size();
+    exchange_.use(***loaded);
+    loader_.discard(std::exchange(scene_, std::move(**loaded)));
+    spdlog::info("reloaded: {} (before: {}) from {}", in_words(scene_->bodies()), bodies_before,
+                 scene_->name());
+  }
+  if (!loader_.busy()) manager_.ready();
 }
 
 void Daemon::report() {
   const Counters& counters = exchange_.counters();
+  const double now = seconds_now();
   encode(ServiceStatus{.utime = utime_now(),
                        .instance_id = instance_id_,
                        .version = BUOYANCY_VERSION,
+                       .scene = scene_->name(),
+                       .uptime = now - start_,
+                       .mode = mode_,
                        .simd_target = simd_target_from_name(simd_target()),
                        .threads = static_cast<std::int32_t>(exchange_.threads()),
+                       .scene_bodies = static_cast<std::int32_t>(scene_->bodies().size()),
+                       .reloads = reloads_,
+                       .reloads_failed = reloads_failed_,
+                       .not_sent = not_sent_,
                        .counters = counters,
-                       .latency = latency_.percentiles()},
+                       .latency = latency_.percentiles(),
+                       .queue_wait = std::exchange(queue_wait_, 0.0)},
          status_bytes_);
   publish(channels_.status, status_bytes_);
-  for (const std::string& trouble : describe_troubles(reported_, counters)) spdlog::warn("{}", trouble);
+  manager_.status(fmt::format("{}, {} answered{}", in_words(scene_->bodies()),
+                              counted(counters.answered + counters.repeated, "question", "questions"),
+                              last_reload_failed_ ? "; the last reload failed, see the log" : ""));
+  for (const Trouble& trouble : troubles_between(reported_, counters)) troubles_.add(trouble, now);
+  for (const std::string& line : troubles_.take(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : other_instances_.take_new()) {
     spdlog::warn(
         "another buoyancyd, instance {}, is on {}: if it also hears {}, every question is answered twice. "
         "Stop one of the two, or give each its own channels",
         other, channels_.status, channels_.states);
   }
-  if (!publish_error_.empty()) spdlog::warn("{}", publish_error_);
-  publish_error_.clear();
   reported_ = counters;
 }
 

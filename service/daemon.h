@@ -1,11 +1,16 @@
 // The live service: waits for questions on LCM, answers them through an Exchange, and says once a second how
 // it fares. One thread; SIGINT and SIGTERM end it between two messages.
 //
+// SIGHUP: the scene file is read again, by a SceneLoader, while the scene at hand goes on answering. Between
+// two messages the new one takes its place; sessions, repeats and counters do not notice. A scene that cannot
+// be used is said in the log and changes nothing.
+//
 // Mode lockstep: every question is answered, in order of arrival. Mode latest: all that has arrived is looked
 // at, then the newest question of each session is answered (see LatestQuestions).
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,14 +19,17 @@
 #include "geometry/error.h"
 #include "messages/latency_histogram.h"
 #include "scene/scene.h"
+#include "service/blocked_signals.h"
 #include "service/latest_questions.h"
 #include "service/other_instances.h"
+#include "service/scene_loader.h"
+#include "service/service_manager.h"
 #include "service/termination_signals.h"
+#include "service/trouble_log.h"
 #include "transport/lcm_connection.h"
 
 namespace buoyancy {
 
-enum class Mode { kLockstep, kLatest };
 std::string_view name(Mode mode);  // "lockstep"
 
 struct ChannelNames {
@@ -33,31 +41,49 @@ struct ChannelNames {
 
 class Daemon {
  public:
-  // scene must outlive the daemon. threads: as ExchangeOptions has it.
-  Daemon(const Scene& scene, LcmConnection connection, Mode mode, ChannelNames channels, unsigned threads);
+  // scene: as loaded from the file that it is named after, which a reload reads again. Not nullptr. threads:
+  // as ExchangeOptions has it. Starts a thread (SceneLoader): block signals before.
+  Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mode mode, ChannelNames channels,
+         unsigned threads);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Answers until a signal comes; once. Errors: the connection ended.
-  Expected<void> run(TerminationSignals& signals);
+  // Answers until a signal of termination comes; once. reload: SIGHUP. Errors: the connection ended.
+  Expected<void> run(TerminationSignals& termination, BlockedSignals& reload);
+
+  // Is a scene being loaded? The destructor waits for it then, as long as that takes.
+  bool loading() const { return loader_.busy(); }
 
  private:
+  Expected<void> subscribe();
   Expected<void> receive();
+  void note_queue_wait();
   void take_in(Bytes question, double arrival);
   void answer_waiting();
   void answer(Bytes question, double arrival);
-  bool publish(const std::string& channel, Bytes bytes);  // false: publish_error_ says why
+  bool publish(const std::string& channel, Bytes bytes);  // false: troubles_ says why
+  void begin_reload();
+  void end_reload();
   void report();
 
+  std::unique_ptr<const Scene> scene_;  // that exchange_ answers from
+  SceneLoader loader_;
   Mode mode_;
   ChannelNames channels_;
   LcmConnection connection_;
   Exchange exchange_;
   LatestQuestions latest_;
   LatencyHistogram latency_;
+  double start_;  // s, as all times here of the steady clock
   std::int64_t instance_id_;
+  std::int64_t reloads_ = 0;
+  std::int64_t reloads_failed_ = 0;
+  bool last_reload_failed_ = false;
+  std::int64_t not_sent_ = 0;
+  double queue_wait_ = 0.0;  // s, the longest since the last report
   OtherInstances other_instances_;
-  std::string publish_error_;  // the newest since the last report; empty: none
+  TroubleLog troubles_;
+  ServiceManager manager_;
   Counters reported_;
   std::vector<std::uint8_t> status_bytes_;  // reused
 };

@@ -12,6 +12,7 @@ namespace buoyancy {
 void declare_options(CLI::App& app, DaemonOptions& options) {
   app.description(
       "Answers body poses heard on LCM with the buoyant force and torque on each body.\n"
+      "SIGHUP: reads the scene again, without dropping a session.\n"
       "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
       "mesh.");
   app.set_version_flag("--version", "buoyancyd " BUOYANCY_VERSION);
@@ -41,7 +42,10 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
          "processor runs at once. The answers do not depend on it")
       ->check(CLI::Range(0, 1024))
       ->option_text("N [0]");
-  app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error, critical or off")
+  app.add_option("--log-level", options.log_level,
+                 "trace, debug (each session's start), info (ready, reload, end), warning (troubles), error "
+                 "(a reload "
+                 "that failed), critical or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}))
       ->option_text("LEVEL [info]");
   app.add_flag("--check", options.check, "Print the report of the scene and its meshes, then exit");

@@ -1,24 +1,22 @@
-// SIGINT and SIGTERM as something to wait for, instead of something that strikes in the middle of a message.
+// SIGINT and SIGTERM, which end a program between two messages.
 #pragma once
 
 #include <csignal>
 
-#include "service/file_descriptor.h"
+#include "service/blocked_signals.h"
 
 namespace buoyancy {
 
 class TerminationSignals {
  public:
-  // Blocks both signals from here on, in this thread and in those it starts: construct it before anything
-  // that starts threads (an LcmConnection does).
-  TerminationSignals();
+  TerminationSignals() : signals_({SIGINT, SIGTERM}) {}  // as BlockedSignals
 
-  int fileno() const { return descriptor_.value(); }  // readable once a signal has come
-  bool pending() const;                               // has one come?
-  const char* take();                                 // its name; nullptr: none has come
+  int fileno() const { return signals_.fileno(); }  // readable once a signal has come
+  bool pending() const { return signals_.pending(); }
+  const char* take();  // its name; nullptr: none has come
 
  private:
-  FileDescriptor descriptor_;
+  BlockedSignals signals_;
 };
 
 }  // namespace buoyancy

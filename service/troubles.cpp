@@ -6,7 +6,7 @@
 
 namespace buoyancy {
 
-std::vector<std::string> describe_troubles(const Counters& before, const Counters& now) {
+std::vector<Trouble> troubles_between(const Counters& before, const Counters& now) {
   struct Cause {
     Rejection rejection;
     std::int64_t Counters::*counter;
@@ -15,20 +15,21 @@ std::vector<std::string> describe_troubles(const Counters& before, const Counter
                                Cause{Rejection::kFingerprint, &Counters::rejected_fingerprint},
                                Cause{Rejection::kCount, &Counters::rejected_count},
                                Cause{Rejection::kLength, &Counters::rejected_length}};
-  std::vector<std::string> lines;
+  std::vector<Trouble> troubles;
   for (const Cause& cause : kCauses) {
     const std::int64_t grown = now.*cause.counter - before.*cause.counter;
-    if (grown > 0)
-      lines.push_back(fmt::format("messages rejected: {}, {}", grown, describe(cause.rejection)));
+    if (grown > 0) {
+      troubles.push_back({fmt::format("messages rejected, {}", describe(cause.rejection)), grown, {}});
+    }
   }
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto status = static_cast<BodyStatus>(i);
     const std::int64_t grown = now.bodies[i] - before.bodies[i];
     if (status != BodyStatus::kOk && grown > 0) {
-      lines.push_back(fmt::format("bodies answered with {}: {}", name(status), grown));
+      troubles.push_back({fmt::format("bodies answered with {}", name(status)), grown, {}});
     }
   }
-  return lines;
+  return troubles;
 }
 
 std::string describe_totals(const Counters& counters, const LatencyPercentiles& latency) {

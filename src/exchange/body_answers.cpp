@@ -19,8 +19,12 @@ double expected_time(const Solver& solver) {
 
 }  // namespace
 
-BodyAnswers::BodyAnswers(const Scene& scene, unsigned threads)
-    : scene_(&scene), workers_(threads), remembered_(scene.bodies().size()) {
+void BodyAnswers::use(const Scene& scene) {
+  scene_ = &scene;
+  remembered_.assign(scene.bodies().size(), {});
+  pending_.clear();
+  expected_time_.clear();
+  wholly_wet_.clear();
   expected_time_.reserve(scene.bodies().size());
   wholly_wet_.reserve(scene.bodies().size());
   for (const Body& body : scene.bodies()) {

@@ -18,8 +18,12 @@ namespace buoyancy {
 
 class BodyAnswers {
  public:
-  // scene must outlive this. threads: as Workers has it.
-  BodyAnswers(const Scene& scene, unsigned threads);
+  // scene must outlive this, or be replaced by use(). threads: as Workers has it.
+  BodyAnswers(const Scene& scene, unsigned threads) : scene_(&scene), workers_(threads) { use(scene); }
+
+  // Answers from this scene from now on and forgets the answers of the one before, which is not looked at
+  // again.
+  void use(const Scene& scene);
 
   // Fills wrenches with one per state, in the question's order. No heap of ours once all is as large as the
   // largest question.

@@ -13,14 +13,25 @@ bool same_bytes(Bytes a, Bytes b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
+// One per body, where any asks.
+std::size_t places_for_hydrostatics(const Scene& scene) {
+  return scene.any_hydrostatics() ? scene.bodies().size() : 0;
+}
+
 }  // namespace
 
 Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
     : scene_(&scene),
       max_sessions_(options.max_sessions),
       body_answers_(scene, options.threads),
-      last_hydrostatics_(scene.any_hydrostatics() ? scene.bodies().size() : 0) {
+      last_hydrostatics_(places_for_hydrostatics(scene)) {
   assert(max_sessions_ >= 1);
+}
+
+void Exchange::use(const Scene& scene) {
+  scene_ = &scene;
+  body_answers_.use(scene);
+  last_hydrostatics_.assign(places_for_hydrostatics(scene), {});
 }
 
 Bytes Exchange::answer(Bytes question) {

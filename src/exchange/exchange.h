@@ -7,6 +7,9 @@
 // service that dropped it would go quiet on an asker that starts over. A new session_id starts afresh.
 // Sessions kept are bounded; the least recently used goes, which costs nothing but the memory of its last
 // answer.
+//
+// The scene may be another from one question to the next. Sessions, counters and what is kept for repeats
+// stay: a repeat of a question that the old scene answered gets the bytes that it got.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +30,7 @@ struct ExchangeOptions {
 
 class Exchange {
  public:
-  // scene must outlive the exchange.
+  // scene must outlive the exchange, or be replaced by use().
   explicit Exchange(const Scene& scene, const ExchangeOptions& options = {});
 
   // The answer's bytes, valid until the next call; empty if the question was rejected (and counted by cause).
@@ -39,6 +42,10 @@ class Exchange {
   // repeated question the same again, valid until the next call of answer(); empty where no body of the
   // question asks, or the question was rejected.
   Bytes hydrostatics() const { return answered_ ? Bytes(sessions_[*answered_].last_hydrostatics) : Bytes(); }
+
+  // Answers new questions from this scene, which must outlive the exchange or the next call; the one before
+  // is not looked at again. O(bodies of both), whatever their meshes.
+  void use(const Scene& scene);
 
   // For mode latest: counts a question that was superseded before it was answered.
   void count_overtaken() { ++counters_.questions, ++counters_.overtaken; }

@@ -63,16 +63,23 @@ void visit_head(H& hydrostatics, Visitor& visitor) {
   visit_fields(hydrostatics.key, visitor);
 }
 
-// What stands before and after the version.
+// What stands before the strings, the strings, and what stands after them.
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_head(Status& status, Visitor& visitor) {
   visitor(status.utime, status.instance_id);
 }
 
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_strings(Status& status, Visitor&& visitor) {
+  visitor(status.version);
+  visitor(status.scene);
+}
+
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_tail(Status& status, Visitor& visitor) {
   auto& c = status.counters;
-  visitor(status.simd_target, status.threads);
+  visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
+  visitor(status.reloads, status.reloads_failed, status.not_sent);
   visitor(c.questions, c.answered, c.repeated, c.changed_repeats, c.stale, c.overtaken, c.sessions,
           c.sessions_forgotten);
   visitor(c.rejected_truncated, c.rejected_fingerprint, c.rejected_count, c.rejected_length);
@@ -80,6 +87,7 @@ void visit_tail(Status& status, Visitor& visitor) {
   visitor(c.bodies_dry, c.bodies_wet, c.bodies_crossing, c.bodies_unchanged, c.hydrostatics);
   visitor(c.largest_dropped_force, c.largest_dropped_torque);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
+  visitor(status.queue_wait);
 }
 
 // Adds up how many bytes the visited fields take.

@@ -10,17 +10,37 @@ namespace buoyancy {
 namespace {
 
 struct FixedSizes {
-  std::size_t before_version;  // with the fingerprint and the version's length
-  std::size_t after_version;
+  std::size_t before_strings;  // with the fingerprint
+  std::size_t strings;         // if all were empty
+  std::size_t after_strings;
 };
+
+constexpr std::size_t kEmptyString = sizeof(std::int32_t) + 1;
 
 FixedSizes fixed_sizes(const ServiceStatus& status) {
   LayoutSize before;
-  before(std::int64_t{}, std::int32_t{});
+  before(std::int64_t{});
   visit_head(status, before);
+  std::size_t strings = 0;
+  visit_strings(status, [&strings](const std::string& /*text*/) { strings += kEmptyString; });
   LayoutSize after;
   visit_tail(status, after);
-  return {before.size(), after.size()};
+  return {before.size(), strings, after.size()};
+}
+
+// Takes a string off the front of bytes: its characters, or what is wrong with it.
+tl::expected<std::string_view, Rejection> take_string(Bytes& bytes) {
+  std::int32_t size = 0;  // with the final NUL
+  if (bytes.size() < kEmptyString) return tl::unexpected(Rejection::kLength);
+  BigEndianReader{bytes.data()}(size);
+  bytes = bytes.subspan(sizeof(size));
+  if (size < 1) return tl::unexpected(Rejection::kCount);
+  if (static_cast<std::size_t>(size) > bytes.size()) return tl::unexpected(Rejection::kLength);
+  const Bytes text = bytes.first(static_cast<std::size_t>(size));
+  bytes = bytes.subspan(text.size());
+  const auto first_nul = std::find(text.begin(), text.end(), std::uint8_t{0});
+  if (first_nul != text.end() - 1) return tl::unexpected(Rejection::kLength);
+  return std::string_view(reinterpret_cast<const char*>(text.data()), text.size() - 1);
 }
 
 }  // namespace
@@ -62,40 +82,43 @@ SimdTarget simd_target_from_name(std::string_view name) {
 
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes) {
   const FixedSizes sizes = fixed_sizes(status);
-  const std::size_t version_size = status.version.size() + 1;
-  bytes.resize(sizes.before_version + version_size + sizes.after_version);
+  std::size_t characters = 0;
+  visit_strings(status, [&characters](const std::string& text) { characters += text.size(); });
+  bytes.resize(sizes.before_strings + sizes.strings + characters + sizes.after_strings);
   BigEndianWriter writer(bytes.data());
   writer(service_status_t::getHash());
   visit_head(status, writer);
-  writer(static_cast<std::int32_t>(version_size));
-  std::memcpy(writer.position(), status.version.c_str(), version_size);
-  writer.skip(version_size);
+  visit_strings(status, [&writer](const std::string& text) {
+    const std::size_t size = text.size() + 1;
+    writer(static_cast<std::int32_t>(size));
+    std::memcpy(writer.position(), text.c_str(), size);
+    writer.skip(size);
+  });
   visit_tail(status, writer);
 }
 
 std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status) {
   const FixedSizes sizes = fixed_sizes(status);
-  const std::size_t shortest_version = 1;
-  if (bytes.size() < sizes.before_version + shortest_version + sizes.after_version) {
-    return Rejection::kTruncated;
-  }
+  if (bytes.size() < sizes.before_strings + sizes.strings + sizes.after_strings) return Rejection::kTruncated;
   std::int64_t fingerprint = 0;
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
   if (fingerprint != service_status_t::getHash()) return Rejection::kFingerprint;
-  std::int32_t version_size = 0;
-  BigEndianReader{bytes.data() + sizes.before_version - sizeof(version_size)}(version_size);
-  if (version_size < static_cast<std::int32_t>(shortest_version)) return Rejection::kCount;
-  const auto length = static_cast<std::size_t>(version_size) - 1;
-  if (bytes.size() != sizes.before_version + length + 1 + sizes.after_version) return Rejection::kLength;
-  const Bytes version = bytes.subspan(sizes.before_version, length + 1);
-  const auto first_nul = std::find(version.begin(), version.end(), std::uint8_t{0});
-  if (first_nul != version.end() - 1) return Rejection::kLength;
+  const Bytes strings =
+      bytes.subspan(sizes.before_strings, bytes.size() - sizes.before_strings - sizes.after_strings);
+  Bytes left = strings;
+  std::optional<Rejection> rejection;
+  visit_strings(status, [&](const std::string& /*text*/) {
+    if (rejection) return;
+    if (const auto text = take_string(left); !text) rejection = text.error();
+  });
+  if (!rejection && !left.empty()) rejection = Rejection::kLength;
+  if (rejection) return rejection;
 
   visit_head(status, reader);
-  reader.skip(sizeof(version_size));
-  status.version.assign(reinterpret_cast<const char*>(version.data()), length);
-  reader.skip(version.size());
+  left = strings;
+  visit_strings(status, [&left](std::string& text) { text.assign(*take_string(left)); });
+  reader.skip(strings.size());
   visit_tail(status, reader);
   return std::nullopt;
 }

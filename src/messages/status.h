@@ -60,19 +60,32 @@ enum class SimdTarget : std::int32_t {
 // By the name that hydrostatics gives it (wet_tree_sum.h); kOther for a name that has no value here.
 SimdTarget simd_target_from_name(std::string_view name);
 
+// How questions are answered: all in order of arrival, or the newest of each session. Values as in
+// service_status_t.lcm.
+enum class Mode : std::int32_t { kLockstep = 0, kLatest = 1 };
+
+// Fields as in service_status_t.lcm, where each is explained.
 struct ServiceStatus {
   std::int64_t utime = 0;  // us
   std::int64_t instance_id = 0;
   std::string version;
+  std::string scene;
+  double uptime = 0.0;  // s
+  Mode mode = Mode::kLockstep;
   SimdTarget simd_target = SimdTarget::kOther;
   std::int32_t threads = 1;
+  std::int32_t scene_bodies = 0;
+  std::int64_t reloads = 0;
+  std::int64_t reloads_failed = 0;
+  std::int64_t not_sent = 0;
   Counters counters;
   LatencyPercentiles latency;
+  double queue_wait = 0.0;  // s
 };
 
-// Encodes into bytes, which is resized. The version holds no NUL.
+// Encodes into bytes, which is resized. The strings hold no NUL.
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
-// Checks as for a question, and the version's length and final NUL. On rejection status is unchanged.
+// Checks as for a question, and each string's length and final NUL. On rejection status is unchanged.
 std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status);
 
 }  // namespace buoyancy

@@ -36,12 +36,15 @@ std::string literal(const std::string& channel) {
 
 struct Subscription {
   LcmConnection::Handler handler;
+  std::int64_t* received_utime;
 };
 
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
                                       void* subscription) noexcept {
   const Bytes bytes(static_cast<const std::uint8_t*>(received->data), received->data_size);
-  static_cast<Subscription*>(subscription)->handler(bytes, channel);
+  const auto* to = static_cast<Subscription*>(subscription);
+  *to->received_utime = received->recv_utime;
+  to->handler(bytes, channel);
 }
 
 }  // namespace
@@ -76,6 +79,7 @@ struct LcmConnection::Impl {
   ~Impl() { lcm_destroy(lcm); }
 
   lcm_t* lcm;
+  std::int64_t received_utime = 0;
   std::vector<std::unique_ptr<Subscription>> subscriptions;  // liblcm holds their addresses
 };
 
@@ -114,8 +118,8 @@ Expected<LcmConnection> LcmConnection::open(const std::string& url) {
 
 Expected<void> LcmConnection::subscribe(const std::string& channel, Handler handler, int queue_capacity) {
   if (Expected<void> checked = check_channel(channel); !checked) return checked;
-  auto& subscription =
-      impl_->subscriptions.emplace_back(std::make_unique<Subscription>(Subscription{std::move(handler)}));
+  auto& subscription = impl_->subscriptions.emplace_back(
+      std::make_unique<Subscription>(Subscription{std::move(handler), &impl_->received_utime}));
   lcm_subscription_t* made =
       lcm_subscribe(impl_->lcm, literal(channel).c_str(), buoyancy_lcm_dispatch, subscription.get());
   if (made == nullptr || lcm_subscription_set_queue_capacity(made, queue_capacity) != 0) {
@@ -139,6 +143,10 @@ Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
 
 int LcmConnection::fileno() const {
   return lcm_get_fileno(impl_->lcm);
+}
+
+std::int64_t LcmConnection::received_utime() const {
+  return impl_->received_utime;
 }
 
 bool LcmConnection::handle_one() {

@@ -51,6 +51,9 @@ class LcmConnection {
 
   int fileno() const;  // readable when a message waits: for poll()
   bool handle_one();   // dispatches one message that fileno() announced; false: none was there
+  // us since 1970: when the message came in that was handled last; what lies between is the time that it
+  // waited for handle_one(). 0: none has been handled.
+  std::int64_t received_utime() const;
   const std::string& url() const { return url_; }
 
  private:

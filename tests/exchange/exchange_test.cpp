@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <list>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -217,6 +218,74 @@ TEST(Exchange, KeepsAtMostSoManySessions) {
   EXPECT_EQ(exchange.newest_seq(1000 - 64), 1);
 }
 
+// A box of another height, its id in another place of the scene, and one body less.
+Scene taller_box_scene() {
+  return scene_of(R"(
+    [world]
+    gravity = 10.0
+    [water]
+    density = 1000.0
+    [[body]]
+    id = 2
+    shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
+    [[body]]
+    id = 1
+    shape = { type = "box", size = [1, 1, 2], segments = [2, 2, 2] }
+  )");
+}
+
+TEST(Exchange, AnswersNewQuestionsFromAnotherSceneWithinTheSameSession) {
+  const Scene taller = taller_box_scene();
+  Exchange exchange(scene());
+  for (const std::int64_t session_id : {1, 2}) exchange.answer(question(session_id, 5));
+  exchange.use(taller);
+  EXPECT_EQ(&exchange.scene(), &taller);
+  const Answer answer = decoded(exchange.answer(question(1, 6)));
+  EXPECT_EQ(answer.key.seq, 6);
+  EXPECT_NEAR(answer.bodies[0].submerged_volume, 1.0, 1e-13) << "at the pose of the last answer";
+  EXPECT_EQ(exchange.newest_seq(2), 5);
+  const Answer gone = decoded(exchange.answer(
+      question_bytes({.session_id = 2, .seq = 6}, {upright(kFastBox, 0.0), upright(kOffsetBox, 0.0)})));
+  EXPECT_EQ(gone.bodies[0].status, BodyStatus::kUnknownBody);
+  EXPECT_EQ(gone.bodies[1].status, BodyStatus::kOk);
+  EXPECT_EQ(exchange.counters().answered, 4);
+  EXPECT_EQ(exchange.counters().sessions, 2);
+  EXPECT_EQ(exchange.counters().bodies_unchanged, 1) << "of the second session's first question alone";
+}
+
+TEST(Exchange, GivesARepeatTheBytesThatTheSceneBeforeAnsweredItWith) {
+  const ByteVector asked =
+      question_bytes({.session_id = 1, .seq = 5}, {upright(kBox, 0.1), upright(kHydrostaticBox, 0.1)});
+  auto before = std::make_unique<Scene>(box_scene());
+  const Scene taller = taller_box_scene();
+  Exchange exchange(*before);
+  const ByteVector first = copied(exchange.answer(asked));
+  const ByteVector hydrostatics = copied(exchange.hydrostatics());
+  ASSERT_FALSE(hydrostatics.empty());
+  exchange.use(taller);
+  before.reset();
+  EXPECT_EQ(copied(exchange.answer(asked)), first);
+  EXPECT_EQ(copied(exchange.hydrostatics()), hydrostatics);
+  EXPECT_EQ(exchange.counters().repeated, 1);
+  EXPECT_TRUE(exchange.answer(question(1, 6)).size() > 0 && exchange.hydrostatics().empty());
+}
+
+TEST(Exchange, RemembersNothingOfTheBodiesOfTheSceneBefore) {
+  const Scene other = box_scene();
+  const auto asked = [](std::int64_t seq) {
+    return question_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.1), upright(kHydrostaticBox, 0.1)});
+  };
+  Exchange exchange(scene());
+  exchange.answer(asked(1));
+  exchange.use(other);
+  exchange.answer(asked(2));
+  EXPECT_EQ(exchange.counters().bodies_unchanged, 0);
+  EXPECT_EQ(exchange.counters().hydrostatics, 2);
+  exchange.answer(asked(3));
+  EXPECT_EQ(exchange.counters().bodies_unchanged, 2);
+  EXPECT_EQ(exchange.counters().hydrostatics, 2);
+}
+
 TEST(Exchange, CountsWhatTheModeLatestPassesOver) {
   Exchange exchange(scene());
   exchange.count_overtaken();
@@ -320,6 +389,12 @@ TEST(Exchange, TakesNothingFromTheHeapAfterWarmUp) {
   EXPECT_EQ(allocations.count(), 0);
   EXPECT_EQ(exchange.counters().answered, 2 + 20);
   EXPECT_EQ(exchange.counters().repeated, 20);
+
+  const Scene other = box_scene();
+  exchange.use(other);
+  const AllocationCount after_another_scene;
+  for (const ByteVector& bytes : questions) exchange.answer(bytes);
+  EXPECT_EQ(after_another_scene.count(), 0);
 }
 
 // What the header says of sessions, as plainly as possible: whole questions kept in a list, latest used

@@ -16,26 +16,51 @@ namespace {
 using ByteVector = std::vector<std::uint8_t>;
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
-constexpr std::size_t kTail = 4 + 4 + 8 * std::size_t{12 + 8 + 1 + 5 + 2 + 4};
+constexpr std::size_t kEmptyString = 4 + 1;
+constexpr std::size_t kTail = 8 + 4 * 4 + 8 * std::size_t{3 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
+
+std::string random_text() {
+  return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
+}
 
 ServiceStatus random_status() {
   ServiceStatus status;
   status.utime = random_integer<std::int64_t>();
   status.instance_id = random_integer<std::int64_t>();
-  status.version = *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
+  status.version = random_text();
+  status.scene = random_text();
+  status.mode = static_cast<Mode>(random_integer<std::int32_t>());
   status.simd_target = static_cast<SimdTarget>(random_integer<std::int32_t>());
   status.threads = random_integer<std::int32_t>();
+  status.scene_bodies = random_integer<std::int32_t>();
   Counters& c = status.counters;
-  for (std::int64_t* counter :
-       {&c.questions, &c.answered, &c.repeated, &c.changed_repeats, &c.stale, &c.overtaken, &c.sessions,
-        &c.sessions_forgotten, &c.rejected_truncated, &c.rejected_fingerprint, &c.rejected_count,
-        &c.rejected_length, &c.quaternions_normalised, &c.bodies_dry, &c.bodies_wet, &c.bodies_crossing,
-        &c.bodies_unchanged, &c.hydrostatics}) {
+  for (std::int64_t* counter : {&c.questions,
+                                &c.answered,
+                                &c.repeated,
+                                &c.changed_repeats,
+                                &c.stale,
+                                &c.overtaken,
+                                &c.sessions,
+                                &c.sessions_forgotten,
+                                &c.rejected_truncated,
+                                &c.rejected_fingerprint,
+                                &c.rejected_count,
+                                &c.rejected_length,
+                                &c.quaternions_normalised,
+                                &c.bodies_dry,
+                                &c.bodies_wet,
+                                &c.bodies_crossing,
+                                &c.bodies_unchanged,
+                                &c.hydrostatics,
+                                &status.reloads,
+                                &status.reloads_failed,
+                                &status.not_sent}) {
     *counter = random_integer<std::int64_t>();
   }
   for (std::int64_t& counter : c.bodies) counter = random_integer<std::int64_t>();
-  for (double* value : {&c.largest_dropped_force, &c.largest_dropped_torque, &status.latency.p50,
-                        &status.latency.p99, &status.latency.p999, &status.latency.max}) {
+  for (double* value :
+       {&c.largest_dropped_force, &c.largest_dropped_torque, &status.latency.p50, &status.latency.p99,
+        &status.latency.p999, &status.latency.max, &status.uptime, &status.queue_wait}) {
     *value = random_double();
   }
   return status;
@@ -51,8 +76,15 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.utime = status.utime;
   message.instance_id = status.instance_id;
   message.version = status.version;
+  message.scene = status.scene;
+  message.uptime = status.uptime;
+  message.mode = static_cast<std::int32_t>(status.mode);
   message.simd_target = static_cast<std::int32_t>(status.simd_target);
   message.threads = status.threads;
+  message.scene_bodies = status.scene_bodies;
+  message.reloads = status.reloads;
+  message.reloads_failed = status.reloads_failed;
+  message.not_sent = status.not_sent;
   message.questions = c.questions;
   message.answered = c.answered;
   message.repeated = c.repeated;
@@ -85,6 +117,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.latency_p99 = status.latency.p99;
   message.latency_p999 = status.latency.p999;
   message.latency_max = status.latency.max;
+  message.queue_wait = status.queue_wait;
   return encoded_by_lcm(message);
 }
 
@@ -94,15 +127,16 @@ ByteVector encoded(const ServiceStatus& status) {
   return bytes;
 }
 
-ByteVector with_version(const std::string& version) {
+ByteVector with_version(const std::string& version, const std::string& scene = "") {
   ServiceStatus status;
   status.version = version;
+  status.scene = scene;
   return encoded(status);
 }
 
-void set_version_length(ByteVector& bytes, std::int32_t length) {
+void set_length(ByteVector& bytes, std::size_t offset, std::int32_t length) {
   for (std::size_t i = 0; i < 4; ++i) {
-    bytes[kVersionLength + 3 - i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(length) >> (8 * i));
+    bytes[offset + 3 - i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(length) >> (8 * i));
   }
 }
 
@@ -129,9 +163,14 @@ TEST(StatusMessage, NamesInstructionSetsByTheConstantsOfTheDefinition) {
   EXPECT_EQ(value("Z80"), service_status_t::SIMD_OTHER);
 }
 
+TEST(StatusMessage, NamesModesByTheConstantsOfTheDefinition) {
+  EXPECT_EQ(static_cast<std::int32_t>(Mode::kLockstep), service_status_t::MODE_LOCKSTEP);
+  EXPECT_EQ(static_cast<std::int32_t>(Mode::kLatest), service_status_t::MODE_LATEST);
+}
+
 TEST(StatusMessage, RejectsEveryTruncation) {
   const ByteVector whole = with_version("1.2.3");
-  const std::size_t shortest = kVersionLength + 4 + 1 + kTail;
+  const std::size_t shortest = kVersionLength + 2 * kEmptyString + kTail;
   ServiceStatus status;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), status),
@@ -140,30 +179,35 @@ TEST(StatusMessage, RejectsEveryTruncation) {
   }
 }
 
-TEST(StatusMessage, RejectsVersionLengthsThatDoNotFit) {
+TEST(StatusMessage, RejectsLengthsOfStringsThatDoNotFit) {
   struct Case {
     std::int32_t length;
     Rejection expected;
   };
-  for (const Case& c :
-       {Case{0, Rejection::kCount}, Case{-1, Rejection::kCount}, Case{INT_MIN, Rejection::kCount},
-        Case{1, Rejection::kLength}, Case{5, Rejection::kLength}, Case{7, Rejection::kLength},
-        Case{INT_MAX, Rejection::kLength}}) {
-    ByteVector bytes = with_version("1.2.3");
-    set_version_length(bytes, c.length);
-    ServiceStatus status;
-    EXPECT_EQ(decode(bytes, status), c.expected) << c.length;
+  constexpr std::size_t kSceneLength = kVersionLength + 4 + 6;
+  for (const std::size_t offset : {kVersionLength, kSceneLength}) {
+    for (const Case& c :
+         {Case{0, Rejection::kCount}, Case{-1, Rejection::kCount}, Case{INT_MIN, Rejection::kCount},
+          Case{1, Rejection::kLength}, Case{5, Rejection::kLength}, Case{7, Rejection::kLength},
+          Case{INT_MAX, Rejection::kLength}}) {
+      ByteVector bytes = with_version("1.2.3", "scene");
+      set_length(bytes, offset, c.length);
+      ServiceStatus status;
+      EXPECT_EQ(decode(bytes, status), c.expected) << c.length;
+    }
   }
 }
 
-TEST(StatusMessage, RejectsAVersionThatDoesNotEndWhereItsLengthSays) {
+TEST(StatusMessage, RejectsAStringThatDoesNotEndWhereItsLengthSays) {
   ServiceStatus status;
-  ByteVector no_nul = with_version("1.2.3");
-  no_nul[kVersionLength + 4 + 5] = 'x';
-  EXPECT_EQ(decode(no_nul, status), Rejection::kLength);
-  ByteVector early_nul = with_version("1.2.3");
-  early_nul[kVersionLength + 4 + 2] = 0;
-  EXPECT_EQ(decode(early_nul, status), Rejection::kLength);
+  for (const std::size_t text : {kVersionLength + 4, kVersionLength + 4 + 6 + 4}) {
+    ByteVector no_nul = with_version("1.2.3", "scene");
+    no_nul[text + 5] = 'x';
+    EXPECT_EQ(decode(no_nul, status), Rejection::kLength);
+    ByteVector early_nul = with_version("1.2.3", "scene");
+    early_nul[text + 2] = 0;
+    EXPECT_EQ(decode(early_nul, status), Rejection::kLength);
+  }
 }
 
 TEST(StatusMessage, RejectsTrailingBytesAndOtherFingerprints) {
@@ -186,7 +230,8 @@ TEST(StatusMessage, RejectionLeavesTheStatusUnchanged) {
 }
 
 TEST(StatusMessage, TakesNothingFromTheHeapAfterWarmUp) {
-  const ByteVector whole = with_version("a version that is longer than what strings keep in place");
+  const ByteVector whole = with_version("a version that is longer than what strings keep in place",
+                                        "a scene that is longer than what strings keep in place");
   ServiceStatus status;
   ByteVector bytes;
   ASSERT_FALSE(decode(whole, status).has_value());

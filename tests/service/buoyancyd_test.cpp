@@ -1,6 +1,7 @@
 // buoyancyd as a program: arguments, exit codes, signals, what it says where.
 #include <algorithm>
 #include <csignal>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,7 @@ TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
   RawLcmSocket socket;
   ask(socket, one_body(1, 1, 0.0));
   EXPECT_EQ(hear(socket).seq, 1);
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.not_sent > 0; }));
 }
 
 TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
@@ -115,6 +117,114 @@ TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
   RunningService second;
   EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kPatience)) << first.log();
   EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kPatience)) << second.log();
+}
+
+// The words of a log line's level, as spdlog writes them, that stand in the log.
+std::set<std::string> levels_in(const std::string& log) {
+  std::set<std::string> found;
+  for (const char* level : {"debug", "info", "warning", "error"}) {
+    if (log.find("[" + std::string(level) + "]") != std::string::npos) found.insert(level);
+  }
+  return found;
+}
+
+class LogLevel : public testing::TestWithParam<std::pair<const char*, std::set<std::string>>> {};
+
+TEST_P(LogLevel, SaysWhatItIsAskedForAndWhatIsGraver) {
+  const auto& [level, expected] = GetParam();
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  ChildProcess child(command_of({BUOYANCYD, "--scene", scene, "--log-level", level}));
+  RawLcmSocket socket;
+  ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kPatience));  // ready, whatever it says
+  socket.send("BUOYANCY_STATES", {1, 2, 3});                  // a trouble
+  ask(socket, one_body(7, 3, 0.0));
+  EXPECT_EQ(hear(socket).seq, 3);
+  directory.write("scene.toml", "nothing");
+  child.send_signal(SIGHUP);
+  ASSERT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.rejected() == 1 && status.reloads_failed == 1;
+  }));
+  child.send_signal(SIGTERM);
+  EXPECT_EQ(child.wait(kPatience), 0);
+  const std::string log = child.standard_error();
+  EXPECT_EQ(levels_in(log), expected) << log;
+  EXPECT_EQ(log.find("session 7 starts with seq 3") != log.npos, expected.contains("debug")) << log;
+  EXPECT_EQ(log.find("ready:") != log.npos, expected.contains("info")) << log;
+  EXPECT_EQ(log.find("messages rejected") != log.npos, expected.contains("warning")) << log;
+  EXPECT_EQ(log.find("reload failed") != log.npos, expected.contains("error")) << log;
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, LogLevel,
+                         testing::Values(std::pair{"debug", std::set<std::string>{"debug", "info", "warning",
+                                                                                  "error"}},
+                                         std::pair{"info", std::set<std::string>{"info", "warning", "error"}},
+                                         std::pair{"warning", std::set<std::string>{"warning", "error"}},
+                                         std::pair{"error", std::set<std::string>{"error"}},
+                                         std::pair{"off", std::set<std::string>{}}),
+                         [](const auto& level) { return level.param.first; });
+
+TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kBoxScene);
+  const auto started = [&scene](const std::string& journal_stream) {
+    return command_of({"bash", "-c",
+                       "export JOURNAL_STREAM=" + journal_stream + "; exec \"$0\" --scene \"$1\"", BUOYANCYD,
+                       scene});
+  };
+  ChildProcess child(started("$(stat -L -c %d:%i /dev/stderr)"));
+  ASSERT_TRUE(child.wait_for_text("ready:", kPatience)) << child.standard_error();
+  EXPECT_TRUE(child.standard_error().starts_with("<6>ready: 2 bodies;")) << child.standard_error();
+  directory.write("scene.toml", "nothing");
+  child.send_signal(SIGHUP);
+  EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kPatience)) << child.standard_error();
+
+  directory.write("scene.toml", kBoxScene);
+  ChildProcess redirected(started("1:2"));
+  ASSERT_TRUE(redirected.wait_for_text("[info] ready:", kPatience)) << redirected.standard_error();
+}
+
+TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
+  RunningService service({"--mode", "latest"});
+  RawLcmSocket socket;
+  const auto first = hear_status(socket, [](const ServiceStatus&) { return true; });
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->version, BUOYANCY_VERSION);
+  EXPECT_EQ(first->scene, service.path("scene.toml"));
+  EXPECT_EQ(first->mode, Mode::kLatest);
+  EXPECT_EQ(first->scene_bodies, 2);
+  EXPECT_GE(first->uptime, 0.0);
+  EXPECT_LT(first->uptime, kPatience);
+  service.child().send_signal(SIGHUP);
+  const auto reloaded = hear_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
+  ASSERT_TRUE(reloaded);
+  EXPECT_EQ(reloaded->reloads_failed, 0);
+  EXPECT_GT(reloaded->uptime, first->uptime);
+}
+
+TEST(Buoyancyd, SaysInItsStatusHowLongQuestionsLayInTheQueue) {
+  const RunningService service;
+  RawLcmSocket socket;
+  RawStates states = one_body(1, 0, 0.0);
+  states.bodies.resize(500, states.bodies[0]);
+  // A burst: the last of it waits for those before. Several, since we may be put to sleep in the middle of
+  // one.
+  bool waited = false;
+  for (int burst = 0; burst < 20 && !waited; ++burst) {
+    for (int question = 0; question < 100; ++question) {
+      states.seq++;
+      for (RawState& body : states.bodies) body.position[2] = 0.001 * static_cast<double>(states.seq);
+      ask(socket, states);
+    }
+    const std::int64_t asked = states.seq;
+    EXPECT_TRUE(hear_status(socket, [&waited, asked](const ServiceStatus& status) {
+      waited = waited || status.queue_wait > 3 * status.latency.p50;
+      return status.counters.questions == asked;
+    }));
+  }
+  EXPECT_TRUE(waited);
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.queue_wait == 0.0; }))
+      << "of the last second alone";
 }
 
 TEST(Buoyancyd, ChecksASceneWithoutANetwork) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -57,8 +59,9 @@ mass = 12000
 // Ready when constructed.
 class RunningService {
  public:
-  explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene)
-      : child_(command(std::move(options), directory_.write("scene.toml", scene))) {
+  explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene,
+                          std::vector<std::string> environment = {})
+      : child_(command(std::move(options), directory_.write("scene.toml", scene), std::move(environment))) {
     if (!child_.wait_for_text("ready:", kPatience)) {
       throw std::runtime_error("buoyancyd did not get ready: " + child_.standard_error());
     }
@@ -67,10 +70,27 @@ class RunningService {
   ChildProcess& child() { return child_; }
   std::string log() const { return child_.standard_error(); }
 
+  // Returns once all its threads stand still, until it gets SIGCONT.
+  void stop() {
+    child_.send_signal(SIGSTOP);
+    for (std::string state; state != "T";) {
+      std::string pid;
+      std::string name;
+      std::ifstream("/proc/" + std::to_string(child_.pid()) + "/stat") >> pid >> name >> state;
+    }
+  }
+
+  // Beside the scene, which is "scene.toml".
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  void write(const std::string& name, const std::string& contents) const { directory_.write(name, contents); }
+
  private:
-  static ChildCommand command(std::vector<std::string> options, const std::string& scene) {
+  static ChildCommand command(std::vector<std::string> options, const std::string& scene,
+                              std::vector<std::string> environment) {
     options.insert(options.begin(), {BUOYANCYD, "--scene", scene});
-    return command_of(std::move(options));
+    ChildCommand whole = command_of(std::move(options));
+    whole.environment = std::move(environment);
+    return whole;
   }
 
   ScratchDirectory directory_;

@@ -1,0 +1,174 @@
+// SIGHUP: another scene in the middle of a session, over real UDP.
+#include <cmath>
+#include <csignal>
+
+#include <gtest/gtest.h>
+
+#include "tests/geometry/mesh_files.h"
+#include "tests/service/held_file.h"
+#include "tests/service/running_service.h"
+
+namespace buoyancy {
+namespace {
+
+// One body, a box of 2 x 3 m and the height given, in water of the density given.
+std::string box_scene(double density, double height) {
+  return "[world]\ngravity = 10.0\n[water]\ndensity = " + std::to_string(density) +
+         "\n[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, " + std::to_string(height) +
+         "], segments = [1, 1, 1] }\n";
+}
+const std::string kBefore = box_scene(1000.0, 4.0);
+constexpr double kForceBefore = 120'000.0;  // N, half submerged
+
+constexpr double kHalfSubmerged = 0.0;  // m, of the body's origin
+constexpr double kSubmerged = -100.0;
+
+double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kHalfSubmerged) {
+  ask(socket, one_body(1, seq, height));
+  const RawWrenches answer = hear(socket);
+  EXPECT_EQ(answer.session_id, 1);
+  EXPECT_EQ(answer.seq, seq);
+  return answer.bodies.at(0).force[2];
+}
+
+void reload(RunningService& service, const std::string& scene, const std::string& until) {
+  service.write("scene.toml", scene);
+  service.child().send_signal(SIGHUP);
+  ASSERT_TRUE(service.child().wait_for_text(until, kPatience)) << service.log();
+}
+
+std::size_t lines_with(const std::string& text, const std::string& log) {
+  std::size_t count = 0;
+  for (std::size_t at = log.find(text); at != std::string::npos; at = log.find(text, at + 1)) ++count;
+  return count;
+}
+
+TEST(Reload, AnswersTheVerySameSessionFromTheNewSceneWithItsNextStep) {
+  RunningService service({}, kBefore);
+  RawLcmSocket socket;
+  EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
+  reload(service, box_scene(500.0, 4.0), "reloaded: 1 body");
+  EXPECT_NEAR(vertical_force(socket, 2), 0.5 * kForceBefore, 1e-6);
+  reload(service, box_scene(500.0, 8.0) + "[[body]]\nid = 2\nshape = { type = \"box\", size = [1, 1, 1] }\n",
+         "reloaded: 2 bodies (before: 1)");
+  EXPECT_NEAR(vertical_force(socket, 3), kForceBefore, 1e-6);
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.answered == 3 && status.counters.sessions == 1 && status.counters.stale == 0;
+  }));
+}
+
+TEST(Reload, GivesARepeatOfWhatTheOldSceneAnsweredTheSameBytes) {
+  RunningService service({}, kBefore);
+  RawLcmSocket socket;
+  ask(socket, one_body(1, 5, 0.3));
+  const auto first = hear_bytes(socket);
+  ASSERT_TRUE(first);
+  reload(service, box_scene(500.0, 4.0), "reloaded:");
+  ask(socket, one_body(1, 5, 0.3));
+  EXPECT_EQ(hear_bytes(socket), first);
+  ask(socket, one_body(1, 6, 0.3));
+  const auto next = hear_bytes(socket);
+  ASSERT_TRUE(next);
+  EXPECT_NEAR(decode_wrenches(*next).bodies[0].force[2], 0.5 * decode_wrenches(*first).bodies[0].force[2],
+              1e-6);
+}
+
+TEST(Reload, LeavesTheOldSceneAnsweringWhereTheNewOneIsBad) {
+  RunningService service({}, kBefore);
+  RawLcmSocket socket;
+  EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
+  reload(service, "[[body]]\nid = ", "reload failed");
+  EXPECT_NE(service.log().find("scene.toml:2"), std::string::npos) << service.log();
+  EXPECT_NEAR(vertical_force(socket, 2), kForceBefore, 1e-6);
+  reload(service, "[[body]]\nid = 1\nmesh = \"gone.stl\"\n", "gone.stl");
+  EXPECT_NEAR(vertical_force(socket, 3), kForceBefore, 1e-6);
+  reload(service, box_scene(500.0, 4.0), "reloaded:");
+  EXPECT_NEAR(vertical_force(socket, 4), 0.5 * kForceBefore, 1e-6);
+  EXPECT_EQ(lines_with("reload failed", service.log()), 2U) << service.log();
+}
+
+TEST(Reload, LosesNoAnswerOfASteadyStream) {
+  RunningService service({}, kBefore);
+  RawLcmSocket socket;
+  constexpr std::int64_t kQuestions = 4000;
+  std::size_t reloads = 0;
+  for (std::int64_t seq = 0; seq < kQuestions; ++seq) {
+    if (seq % 100 == 50) {
+      service.write("scene.toml", box_scene(++reloads % 2 == 0 ? 1000.0 : 500.0, 4.0));
+      service.child().send_signal(SIGHUP);
+    }
+    const double force = vertical_force(socket, seq);
+    ASSERT_TRUE(std::abs(force - kForceBefore) < 1e-6 || std::abs(force - 0.5 * kForceBefore) < 1e-6)
+        << force;
+  }
+  EXPECT_TRUE(service.child().wait_for_text("reloaded:", kPatience)) << service.log();
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.answered == kQuestions && status.counters.repeated == 0 &&
+           status.counters.sessions == 1;
+  }));
+}
+
+TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAgain) {
+  RunningService service({"--log-level", "debug"}, kBefore);
+  RawLcmSocket socket;
+  service.write("tetrahedron.obj", tetrahedron::obj());
+  service.write("scene.toml", "[[body]]\nid = 1\nmesh = \"tetrahedron.obj\"\n");
+  HeldFile mesh(service.path("tetrahedron.obj"));
+  if (!mesh.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
+  service.child().send_signal(SIGHUP);
+  std::int64_t seq = 0;
+  while (!mesh.awaited() && seq < 100'000) vertical_force(socket, seq++);
+  ASSERT_TRUE(mesh.awaited()) << service.log();
+  for (const std::int64_t end = seq + 100; seq < end; ++seq) {
+    ASSERT_NEAR(vertical_force(socket, seq), kForceBefore, 1e-6);
+  }
+  // The scene with the mesh has been read, the mesh has not.
+  service.write("scene.toml", box_scene(500.0, 4.0));
+  for (int again = 0; again < 3; ++again) {
+    service.child().send_signal(SIGHUP);
+    EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
+  }
+  ASSERT_TRUE(service.child().wait_for_text("one more follows", kPatience)) << service.log();
+  EXPECT_EQ(service.log().find("reloaded:"), std::string::npos) << service.log();
+  mesh.let_go();
+  double force = kForceBefore;
+  while (std::abs(force - 0.5 * kForceBefore) > 1e-6 && seq < 100'000) force = vertical_force(socket, seq++);
+  EXPECT_NEAR(force, 0.5 * kForceBefore, 1e-6) << "of the scene as it was when asked last: " << service.log();
+  service.child().send_signal(SIGTERM);
+  EXPECT_EQ(service.child().wait(kPatience), 0);
+  EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three that came meanwhile";
+}
+
+TEST(Reload, LetsTheServiceEndWhileASceneLoads) {
+  RunningService service({}, kBefore);
+  HeldFile scene(service.path("scene.toml"));
+  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
+  service.child().send_signal(SIGHUP);
+  ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kPatience)) << service.log();
+  service.child().send_signal(SIGTERM);
+  EXPECT_EQ(service.child().wait(kPatience), 0) << service.log();
+  EXPECT_NE(service.log().find("ended by SIGTERM"), std::string::npos) << service.log();
+}
+
+TEST(Reload, ImportsMeshesAgainBesideTheRunningThreads) {
+  RunningService service({"--threads", "2"}, kBefore);
+  RawLcmSocket socket;
+  service.write("tetrahedron.obj", tetrahedron::obj());
+  std::int64_t seq = 0;
+  for (const double scale : {2.0, 4.0}) {
+    service.write("scene.toml",
+                  "[world]\ngravity = 10.0\n[water]\ndensity = 1000.0\n[[body]]\nid = 1\nmesh = "
+                  "\"tetrahedron.obj\"\nscale = " +
+                      std::to_string(scale) + "\n");
+    const std::size_t before = lines_with("reloaded:", service.log());
+    service.child().send_signal(SIGHUP);
+    while (lines_with("reloaded:", service.log()) == before && seq < 100'000) {
+      vertical_force(socket, seq++, kSubmerged);
+    }
+    EXPECT_NEAR(vertical_force(socket, seq++, kSubmerged), 1e4 * scale * scale * scale / 6, 1e-6)
+        << service.log();
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
