@@ -2,7 +2,8 @@
 // it fares. One thread; SIGINT and SIGTERM end it between two messages.
 //
 // Mode lockstep: every question is answered, in order of arrival. Mode latest: all that has arrived is looked
-// at, then the newest question of each session is answered (see LatestQuestions).
+// at, then the newest question of the session that has waited longest is answered (see LatestQuestions), and
+// so on: what arrives meanwhile still overtakes what waits.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +45,7 @@ class Daemon {
  private:
   Expected<void> receive();
   void take_in(Bytes question, double arrival);
-  void answer_waiting();
+  void answer_next_waiting();
   void answer(Bytes question, double arrival);
   bool publish(const std::string& channel, Bytes bytes);  // false: publish_error_ says why
   void report();
