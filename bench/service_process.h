@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scene/scene.h"
 #include "tests/child_process.h"
@@ -59,11 +60,20 @@ inline std::string url_of_port(int port) {
 inline constexpr int kServicePort = 7667;
 inline constexpr int kEchoPort = 7668;
 
+// Before a command: nothing, or {"taskset", "-c", "0"}.
+using Launcher = std::vector<std::string>;
+
+inline std::vector<std::string> launched(Launcher launcher, const std::vector<std::string>& command) {
+  launcher.insert(launcher.end(), command.begin(), command.end());
+  return launcher;
+}
+
 class ServiceProcess {
  public:
-  explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep")
-      : process_({BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
-                  url_of_port(kServicePort), "--mode", mode}) {}
+  explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep",
+                          const Launcher& launcher = {})
+      : process_(launched(launcher, {BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
+                                     url_of_port(kServicePort), "--mode", mode})) {}
   ChildProcess& child() { return process_.child(); }
 
  private:
@@ -73,7 +83,8 @@ class ServiceProcess {
 
 class EchoProcess {
  public:
-  explicit EchoProcess(int bodies) : process_({LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)}) {}
+  explicit EchoProcess(int bodies, const Launcher& launcher = {})
+      : process_(launched(launcher, {LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)})) {}
 
  private:
   ReadyProcess process_;
