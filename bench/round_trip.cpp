@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -320,18 +321,23 @@ void print_restart() {
     const auto killed = Clock::now();
     service->child().send_signal(SIGKILL);
     service->child().wait(10.0);
+    auto answered = std::async(std::launch::async, [&] {
+      ask(client, step, states_at(prepared, step));
+      return Clock::now();
+    });
     service.reset();
     service.emplace(scene);
     const auto ready = Clock::now();
-    ask(client, step, states_at(prepared, step));
     until_ready.push_back(1e-3 * microseconds(ready - killed));
-    until_answer.push_back(1e-3 * microseconds(Clock::now() - ready));
+    // Seen to be ready a moment after it said so, and by then perhaps answered.
+    until_answer.push_back(std::max(0.0, 1e-3 * microseconds(answered.get() - ready)));
   }
   const double worst = *std::max_element(until_answer.begin(), until_answer.end());
   std::printf(
       "### Killed and started again\n\n"
-      "`kill -9`, then the same command again, %zu times: ready after %.0f ms (median), the client's next "
-      "question answered %.1f ms\nlater (median; at most %.1f ms, must 1000 ms: %s).\n\n",
+      "`kill -9`, then the same command again, %zu times, while a client asks every 5 ms: ready after %.0f "
+      "ms "
+      "(median), its question\nanswered %.1f ms later (median; at most %.1f ms, must 1000 ms: %s).\n\n",
       kRuns, median(until_ready), median(until_answer), worst, met(worst <= 1000.0).c_str());
 }
 

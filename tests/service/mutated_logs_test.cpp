@@ -46,8 +46,7 @@ Log whole_log() {
   std::vector<std::uint8_t> event;
   for (int number = 0; number < kEvents; ++number) {
     const bool ours = number % 5 != 4;
-    encode_event(number, 1'000 * number, ours ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", question(number),
-                 event);
+    encode_event(number, number, ours ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", question(number), event);
     log.starts.push_back(log.bytes.size());
     log.bytes.append(event.begin(), event.end());
   }
