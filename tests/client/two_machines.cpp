@@ -57,10 +57,11 @@ TwoMachines::TwoMachines() : switch_(empty_machine()), service_(empty_machine())
     return;
   }
   run(kSetUp);
+  set_up_ = !trouble_;
 }
 
 TwoMachines::~TwoMachines() {
-  if (!trouble_) run(kTakeDown);
+  if (set_up_) run(kTakeDown);
 }
 
 ChildCommand TwoMachines::on_the_services(ChildCommand command) const {

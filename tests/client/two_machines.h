@@ -20,7 +20,8 @@ class TwoMachines {
   TwoMachines& operator=(const TwoMachines&) = delete;
   ~TwoMachines();
 
-  // What kept it from being set up: no right to make namespaces, a kernel without veth or bridge.
+  // What kept it from being set up: no right to make namespaces, a kernel without veth or bridge. Later: a
+  // command of those below that failed.
   const std::optional<std::string>& trouble() const { return trouble_; }
 
   // The same command on the service's machine.
@@ -42,6 +43,7 @@ class TwoMachines {
   ChildProcess switch_;
   ChildProcess service_;
   std::optional<std::string> trouble_;
+  bool set_up_ = false;
 };
 
 }  // namespace buoyancy

@@ -104,6 +104,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   ASSERT_EQ(client.wait(cut_seconds()), std::nullopt) << client.standard_error();
   EXPECT_EQ(written(), at_the_cut) << "the cable was not out";
   machines_.plug_cable();
+  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
   ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
   EXPECT_TRUE(read_file(csv) == embedded("20"));
   const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
@@ -124,6 +125,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
   machines_.take_interface_down();
   EXPECT_EQ(client.wait(1.0), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
+  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
   ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
   EXPECT_TRUE(read_file(csv) == embedded("20"));
 }
