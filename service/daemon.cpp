@@ -122,7 +122,8 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
   manager_.ready();
 
   while (true) {
-    if (::poll(waiting.data(), waiting.size(), -1) < 0) {
+    const int forever_or_not_at_all = latest_.empty() ? -1 : 0;
+    if (::poll(waiting.data(), waiting.size(), forever_or_not_at_all) < 0) {
       if (errno == EINTR) continue;  // a debugger, a stop and go
       return failure(
           {"waiting for messages", std::generic_category().message(errno), "poll to work", "", ""});
@@ -135,6 +136,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
     if (messages.revents != 0) {
       if (Expected<void> received = receive(); !received) return received;
     }
+    answer_next_waiting();
   }
   manager_.stopping();
   report();
@@ -151,7 +153,6 @@ Expected<void> Daemon::receive() {
   if (mode_ == Mode::kLatest) {
     for (int drained = 1; drained < kDrainedAtOnce && connection_.handle_one(); ++drained) {
     }
-    answer_waiting();
   }
   return {};
 }
@@ -170,15 +171,15 @@ void Daemon::take_in(Bytes question, double arrival) {
   }
   LatestQuestions::Fate fate = latest_.offer(*key, question, arrival);
   if (fate == LatestQuestions::Fate::kNoRoom) {
-    answer_waiting();
+    answer_next_waiting();
     fate = latest_.offer(*key, question, arrival);
   }
   if (fate == LatestQuestions::Fate::kOvertook) exchange_.count_overtaken();
   if (fate == LatestQuestions::Fate::kStale) exchange_.count_stale();
 }
 
-void Daemon::answer_waiting() {
-  latest_.take_all([this](Bytes question, double arrival) { answer(question, arrival); });
+void Daemon::answer_next_waiting() {
+  latest_.take_next([this](Bytes question, double arrival) { answer(question, arrival); });
 }
 
 void Daemon::answer(Bytes question, double arrival) {

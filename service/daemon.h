@@ -6,7 +6,8 @@
 // be used is said in the log and changes nothing.
 //
 // Mode lockstep: every question is answered, in order of arrival. Mode latest: all that has arrived is looked
-// at, then the newest question of each session is answered (see LatestQuestions).
+// at, then the newest question of the session that has waited longest is answered (see LatestQuestions), and
+// so on: what arrives meanwhile still overtakes what waits.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +60,7 @@ class Daemon {
   Expected<void> receive();
   void note_queue_wait();
   void take_in(Bytes question, double arrival);
-  void answer_waiting();
+  void answer_next_waiting();
   void answer(Bytes question, double arrival);
   bool publish(const std::string& channel, Bytes bytes);  // false: troubles_ says why
   void begin_reload();

@@ -23,10 +23,8 @@ LatestQuestions::Fate LatestQuestions::offer(const QuestionKey& key, Bytes quest
   if (session == nullptr) session = place_for_new();
   if (session == nullptr) return Fate::kNoRoom;
 
-  const auto index = static_cast<std::size_t>(session - sessions_.data());
   const bool overtakes = session->waits;
-  if (overtakes) std::erase(waiting_, index);
-  waiting_.push_back(index);
+  if (!overtakes) waiting_.push_back(static_cast<std::size_t>(session - sessions_.data()));
   session->id = key.session_id;
   session->newest_seq = key.seq;
   session->waits = true;

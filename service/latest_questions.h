@@ -3,7 +3,8 @@
 // The law, per session: a question with a seq at least as high as another's is newer (of equals the last to
 // arrive); so is one whose seq is lower by more than kRestartGap, since an asker that starts over counts from
 // the beginning. What is lower by at most kRestartGap was overtaken on the way and is stale. What waits when
-// a newer one arrives is overtaken.
+// a newer one arrives is overtaken, and the newer one takes its place in the line: whoever asks fastest would
+// else never be answered.
 //
 // Memory is bounded: by max_sessions times the largest message. Of sessions with nothing waiting the least
 // recently used is forgotten, which costs only the knowledge of what would be stale.
@@ -27,7 +28,7 @@ class LatestQuestions {
     kWaits,     // nothing of its session waited
     kOvertook,  // waits, in the place of an older one of its session
     kStale,     // not kept: a newer one of its session waits or was taken
-    kNoRoom,    // not kept: a question waits in each of max_sessions sessions; take them and offer it again
+    kNoRoom,    // not kept: a question waits in each of max_sessions sessions; take one and offer it again
   };
 
   explicit LatestQuestions(std::size_t max_sessions);  // >= 1
@@ -36,10 +37,10 @@ class LatestQuestions {
   // comes back with the question.
   Fate offer(const QuestionKey& key, Bytes question, double arrival);
 
-  // Hands every waiting question, in order of arrival, to answer(Bytes question, double arrival); none waits
-  // afterwards. answer must not call offer.
+  // Hands the question of the session that has waited longest to answer(Bytes question, double arrival); it
+  // waits no longer. False: none waited. answer must not call offer.
   template <typename Answer>
-  void take_all(Answer&& answer);
+  bool take_next(Answer&& answer);
 
   bool empty() const { return waiting_.empty(); }
 
@@ -58,18 +59,18 @@ class LatestQuestions {
 
   std::size_t max_sessions_;
   std::vector<Session> sessions_;
-  std::vector<std::size_t> waiting_;  // indices into sessions_, in order of arrival
+  std::vector<std::size_t> waiting_;  // indices into sessions_; the first has waited longest
   std::uint64_t use_ = 0;
 };
 
 template <typename Answer>
-void LatestQuestions::take_all(Answer&& answer) {
-  for (const std::size_t index : waiting_) {
-    Session& session = sessions_[index];
-    session.waits = false;
-    answer(Bytes(session.question), session.arrival);
-  }
-  waiting_.clear();
+bool LatestQuestions::take_next(Answer&& answer) {
+  if (waiting_.empty()) return false;
+  Session& session = sessions_[waiting_.front()];
+  waiting_.erase(waiting_.begin());
+  session.waits = false;
+  answer(Bytes(session.question), session.arrival);
+  return true;
 }
 
 }  // namespace buoyancy

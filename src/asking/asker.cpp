@@ -44,13 +44,14 @@ Expected<const Answer*> checked(const AnswerLink& link, const Question& question
   return &answer;
 }
 
-// Sends until answered or out of patience.
+// Sends until answered or out of patience. A sending that the network refuses is a lost question as well:
+// interfaces go and come back.
 Expected<const Answer*> ask_in_lockstep(AnswerLink& link, const Question& question, const Patience& patience,
                                         AskerStatistics& statistics) {
   const Clock::time_point sent_at = Clock::now();
   ++statistics.questions;
   Expected<void> sent = link.send(question);
-  for (std::int64_t repeats = 0; sent; ++repeats) {
+  for (std::int64_t repeats = 0;; ++repeats) {
     if (link.wait_for(question.key.seq, Clock::now() + to_duration(patience.timeout))) {
       statistics.round_trip.add(seconds(link.arrivals().back().at - sent_at));
       return checked(link, question, link.newest());
@@ -58,12 +59,12 @@ Expected<const Answer*> ask_in_lockstep(AnswerLink& link, const Question& questi
     if (link.stopped()) return stopped_error(link, question.key.seq);
     if (repeats == patience.retries) {
       ++statistics.lost;
+      if (!sent) return failure(sent.error());
       return no_answer(link, question.key.seq, seconds(Clock::now() - sent_at));
     }
     ++statistics.retries;
     sent = link.send_again();
   }
-  return failure(sent.error());
 }
 
 }  // namespace

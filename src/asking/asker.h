@@ -2,14 +2,14 @@
 //
 //   LockstepAsker     one question at a time: the same bytes are sent again after each timeout until the
 //                     answer with the question's (session_id, seq) is there. Whoever asks waits, so what the
-//                     network loses costs time and changes no result.
+//                     network loses or refuses costs time and changes no result.
 //   FreeRunningAsker  one question per interval of wall-clock time, answered with the newest answer that has
 //                     arrived before the interval is over: never waits longer, counts how late its answers
 //                     are, and gives up when the service has been quiet for too long.
 //
 // What both promise: an answer holds as many bodies as its question, in the same order, and is valid until
-// the next call. Errors of both: no answer in time, the transport's, an answer about other bodies than asked,
-// stop raised while waiting.
+// the next call. Errors of both: no answer in time, the transport's (in lock-step: when patience is over), an
+// answer about other bodies than asked, stop raised while waiting.
 #pragma once
 
 #include <cstdint>

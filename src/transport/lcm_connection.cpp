@@ -34,6 +34,10 @@ std::string literal(const std::string& channel) {
   return escaped;
 }
 
+// liblcm's own limit. Of a packet that ends before its channel's name does liblcm says a size below zero,
+// which reads as one of 4 GB.
+constexpr std::size_t kLargestMessage = std::size_t{1} << 28U;
+
 struct Subscription {
   LcmConnection::Handler handler;
   std::int64_t* received_utime;
@@ -41,7 +45,8 @@ struct Subscription {
 
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
                                       void* subscription) noexcept {
-  const Bytes bytes(static_cast<const std::uint8_t*>(received->data), received->data_size);
+  const std::size_t size = received->data_size <= kLargestMessage ? received->data_size : 0;
+  const Bytes bytes(static_cast<const std::uint8_t*>(received->data), size);
   const auto* to = static_cast<Subscription*>(subscription);
   *to->received_utime = received->recv_utime;
   to->handler(bytes, channel);

@@ -1,6 +1,6 @@
 // A bad network between client and service: carries the questions of one bus to another and the answers back,
-// loses some of each, and can be slow with the answers. Seeded: it loses the same messages of a sequence
-// every time.
+// loses some of each, sends some twice, has some overtaken by later ones, and can be slow with the answers.
+// Seeded: it loses the same messages of a sequence every time.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,8 @@ struct RelayOptions {
   double loss = 0.0;          // probability, of questions and of answers
   double answer_delay = 0.0;  // s
   std::uint64_t seed = 1;
+  double duplication = 0.0;  // probability, of questions and of answers
+  double reordering = 0.0;   // the same: it arrives some milliseconds late, after a repeat or the next one
 };
 
 class LossyRelay {
@@ -27,6 +29,8 @@ class LossyRelay {
 
   std::int64_t lost_questions() const { return lost_questions_; }
   std::int64_t lost_answers() const { return lost_answers_; }
+  std::int64_t duplicated() const { return duplicated_; }
+  std::int64_t reordered() const { return reordered_; }
 
  private:
   struct Carrier;
@@ -34,6 +38,8 @@ class LossyRelay {
   std::atomic<bool> stop_{false};
   std::atomic<std::int64_t> lost_questions_{0};
   std::atomic<std::int64_t> lost_answers_{0};
+  std::atomic<std::int64_t> duplicated_{0};
+  std::atomic<std::int64_t> reordered_{0};
   std::thread thread_;
 };
 

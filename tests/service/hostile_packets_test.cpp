@@ -70,6 +70,20 @@ TEST(HostilePackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
   }
 }
 
+TEST(HostilePackets, APacketThatEndsBeforeItsChannelsNameDoesIsAMessageWithoutBytes) {
+  RunningService service;
+  RawLcmSocket socket;
+  // The name's end is what liblcm finds behind the packet: a zero in memory that nothing was received into
+  // yet.
+  RawBytes packet{'L', 'C', '0', '2', 0, 0, 0, 0};
+  for (const char c : std::string("BUOYANCY_STATES")) packet.push_back(static_cast<std::uint8_t>(c));
+  socket.send_packet(packet);
+  expect_an_answer(socket, 1, "the packet");
+  const auto status = hear_status(socket, [](const ServiceStatus& s) { return s.counters.questions == 2; });
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->counters.rejected_truncated, 1) << "and not read for gigabytes behind the packet";
+}
+
 TEST(HostilePackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
   RunningService service;
   RawLcmSocket socket;

@@ -22,7 +22,8 @@ Fate offer(LatestQuestions& latest, std::int64_t session, std::int64_t seq, cons
 
 std::vector<std::string> take_all(LatestQuestions& latest) {
   std::vector<std::string> taken;
-  latest.take_all([&taken](Bytes bytes, double) { taken.emplace_back(bytes.begin(), bytes.end()); });
+  while (latest.take_next([&](Bytes bytes, double) { taken.emplace_back(bytes.begin(), bytes.end()); })) {
+  }
   return taken;
 }
 
@@ -34,7 +35,7 @@ TEST(LatestQuestions, KeepsTheNewestOfEachSession) {
   EXPECT_EQ(offer(latest, 2, 5, "b5"), Fate::kWaits);
   EXPECT_EQ(offer(latest, 1, 11, "a11"), Fate::kOvertook);
   EXPECT_EQ(offer(latest, 2, 4, "b4"), Fate::kStale);
-  EXPECT_EQ(take_all(latest), (Strings{"b5", "a11"})) << "in order of arrival";
+  EXPECT_EQ(take_all(latest), (Strings{"a11", "b5"})) << "who has waited longest comes first";
   EXPECT_TRUE(latest.empty());
   EXPECT_EQ(take_all(latest), Strings{});
 }
@@ -90,6 +91,23 @@ TEST(LatestQuestions, SaysWhenEverySessionWaits) {
   EXPECT_EQ(take_all(latest), Strings{"c"});
 }
 
+TEST(LatestQuestions, AnswersEverySessionInTurnHoweverFastTheOthersAsk) {
+  LatestQuestions latest(8);
+  Strings taken;
+  std::int64_t seq = 0;
+  offer(latest, 1, 1, "slow");
+  for (int answered = 0; answered < 6; ++answered) {
+    for (int i = 0; i < 10; ++i) {
+      ++seq;
+      offer(latest, 2, seq, "fast" + std::to_string(seq));
+      offer(latest, 3, seq, "faster" + std::to_string(seq));
+    }
+    latest.take_next([&](Bytes bytes, double) { taken.emplace_back(bytes.begin(), bytes.end()); });
+    offer(latest, 1, seq, "slow");
+  }
+  EXPECT_EQ(taken, (Strings{"slow", "fast20", "faster30", "slow", "fast50", "faster60"}));
+}
+
 TEST(LatestQuestions, ForgetsTheSessionThatWasUsedLeastRecently) {
   LatestQuestions latest(2);
   offer(latest, 1, 50, "a");
@@ -106,7 +124,7 @@ TEST(LatestQuestions, GivesBackTheTimeOfArrival) {
   LatestQuestions latest(2);
   latest.offer({0, 1, 1}, bytes_of("a"), 1.5);
   latest.offer({0, 1, 2}, bytes_of("b"), 2.5);
-  latest.take_all([](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); });
+  EXPECT_TRUE(latest.take_next([](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <limits>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -237,6 +238,26 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
   const std::int64_t first_instance = status_before->instance_id;
   EXPECT_TRUE(hear_status(socket, [first_instance](const ServiceStatus& status) {
     return status.instance_id != first_instance && status.counters.questions == 1;
+  }));
+}
+
+TEST(Lockstep, ComparesTheAskersClockWithNothing) {
+  constexpr std::int64_t kHour = 3'600'000'000;  // us
+  const RunningService service;
+  RawLcmSocket socket;
+  std::int64_t seq = 0;
+  for (const std::int64_t utime : {std::int64_t{0}, kHour, -kHour, std::numeric_limits<std::int64_t>::max(),
+                                   std::numeric_limits<std::int64_t>::min(), std::int64_t{1}}) {
+    RawStates states = one_body(1, ++seq, 0.5);
+    states.utime = utime;
+    ask(socket, states);
+    const RawWrenches answer = hear(socket);
+    EXPECT_EQ(answer.utime, utime);
+    EXPECT_EQ(answer.seq, seq);
+    EXPECT_NEAR(answer.bodies[0].force[2], 90'000.0, 1e-6) << utime;
+  }
+  EXPECT_TRUE(hear_status(socket, [seq](const ServiceStatus& status) {
+    return status.counters.answered == seq && status.counters.stale == 0;
   }));
 }
 

@@ -1,0 +1,164 @@
+// Ten times more questions than the service can answer, from several sessions, in mode latest: how old is
+// what it answers, and does everybody get answers? Markdown on standard output.
+//
+//   overload [--quick]
+//
+// The age of an answer is from the sending of the question that it answers to its arrival. To be run in a
+// network namespace with a multicast route (scripts/measure_round_trip). Exit codes as of round_trip.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <poll.h>
+
+#include "exchange/exchange.h"
+#include "median.h"
+#include "service_process.h"
+#include "transport/lcm_connection.h"
+
+namespace buoyancy {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kSessions = 4;
+constexpr double kOverload = 10.0;
+constexpr double kAllowance = 1e-3;  // s, beyond one service time
+
+// A method that looks at every triangle: the processor is what the service is short of, not the network.
+const std::string kScene =
+    "[[body]]\nid = 1\nmethod = \"exact\"\n"
+    "shape = { type = \"rock\", radius = 1, frequency = 78 }\n";
+
+double seconds(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+std::vector<std::uint8_t> question_of(std::int64_t session, std::int64_t seq) {
+  BodyState state;
+  state.body_id = 1;
+  state.position = {0.0, 0.0, 0.3 * std::sin(0.1 * static_cast<double>(seq) + static_cast<double>(session))};
+  state.quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
+  std::vector<std::uint8_t> bytes;
+  encode(Question{.key = {seq, session, seq}, .lead_time = 0.0, .bodies = {state}}, bytes);
+  return bytes;
+}
+
+// s, median, in this process.
+double service_time(const Scene& scene) {
+  Exchange exchange(scene);
+  std::vector<double> times;
+  for (std::int64_t seq = 0; seq < 500; ++seq) {
+    const std::vector<std::uint8_t> question = question_of(0, seq);
+    const auto start = Clock::now();
+    exchange.answer(question);
+    times.push_back(seconds(Clock::now() - start));
+  }
+  return median(times);
+}
+
+struct Heard {
+  std::vector<double> ages;  // s
+  std::vector<std::int64_t> answers = std::vector<std::int64_t>(kSessions);
+  std::vector<double> longest_gap = std::vector<double>(kSessions);  // s, between two answers
+};
+
+// Asks for `duration` seconds, a question each `interval`, the sessions in turn.
+class Askers {
+ public:
+  Askers() : connection_(value_or_exit(LcmConnection::open(url_of_port(kServicePort)))) {
+    value_or_exit(connection_.subscribe(std::string(kWrenchesChannel),
+                                        [this](Bytes bytes, std::string_view) { receive(bytes); }));
+  }
+
+  Heard run(double duration, double interval) {
+    const auto start = Clock::now();
+    last_answer_.assign(kSessions, start);
+    for (std::int64_t number = 0; seconds(Clock::now() - start) < duration; ++number) {
+      const auto due = start + std::chrono::duration_cast<Clock::duration>(
+                                   std::chrono::duration<double>(interval * static_cast<double>(number)));
+      listen_until(due);
+      const std::size_t session = static_cast<std::size_t>(number) % kSessions;
+      const auto seq = static_cast<std::int64_t>(sent_[session].size());
+      const std::vector<std::uint8_t> question = question_of(static_cast<std::int64_t>(session), seq);
+      sent_[session].push_back(Clock::now());
+      value_or_exit(connection_.publish(std::string(kStatesChannel), question));
+    }
+    return heard_;
+  }
+
+ private:
+  void listen_until(Clock::time_point due) {
+    do {
+      const double left = std::max(0.0, seconds(due - Clock::now()));
+      const timespec sleep{0, static_cast<long>(1e9 * std::min(left, 0.9))};
+      pollfd waiting{connection_.fileno(), POLLIN, 0};
+      if (::ppoll(&waiting, 1, &sleep, nullptr) > 0) connection_.handle_one();
+    } while (Clock::now() < due);
+  }
+
+  void receive(Bytes bytes) {
+    const auto now = Clock::now();
+    if (decode(bytes, answer_)) give_up("an answer that is none");
+    if (answer_.bodies.size() != 1 || answer_.bodies[0].force[2] <= 0.0) give_up("a wrong answer");
+    const auto session = static_cast<std::size_t>(answer_.key.session_id);
+    heard_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(answer_.key.seq)]));
+    ++heard_.answers[session];
+    heard_.longest_gap[session] = std::max(heard_.longest_gap[session], seconds(now - last_answer_[session]));
+    last_answer_[session] = now;
+  }
+
+  LcmConnection connection_;
+  std::vector<std::vector<Clock::time_point>> sent_ = std::vector<std::vector<Clock::time_point>>(kSessions);
+  std::vector<Clock::time_point> last_answer_;
+  Answer answer_;  // reused
+  Heard heard_;
+};
+
+void run(bool quick) {
+  ServiceProcess service(kScene, "latest");
+  const double alone = service_time(scene_of(kScene));
+  const double interval = alone / kOverload;
+  Heard heard = Askers().run(quick ? 2.0 : 10.0, interval);
+  if (heard.ages.empty()) give_up("no answers");
+  std::sort(heard.ages.begin(), heard.ages.end());
+  const auto age_at = [&](double share) {
+    return 1e3 * heard.ages[static_cast<std::size_t>(share * static_cast<double>(heard.ages.size() - 1))];
+  };
+  const auto [fewest, most] = std::minmax_element(heard.answers.begin(), heard.answers.end());
+  const double gap = *std::max_element(heard.longest_gap.begin(), heard.longest_gap.end());
+  const double allowed = 1e3 * (alone + kAllowance);
+  std::printf("### Ten times too many questions\n\n");
+  std::printf(
+      "Mode latest, %zu sessions, %.0f questions a second, of which the service can answer one in ten: a "
+      "query "
+      "takes %.2f ms.\n\n",
+      kSessions, 1.0 / interval, 1e3 * alone);
+  std::printf("| age of the answered question | ms |\n|---|---:|\n");
+  std::printf("| p50 | %.2f |\n| p99 | %.2f |\n| largest | %.2f |\n", age_at(0.5), age_at(0.99), age_at(1.0));
+  std::printf("| p99, must (one query and 1 ms): %s | %.2f |\n\n", age_at(0.99) <= allowed ? "met" : "MISSED",
+              allowed);
+  std::printf(
+      "%zu answers; the sessions got %lld to %lld each and waited at most %.1f ms from one to the next.\n\n",
+      heard.ages.size(), static_cast<long long>(*fewest), static_cast<long long>(*most), 1e3 * gap);
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  CLI::App app("Ten times more questions than buoyancyd can answer", "overload");
+  bool quick = false;
+  app.add_flag("--quick", quick, "Two seconds instead of ten");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  buoyancy::run(quick);
+  return 0;
+}

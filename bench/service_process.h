@@ -1,0 +1,93 @@
+// The processes that the network benchmarks measure: buoyancyd and its echo, each alone on a port of its own,
+// so that nobody is woken by what concerns him not.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+#include "tests/child_process.h"
+#include "tests/service/scratch_directory.h"
+
+namespace buoyancy {
+
+// What could not be measured, or was answered wrongly, ends the program.
+template <typename T>
+T value_or_exit(Expected<T> expected) {
+  if (!expected) {
+    std::fprintf(stderr, "%s\n", expected.error().message().c_str());
+    std::exit(1);  // NOLINT(concurrency-mt-unsafe): one thread of ours
+  }
+  if constexpr (!std::is_void_v<T>) return std::move(*expected);
+}
+
+[[noreturn]] inline void give_up(const std::string& reason) {
+  value_or_exit<void>(failure({"benchmark", reason, "a service that answers rightly", "", ""}));
+  std::abort();
+}
+
+inline Scene scene_of(const std::string& text) {
+  return value_or_exit(Scene::prepare(value_or_exit(parse_scene(text, "benchmark", {}))));
+}
+
+// `count` bodies of the same shape or mesh file, with the ids 1 to count.
+inline std::string bodies_of(int count, const std::string& what) {
+  std::string text;
+  for (int id = 1; id <= count; ++id) text += "[[body]]\nid = " + std::to_string(id) + "\n" + what + "\n";
+  return text;
+}
+
+// A program that says "ready", and has said so when this is constructed. Killed by the destructor.
+class ReadyProcess {
+ public:
+  explicit ReadyProcess(std::vector<std::string> command) : child_(command_of(std::move(command))) {
+    if (!child_.wait_for_text("ready", 60.0)) give_up(child_.standard_error());
+  }
+  ChildProcess& child() { return child_; }
+
+ private:
+  ChildProcess child_;
+};
+
+inline std::string url_of_port(int port) {
+  return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
+}
+
+inline constexpr int kServicePort = 7667;
+inline constexpr int kEchoPort = 7668;
+
+// Before a command: nothing, or {"taskset", "-c", "0"}.
+using Launcher = std::vector<std::string>;
+
+inline std::vector<std::string> launched(Launcher launcher, const std::vector<std::string>& command) {
+  launcher.insert(launcher.end(), command.begin(), command.end());
+  return launcher;
+}
+
+class ServiceProcess {
+ public:
+  explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep",
+                          const Launcher& launcher = {})
+      : process_(launched(launcher, {BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
+                                     url_of_port(kServicePort), "--mode", mode})) {}
+  ChildProcess& child() { return process_.child(); }
+
+ private:
+  ScratchDirectory directory_;
+  ReadyProcess process_;
+};
+
+class EchoProcess {
+ public:
+  explicit EchoProcess(int bodies, const Launcher& launcher = {})
+      : process_(launched(launcher, {LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)})) {}
+
+ private:
+  ReadyProcess process_;
+};
+
+}  // namespace buoyancy

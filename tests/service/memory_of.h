@@ -1,0 +1,26 @@
+// What a process occupies, as the kernel sees it.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include <sys/types.h>
+
+namespace buoyancy {
+
+// VmRSS, kB. Throws where there is no such process.
+inline std::int64_t resident_kb(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  std::string word;
+  while (status >> word) {
+    if (word != "VmRSS:") continue;
+    std::int64_t kilobytes = 0;
+    status >> kilobytes;
+    return kilobytes;
+  }
+  throw std::runtime_error("process " + std::to_string(process) + " is gone");
+}
+
+}  // namespace buoyancy
