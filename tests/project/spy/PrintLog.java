@@ -31,7 +31,8 @@ public class PrintLog {
       buoyancy.body_wrenches_t answer = (buoyancy.body_wrenches_t) message;
       for (buoyancy.body_wrench_t body : answer.bodies) {
         System.out.println(
-            "wrench " + answer.utime + " " + body.body_id + " " + body.force[0] + " " + body.force[1] + " " + body.force[2]);
+            "wrench " + answer.utime + " " + body.body_id
+                + " " + body.force[0] + " " + body.force[1] + " " + body.force[2]);
       }
     }
   }
