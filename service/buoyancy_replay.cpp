@@ -67,20 +67,13 @@ int main(int argc, char** argv) {
   const Expected<Scene> scene =
       plan->single_mesh ? Scene::prepare(*plan->single_mesh) : Scene::load(options.scene);
   if (!scene) return refuse(scene.error(), kWrongInput);
-  OutputLayout layout{plan->output_format, options.wrenches_channel, options.hydrostatics_channel};
-  std::vector<std::string> answers{layout.wrenches_channel, layout.hydrostatics_channel};
-  std::vector<std::string> taken{options.states_channel};
-  taken.insert(taken.end(), answers.begin(), answers.end());
-  Expected<PoseChannels> named = pose_channels(options.poses, *scene, taken);
-  if (!named) return refuse(named.error(), kWrongInput);
-  PoseQuestions poses(*std::move(named), kFirstPoseSession);
-  for (const PoseChannel& pose : poses.channels()) answers.push_back(pose.force_torque_channel);
-  Expected<ReplayChannels> channels =
-      ReplayChannels::make(options.states_channel, poses.channels(), options.copied, std::move(answers));
-  if (!channels) return refuse(channels.error(), kWrongInput);
+  Expected<ReplayRoutes> routes = plan_routes(options, *scene);
+  if (!routes) return refuse(routes.error(), kWrongInput);
+  ReplayChannels& channels = routes->channels;
+  PoseQuestions poses(std::move(routes->poses), kFirstPoseSession);
   Expected<ReplayInput> input =
       ReplayInput::open(options.input, plan->input_format,
-                        [&channels](std::string_view channel) { return channels->use_of(channel).any(); });
+                        [&channels](std::string_view channel) { return channels.use_of(channel).any(); });
   if (!input) return refuse(input.error(), kWrongInput);
   std::optional<Comparison> comparison;
   if (!options.earlier.empty()) {
@@ -93,10 +86,10 @@ int main(int argc, char** argv) {
   return answer_all(app, options,
                     {.scene = *scene,
                      .input = *input,
-                     .channels = *channels,
+                     .channels = channels,
                      .poses = poses,
                      .output = *output,
-                     .layout = std::move(layout),
+                     .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
                      .comparison = comparison ? &*comparison : nullptr,
                      .jobs = options.jobs});
 }

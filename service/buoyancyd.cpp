@@ -19,7 +19,8 @@ namespace {
 
 using namespace buoyancy;
 
-int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, BlockedSignals& reload) {
+int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseChannels poses,
+          BlockedSignals& reload) {
   TerminationSignals termination;  // before the connection, whose thread must not get them
   Expected<LcmConnection> connection = LcmConnection::open(options.lcm_url);
   if (!connection) {
@@ -27,7 +28,7 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, Blocke
     return kFailed;
   }
   Daemon daemon(std::make_unique<const Scene>(std::move(scene)), std::move(*connection), options.mode,
-                options.channels, options.threads);
+                options.channels, std::move(poses), options.threads);
   ExitCode exit_code = kDone;
   if (const Expected<void> ended = daemon.run(termination, reload); !ended) {
     print_error(app, ended.error());
@@ -59,9 +60,16 @@ int main(int argc, char** argv) {
     print_error(app, scene.error());
     return kWrongInput;
   }
+  const ChannelNames& channels = options.channels;
+  Expected<PoseChannels> poses = pose_channels(
+      options.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
+  if (!poses) {
+    print_error(app, poses.error());
+    return kWrongInput;
+  }
   if (options.check) {
     const std::string report = options.json ? scene_report_json(*scene) + "\n" : scene_report_text(*scene);
     return print_output(app, report) ? kDone : kFailed;
   }
-  return serve(app, options, std::move(*scene), *reload);
+  return serve(app, options, std::move(*scene), std::move(*poses), *reload);
 }

@@ -68,13 +68,14 @@ std::string_view name(Mode mode) {
 }
 
 Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mode mode, ChannelNames channels,
-               unsigned threads)
+               PoseChannels poses, unsigned threads)
     : scene_(std::move(scene)),
       loader_(scene_->name()),
       mode_(mode),
       channels_(std::move(channels)),
       connection_(std::move(connection)),
       exchange_(*scene_, {.max_sessions = kMaxSessions, .threads = threads}),
+      poses_(std::move(poses), random_id()),
       latest_(kMaxSessions),
       start_(seconds_now()),
       instance_id_(random_id()),
@@ -85,13 +86,14 @@ Expected<void> Daemon::subscribe() {
       channels_.states,
       [this](Bytes question, std::string_view) {
         note_queue_wait();
-        if (mode_ == Mode::kLockstep) {
-          answer(question, seconds_now());
-        } else {
-          take_in(question, seconds_now());
-        }
+        hear_question(question);
       },
       kQueueCapacity);
+  for (std::size_t i = 0; subscribed && i < poses_.channels().size(); ++i) {
+    subscribed = connection_.subscribe(
+        poses_.channels()[i].channel, [this, i](Bytes pose, std::string_view) { hear_pose(i, pose); },
+        kQueueCapacity);
+  }
   if (!subscribed) return subscribed;
   return connection_.subscribe(
       channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
@@ -118,6 +120,10 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
       "instance {}",
       in_words(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
       channels_.status, connection_.url(), name(mode_), instance_id_);
+  for (const PoseChannel& pose : poses_.channels()) {
+    spdlog::info("poses of body {} on {}, answered on {}", pose.body_id, pose.channel,
+                 pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
+  }
   report();
   manager_.ready();
 
@@ -163,6 +169,23 @@ void Daemon::note_queue_wait() {
   queue_wait_ = std::max(queue_wait_, static_cast<double>(waited) * kSecondsPerMicrosecond);
 }
 
+void Daemon::hear_question(Bytes question) {
+  if (mode_ == Mode::kLockstep) {
+    answer(question, seconds_now());
+  } else {
+    take_in(question, seconds_now());
+  }
+}
+
+void Daemon::hear_pose(std::size_t channel, Bytes pose) {
+  note_queue_wait();
+  if (const auto question = poses_.question(channel, pose)) {
+    hear_question(*question);
+  } else {
+    exchange_.count_rejected(question.error());
+  }
+}
+
 void Daemon::take_in(Bytes question, double arrival) {
   const auto key = peek_key(question);
   if (!key) {
@@ -187,14 +210,21 @@ void Daemon::answer(Bytes question, double arrival) {
   const std::int64_t sessions_before = counters.sessions + counters.sessions_forgotten;
   const Bytes bytes = exchange_.answer(question);
   if (bytes.empty()) return;
+  const QuestionKey key = peek_key(question).value();
   if (counters.sessions + counters.sessions_forgotten != sessions_before) {
-    const QuestionKey key = peek_key(question).value();
     spdlog::debug("session {} starts with seq {}", key.session_id, key.seq);
   }
-  if (publish(channels_.wrenches, bytes)) latency_.add(seconds_now() - arrival);
+  if (publish_answer(key.session_id, bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
   }
+}
+
+bool Daemon::publish_answer(std::int64_t session_id, Bytes answer) {
+  const PoseChannel* const pose = poses_.asks_in(session_id);
+  if (pose == nullptr || pose->force_torque_channel.empty()) return publish(channels_.wrenches, answer);
+  force_torque_of(answer, answer_, force_torque_bytes_);
+  return publish(pose->force_torque_channel, force_torque_bytes_);
 }
 
 bool Daemon::publish(const std::string& channel, Bytes bytes) {

@@ -1,6 +1,8 @@
 // The live service: waits for questions on LCM, answers them through an Exchange, and says once a second how
 // it fares. One thread; SIGINT and SIGTERM end it between two messages.
 //
+// Poses of single bodies, on channels of their own, are questions too: each channel is a session.
+//
 // SIGHUP: the scene file is read again, by a SceneLoader, while the scene at hand goes on answering. Between
 // two messages the new one takes its place; sessions, repeats and counters do not notice. A scene that cannot
 // be used is said in the log and changes nothing.
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "exchange/exchange.h"
+#include "exchange/pose_questions.h"
 #include "geometry/error.h"
 #include "messages/latency_histogram.h"
 #include "scene/scene.h"
@@ -45,7 +48,7 @@ class Daemon {
   // scene: as loaded from the file that it is named after, which a reload reads again. Not nullptr. threads:
   // as ExchangeOptions has it. Starts a thread (SceneLoader): block signals before.
   Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mode mode, ChannelNames channels,
-         unsigned threads);
+         PoseChannels poses, unsigned threads);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
@@ -59,9 +62,12 @@ class Daemon {
   Expected<void> subscribe();
   Expected<void> receive();
   void note_queue_wait();
+  void hear_question(Bytes question);
+  void hear_pose(std::size_t channel, Bytes pose);  // channel: of poses_
   void take_in(Bytes question, double arrival);
   void answer_next_waiting();
   void answer(Bytes question, double arrival);
+  bool publish_answer(std::int64_t session_id, Bytes answer);
   bool publish(const std::string& channel, Bytes bytes);  // false: troubles_ says why
   void begin_reload();
   void end_reload();
@@ -73,6 +79,7 @@ class Daemon {
   ChannelNames channels_;
   LcmConnection connection_;
   Exchange exchange_;
+  PoseQuestions poses_;
   LatestQuestions latest_;
   LatencyHistogram latency_;
   double start_;  // s, as all times here of the steady clock
@@ -86,7 +93,9 @@ class Daemon {
   TroubleLog troubles_;
   ServiceManager manager_;
   Counters reported_;
-  std::vector<std::uint8_t> status_bytes_;  // reused
+  std::vector<std::uint8_t> status_bytes_;        // reused
+  Answer answer_;                                 // reused, of poses
+  std::vector<std::uint8_t> force_torque_bytes_;  // reused
 };
 
 }  // namespace buoyancy

@@ -36,6 +36,7 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
       ->capture_default_str();
   app.add_option("--status-channel", options.channels.status, "Channel of the status, once a second")
       ->capture_default_str();
+  declare_options(app, options.poses);
   app.add_option(
          "--threads", options.threads,
          "Threads among which a question's bodies are shared, where there is enough to do; 0: as many as the "

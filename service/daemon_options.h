@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "service/daemon.h"
+#include "service/pose_options.h"
 
 namespace buoyancy {
 
@@ -16,6 +17,7 @@ struct DaemonOptions {
   std::string lcm_url;  // empty: LCM's default
   Mode mode = Mode::kLockstep;
   ChannelNames channels;
+  PoseOptions poses;
   unsigned threads = 0;            // for the bodies of one question; 0: as many as the processor runs at once
   std::string log_level = "info";  // as spdlog names them
   bool check = false;              // print the scene's report and end

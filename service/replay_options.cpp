@@ -153,4 +153,18 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   return plan;
 }
 
+Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {
+  std::vector<std::string> answers{options.wrenches_channel, options.hydrostatics_channel};
+  Expected<PoseChannels> poses = pose_channels(
+      options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
+  if (!poses) return tl::unexpected(poses.error());
+  for (const PoseChannel& pose : poses->channels) {
+    if (!pose.force_torque_channel.empty()) answers.push_back(pose.force_torque_channel);
+  }
+  Expected<ReplayChannels> channels =
+      ReplayChannels::make(options.states_channel, poses->channels, options.copied, std::move(answers));
+  if (!channels) return tl::unexpected(channels.error());
+  return ReplayRoutes{*std::move(poses), *std::move(channels)};
+}
+
 }  // namespace buoyancy

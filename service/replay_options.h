@@ -10,8 +10,10 @@
 
 #include "geometry/error.h"
 #include "messages/wire.h"
+#include "scene/scene.h"
 #include "scene/scene_file.h"
 #include "service/pose_options.h"
+#include "service/replay_channels.h"
 #include "service/replay_input.h"
 
 namespace buoyancy {
@@ -46,5 +48,14 @@ struct ReplayPlan {
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
 // carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
+
+// Where a log's events come from and go to.
+struct ReplayRoutes {
+  PoseChannels poses;
+  ReplayChannels channels;
+};
+
+// Errors: as pose_channels() and ReplayChannels::make() say.
+Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
 
 }  // namespace buoyancy

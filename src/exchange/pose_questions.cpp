@@ -29,10 +29,17 @@ std::optional<std::size_t> PoseQuestions::index_of(std::string_view channel) con
   return static_cast<std::size_t>(found - poses_.channels.begin());
 }
 
+const PoseChannel* PoseQuestions::asks_in(std::int64_t session_id) const {
+  const std::uint64_t index =
+      static_cast<std::uint64_t>(session_id) - static_cast<std::uint64_t>(first_session_);
+  return index < poses_.channels.size() ? &poses_.channels[index] : nullptr;
+}
+
 tl::expected<Bytes, Rejection> PoseQuestions::question(std::size_t index, Bytes pose) {
   const tl::expected<BotPose, Rejection> read = decode_bot_pose(pose);
   if (!read) return tl::unexpected(read.error());
-  question_.key = {read->utime, first_session_ + static_cast<std::int64_t>(index), asked_[index]++};
+  const auto session = static_cast<std::uint64_t>(first_session_) + index;
+  question_.key = {read->utime, static_cast<std::int64_t>(session), asked_[index]++};
   BodyState& state = question_.bodies.front();
   state = {poses_.channels[index].body_id, read->position, read->quaternion_wxyz, read->velocity,
            read->rotation_rate};

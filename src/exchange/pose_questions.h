@@ -35,6 +35,8 @@ class PoseQuestions {
 
   const std::vector<PoseChannel>& channels() const { return poses_.channels; }
   std::optional<std::size_t> index_of(std::string_view channel) const;  // into channels(); O(channels)
+  // The channel whose poses ask in this session; nullptr: none. O(1).
+  const PoseChannel* asks_in(std::int64_t session_id) const;
 
   // The question that a message on channels()[index] asks, with the pose's utime and the next seq of its
   // session; valid until the next call. No heap after the first.

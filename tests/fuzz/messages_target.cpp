@@ -1,6 +1,7 @@
 // Bytes as packets from the network: every decoder on every packet, and an exchange with a small scene that
-// is asked all of them one after another. What decodes must encode to the same bytes; what is a question must
-// be answered in its form, a repeat with the same bytes, and as an exchange would that never saw the others.
+// is asked all of them one after another, as questions and as bot_core's poses. What decodes must encode to
+// the same bytes; what is a question must be answered in its form, a repeat with the same bytes, and as an
+// exchange would that never saw the others.
 //
 //   each packet   1 byte: bits 0-2 a kind of message (0 question, 1 answer, 2 hydrostatics, 3 status, else
 //                 none), bit 3 its fingerprint is written over the packet's head, bit 4 the number of bodies
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "exchange/exchange.h"
+#include "exchange/pose_questions.h"
 #include "messages/status.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
@@ -204,6 +206,23 @@ void ask(const Packet& packet, Exchange& session) {
       "an answer does not depend on earlier questions");
 }
 
+// As a pose on a channel of its own.
+void ask_pose(const Packet& packet, PoseQuestions& poses, Exchange& session) {
+  const auto question = poses.question(0, packet);
+  law(question.has_value() == decode_bot_pose(packet).has_value(), "a pose asks a question");
+  if (!question) {
+    session.count_rejected(question.error());
+    return;
+  }
+  const Packet asked = copy_of(*question);
+  law(decodes<Question>(asked), "what a pose asks is a question of ours");
+  ask(asked, session);
+  Answer answer;
+  Packet force_torque;
+  force_torque_of(session.answer(asked), answer, force_torque);
+  law(force_torque.size() == 8 + 8 + 6 * sizeof(double), "an answer about one body is a force and a torque");
+}
+
 void check_counters(const Exchange& exchange) {
   ServiceStatus status;
   status.version = "0";
@@ -217,12 +236,18 @@ void check_counters(const Exchange& exchange) {
 
 void check(FuzzBytes bytes) {
   Exchange exchange(small_scene(), {.max_sessions = 2, .threads = 1});
+  PoseQuestions poses(
+      {.channels = {{.channel = "POSE", .body_id = 1, .force_torque_channel = "FORCE_TORQUE"}},
+       .velocity_frame = VelocityFrame::kBody,
+       .lead_time = 0.01},
+      7);
   while (!bytes.empty()) {
     const Packet packet = next_packet(bytes);
     const int read_as = int{decodes<Question>(packet)} + int{decodes<Answer>(packet)} +
                         int{decodes<BodiesHydrostatics>(packet)} + int{decodes<ServiceStatus>(packet)};
     law(read_as <= 1, "a packet is one kind of message");
     ask(packet, exchange);
+    ask_pose(packet, poses, exchange);
   }
   check_counters(exchange);
 }

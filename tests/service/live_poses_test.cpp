@@ -1,0 +1,86 @@
+// bot_core's poses, live: what a robot's bus already carries, answered over real UDP.
+#include <bot_core/pose_t.hpp>
+#include <bot_core/six_axis_force_torque_t.hpp>
+#include <gtest/gtest.h>
+
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/service/running_service.h"
+
+namespace buoyancy {
+namespace {
+
+// Of the box in kBoxScene, N: half of its 4 m of height are under water where its origin is at the surface.
+double force_at(double height) {
+  return kDensity * kGravity * 6.0 * (2.0 - height);
+}
+
+RawBytes pose_at(double height, std::int64_t utime) {
+  bot_core::pose_t pose{};
+  pose.utime = utime;
+  pose.pos[2] = height;
+  pose.orientation[0] = 1.0;
+  return encoded_by_lcm(pose);
+}
+
+bot_core::six_axis_force_torque_t hear_force(RawLcmSocket& socket, const std::string& channel) {
+  const std::optional<RawBytes> bytes = socket.receive(channel, kPatience);
+  if (!bytes) throw std::runtime_error("no answer on " + channel);
+  bot_core::six_axis_force_torque_t message{};
+  const auto size = static_cast<int>(bytes->size());
+  EXPECT_EQ(message.decode(bytes->data(), 0, size), size);
+  return message;
+}
+
+class LivePoses : public testing::TestWithParam<const char*> {};
+
+TEST_P(LivePoses, AreAnsweredAsWrenchesOrAsForceAndTorqueBesideQuestions) {
+  RunningService service({"--mode", GetParam(), "--pose", "HULL=1", "--pose", "HULL_ESTIMATE=2",
+                          "--force-torque", "BUOYANCY_OF_2=2"},
+                         kHydrostaticBoxScene);
+  RawLcmSocket socket;
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const double height = 0.1 * static_cast<double>(i) - 1.0;
+    socket.send("HULL", pose_at(height, 100 + i));
+    const RawWrenches answer = hear(socket);
+    EXPECT_EQ(answer.utime, 100 + i);
+    EXPECT_EQ(answer.seq, i);
+    ASSERT_EQ(answer.bodies.size(), 1U);
+    EXPECT_EQ(answer.bodies[0].body_id, 1);
+    EXPECT_NEAR(answer.bodies[0].force[2], force_at(height), 1e-6);
+
+    socket.send("HULL_ESTIMATE", pose_at(0.5 * height, 200 + i));
+    const auto message = hear_force(socket, "BUOYANCY_OF_2");
+    EXPECT_EQ(message.utime, 200 + i);
+    EXPECT_NEAR(message.force[2], force_at(0.5 * height), 1e-6);
+
+    ask(socket, one_body(1, i, height));
+    EXPECT_EQ(hear(socket).session_id, 1);
+  }
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    return status.counters.answered == 60 && status.counters.sessions == 3 &&
+           status.counters.hydrostatics == 20;
+  }));
+}
+
+TEST_P(LivePoses, WhatIsNoPoseIsCountedByItsCause) {
+  RunningService service({"--mode", GetParam(), "--pose", "HULL=1"});
+  RawLcmSocket socket;
+  RawBytes longer = pose_at(0.0, 1);
+  longer.push_back(0);
+  RawBytes other = pose_at(0.0, 1);
+  ++other[0];
+  for (const RawBytes& wrong : {RawBytes{1, 2, 3}, longer, other}) socket.send("HULL", wrong);
+  socket.send("HULL", pose_at(0.0, 2));
+  EXPECT_EQ(hear(socket).utime, 2);
+  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+    const Counters& counters = status.counters;
+    return counters.questions == 4 && counters.answered == 1 && counters.rejected_truncated == 1 &&
+           counters.rejected_length == 1 && counters.rejected_fingerprint == 1;
+  }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, LivePoses, testing::Values("lockstep", "latest"),
+                         [](const auto& mode) { return std::string(mode.param); });
+
+}  // namespace
+}  // namespace buoyancy
