@@ -9,6 +9,8 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "service/log_output.h"
+
 namespace buoyancy {
 
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
@@ -26,7 +28,8 @@ std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* 
 }
 
 void print_error(const CLI::App& app, const std::string& message) {
-  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), message.c_str());
+  const char* priority = standard_error_is_the_journal() ? "<3>" : "";
+  std::fprintf(stderr, "%s%s: %s\n", priority, app.get_name().c_str(), message.c_str());
 }
 
 void print_error(const CLI::App& app, const Error& error) {

@@ -20,7 +20,7 @@ enum ExitCode : int {
 // stderr.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-// One line on stderr: "<program>: <message>".
+// One line on stderr: "<program>: <message>"; for the journal with its level in front (log_output.h).
 void print_error(const CLI::App& app, const std::string& message);
 void print_error(const CLI::App& app, const Error& error);
 

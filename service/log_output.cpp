@@ -43,6 +43,8 @@ class JournalPriority : public spdlog::custom_flag_formatter {
   }
 };
 
+}  // namespace
+
 // systemd gives the device and inode of what it connected to the journal: it may have been redirected since.
 bool standard_error_is_the_journal() {
   const char* stream = std::getenv("JOURNAL_STREAM");  // NOLINT(concurrency-mt-unsafe): nobody sets it
@@ -50,8 +52,6 @@ bool standard_error_is_the_journal() {
   if (stream == nullptr || ::fstat(STDERR_FILENO, &error) != 0) return false;
   return std::to_string(error.st_dev) + ":" + std::to_string(error.st_ino) == stream;
 }
-
-}  // namespace
 
 void start_logging(const std::string& program, const std::string& level) {
   spdlog::set_default_logger(spdlog::stderr_color_st(program));

@@ -1,5 +1,7 @@
 #include "service/service_manager.h"
 
+#include <cstdint>
+
 #ifdef BUOYANCY_WITH_SYSTEMD
 #include <ctime>
 

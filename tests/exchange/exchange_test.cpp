@@ -267,7 +267,8 @@ TEST(Exchange, GivesARepeatTheBytesThatTheSceneBeforeAnsweredItWith) {
   EXPECT_EQ(copied(exchange.answer(asked)), first);
   EXPECT_EQ(copied(exchange.hydrostatics()), hydrostatics);
   EXPECT_EQ(exchange.counters().repeated, 1);
-  EXPECT_TRUE(exchange.answer(question(1, 6)).size() > 0 && exchange.hydrostatics().empty());
+  EXPECT_FALSE(exchange.answer(question(1, 6)).empty());
+  EXPECT_TRUE(exchange.hydrostatics().empty());
 }
 
 TEST(Exchange, RemembersNothingOfTheBodiesOfTheSceneBefore) {

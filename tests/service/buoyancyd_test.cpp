@@ -178,6 +178,9 @@ TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
   EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kPatience)) << child.standard_error();
+  ChildProcess refused(started("$(stat -L -c %d:%i /dev/stderr)"));
+  EXPECT_EQ(refused.wait(kPatience), 2);
+  EXPECT_TRUE(refused.standard_error().starts_with("<3>buoyancyd: ")) << refused.standard_error();
 
   directory.write("scene.toml", kBoxScene);
   ChildProcess redirected(started("1:2"));

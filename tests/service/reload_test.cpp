@@ -37,6 +37,12 @@ void reload(RunningService& service, const std::string& scene, const std::string
   ASSERT_TRUE(service.child().wait_for_text(until, kPatience)) << service.log();
 }
 
+// A sanitizer's findings too are an exit code.
+void expect_a_clean_end(RunningService& service) {
+  service.child().send_signal(SIGTERM);
+  EXPECT_EQ(service.child().wait(kPatience), 0) << service.log();
+}
+
 std::size_t lines_with(const std::string& text, const std::string& log) {
   std::size_t count = 0;
   for (std::size_t at = log.find(text); at != std::string::npos; at = log.find(text, at + 1)) ++count;
@@ -106,6 +112,7 @@ TEST(Reload, LosesNoAnswerOfASteadyStream) {
     return status.counters.answered == kQuestions && status.counters.repeated == 0 &&
            status.counters.sessions == 1;
   }));
+  expect_a_clean_end(service);
 }
 
 TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAgain) {
@@ -134,8 +141,7 @@ TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAga
   double force = kForceBefore;
   while (std::abs(force - 0.5 * kForceBefore) > 1e-6 && seq < 100'000) force = vertical_force(socket, seq++);
   EXPECT_NEAR(force, 0.5 * kForceBefore, 1e-6) << "of the scene as it was when asked last: " << service.log();
-  service.child().send_signal(SIGTERM);
-  EXPECT_EQ(service.child().wait(kPatience), 0);
+  expect_a_clean_end(service);
   EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three that came meanwhile";
 }
 
@@ -145,8 +151,7 @@ TEST(Reload, LetsTheServiceEndWhileASceneLoads) {
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kPatience)) << service.log();
-  service.child().send_signal(SIGTERM);
-  EXPECT_EQ(service.child().wait(kPatience), 0) << service.log();
+  expect_a_clean_end(service);
   EXPECT_NE(service.log().find("ended by SIGTERM"), std::string::npos) << service.log();
 }
 
@@ -168,6 +173,7 @@ TEST(Reload, ImportsMeshesAgainBesideTheRunningThreads) {
     EXPECT_NEAR(vertical_force(socket, seq++, kSubmerged), 1e4 * scale * scale * scale / 6, 1e-6)
         << service.log();
   }
+  expect_a_clean_end(service);
 }
 
 }  // namespace
