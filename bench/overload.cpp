@@ -16,7 +16,6 @@
 #include <poll.h>
 
 #include "exchange/exchange.h"
-#include "median.h"
 #include "service_process.h"
 #include "transport/lcm_connection.h"
 
@@ -48,17 +47,23 @@ std::vector<std::uint8_t> question_of(std::int64_t session, std::int64_t seq) {
   return bytes;
 }
 
-// s, median, in this process.
-double service_time(const Scene& scene) {
+struct QueryTime {
+  double p50, p99;  // s
+};
+
+// In this process, with nobody else asking: what is beyond the p50 here is the machine's doing.
+QueryTime query_time(const Scene& scene) {
+  constexpr std::size_t kQueries = 1000;
   Exchange exchange(scene);
-  std::vector<double> times;
-  for (std::int64_t seq = 0; seq < 500; ++seq) {
-    const std::vector<std::uint8_t> question = question_of(0, seq);
+  std::vector<double> times(kQueries);
+  for (std::size_t i = 0; i < kQueries; ++i) {
+    const std::vector<std::uint8_t> question = question_of(0, static_cast<std::int64_t>(i));
     const auto start = Clock::now();
     exchange.answer(question);
-    times.push_back(seconds(Clock::now() - start));
+    times[i] = seconds(Clock::now() - start);
   }
-  return median(times);
+  std::sort(times.begin(), times.end());
+  return {times[kQueries / 2], times[kQueries * 99 / 100]};
 }
 
 struct Heard {
@@ -121,8 +126,8 @@ class Askers {
 
 void run(bool quick) {
   ServiceProcess service(kScene, "latest");
-  const double alone = service_time(scene_of(kScene));
-  const double interval = alone / kOverload;
+  const QueryTime alone = query_time(scene_of(kScene));
+  const double interval = alone.p50 / kOverload;
   Heard heard = Askers().run(quick ? 2.0 : 10.0, interval);
   if (heard.ages.empty()) give_up("no answers");
   std::sort(heard.ages.begin(), heard.ages.end());
@@ -131,13 +136,12 @@ void run(bool quick) {
   };
   const auto [fewest, most] = std::minmax_element(heard.answers.begin(), heard.answers.end());
   const double gap = *std::max_element(heard.longest_gap.begin(), heard.longest_gap.end());
-  const double allowed = 1e3 * (alone + kAllowance);
+  const double allowed = 1e3 * (alone.p50 + kAllowance);
   std::printf("### Ten times too many questions\n\n");
   std::printf(
       "Mode latest, %zu sessions, %.0f questions a second, of which the service can answer one in ten: a "
-      "query "
-      "takes %.2f ms.\n\n",
-      kSessions, 1.0 / interval, 1e3 * alone);
+      "query takes %.2f ms (p99 %.2f ms).\n\n",
+      kSessions, 1.0 / interval, 1e3 * alone.p50, 1e3 * alone.p99);
   std::printf("| age of the answered question | ms |\n|---|---:|\n");
   std::printf("| p50 | %.2f |\n| p99 | %.2f |\n| largest | %.2f |\n", age_at(0.5), age_at(0.99), age_at(1.0));
   std::printf("| p99, must (one query and 1 ms): %s | %.2f |\n\n", age_at(0.99) <= allowed ? "met" : "MISSED",

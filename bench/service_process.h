@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <sched.h>
+
 #include "scene/scene.h"
 #include "tests/child_process.h"
 #include "tests/service/scratch_directory.h"
@@ -60,20 +62,32 @@ inline std::string url_of_port(int port) {
 inline constexpr int kServicePort = 7667;
 inline constexpr int kEchoPort = 7668;
 
-// Before a command: nothing, or {"taskset", "-c", "0"}.
-using Launcher = std::vector<std::string>;
+// While it lives, everything that is started has one processor for all of it: a round trip then wakes no
+// other one, which is dear on a virtual machine, and happens or not as the kernel's scheduler likes.
+class OnOneProcessor {
+ public:
+  OnOneProcessor() {
+    ::sched_getaffinity(0, sizeof before_, &before_);
+    int first = 0;
+    while (CPU_ISSET(first, &before_) == 0) ++first;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    ::sched_setaffinity(0, sizeof one, &one);
+  }
+  OnOneProcessor(const OnOneProcessor&) = delete;
+  OnOneProcessor& operator=(const OnOneProcessor&) = delete;
+  ~OnOneProcessor() { ::sched_setaffinity(0, sizeof before_, &before_); }
 
-inline std::vector<std::string> launched(Launcher launcher, const std::vector<std::string>& command) {
-  launcher.insert(launcher.end(), command.begin(), command.end());
-  return launcher;
-}
+ private:
+  cpu_set_t before_{};
+};
 
 class ServiceProcess {
  public:
-  explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep",
-                          const Launcher& launcher = {})
-      : process_(launched(launcher, {BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
-                                     url_of_port(kServicePort), "--mode", mode})) {}
+  explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep")
+      : process_({BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
+                  url_of_port(kServicePort), "--mode", mode}) {}
   ChildProcess& child() { return process_.child(); }
 
  private:
@@ -83,8 +97,7 @@ class ServiceProcess {
 
 class EchoProcess {
  public:
-  explicit EchoProcess(int bodies, const Launcher& launcher = {})
-      : process_(launched(launcher, {LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)})) {}
+  explicit EchoProcess(int bodies) : process_({LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)}) {}
 
  private:
   ReadyProcess process_;

@@ -341,7 +341,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
 
 int main(int argc, char** argv) {
   CLI::App app("Packets that are no questions, at a real buoyancyd", "hostile");
-  std::int64_t packets = 5'000'000;
+  std::int64_t packets = 3'000'000;
   std::uint64_t seed = 1;
   std::int64_t names = 1'000'000;
   app.add_option("--packets", packets, "How many")
