@@ -57,7 +57,11 @@ InputItem EventLogReader::next() {
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    if (!followed && !is_question_or_pose(data)) return skip_damage("no event follows where one should");
+    // A message that lost bytes may have its length all the same, filled with the beginning of the next event.
+    const bool torn = std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
+    if (!followed && (torn || !is_question_or_pose(data))) {
+      return skip_damage("no event follows where one should");
+    }
     offset_ = frame->next;
     const Bytes channel = event.subspan(kHeaderSize, frame->data_start - kHeaderSize);
     return RecordedEvent{frame->timestamp, as_text(channel), data};
