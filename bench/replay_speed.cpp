@@ -207,8 +207,11 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
   const auto row = [&](const char* what, const Times& times, bool held) {
     const double events = static_cast<double>(kEvents);
     const double of_lcm = median(with_lcm.wall) / median(times.wall);
+    const double of_bare = median(bare.wall) / median(times.wall);
     const char* verdict = "";
-    if (held) verdict = of_lcm >= kMust ? "at least 0.5 of LCM's: met" : "at least 0.5 of LCM's: MISSED";
+    if (held && of_bare >= kMust) verdict = "at least 0.5 of both: met";
+    if (held && of_bare < kMust) verdict = "at least 0.5 of the first: met; of the second: MISSED";
+    if (held && of_lcm < kMust) verdict = "at least 0.5: MISSED";
     std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %s |\n", what, events / median(times.wall),
                 1e6 * median(times.processor) / events, of_lcm, median(bare.wall) / median(times.wall),
                 verdict);
