@@ -1,7 +1,7 @@
 #include "service/replay.h"
 
+#include <array>
 #include <chrono>
-#include <optional>
 #include <variant>
 #include <vector>
 
@@ -13,6 +13,13 @@ namespace {
 
 // For each thread, where there are several: so that one that has a slow batch keeps no other waiting long.
 constexpr std::size_t kBatchesPerThread = 4;
+
+// What is read, then answered, then written at once. While one is answered, the next is read and the one
+// before is written.
+struct Round {
+  std::vector<ReplayBatch> batches;
+  std::size_t filled = 0;  // of them
+};
 
 void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch) {
   // Of CSV, which has no channels, everything is a question.
@@ -44,6 +51,37 @@ bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& damages) {
   return true;
 }
 
+// Reads as many batches as there are, until the input ends or a signal comes: then `more` becomes false.
+void read(const ReplayTask& task, TerminationSignals& signals, Round& round, ReplaySummary& summary,
+          bool& more) {
+  round.filled = 0;
+  while (more && round.filled < round.batches.size()) {
+    if (signals.pending()) {
+      summary.ended_by = signals.take();
+      more = false;
+    } else {
+      more = fill(task, round.batches[round.filled++], summary.damages);
+    }
+  }
+}
+
+Expected<void> write(const ReplayTask& task, Round& round) {
+  for (std::size_t i = 0; i < round.filled; ++i) {
+    ReplayBatch& batch = round.batches[i];
+    if (Expected<void> written = task.output.write(batch.records()); !written) return written;
+    if (task.comparison != nullptr) {
+      batch.each_answer([&task](Bytes answer) { task.comparison->take(answer); });
+    }
+  }
+  return {};
+}
+
+void tell(const Round& round, const ReplayListener& listener) {
+  for (std::size_t i = 0; i < round.filled; ++i) {
+    for (const std::string& trouble : round.batches[i].troubles()) listener.on_trouble(trouble);
+  }
+}
+
 }  // namespace
 
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
@@ -51,42 +89,54 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   const auto start = std::chrono::steady_clock::now();
   ReplaySummary summary;
   Workers workers(task.jobs);
-  std::vector<ReplayBatch> batches;
   const std::size_t count = workers.threads() == 1 ? 1 : kBatchesPerThread * workers.threads();
-  batches.reserve(count);
-  while (batches.size() < count) {
-    batches.emplace_back(task.scene, task.layout, task.comparison != nullptr);
+  std::array<Round, 3> rounds;
+  for (Round& round : rounds) {
+    round.batches.reserve(count);
+    while (round.batches.size() < count) {
+      round.batches.emplace_back(task.scene, task.layout, task.comparison != nullptr);
+    }
   }
-  for (bool more = true; more;) {
-    std::size_t filled = 0;
-    while (more && filled < batches.size()) {
-      if (signals.pending()) {
-        summary.ended_by = signals.take();
-        more = false;
+  const auto total = [&rounds] {
+    ReplaySummary sum;
+    for (const Round& round : rounds) {
+      for (const ReplayBatch& batch : round.batches) {
+        sum.counters += batch.counters();
+        sum.copied += batch.copied();
+      }
+    }
+    return sum;
+  };
+
+  bool more = true;
+  read(task, signals, rounds[0], summary, more);
+  Expected<void> written;
+  std::size_t number = 0;
+  for (; rounds[number % 3].filled > 0; ++number) {
+    Round& before = rounds[(number + 2) % 3];
+    Round& now = rounds[number % 3];
+    Round& next = rounds[(number + 1) % 3];
+    tell(before, listener);
+    workers.run(now.filled + 2, 1, [&](std::size_t i) {
+      if (i == 0) {
+        read(task, signals, next, summary, more);
+      } else if (i == 1) {
+        written = write(task, before);
       } else {
-        more = fill(task, batches[filled++], summary.damages);
+        now.batches[i - 2].answer();
       }
-    }
-    workers.run(filled, 1, [&batches](std::size_t i) { batches[i].answer(); });
-    for (std::size_t i = 0; i < filled; ++i) {
-      for (const std::string& trouble : batches[i].troubles()) listener.on_trouble(trouble);
-      if (Expected<void> written = task.output.write(batches[i].records()); !written) {
-        return tl::unexpected(written.error());
-      }
-      if (task.comparison != nullptr) {
-        batches[i].each_answer([&task](Bytes answer) { task.comparison->take(answer); });
-      }
-    }
-    std::int64_t questions = 0;
-    for (const ReplayBatch& batch : batches) questions += batch.counters().questions;
-    listener.on_progress(task.input.offset(), task.input.size(), questions);
+    });
+    if (!written) return tl::unexpected(written.error());
+    listener.on_progress(task.input.offset(), task.input.size(), total().counters.questions);
   }
+  Round& last = rounds[(number + 2) % 3];
+  tell(last, listener);
+  if (written = write(task, last); !written) return tl::unexpected(written.error());
   if (Expected<void> flushed = task.output.flush(); !flushed) return tl::unexpected(flushed.error());
   if (task.comparison != nullptr) task.comparison->finish();
-  for (const ReplayBatch& batch : batches) {
-    summary.counters += batch.counters();
-    summary.copied += batch.copied();
-  }
+  const ReplaySummary sum = total();
+  summary.counters = sum.counters;
+  summary.copied = sum.copied;
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
 }
