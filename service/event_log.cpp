@@ -57,7 +57,7 @@ InputItem EventLogReader::next() {
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    // A message that lost bytes may have its length all the same, filled with the beginning of the next event.
+    // A message that lost bytes may have its length all the same, filled with the next event's beginning.
     const bool torn = std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
     if (!followed && (torn || !is_question_or_pose(data))) {
       return skip_damage("no event follows where one should");
