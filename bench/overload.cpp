@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <poll.h>
 
 #include "exchange/exchange.h"
+#include "quick_option.h"
 #include "service_process.h"
 #include "transport/lcm_connection.h"
 
@@ -155,14 +155,6 @@ void run(bool quick) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  CLI::App app("Ten times more questions than buoyancyd can answer", "overload");
-  bool quick = false;
-  app.add_flag("--quick", quick, "Two seconds instead of ten");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  buoyancy::run(quick);
-  return 0;
+  return buoyancy::run_with_quick_option(argc, argv, "Ten times more questions than buoyancyd can answer",
+                                         "Two seconds instead of ten", buoyancy::run);
 }

@@ -21,12 +21,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "asking/client.h"
 #include "exchange/exchange.h"
 #include "markdown_table.h"
 #include "median.h"
+#include "quick_option.h"
 #include "service_process.h"
 
 namespace buoyancy {
@@ -367,14 +366,6 @@ void run(bool quick) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  CLI::App app("Round trips against buoyancyd beside an echo", "round_trip");
-  bool quick = false;
-  app.add_flag("--quick", quick, "Fewer questions");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  buoyancy::run(quick);
-  return 0;
+  return buoyancy::run_with_quick_option(argc, argv, "Round trips against buoyancyd beside an echo",
+                                         "Fewer questions", buoyancy::run);
 }

@@ -48,8 +48,25 @@ class TwoMachinesTest : public testing::Test {
     return machines_.on_the_services(service_command(scene_, {"-l", kTwoMachinesUrl}));
   }
 
+  std::uintmax_t written() const {
+    return std::filesystem::exists(csv_) ? std::filesystem::file_size(csv_) : 0;
+  }
+
+  // Returns in the middle of the client's run of 20 s of the scene's time, which goes into csv_. Throws where
+  // it was over before.
+  void be_under_way(ChildProcess& client) const {
+    while (written() < 300'000 && !client.wait(0.001)) {
+    }
+    if (client.wait(0.0)) throw std::runtime_error("the client ended before: " + client.standard_error());
+  }
+  ChildCommand long_run() const {
+    return client_command(scene_, {"-l", kTwoMachinesUrl, "--duration", "20", "--csv", csv_, "--timeout",
+                                   "0.05", "--retries", "10000", "--json"});
+  }
+
   TwoMachines machines_;
   TemporaryDirectory directory_;
+  std::string csv_ = directory_.path("run.csv");
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
 
@@ -90,14 +107,8 @@ TEST_F(TwoMachinesTest, LossDuplicationAndReorderingOnTheWayChangeNoByte) {
 TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kReady)) << running.standard_error();
-  const std::string csv = directory_.path("cut.csv");
-  ChildProcess client(client_command(scene_, {"-l", kTwoMachinesUrl, "--duration", "20", "--csv", csv,
-                                              "--timeout", "0.05", "--retries", "10000", "--json"}));
-  const auto written = [&] { return std::filesystem::exists(csv) ? std::filesystem::file_size(csv) : 0; };
-  while (written() < 300'000 && !client.wait(0.001)) {
-  }
-  ASSERT_EQ(client.wait(0.0), std::nullopt)
-      << "over before the cable could be pulled; " << client.standard_error();
+  ChildProcess client(long_run());
+  be_under_way(client);
   machines_.pull_cable();
   ASSERT_EQ(client.wait(0.5), std::nullopt);  // what was on its way has arrived
   const auto at_the_cut = written();
@@ -106,7 +117,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   machines_.plug_cable();
   EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
   ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
-  EXPECT_TRUE(read_file(csv) == embedded("20"));
+  EXPECT_TRUE(read_file(csv_) == embedded("20"));
   const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
   EXPECT_GE(summary["round_trip"]["max"], cut_seconds());
   EXPECT_GE(summary["retries"], 1);
@@ -116,18 +127,14 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
 TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kReady)) << running.standard_error();
-  const std::string csv = directory_.path("down.csv");
-  ChildProcess client(client_command(scene_, {"-l", kTwoMachinesUrl, "--duration", "20", "--csv", csv,
-                                              "--timeout", "0.05", "--retries", "10000"}));
-  const auto written = [&] { return std::filesystem::exists(csv) ? std::filesystem::file_size(csv) : 0; };
-  while (written() < 300'000 && !client.wait(0.001)) {
-  }
+  ChildProcess client(long_run());
+  be_under_way(client);
   machines_.take_interface_down();
   EXPECT_EQ(client.wait(1.0), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
   EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
   ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
-  EXPECT_TRUE(read_file(csv) == embedded("20"));
+  EXPECT_TRUE(read_file(csv_) == embedded("20"));
 }
 
 }  // namespace
