@@ -10,7 +10,8 @@ namespace buoyancy {
 void TroubleLog::add(const Trouble& trouble, double now) {
   if (trouble.count == 0) return;
   auto known = std::ranges::find(lasting_, trouble.what, [](const Lasting& one) { return one.unsaid.what; });
-  if (known == lasting_.end()) known = lasting_.insert(known, Lasting{.unsaid = {.what = trouble.what}});
+  if (known == lasting_.end())
+    known = lasting_.insert(known, Lasting{.unsaid = {.what = trouble.what, .count = 0, .detail = {}}});
   known->unsaid.count += trouble.count;
   known->unsaid.detail = trouble.detail;
   known->last_occurrence = now;
