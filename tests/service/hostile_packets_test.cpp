@@ -73,8 +73,9 @@ TEST(HostilePackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
 TEST(HostilePackets, APacketThatEndsBeforeItsChannelsNameDoesIsAMessageWithoutBytes) {
   RunningService service;
   RawLcmSocket socket;
-  // The name's end is what liblcm finds behind the packet: a zero in memory that nothing was received into
-  // yet.
+  // The name's end is what liblcm finds behind the packet: what the packet before left there, which it threw
+  // away and received the next one over.
+  socket.send_packet(RawBytes(60'000, 0));
   RawBytes packet{'L', 'C', '0', '2', 0, 0, 0, 0};
   for (const char c : std::string("BUOYANCY_STATES")) packet.push_back(static_cast<std::uint8_t>(c));
   socket.send_packet(packet);
