@@ -210,18 +210,18 @@ void Daemon::answer(Bytes question, double arrival) {
   const std::int64_t sessions_before = counters.sessions + counters.sessions_forgotten;
   const Bytes bytes = exchange_.answer(question);
   if (bytes.empty()) return;
-  const QuestionKey key = peek_key(question).value();
   if (counters.sessions + counters.sessions_forgotten != sessions_before) {
+    const QuestionKey key = peek_key(question).value();
     spdlog::debug("session {} starts with seq {}", key.session_id, key.seq);
   }
-  if (publish_answer(key.session_id, bytes)) latency_.add(seconds_now() - arrival);
+  if (publish_answer(bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
   }
 }
 
-bool Daemon::publish_answer(std::int64_t session_id, Bytes answer) {
-  const PoseChannel* const pose = poses_.asks_in(session_id);
+bool Daemon::publish_answer(Bytes answer) {
+  const PoseChannel* const pose = poses_.asks_in(exchange_.answered_session());
   if (pose == nullptr || pose->force_torque_channel.empty()) return publish(channels_.wrenches, answer);
   force_torque_of(answer, answer_, force_torque_bytes_);
   return publish(pose->force_torque_channel, force_torque_bytes_);

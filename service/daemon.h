@@ -67,7 +67,7 @@ class Daemon {
   void take_in(Bytes question, double arrival);
   void answer_next_waiting();
   void answer(Bytes question, double arrival);
-  bool publish_answer(std::int64_t session_id, Bytes answer);
+  bool publish_answer(Bytes answer);                      // that exchange_ gave last
   bool publish(const std::string& channel, Bytes bytes);  // false: troubles_ says why
   void begin_reload();
   void end_reload();

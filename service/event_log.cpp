@@ -27,6 +27,11 @@ bool is_question_or_pose(Bytes data) {
   return peek_key(data).has_value() || decode_bot_pose(data).has_value();
 }
 
+// A message that lost bytes may have its length all the same, filled with the next event's beginning.
+bool is_torn(Bytes data) {
+  return std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
+}
+
 }  // namespace
 
 ChannelFilter only_channel(std::string channel) {
@@ -57,9 +62,7 @@ InputItem EventLogReader::next() {
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    // A message that lost bytes may have its length all the same, filled with the next event's beginning.
-    const bool torn = std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
-    if (!followed && (torn || !is_question_or_pose(data))) {
+    if (!followed && (is_torn(data) || !is_question_or_pose(data))) {
       return skip_damage("no event follows where one should");
     }
     offset_ = frame->next;

@@ -43,6 +43,9 @@ class Exchange {
   // question asks, or the question was rejected.
   Bytes hydrostatics() const { return answered_ ? Bytes(sessions_[*answered_].last_hydrostatics) : Bytes(); }
 
+  // The session whose question answer() last answered; only where it did.
+  std::int64_t answered_session() const { return sessions_[answered_.value()].id; }
+
   // Answers new questions from this scene, which must outlive the exchange or the next call; the one before
   // is not looked at again. O(bodies of both), whatever their meshes.
   void use(const Scene& scene);
