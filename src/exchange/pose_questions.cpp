@@ -1,6 +1,5 @@
 #include "exchange/pose_questions.h"
 
-#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -21,12 +20,6 @@ PoseQuestions::PoseQuestions(PoseChannels poses, std::int64_t first_session)
     : poses_(std::move(poses)), first_session_(first_session), asked_(poses_.channels.size()) {
   question_.lead_time = poses_.lead_time;
   question_.bodies.resize(1);
-}
-
-std::optional<std::size_t> PoseQuestions::index_of(std::string_view channel) const {
-  const auto found = std::ranges::find(poses_.channels, channel, &PoseChannel::channel);
-  if (found == poses_.channels.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - poses_.channels.begin());
 }
 
 const PoseChannel* PoseQuestions::asks_in(std::int64_t session_id) const {

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "messages/bot_core.h"
@@ -34,7 +32,6 @@ class PoseQuestions {
   PoseQuestions(PoseChannels poses, std::int64_t first_session);
 
   const std::vector<PoseChannel>& channels() const { return poses_.channels; }
-  std::optional<std::size_t> index_of(std::string_view channel) const;  // into channels(); O(channels)
   // The channel whose poses ask in this session; nullptr: none. O(1).
   const PoseChannel* asks_in(std::int64_t session_id) const;
 

@@ -75,17 +75,37 @@ void visit_strings(Status& status, Visitor&& visitor) {
   visitor(status.scene);
 }
 
+// Each counter of one or several, the same one of all of them at a time.
+template <typename Visitor, MaybeConst<Counters>... C>
+void visit_counters(Visitor&& visitor, C&... c) {
+  visitor(c.questions...);
+  visitor(c.answered...);
+  visitor(c.repeated...);
+  visitor(c.changed_repeats...);
+  visitor(c.stale...);
+  visitor(c.overtaken...);
+  visitor(c.sessions...);
+  visitor(c.sessions_forgotten...);
+  visitor(c.rejected_truncated...);
+  visitor(c.rejected_fingerprint...);
+  visitor(c.rejected_count...);
+  visitor(c.rejected_length...);
+  visitor(c.bodies...);
+  visitor(c.quaternions_normalised...);
+  visitor(c.bodies_dry...);
+  visitor(c.bodies_wet...);
+  visitor(c.bodies_crossing...);
+  visitor(c.bodies_unchanged...);
+  visitor(c.hydrostatics...);
+  visitor(c.largest_dropped_force...);
+  visitor(c.largest_dropped_torque...);
+}
+
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_tail(Status& status, Visitor& visitor) {
-  auto& c = status.counters;
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
   visitor(status.reloads, status.reloads_failed, status.not_sent);
-  visitor(c.questions, c.answered, c.repeated, c.changed_repeats, c.stale, c.overtaken, c.sessions,
-          c.sessions_forgotten);
-  visitor(c.rejected_truncated, c.rejected_fingerprint, c.rejected_count, c.rejected_length);
-  visitor(c.bodies, c.quaternions_normalised);
-  visitor(c.bodies_dry, c.bodies_wet, c.bodies_crossing, c.bodies_unchanged, c.hydrostatics);
-  visitor(c.largest_dropped_force, c.largest_dropped_torque);
+  visit_counters(visitor, status.counters);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
   visitor(status.queue_wait);
 }

@@ -43,30 +43,20 @@ tl::expected<std::string_view, Rejection> take_string(Bytes& bytes) {
   return std::string_view(reinterpret_cast<const char*>(text.data()), text.size() - 1);
 }
 
+struct AddCounter {
+  void operator()(std::int64_t& total, std::int64_t value) const { total += value; }
+  void operator()(double& largest, double value) const { largest = std::max(largest, value); }
+  template <std::size_t kSize>
+  void operator()(std::array<std::int64_t, kSize>& totals,
+                  const std::array<std::int64_t, kSize>& values) const {
+    for (std::size_t i = 0; i < kSize; ++i) totals[i] += values[i];
+  }
+};
+
 }  // namespace
 
 Counters& Counters::operator+=(const Counters& other) {
-  questions += other.questions;
-  answered += other.answered;
-  repeated += other.repeated;
-  changed_repeats += other.changed_repeats;
-  stale += other.stale;
-  overtaken += other.overtaken;
-  sessions += other.sessions;
-  sessions_forgotten += other.sessions_forgotten;
-  rejected_truncated += other.rejected_truncated;
-  rejected_fingerprint += other.rejected_fingerprint;
-  rejected_count += other.rejected_count;
-  rejected_length += other.rejected_length;
-  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] += other.bodies[i];
-  quaternions_normalised += other.quaternions_normalised;
-  bodies_dry += other.bodies_dry;
-  bodies_wet += other.bodies_wet;
-  bodies_crossing += other.bodies_crossing;
-  bodies_unchanged += other.bodies_unchanged;
-  hydrostatics += other.hydrostatics;
-  largest_dropped_force = std::max(largest_dropped_force, other.largest_dropped_force);
-  largest_dropped_torque = std::max(largest_dropped_torque, other.largest_dropped_torque);
+  visit_counters(AddCounter{}, *this, other);
   return *this;
 }
 

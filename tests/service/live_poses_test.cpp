@@ -1,9 +1,9 @@
 // bot_core's poses, live: what a robot's bus already carries, answered over real UDP.
-#include <bot_core/pose_t.hpp>
 #include <bot_core/six_axis_force_torque_t.hpp>
 #include <gtest/gtest.h>
 
 #include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "tests/service/running_service.h"
 
 namespace buoyancy {
@@ -15,11 +15,7 @@ double force_at(double height) {
 }
 
 RawBytes pose_at(double height, std::int64_t utime) {
-  bot_core::pose_t pose{};
-  pose.utime = utime;
-  pose.pos[2] = height;
-  pose.orientation[0] = 1.0;
-  return encoded_by_lcm(pose);
+  return encoded_by_lcm(upright_pose(height, utime));
 }
 
 bot_core::six_axis_force_torque_t hear_force(RawLcmSocket& socket, const std::string& channel) {

@@ -1,13 +1,13 @@
 // Logs of other projects: bot_core's poses, as their own generator writes them.
 #include <cmath>
 
-#include <bot_core/pose_t.hpp>
 #include <bot_core/rigid_transform_t.hpp>
 #include <bot_core/six_axis_force_torque_t.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "tests/service/replaying.h"
 
 namespace buoyancy {
@@ -15,17 +15,8 @@ namespace {
 
 using ReplayPoses = Replay;
 
-// Upright, its centre at this height.
-bot_core::pose_t pose_at(double height, std::int64_t utime) {
-  bot_core::pose_t pose{};
-  pose.utime = utime;
-  pose.pos[2] = height;
-  pose.orientation[0] = 1.0;
-  return pose;
-}
-
 std::string pose_event(std::int64_t timestamp, double height) {
-  return event("POSE", timestamp, encoded_by_lcm(pose_at(height, 10 * timestamp)));
+  return event("POSE", timestamp, encoded_by_lcm(upright_pose(height, 10 * timestamp)));
 }
 
 std::string log_of_poses(int count) {
@@ -109,7 +100,7 @@ TEST_F(ReplayPoses, RigidTransformsAreAnsweredAsForceAndTorqueOnTheirOwnChannel)
 
 TEST_F(ReplayPoses, VelocitiesAreReadInTheFrameThatTheUserSays) {
   // Turned by a quarter about y: the body's -x is the world's +z.
-  bot_core::pose_t pose = pose_at(0.0, 1);
+  bot_core::pose_t pose = upright_pose(0.0, 1);
   pose.orientation[0] = pose.orientation[2] = std::sqrt(0.5);
   pose.vel[0] = -1.0;
   write("in.lcmlog", event("POSE", 1, encoded_by_lcm(pose)));

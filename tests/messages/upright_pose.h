@@ -1,0 +1,19 @@
+// Poses of bot_core's as tests send them.
+#pragma once
+
+#include <cstdint>
+
+#include <bot_core/pose_t.hpp>
+
+namespace buoyancy {
+
+// Upright, at this height over the origin, at rest.
+inline bot_core::pose_t upright_pose(double height, std::int64_t utime) {
+  bot_core::pose_t pose{};
+  pose.utime = utime;
+  pose.pos[2] = height;
+  pose.orientation[0] = 1.0;
+  return pose;
+}
+
+}  // namespace buoyancy
