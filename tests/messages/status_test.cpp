@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "messages/layout.h"
 #include "tests/allocation_count.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
@@ -252,6 +253,24 @@ TEST(Counters, RejectedIsTheSumOverTheCauses) {
   counters.rejected_count = 100;
   counters.rejected_length = 1000;
   EXPECT_EQ(counters.rejected(), 1111);
+}
+
+TEST(Counters, AreAllOnTheWireAndInASum) {
+  Counters one;
+  LayoutSize visited;
+  visit_counters(visited, one);
+  EXPECT_EQ(visited.size(), sizeof(Counters));
+  one.questions = 3;
+  one.bodies[2] = 4;
+  one.hydrostatics = 5;
+  one.largest_dropped_force = 0.25;
+  Counters sum = one;
+  sum.largest_dropped_force = 0.5;
+  sum += one;
+  EXPECT_EQ(sum.questions, 6);
+  EXPECT_EQ(sum.bodies[2], 8);
+  EXPECT_EQ(sum.hydrostatics, 10);
+  EXPECT_EQ(sum.largest_dropped_force, 0.5);
 }
 
 }  // namespace
