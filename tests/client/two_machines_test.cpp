@@ -35,6 +35,7 @@ double cut_seconds() {
 class TwoMachinesTest : public testing::Test {
  protected:
   void SetUp() override {
+    // Network namespaces are root's, and not every container's kernel lets even root make them.
     if (machines_.trouble()) GTEST_SKIP() << "network: " << *machines_.trouble();
   }
 

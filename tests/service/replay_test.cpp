@@ -105,7 +105,7 @@ TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
 
 TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
   const std::string asking =
-      write("asking.toml", std::string(kReplayedScene) + "outputs = [\"wrench\", \"hydrostatics\"]\n");
+      write("asking.toml", kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n");
   const auto replay_asking = [&](const std::string& output, const std::vector<std::string>& options) {
     std::vector<std::string> arguments{"--scene", asking, path("in.lcmlog"), output};
     arguments.insert(arguments.end(), options.begin(), options.end());

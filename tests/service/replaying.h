@@ -11,22 +11,11 @@
 #include "messages/wire.h"
 #include "service/event_log.h"
 #include "tests/child_process.h"
+#include "tests/service/one_box_scene.h"
 #include "tests/service/patience.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
-
-// A box of 2 x 3 x 4 m about its origin, in water of 1000 kg/m^3 and 10 m/s^2.
-inline constexpr const char* kReplayedScene = R"(
-[world]
-gravity = 10.0
-[water]
-density = 1000.0
-[[body]]
-id = 1
-shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
-method = "exact"
-)";
 
 class Replay : public testing::Test {
  protected:
@@ -49,7 +38,7 @@ class Replay : public testing::Test {
   }
 
   ScratchDirectory directory_;
-  std::string scene_ = directory_.write("scene.toml", kReplayedScene);
+  std::string scene_ = directory_.write("scene.toml", kOneBoxScene);
 };
 
 inline std::vector<std::uint8_t> question(std::int64_t utime, double height) {

@@ -12,27 +12,16 @@
 
 #include "messages/status.h"
 #include "tests/child_process.h"
+#include "tests/service/one_box_scene.h"
 #include "tests/service/patience.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
 
-inline constexpr double kDensity = 1000.0;
-inline constexpr double kGravity = 10.0;
-
-// Body 1: a box of 2 x 3 x 4 m about B's origin; body 2: the same, torque about kReferenceInB.
+// Body 1 as in kOneBoxScene; body 2: the same, torque about kReferenceInB.
 inline constexpr std::array<double, 3> kReferenceInB{0.5, -0.25, 0.0};
-inline constexpr const char* kBoxScene = R"(
-[world]
-gravity = 10.0
-[water]
-density = 1000.0
-[[body]]
-id = 1
-shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
-method = "exact"
-[[body]]
+inline const std::string kBoxScene = kOneBoxScene + R"([[body]]
 id = 2
 shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
 method = "exact"

@@ -1,0 +1,23 @@
+// The scene of most tests of the service and the replay.
+#pragma once
+
+#include <string>
+
+namespace buoyancy {
+
+inline constexpr double kDensity = 1000.0;
+inline constexpr double kGravity = 10.0;
+
+// A box of 2 x 3 x 4 m about B's origin, in water of kDensity and kGravity.
+inline const std::string kOneBoxScene = R"(
+[world]
+gravity = 10.0
+[water]
+density = 1000.0
+[[body]]
+id = 1
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+method = "exact"
+)";
+
+}  // namespace buoyancy
