@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,6 +20,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <sys/resource.h>
 
+#include "give_up.h"
 #include "median.h"
 #include "service/replay.h"
 
@@ -31,21 +31,12 @@ constexpr int kRuns = 5;
 constexpr std::int64_t kEvents = 300'000;
 constexpr double kMust = 0.5;
 
-template <typename T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error().message());
-  return *std::move(expected);
-}
-void check(const Expected<void>& expected) {
-  if (!expected) throw std::runtime_error(expected.error().message());
-}
-
 double height_at(std::int64_t event) {
   return 0.9 * std::sin(1e-3 * static_cast<double>(event));
 }
 
 void write_log(const std::string& path, std::int64_t events) {
-  RecordFile file = value_of(RecordFile::create(path));
+  RecordFile file = value_or_exit(RecordFile::create(path));
   Question question;
   question.bodies.resize(1);
   std::vector<std::uint8_t> bytes;
@@ -58,14 +49,15 @@ void write_log(const std::string& path, std::int64_t events) {
                           .quaternion_wxyz = {std::cos(half_angle), 0.0, 0.0, std::sin(half_angle)}};
     encode(question, bytes);
     encode_event(i, i, kStatesChannel, bytes, event);
-    check(file.append(event));
+    value_or_exit(file.append(event));
   }
-  check(file.flush());
+  value_or_exit(file.flush());
 }
 
 void read_and_write(const std::string& input, const std::string& output) {
-  EventLogReader reader = value_of(EventLogReader::open(input, only_channel(std::string(kStatesChannel))));
-  RecordFile file = value_of(RecordFile::create(output));
+  EventLogReader reader =
+      value_or_exit(EventLogReader::open(input, only_channel(std::string(kStatesChannel))));
+  RecordFile file = value_or_exit(RecordFile::create(output));
   Question question;
   Answer answer;
   std::vector<std::uint8_t> bytes;
@@ -75,28 +67,28 @@ void read_and_write(const std::string& input, const std::string& output) {
     const InputItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
     if (recorded == nullptr) break;
-    if (decode(recorded->bytes, question)) throw std::runtime_error("not a question");
+    if (decode(recorded->bytes, question)) give_up("not a question");
     answer.key = question.key;
     answer.bodies.resize(question.bodies.size());
     for (std::size_t i = 0; i < answer.bodies.size(); ++i)
       answer.bodies[i].body_id = question.bodies[i].body_id;
     encode(answer, bytes);
     encode_event(number++, recorded->timestamp, kWrenchesChannel, bytes, event);
-    check(file.append(event));
+    value_or_exit(file.append(event));
   }
-  check(file.flush());
+  value_or_exit(file.flush());
 }
 
 // As somebody would write it with what LCM itself offers.
 void read_and_write_with_lcm(const std::string& input, const std::string& output) {
   lcm::LogFile reader(input, "r");
   lcm::LogFile writer(output, "w");
-  if (!reader.good() || !writer.good()) throw std::runtime_error("LCM could not open the logs");
+  if (!reader.good() || !writer.good()) give_up("LCM could not open the logs");
   body_states_t question{};
   body_wrenches_t answer{};
   std::vector<std::uint8_t> bytes;
   while (const lcm::LogEvent* event = reader.readNextEvent()) {
-    if (question.decode(event->data, 0, event->datalen) < 0) throw std::runtime_error("not a question");
+    if (question.decode(event->data, 0, event->datalen) < 0) give_up("not a question");
     answer.utime = question.utime;
     answer.session_id = question.session_id;
     answer.seq = question.seq;
@@ -111,18 +103,18 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
     written.channel = std::string(kWrenchesChannel);
     written.datalen = static_cast<std::int32_t>(bytes.size());
     written.data = bytes.data();
-    if (writer.writeEvent(&written) != 0) throw std::runtime_error("LCM could not write the log");
+    if (writer.writeEvent(&written) != 0) give_up("LCM could not write the log");
   }
 }
 
 void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
-  ReplayChannels channels = value_of(ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
+  ReplayChannels channels = value_or_exit(ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
   PoseQuestions poses({}, 1);
   ReplayInput reader =
-      value_of(ReplayInput::open(input, FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
-  ReplayOutput writer = value_of(ReplayOutput::create(output, FileFormat::kLcmLog));
+      value_or_exit(ReplayInput::open(input, FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
+  ReplayOutput writer = value_or_exit(ReplayOutput::create(output, FileFormat::kLcmLog));
   TerminationSignals signals;
-  const ReplaySummary summary = value_of(replay(
+  const ReplaySummary summary = value_or_exit(replay(
       {.scene = scene,
        .input = reader,
        .channels = channels,
@@ -131,20 +123,20 @@ void replay_log(const Scene& scene, const std::string& input, const std::string&
        .layout = {FileFormat::kLcmLog, std::string(kWrenchesChannel), std::string(kHydrostaticsChannel)},
        .jobs = jobs},
       signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
-  if (!summary.complete()) throw std::runtime_error("the replay was not complete");
+  if (!summary.complete()) give_up("the replay was not complete");
 }
 
 void check_answers(const std::string& path) {
-  EventLogReader reader = value_of(EventLogReader::open(path, only_channel(std::string(kWrenchesChannel))));
+  EventLogReader reader =
+      value_or_exit(EventLogReader::open(path, only_channel(std::string(kWrenchesChannel))));
   Answer answer;
   for (std::int64_t i = 0; i < kEvents; ++i) {
     const InputItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
-    if (recorded == nullptr || decode(recorded->bytes, answer))
-      throw std::runtime_error("an answer is missing");
+    if (recorded == nullptr || decode(recorded->bytes, answer)) give_up("an answer is missing");
     const double volume = 2.0 * 3.0 * (1.0 - height_at(i));
     if (!(std::abs(answer.bodies.at(0).submerged_volume - volume) < 1e-12)) {
-      throw std::runtime_error("answer " + std::to_string(i) + " is wrong");
+      give_up("answer " + std::to_string(i) + " is wrong");
     }
   }
 }
@@ -179,9 +171,9 @@ double peak_megabytes() {
 }
 
 void run(const std::string& directory, std::int64_t large_megabytes) {
-  SceneDescription description = value_of(
+  SceneDescription description = value_or_exit(
       parse_scene("[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 2] }\n", "a box", directory));
-  const Scene scene = value_of(Scene::prepare(description));
+  const Scene scene = value_or_exit(Scene::prepare(description));
   const std::string input = directory + "/in.lcmlog";
   const std::string output = directory + "/out.lcmlog";
   write_log(input, kEvents);
@@ -237,11 +229,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: replay_speed DIRECTORY [LARGE_LOG_MB]\n");
     return 2;
   }
-  try {
-    buoyancy::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "replay_speed: %s\n", error.what());
-    return 1;
-  }
+  buoyancy::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
   return 0;
 }

@@ -2,8 +2,6 @@
 // so that nobody is woken by what concerns him not.
 #pragma once
 
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,26 +9,12 @@
 
 #include <sched.h>
 
+#include "give_up.h"
 #include "scene/scene.h"
 #include "tests/child_process.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
-
-// What could not be measured, or was answered wrongly, ends the program.
-template <typename T>
-T value_or_exit(Expected<T> expected) {
-  if (!expected) {
-    std::fprintf(stderr, "%s\n", expected.error().message().c_str());
-    std::exit(1);  // NOLINT(concurrency-mt-unsafe): one thread of ours
-  }
-  if constexpr (!std::is_void_v<T>) return std::move(*expected);
-}
-
-[[noreturn]] inline void give_up(const std::string& reason) {
-  value_or_exit<void>(failure({"benchmark", reason, "a service that answers rightly", "", ""}));
-  std::abort();
-}
 
 inline Scene scene_of(const std::string& text) {
   return value_or_exit(Scene::prepare(value_or_exit(parse_scene(text, "benchmark", {}))));
