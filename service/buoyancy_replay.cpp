@@ -4,12 +4,12 @@
 #include <CLI/App.hpp>
 
 #include "scene/scene.h"
-#include "service/command_line.h"
 #include "service/replay.h"
 #include "service/replay_options.h"
 #include "service/replay_summary.h"
-#include "service/termination_signals.h"
+#include "terminal/command_line.h"
 #include "terminal/progress_bar.h"
+#include "terminal/termination_signals.h"
 
 namespace {
 

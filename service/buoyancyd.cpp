@@ -8,12 +8,12 @@
 
 #include "scene/scene.h"
 #include "scene/scene_report.h"
-#include "service/blocked_signals.h"
-#include "service/command_line.h"
 #include "service/daemon.h"
 #include "service/daemon_options.h"
 #include "service/log_output.h"
-#include "service/termination_signals.h"
+#include "terminal/blocked_signals.h"
+#include "terminal/command_line.h"
+#include "terminal/termination_signals.h"
 
 namespace {
 

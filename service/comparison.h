@@ -13,7 +13,7 @@
 #include "geometry/error.h"
 #include "messages/question.h"
 #include "messages/wire.h"
-#include "service/event_log.h"
+#include "recording/event_log.h"
 
 namespace buoyancy {
 

@@ -15,7 +15,7 @@
 #include "geometry/wording.h"
 #include "hydrostatics/wet_tree_sum.h"
 #include "messages/status.h"
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 #include "service/troubles.h"
 
 namespace buoyancy {

@@ -1,14 +1,13 @@
 #include "service/log_output.h"
 
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
-#include <unistd.h>
+
+#include "terminal/journal.h"
 
 namespace buoyancy {
 namespace {
@@ -44,14 +43,6 @@ class JournalPriority : public spdlog::custom_flag_formatter {
 };
 
 }  // namespace
-
-// systemd gives the device and inode of what it connected to the journal: it may have been redirected since.
-bool standard_error_is_the_journal() {
-  const char* stream = std::getenv("JOURNAL_STREAM");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  struct stat error {};
-  if (stream == nullptr || ::fstat(STDERR_FILENO, &error) != 0) return false;
-  return std::to_string(error.st_dev) + ":" + std::to_string(error.st_ino) == stream;
-}
 
 void start_logging(const std::string& program, const std::string& level) {
   spdlog::set_default_logger(spdlog::stderr_color_st(program));

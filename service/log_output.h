@@ -7,9 +7,6 @@
 
 namespace buoyancy {
 
-// Is what is written to standard error read by the journal?
-bool standard_error_is_the_journal();
-
 // level: as spdlog names them.
 void start_logging(const std::string& program, const std::string& level);
 

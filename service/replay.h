@@ -15,7 +15,7 @@
 #include "service/replay_channels.h"
 #include "service/replay_input.h"
 #include "service/replay_output.h"
-#include "service/termination_signals.h"
+#include "terminal/termination_signals.h"
 
 namespace buoyancy {
 

@@ -8,8 +8,8 @@
 
 #include "geometry/error.h"
 #include "messages/wire.h"
-#include "service/event_log.h"
-#include "service/state_csv.h"
+#include "recording/event_log.h"
+#include "recording/state_csv.h"
 
 namespace buoyancy {
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "exchange/pose_questions.h"
-#include "service/event_log.h"
+#include "recording/event_log.h"
 #include "service/wrench_csv.h"
 
 namespace buoyancy {

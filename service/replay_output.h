@@ -11,7 +11,7 @@
 #include "geometry/error.h"
 #include "messages/question.h"
 #include "messages/wire.h"
-#include "service/record_file.h"
+#include "recording/record_file.h"
 #include "service/replay_input.h"
 
 namespace buoyancy {

@@ -16,7 +16,7 @@
 
 #include "geometry/error.h"
 #include "scene/scene.h"
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

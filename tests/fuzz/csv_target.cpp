@@ -12,7 +12,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "service/state_csv.h"
+#include "recording/state_csv.h"
 #include "tests/fuzz/fuzz_law.h"
 
 namespace buoyancy {

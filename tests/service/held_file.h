@@ -7,7 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

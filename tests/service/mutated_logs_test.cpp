@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "messages/wire.h"
-#include "service/event_log.h"
+#include "recording/event_log.h"
 #include "tests/child_process.h"
 #include "tests/service/scratch_directory.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "messages/wire.h"
-#include "service/event_log.h"
+#include "recording/event_log.h"
 #include "tests/service/replaying.h"
 
 namespace buoyancy {

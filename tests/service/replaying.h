@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "messages/wire.h"
-#include "service/event_log.h"
+#include "recording/event_log.h"
 #include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/patience.h"

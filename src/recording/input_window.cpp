@@ -1,4 +1,4 @@
-#include "service/input_window.h"
+#include "recording/input_window.h"
 
 #include <algorithm>
 #include <cassert>

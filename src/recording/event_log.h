@@ -17,8 +17,8 @@
 
 #include "geometry/error.h"
 #include "messages/wire.h"
-#include "service/input_item.h"
-#include "service/input_window.h"
+#include "recording/input_item.h"
+#include "recording/input_window.h"
 
 namespace buoyancy {
 

@@ -1,4 +1,4 @@
-#include "service/command_line.h"
+#include "terminal/command_line.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -9,7 +9,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "service/log_output.h"
+#include "terminal/journal.h"
 
 namespace buoyancy {
 

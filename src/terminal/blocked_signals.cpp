@@ -1,4 +1,4 @@
-#include "service/blocked_signals.h"
+#include "terminal/blocked_signals.h"
 
 #include <csignal>
 

@@ -1,4 +1,4 @@
-#include "service/state_csv.h"
+#include "recording/state_csv.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <optional>
 
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

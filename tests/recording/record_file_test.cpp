@@ -1,4 +1,4 @@
-#include "service/record_file.h"
+#include "recording/record_file.h"
 
 #include <csignal>
 #include <string>

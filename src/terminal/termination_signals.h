@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "service/blocked_signals.h"
+#include "terminal/blocked_signals.h"
 
 namespace buoyancy {
 

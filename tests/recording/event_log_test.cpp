@@ -1,4 +1,4 @@
-#include "service/event_log.h"
+#include "recording/event_log.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "service/termination_signals.h"
+#include "terminal/termination_signals.h"
 
 namespace buoyancy {
 

@@ -8,7 +8,7 @@
 
 #include "geometry/error.h"
 #include "messages/wire.h"
-#include "service/file_descriptor.h"
+#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

@@ -1,4 +1,4 @@
-// What both programs of this folder do alike with their command line: exit codes, and CLI11's many ways of
+// What every program does alike with its command line: exit codes, and CLI11's many ways of
 // failing turned into one line on stderr and exit code 2.
 #pragma once
 
@@ -20,7 +20,7 @@ enum ExitCode : int {
 // stderr.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-// One line on stderr: "<program>: <message>"; for the journal with its level in front (log_output.h).
+// One line on stderr: "<program>: <message>"; for the journal with its level in front (journal.h).
 void print_error(const CLI::App& app, const std::string& message);
 void print_error(const CLI::App& app, const Error& error);
 

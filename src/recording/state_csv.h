@@ -16,8 +16,8 @@
 
 #include "geometry/error.h"
 #include "messages/question.h"
-#include "service/input_item.h"
-#include "service/input_window.h"
+#include "recording/input_item.h"
+#include "recording/input_window.h"
 
 namespace buoyancy {
 
