@@ -1,0 +1,120 @@
+// buoyancy-report: a run as one HTML page.
+#include <csignal>
+#include <filesystem>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "recording/record_file.h"
+#include "scene/scene.h"
+#include "terminal/command_line.h"
+#include "terminal/progress_bar.h"
+#include "terminal/termination_signals.h"
+#include "view/page_text.h"
+#include "view/report_page.h"
+#include "view/run_file.h"
+
+namespace {
+
+using namespace buoyancy;
+
+constexpr std::size_t kMostRows = 40'000;  // of all bodies: some 10 MB of page
+
+struct ReportArguments {
+  std::filesystem::path scene, run, output;
+  std::filesystem::path three = kThreeJs;
+  RunFileOptions file;
+};
+
+void declare_options(CLI::App& app, ReportArguments& arguments) {
+  app.description(
+      "Writes a recorded run as one HTML page that any browser shows without a network: the bodies in the\n"
+      "water to be played back, plots, and what was skipped. RUN is the CSV of buoyancy-client, poses as\n"
+      "buoyancy-replay takes them, or a log of lcm-logger; a long one is thinned with its extremes kept.\n"
+      "Exit codes: 0 done, 1 it ran and failed, or parts of RUN could not be read, 2 wrong arguments, "
+      "scene,\n"
+      "mesh or RUN.");
+  app.set_version_flag("--version", "buoyancy-report " BUOYANCY_VERSION);
+  app.add_option("--scene", arguments.scene, "The scene file (TOML): water and bodies")->required();
+  app.add_option("--states-channel", arguments.file.states_channel, "Channel of the questions in an LCM log")
+      ->capture_default_str();
+  app.add_option("--wrenches-channel", arguments.file.wrenches_channel,
+                 "Channel of the answers in an LCM log")
+      ->capture_default_str();
+  app.add_option("--status-channel", arguments.file.status_channel, "Channel of the status in an LCM log")
+      ->capture_default_str();
+  app.add_option("--three", arguments.three, "three.js, which goes into the page")->capture_default_str();
+  app.add_option("RUN", arguments.run, "A .csv or .lcmlog file")->required();
+  app.add_option("OUTPUT", arguments.output, "The page; overwritten")->required();
+}
+
+Expected<void> write_page(const std::filesystem::path& path, const std::string& page) {
+  Expected<RecordFile> file = RecordFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  const Bytes bytes{reinterpret_cast<const std::uint8_t*>(page.data()), page.size()};
+  if (Expected<void> written = file->append(bytes); !written) return written;
+  return file->flush();
+}
+
+std::string summary_of(const Scene& scene, const Run& run, const ReportArguments& arguments,
+                       std::size_t bytes) {
+  std::int64_t recorded = 0;
+  std::int64_t kept = 0;
+  for (const BodyRun& body : run.bodies) {
+    recorded += body.recorded;
+    kept += static_cast<std::int64_t>(body.rows.size());
+  }
+  std::string text = arguments.output.string() + ": " + std::to_string(scene.bodies().size()) + " bodies, " +
+                     std::to_string(recorded) + " rows";
+  if (kept < recorded) text += ", thinned to " + std::to_string(kept) + " with the extremes kept";
+  return text + "; " + std::to_string((bytes + 500'000) / 1'000'000) + " MB\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("", "buoyancy-report");
+  ReportArguments arguments;
+  declare_options(app, arguments);
+  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  const auto refuse = [&app](const Error& error, ExitCode exit_code) {
+    print_error(app, error);
+    return exit_code;
+  };
+  std::error_code no_such_file;
+  if (std::filesystem::equivalent(arguments.run, arguments.output, no_such_file)) {
+    print_error(app, arguments.output.string() + ": is RUN itself; expected an OUTPUT of its own");
+    return kWrongInput;
+  }
+  const Expected<std::string> three = three_js(arguments.three);
+  if (!three) return refuse(three.error(), kFailed);
+  const Expected<Scene> scene = Scene::load(arguments.scene);
+  if (!scene) return refuse(scene.error(), kWrongInput);
+
+  TerminationSignals signals;
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message
+  ProgressBar progress("rows");
+  arguments.file.progress = [&](std::int64_t done, std::int64_t total, std::int64_t rows) {
+    progress.update(done, total, rows);
+    return !signals.pending();
+  };
+  const Expected<Run> run = read_run(arguments.run, *scene, kMostRows, arguments.file);
+  progress.clear();
+  if (!run) return refuse(run.error(), kWrongInput);
+  for (const std::string& trouble : run->troubles) print_error(app, arguments.run.string() + ": " + trouble);
+  if (run->more_troubles > 0) print_error(app, std::to_string(run->more_troubles) + " more of that");
+  const char* const ended_by = signals.take();
+  if (ended_by != nullptr) {
+    print_error(app, std::string("ended by ") + ended_by + "; the page shows what was read until then");
+  }
+
+  const std::string page = report_page(
+      report_data(*scene, *run, {.file = arguments.run.filename().string(), .version = BUOYANCY_VERSION}),
+      *three);
+  if (const Expected<void> written = write_page(arguments.output, page); !written) {
+    return refuse(written.error(), kFailed);
+  }
+  if (!print_output(app, summary_of(*scene, *run, arguments, page.size()))) return kFailed;
+  return run->troubles.empty() && ended_by == nullptr ? kDone : kFailed;
+}

@@ -1,0 +1,197 @@
+'use strict';
+// Plots over time as SVG. All that is drawn comes from the arrays given, whole.
+
+// Four or five round numbers that span from low to high.
+function round_ticks(low, high, most) {
+  const rough = (high - low) / most;
+  const power = Math.pow(10, Math.floor(Math.log10(rough)));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough);
+  const ticks = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) ticks.push(i * step);
+  return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+}
+
+function number_text(value) {
+  if (!Number.isFinite(value)) return '–';
+  if (value === 0) return '0';  // minus zero too
+  const size = Math.abs(value);
+  if (size < 1e-3 || size >= 1e6) return value.toExponential(3);
+  return value.toLocaleString('en', { maximumSignificantDigits: 6 });
+}
+
+function svg_element(name, attributes, parent) {
+  const element = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+}
+
+class Plot {
+  // parent: element to stand in. series: [{name, times, values}], up to four. on_seek(time): somebody pointed there.
+  // missing: said where there is no value at all.
+  constructor(parent, { title, unit, series, on_seek, missing = 'not recorded' }) {
+    this.title = title;
+    this.unit = unit;
+    this.missing = missing;
+    this.series = series;
+    this.figure = document.createElement('figure');
+    this.caption = document.createElement('figcaption');
+    const heading = document.createElement('b');
+    heading.textContent = `${title}, ${unit}`;
+    this.caption.append(heading);
+    this.readings = series.map((one, i) => {
+      const reading = document.createElement('span');
+      reading.className = `name ${['', 'dashed', 'dotted', 'dashed'][i]}`;
+      reading.style.setProperty('--line', Plot.colours[i]);
+      this.caption.append(reading);
+      return reading;
+    });
+    this.svg = svg_element('svg', { role: 'img', tabindex: '-1' });
+    this.figure.append(this.caption, this.svg);
+    parent.append(this.figure);
+    this.svg.addEventListener('pointerdown', (event) => this.point(event, on_seek));
+    this.svg.addEventListener('pointermove', (event) => { if (event.buttons) this.point(event, on_seek); });
+    new ResizeObserver(() => this.draw()).observe(this.figure);
+    this.draw();
+  }
+
+  static get colours() { return ['var(--first)', 'var(--second)', 'var(--third)', 'var(--fourth)']; }
+  static get height() { return 104; }
+
+  update(series) {
+    this.series = series;
+    this.draw();
+  }
+
+  range() {
+    let low = Infinity, high = -Infinity, start = Infinity, end = -Infinity;
+    for (const { times, values } of this.series) {
+      for (let i = 0; i < values.length; i += 1) {
+        if (!Number.isFinite(values[i])) continue;
+        low = Math.min(low, values[i]);
+        high = Math.max(high, values[i]);
+        start = Math.min(start, times[i]);
+        end = Math.max(end, times[i]);
+      }
+    }
+    return { low, high, start, end, empty: low > high };
+  }
+
+  draw() {
+    const width = Math.max(160, this.figure.clientWidth), height = Plot.height;
+    const left = 58, right = 10, top = 6, bottom = 20;
+    const range = this.range();
+    this.svg.replaceChildren();
+    this.svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
+    this.svg.setAttribute('height', height);
+    this.describe(range);
+    this.figure.classList.toggle('empty', range.empty);
+    if (range.empty) {
+      this.now = null;
+      this.readings.forEach((reading, i) => { reading.textContent = i === 0 ? this.missing : ''; });
+      return;
+    }
+    // A constant is drawn in the middle, not as the noise of its last digit.
+    const middle = 0.5 * (range.low + range.high);
+    const half = Math.max(0.5 * (range.high - range.low), 1e-9 * Math.abs(middle), 1e-12);
+    const low = middle - 1.08 * half, high = middle + 1.08 * half;
+    const end = range.end > range.start ? range.end : range.start + 1;
+    this.x = (time) => left + (time - range.start) / (end - range.start) * (width - left - right);
+    this.time = (x) => range.start + (x - left) / (width - left - right) * (end - range.start);
+    const y = (value) => top + (high - value) / (high - low) * (height - top - bottom);
+    const rows = round_ticks(low, high, 4);
+    for (const tick of rows.ticks) {
+      svg_element('line', { class: 'rule', x1: left, x2: width - right, y1: y(tick), y2: y(tick) }, this.svg);
+      const label = svg_element('text', { x: left - 5, y: y(tick) + 4, 'text-anchor': 'end' }, this.svg);
+      label.textContent = Math.abs(tick) >= 1e6 ? tick.toExponential(1) : rows.digits > 6 ? tick.toExponential(2) : tick.toFixed(rows.digits);
+    }
+    const columns = round_ticks(range.start, end, Math.max(2, Math.floor(width / 90)));
+    for (const tick of columns.ticks) {
+      const label = svg_element('text', { x: this.x(tick), y: height - 5, 'text-anchor': 'middle' }, this.svg);
+      label.textContent = `${tick.toFixed(columns.digits)} s`;
+    }
+    this.series.forEach(({ times, values }, i) => {
+      let path = '', pen_up = true;
+      for (let n = 0; n < values.length; n += 1) {
+        if (!Number.isFinite(values[n])) { pen_up = true; continue; }
+        path += `${pen_up ? 'M' : 'L'}${this.x(times[n]).toFixed(1)} ${y(values[n]).toFixed(1)}`;
+        pen_up = false;
+      }
+      svg_element('path', { d: path, fill: 'none', style: `stroke:${Plot.colours[i]}`, 'stroke-width': 1.7,
+                            'stroke-linejoin': 'round', 'stroke-dasharray': ['none', '6 3', '2 2', '9 3 2 3'][i] }, this.svg);
+    });
+    this.now = svg_element('line', { class: 'now', y1: top, y2: height - bottom, x1: -9, x2: -9 }, this.svg);
+    this.show(this.shown_time);
+  }
+
+  // What somebody who cannot see the plot is told.
+  describe(range) {
+    const parts = this.series.map(({ name, values }) => {
+      const finite = Array.from(values).filter(Number.isFinite);
+      if (finite.length === 0) return `${name} was not recorded`;
+      const least = finite.reduce((a, b) => Math.min(a, b)), most = finite.reduce((a, b) => Math.max(a, b));
+      return `${name} from ${number_text(least)} to ${number_text(most)}, at the end ${number_text(finite[finite.length - 1])}`;
+    });
+    const span = range.empty ? '' : ` from ${number_text(range.start)} to ${number_text(range.end)} s`;
+    this.svg.setAttribute('aria-label', `${this.title} in ${this.unit} over time${span}: ${parts.join('; ')}`);
+  }
+
+  // Marks the time and reads the values there: those of the last row that is not later.
+  show(time) {
+    this.shown_time = time;
+    if (time === undefined || !this.now) return;
+    this.now.setAttribute('x1', this.x(time));
+    this.now.setAttribute('x2', this.x(time));
+    this.series.forEach(({ name, times, values }, i) => {
+      this.readings[i].textContent = `${name} ${number_text(values[row_at(times, time)])}`;
+    });
+  }
+
+  point(event, on_seek) {
+    if (!on_seek || !this.time) return;
+    const box = this.svg.getBoundingClientRect();
+    on_seek(this.time(event.clientX - box.left));
+  }
+}
+
+// The last row that is not later than time; the first where all are. times: ascending.
+function row_at(times, time) {
+  let low = 0, high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return Math.max(0, low - 1);
+}
+
+// rows: of cells; a number is set right, with what units the heading says.
+function table_of(caption, heads, rows) {
+  const table = document.createElement('table');
+  table.createCaption().textContent = caption;
+  const head = table.createTHead().insertRow();
+  const numeric = heads.map((_, i) => rows.length > 0 && rows.every((row) => typeof row[i] === 'number' || row[i] === null));
+  heads.forEach((text, i) => {
+    const cell = document.createElement('th');
+    cell.scope = 'col';
+    cell.textContent = text;
+    if (numeric[i]) cell.className = 'number';
+    head.append(cell);
+  });
+  const body = table.createTBody();
+  for (const row of rows) {
+    const line = body.insertRow();
+    row.forEach((value, i) => {
+      const cell = line.insertCell();
+      cell.textContent = value === null ? '–' : typeof value === 'number' ? number_text(value) : value;
+      if (numeric[i]) cell.className = 'number';
+    });
+  }
+  const box = document.createElement('div');
+  box.className = 'scroll';
+  box.tabIndex = 0;
+  box.setAttribute('role', 'region');
+  box.setAttribute('aria-label', caption);
+  box.append(table);
+  return box;
+}

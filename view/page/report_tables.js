@@ -1,0 +1,105 @@
+'use strict';
+// The report's text beside picture and plots: what was recorded, what the scene and its meshes are, what was skipped.
+
+function seconds_text(seconds) {
+  if (!Number.isFinite(seconds)) return '–';
+  const [factor, unit] = seconds < 1e-6 ? [1e9, 'ns'] : seconds < 1e-3 ? [1e6, 'µs'] : seconds < 1 ? [1e3, 'ms'] : [1, 's'];
+  return `${(seconds * factor).toPrecision(3)} ${unit}`;
+}
+
+function plural(count, one, many) {
+  return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
+}
+
+// What the reader has to know before believing the plots.
+function report_notices(data, bodies) {
+  const notices = [];
+  const recorded = bodies.reduce((sum, body) => sum + body.recorded, 0);
+  const kept = bodies.reduce((sum, body) => sum + body.rows, 0);
+  if (kept < recorded) {
+    notices.push(`Thinned: ${plural(kept, 'row', 'rows')} of ${recorded.toLocaleString('en')} are in this page. Every row is as it was ` +
+      'recorded, and the least and largest heave, roll, pitch, force, torque, energy and round trip of every stretch of time are among them.');
+  }
+  const without = bodies.filter((body) => body.recorded > 0 && body.rows === 0).length + (data.model.bodies.length - bodies.length);
+  if (without > 0) notices.push(`${plural(without, 'body has', 'bodies have')} no rows here.`);
+  if (data.computed > 0) {
+    notices.push(`${plural(data.computed, 'row has', 'rows have')} no recorded answer: force and torque were computed from the scene.`);
+  }
+  if (data.sessions > 1) notices.push(`${plural(data.sessions, 'session', 'sessions')} asked; a clock that began again goes on behind the one before.`);
+  if (data.unknown_bodies > 0) notices.push(`${plural(data.unknown_bodies, 'row', 'rows')} about bodies that the scene has not.`);
+  for (const trouble of data.troubles) notices.push(`Could not be read: ${trouble}.`);
+  if (data.more_troubles > 0) notices.push(`${plural(data.more_troubles, 'more place', 'more places')} could not be read.`);
+  for (const mesh of data.model.meshes) {
+    if (mesh.shown_triangles < mesh.triangles) {
+      notices.push(`${mesh.name} is drawn with ${plural(mesh.shown_triangles, 'triangle', 'triangles')}; its forces are those of all ` +
+        `${mesh.triangles.toLocaleString('en')}.`);
+    }
+  }
+  return notices;
+}
+
+function skipped_table(data) {
+  const rows = [];
+  let saved = 0, spent = 0;
+  for (const body of data.bodies) {
+    const { unchanged, dry, wet, crossing, refused, bounds_ns: bounds, query_ns: query } = body.skipped;
+    const name = (data.model.bodies.find((one) => one.id === body.id) || {}).name;
+    const total = unchanged + dry + wet + crossing + refused;
+    const add = (what, count, cost) => {
+      if (count === 0) return;
+      const gain = query === null || cost === null ? null : Math.max(0, 1e-9 * count * (query - cost));
+      saved += gain || 0;
+      spent += cost === null ? 0 : 1e-9 * count * cost;
+      rows.push([`${body.id} ${name}`, what, count, `${(100 * count / total).toFixed(1)} %`,
+                 cost === null ? '–' : seconds_text(1e-9 * cost), gain === null ? '–' : seconds_text(gain)]);
+    };
+    add('crosses the surface: computed', crossing, query);
+    add('clear of the water: bounds alone', dry, bounds);
+    add('wholly under water: bounds and constants', wet, bounds);
+    add('same pose as before: last answer', unchanged, query === null ? null : Math.min(bounds || 0, query));
+    add('no answer to its pose', refused, null);
+  }
+  const caption = 'What the poses let the service leave out, and what that saves beside computing every one ' +
+    `(costs measured while this page was made; saved in all ${seconds_text(saved)}, spent ${seconds_text(spent)})`;
+  return table_of(caption, ['body', 'its pose', 'rows', 'share', 'one costs', 'saved'], rows);
+}
+
+function report_tables(data) {
+  const { water, bodies, meshes, simd_target: target } = data.model;
+  const section = (title, ...content) => {
+    const heading = document.createElement('h2');
+    heading.textContent = title;
+    document.getElementById('tables').append(heading, ...content);
+  };
+  section('What was skipped', skipped_table(data));
+  if (data.status) {
+    const status = data.status;
+    section('The service\'s own account', table_of('The last status in the log, totals since its start', ['what', 'value'], [
+      ['version', status.version], ['up for', `${number_text(status.uptime)} s`],
+      ['questions', status.questions.toLocaleString('en')], ['answered', status.answered.toLocaleString('en')],
+      ['repeated', status.repeated.toLocaleString('en')], ['overtaken', status.overtaken.toLocaleString('en')],
+      ['rejected', status.rejected.toLocaleString('en')],
+      ['bodies dry, wet, crossing, unchanged', [status.dry, status.wet, status.crossing, status.unchanged].map((count) => count.toLocaleString('en')).join(', ')],
+      ['time to answer, median, 99 %, longest', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
+  }
+  section('The scene', table_of(
+    `Water: level ${number_text(water.level)} m along [${water.up.join(', ')}], ${number_text(water.density)} kg/m³, gravity ${number_text(water.gravity)} m/s². ` +
+    `Instructions: ${target}.`,
+    ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
+    bodies.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));
+  section('The meshes', table_of('As they were loaded', ['mesh', 'triangles', 'drawn', 'volume, m³', 'area, m²', 'diagonal, m', 'parts', 'what was found'],
+    meshes.map((mesh) => [mesh.name, mesh.triangles, mesh.shown_triangles, mesh.volume, mesh.area, mesh.diagonal, mesh.components.length, mesh_findings(mesh)])));
+}
+
+function mesh_findings(mesh) {
+  const findings = [mesh.closed ? 'closed' : `open: ${plural(mesh.boundary_edges, 'boundary edge', 'boundary edges')}`];
+  const add = (count, one, many) => { if (count) findings.push(plural(count, one, many)); };
+  add(mesh.non_manifold_edges, 'non-manifold edge', 'non-manifold edges');
+  add(mesh.misoriented_edges, 'misoriented edge', 'misoriented edges');
+  add(mesh.degenerate_faces, 'face without area', 'faces without area');
+  add(mesh.dropped_faces, 'face dropped', 'faces dropped');
+  add(mesh.duplicate_faces, 'duplicate face', 'duplicate faces');
+  add(mesh.intersecting_pairs, 'pair of faces intersects', 'pairs of faces intersect');
+  if (mesh.turned) findings.push('was inside out and has been turned');
+  return findings.join('; ');
+}

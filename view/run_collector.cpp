@@ -1,0 +1,168 @@
+#include "view/run_collector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kMostRowsOfBody = 12'000;
+constexpr std::size_t kTroublesKept = 20;
+constexpr std::size_t kSessionsCounted = 10'000;
+
+Vec3 vec3(const std::array<double, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+MeshUp mesh_up_of(const Body& body) {
+  const std::string& axis = body.prepared->report.source.up_axis;
+  return axis == "y" ? MeshUp::kY : axis == "x" ? MeshUp::kX : MeshUp::kZ;
+}
+
+// A pose that nobody could answer is still a row: it is shown where its numbers are.
+Pose raw_pose(const BodyState& state) {
+  const auto& [w, x, y, z] = state.quaternion_wxyz;
+  const Eigen::Quaterniond q(w, x, y, z);
+  return {vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
+}
+
+double energy_of(const RigidBody& rigid, const RecordedState& recorded, const BodyWrench& wrench,
+                 const Water& water) {
+  const Pose pose = raw_pose(recorded.state);
+  ClientSpec spec;
+  spec.position = pose.p_WB;
+  spec.orientation = pose.q_WB.normalized();
+  spec.linear_velocity = vec3(recorded.state.linear_velocity);
+  spec.angular_velocity = vec3(recorded.state.angular_velocity);
+  const RigidBodyState state = initial_state(rigid, spec);
+  return mechanical_energy(rigid, state, wrench, water);
+}
+
+template <std::size_t kSize>
+void put(Row& row, Column first, const std::array<double, kSize>& values) {
+  std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+BodyWrench computed_wrench(const Body& body, const Water& water, const AskedPose& asked) {
+  BodyOutcome outcome;
+  outcome.status = asked.status;
+  if (asked.status == BodyStatus::kOk) evaluate(body, water, asked, outcome);
+  return wrench_of(body.id, outcome);
+}
+
+}  // namespace
+
+RunCollector::RunCollector(const Scene& scene, std::size_t most_rows) : scene_(scene) {
+  const std::size_t shown = std::min(scene.bodies().size(), kMostBodies);
+  run_.bodies.resize(scene.bodies().size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Body& body = scene.bodies()[i];
+    Collected& collected = bodies_.emplace_back(std::min(most_rows / shown, kMostRowsOfBody));
+    collected.mesh_up = mesh_up_of(body);
+    if (!body.client.given) continue;
+    if (Expected<RigidBody> rigid = make_rigid_body(body, scene.water())) collected.rigid = *std::move(rigid);
+  }
+}
+
+// A session that starts its clock again goes on one step behind the one before.
+std::int64_t RunCollector::time_of(Collected& body, const RecordedState& recorded) {
+  if (!first_utime_) first_utime_ = recorded.utime;
+  if (body.rows.added() == 0) {
+    body.session_id = recorded.session_id;
+    body.offset = -*first_utime_;
+  } else if (recorded.session_id != body.session_id) {
+    body.session_id = recorded.session_id;
+    if (recorded.utime + body.offset <= body.last_time) {
+      body.offset = body.last_time + body.last_step - recorded.utime;
+    }
+  }
+  const std::int64_t time = recorded.utime + body.offset;
+  body.last_step = std::max<std::int64_t>(0, time - body.last_time);
+  body.last_time = time;
+  return time;
+}
+
+void RunCollector::classify(Collected& collected, const Body& body, const AskedPose& asked) const {
+  if (asked.status != BodyStatus::kOk) {
+    ++collected.skipped.refused;
+    collected.last_pose.reset();
+    return;
+  }
+  const PoseBits bits = pose_bits(asked.pose);
+  if (collected.last_pose && same(*collected.last_pose, bits)) {
+    ++collected.skipped.unchanged;
+    return;
+  }
+  collected.last_pose = bits;
+  switch (immersion_at_a_glance(body.solver.mesh(), asked.pose, scene_.water())) {
+    case Immersion::kDry:
+      ++collected.skipped.dry;
+      break;
+    case Immersion::kWet:
+      ++(body.solver.method() == Method::kHierarchical ? collected.skipped.wet : collected.skipped.crossing);
+      break;
+    case Immersion::kCrossing:
+      ++collected.skipped.crossing;
+      break;
+  }
+}
+
+void RunCollector::add(const RecordedState& recorded) {
+  const std::optional<std::size_t> index = scene_.index_of(recorded.state.body_id);
+  if (!index) {
+    ++run_.unknown_bodies;
+    return;
+  }
+  if (sessions_.size() < kSessionsCounted) sessions_.insert(recorded.session_id);
+  if (*index >= bodies_.size()) return;
+  const Body& body = scene_.bodies()[*index];
+  Collected& collected = bodies_[*index];
+  const AskedPose asked = asked_pose(recorded.state, recorded.lead_time);
+  classify(collected, body, asked);
+  if (!recorded.wrench) ++run_.computed;
+  const BodyWrench wrench = recorded.wrench ? *recorded.wrench : computed_wrench(body, scene_.water(), asked);
+
+  Row row;
+  row[kTime] = 1e-6 * static_cast<double>(time_of(collected, recorded));
+  put(row, kPx, recorded.state.position);
+  put(row, kQw, recorded.state.quaternion_wxyz);
+  row[kStatus] = static_cast<double>(wrench.status);
+  put(row, kFx, wrench.force);
+  put(row, kTx, wrench.torque);
+  row[kVolume] = wrench.submerged_volume;
+  put(row, kBx, wrench.center_of_buoyancy);
+  row[kEnergy] = kNotKnown;
+  if (recorded.energy) {
+    row[kEnergy] = *recorded.energy;
+  } else if (recorded.velocities && collected.rigid && wrench.status == BodyStatus::kOk) {
+    row[kEnergy] = energy_of(*collected.rigid, recorded, wrench, scene_.water());
+  }
+  row[kRoundTrip] = recorded.round_trip;
+  const Attitude lies = attitude(raw_pose(recorded.state), scene_.water(), collected.mesh_up);
+  row[kHeave] = lies.heave;
+  row[kRoll] = lies.roll;
+  row[kPitch] = lies.pitch;
+  row[kForce] = vec3(wrench.force).norm();
+  row[kTorque] = vec3(wrench.torque).norm();
+  collected.rows.add(number_++, row);
+}
+
+void RunCollector::add_trouble(std::string trouble) {
+  if (run_.troubles.size() < kTroublesKept) {
+    run_.troubles.push_back(std::move(trouble));
+  } else {
+    ++run_.more_troubles;
+  }
+}
+
+Run RunCollector::take() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    run_.bodies[i] = {bodies_[i].rows.rows(), bodies_[i].rows.added(), bodies_[i].skipped};
+    // A question that waited in vain comes late.
+    std::ranges::stable_sort(run_.bodies[i].rows, {}, [](const Row& row) { return row[kTime]; });
+  }
+  run_.sessions = static_cast<std::int64_t>(sessions_.size());
+  return std::move(run_);
+}
+
+}  // namespace buoyancy

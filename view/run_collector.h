@@ -1,0 +1,74 @@
+// Rows of a recorded run, put together from states and wrenches as a file has them: what the file lacks is
+// computed from the scene, time gets one axis, and each body's rows are thinned.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "client/rigid_body.h"
+#include "exchange/body_exchange.h"
+#include "scene/scene.h"
+#include "view/attitude.h"
+#include "view/run.h"
+#include "view/thinned_rows.h"
+
+namespace buoyancy {
+
+inline constexpr std::size_t kMostBodies = 1'000;  // the scene's first; of more a page shows no rows
+
+// What a file says of one body at one instant.
+struct RecordedState {
+  std::int64_t utime = 0;  // us
+  std::int64_t session_id = 0;
+  BodyState state;
+  double lead_time = 0.0;            // s
+  std::optional<BodyWrench> wrench;  // nullopt: to be computed
+  std::optional<double> energy;   // J; nullopt: to be computed, where velocities and [body.client] allow it
+  bool velocities = false;        // state has them
+  double round_trip = kNotKnown;  // s
+};
+
+class RunCollector {
+ public:
+  // scene must outlive this. most_rows: of all bodies together, roughly.
+  RunCollector(const Scene& scene, std::size_t most_rows);
+
+  void add(const RecordedState& recorded);
+  void add_trouble(std::string trouble);
+  void set_status(ServiceStatus status) { run_.status = std::move(status); }
+
+  // What it all came to; the collector is done for then.
+  Run take();
+
+ private:
+  struct Collected {
+    explicit Collected(std::size_t most_rows) : rows(most_rows) {}
+
+    ThinnedRows rows;
+    std::optional<RigidBody> rigid;
+    MeshUp mesh_up = MeshUp::kZ;
+    SkippedRows skipped;
+    std::optional<PoseBits> last_pose;
+    // us: where on the run's axis the body's session began, so that one that starts its clock again goes on
+    // behind.
+    std::int64_t session_id = 0;
+    std::int64_t offset = 0;
+    std::int64_t last_time = 0;
+    std::int64_t last_step = 0;
+  };
+
+  std::int64_t time_of(Collected& body, const RecordedState& recorded);
+  void classify(Collected& collected, const Body& body, const AskedPose& asked) const;
+
+  const Scene& scene_;
+  std::vector<Collected> bodies_;              // of the scene's first kMostBodies
+  std::unordered_set<std::int64_t> sessions_;  // up to a bound
+  std::optional<std::int64_t> first_utime_;
+  std::int64_t number_ = 0;
+  Run run_;
+};
+
+}  // namespace buoyancy

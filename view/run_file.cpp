@@ -1,0 +1,28 @@
+#include "view/run_file.h"
+
+#include "view/run_csv_file.h"
+#include "view/run_log_file.h"
+
+namespace buoyancy {
+
+Expected<Run> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
+                       const RunFileOptions& options) {
+  const std::string extension = path.extension().string();
+  if (extension != ".csv" && extension != ".lcmlog") {
+    return failure({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
+  }
+  RunCollector collector(scene, most_rows);
+  const Expected<void> read =
+      extension == ".csv" ? read_run_csv(path, options, collector) : read_run_log(path, options, collector);
+  if (!read) return tl::unexpected(read.error());
+  Run run = collector.take();
+  for (const BodyRun& body : run.bodies) {
+    if (body.recorded > 0) return run;
+  }
+  return failure(
+      {path.string(), std::to_string(run.unknown_bodies) + " rows, none about a body of " + scene.name(),
+       "states of the scene's bodies", "the scene is of another run, or the log's channels have other names",
+       "see --states-channel, and buoyancyd --check for the scene's ids"});
+}
+
+}  // namespace buoyancy
