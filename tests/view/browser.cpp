@@ -28,7 +28,8 @@ ChildCommand with_scratch_home(std::vector<std::string> arguments, const Scratch
   whole.environment = {
       "HOME=" + directory.path("home"),           "XDG_CONFIG_HOME=" + directory.path("home"),
       "XDG_CACHE_HOME=" + directory.path("home"), "TMPDIR=" + directory.path("tmp"),
-      "DBUS_SESSION_BUS_ADDRESS=disabled:",       "LANGUAGE=en"};
+      "DBUS_SESSION_BUS_ADDRESS=disabled:",       "LANGUAGE=en",
+  };
   return whole;
 }
 
@@ -36,17 +37,30 @@ ChildCommand with_scratch_home(std::vector<std::string> arguments, const Scratch
 // chromedriver that is killed.
 ChildCommand chromium(const ScratchDirectory& directory) {
   return with_scratch_home(
-      {"chromium", "--headless=new", "--remote-debugging-port=0",
-       "--user-data-dir=" + directory.path("profile"),
-       // Neither root nor most containers can have the sandbox, and the pages are our own.
-       "--no-sandbox",
-       // A container's /dev/shm is often too small.
-       "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-       // By the software renderer that only makes the page slower.
-       "--disable-gpu-rasterization", "--force-color-profile=srgb", "--force-device-scale-factor=1",
-       "--lang=en-GB", "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost, EXCLUDE 127.0.0.1",
-       "--no-proxy-server", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-       "--no-first-run", "about:blank"},
+      {
+          "chromium",
+          "--headless=new",
+          "--remote-debugging-port=0",
+          "--user-data-dir=" + directory.path("profile"),
+          // Neither root nor most containers can have the sandbox, and the pages are our own.
+          "--no-sandbox",
+          // A container's /dev/shm is often too small.
+          "--disable-dev-shm-usage",
+          "--use-angle=swiftshader",
+          "--enable-unsafe-swiftshader",
+          // By the software renderer that only makes the page slower.
+          "--disable-gpu-rasterization",
+          "--force-color-profile=srgb",
+          "--force-device-scale-factor=1",
+          "--lang=en-GB",
+          "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost, EXCLUDE 127.0.0.1",
+          "--no-proxy-server",
+          "--disable-background-networking",
+          "--disable-component-update",
+          "--disable-sync",
+          "--no-first-run",
+          "about:blank",
+      },
       directory);
 }
 
