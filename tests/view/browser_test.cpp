@@ -1,0 +1,330 @@
+#include "tests/view/browser.h"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include "tests/child_process.h"
+#include "tests/service/patience.h"
+#include "tests/service/scratch_directory.h"
+#include "tests/view/page_test.h"
+
+namespace buoyancy {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class BrowserTest : public PageTest {
+ protected:
+  // Opens a page with this body.
+  void show(const std::string& body) {
+    browser().open_file(directory_.write(
+        "page #1.html",
+        "<!doctype html><meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
+        "<style>body { margin: 0; background: white }</style>" +
+            body));
+  }
+
+  static std::string what_is_thrown(const std::function<void()>& act) {
+    try {
+      act();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+
+ private:
+  ScratchDirectory directory_;
+};
+
+TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
+  show(
+      R"(<canvas id="sea" width="300" height="200" style="position: absolute; left: 100px; top: 50px"></canvas>
+    <script>
+      const gl = document.getElementById("sea").getContext("webgl2");
+      const compiled = (type, source) => {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, source);
+        gl.compileShader(shader);
+        return shader;
+      };
+      const program = gl.createProgram();
+      gl.attachShader(program, compiled(gl.VERTEX_SHADER,
+        "attribute vec2 at; void main() { gl_Position = vec4(at, 0.0, 1.0); }"));
+      gl.attachShader(program, compiled(gl.FRAGMENT_SHADER,
+        "precision mediump float; void main() { gl_FragColor = vec4(1.0, 0.8, 0.0, 1.0); }"));
+      gl.linkProgram(program);
+      gl.useProgram(program);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(gl.getAttribLocation(program, "at"));
+      gl.vertexAttribPointer(gl.getAttribLocation(program, "at"), 2, gl.FLOAT, false, 0, 0);
+      requestAnimationFrame(() => {
+        gl.clearColor(0.0, 0.4, 0.8, 1.0);
+        gl.clear(gl.COLOR_BUFFER_BIT);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(0, 0, 150, 200);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        requestAnimationFrame(() => { window.drawn = true; });
+      });
+    </script>)");
+  browser().wait_until("window.drawn");
+  EXPECT_THAT(browser().console_errors(), IsEmpty());
+
+  const Picture picture = browser().screenshot();
+  EXPECT_EQ(picture.share({100, 50, 150, 200}, is_near({255, 204, 0})), 1.0);
+  EXPECT_EQ(picture.share({250, 50, 150, 200}, is_near({0, 102, 204})), 1.0);
+  EXPECT_EQ(picture.pixel(99, 49), (Colour{255, 255, 255}));
+  const Region canvas = browser().region_of("#sea");
+  EXPECT_EQ(canvas.left, 100);
+  EXPECT_EQ(canvas.top, 50);
+  EXPECT_EQ(canvas.width, 300);
+  EXPECT_EQ(canvas.height, 200);
+  RecordProperty("renderer", browser()
+                                 .run(R"(
+    return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);)")
+                                 .get<std::string>());
+}
+
+TEST_F(BrowserTest, DrawsText) {
+  show(R"(<style>p { font: 40px sans-serif; margin: 0; width: 60px; height: 60px }</style>
+    <p id="a">A</p><p id="b">B</p><p id="rho">ρ</p><p id="nothing"></p>)");
+  const Picture picture = browser().screenshot();
+  const auto ink = [&](const std::string& selector) {
+    return picture.share(browser().region_of(selector), [](const Colour& c) { return c.green < 128; });
+  };
+  EXPECT_EQ(ink("#nothing"), 0.0);
+  for (const char* letter : {"#a", "#b", "#rho"}) {
+    EXPECT_GT(ink(letter), 0.03) << letter;
+    EXPECT_LT(ink(letter), 0.5) << letter;
+  }
+  EXPECT_NE(ink("#a"), ink("#b")) << "a font without letters draws the same box for each";
+}
+
+TEST_F(BrowserTest, FindsErrorsOfTheConsoleAndNothingElse) {
+  show(R"(<script>
+      console.log("said");
+      console.warn("warned");
+      console.error("something", 42);
+      setTimeout(() => { throw new Error("nobody caught me"); });
+      Promise.reject(new Error("nobody caught the promise"));
+      setTimeout(() => { window.done = true; });
+    </script><img src="not_there.png">)");
+  browser().wait_until("window.done");
+  const std::vector<std::string> errors = browser().console_errors();
+  EXPECT_EQ(errors.size(), 4U);
+  EXPECT_THAT(errors, Contains(HasSubstr("\"something\" 42")));
+  EXPECT_THAT(errors, Contains(HasSubstr("nobody caught me")));
+  EXPECT_THAT(errors, Contains(HasSubstr("nobody caught the promise")));
+  EXPECT_THAT(errors, Contains(HasSubstr("not_there.png")));
+  EXPECT_THAT(browser().console_errors(), IsEmpty());
+}
+
+TEST_F(BrowserTest, ForgetsTheErrorsOfThePageBefore) {
+  show("<script>console.error('of the page before')</script>");
+  show("<script>console.error('of this page')</script>");
+  EXPECT_THAT(browser().console_errors(), ElementsAre(HasSubstr("of this page")));
+}
+
+TEST_F(BrowserTest, PressesKeys) {
+  show(R"(<script>const keys = []; addEventListener("keydown", event => keys.push(event.key));</script>)");
+  for (const char* key : {"a", " ", "ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown", "Home", "End",
+                          "PageUp", "PageDown", "Enter", "Escape", "Tab"}) {
+    browser().press(key);
+    EXPECT_EQ(browser().run("return keys.pop()"), key);
+  }
+  EXPECT_THAT(what_is_thrown([] { browser().press("ArrowSideways"); }), HasSubstr("invalid argument"));
+}
+
+TEST_F(BrowserTest, PressesKeysForTheElementThatWasClicked) {
+  show(R"(<input id="slider" type="range" min="0" max="9" value="4"><input id="other">)");
+  browser().click("#slider");
+  browser().press("Home");
+  browser().press("ArrowRight");
+  EXPECT_EQ(browser().run("return document.getElementById('slider').value"), "1");
+}
+
+TEST_F(BrowserTest, ClicksInTheMiddleOfAnElementWhereverItIs) {
+  show(R"(<div style="height: 3000px"></div>
+    <button id="go" style="width: 100px; height: 40px; border: 0" onclick="window.at = [event.offsetX, event.offsetY]">go</button>)");
+  browser().click("#go");
+  EXPECT_EQ(browser().wait_until("window.at"), nlohmann::json({50, 20}));
+}
+
+TEST_F(BrowserTest, ClicksNothingThatAPersonCouldNotClick) {
+  show(R"(<button id="go">go</button><div style="position: fixed; inset: 0"></div>)");
+  EXPECT_THAT(what_is_thrown([] { browser().click("#go"); }), HasSubstr("click intercepted"));
+  EXPECT_THAT(what_is_thrown([] { browser().click("#nowhere"); }), HasSubstr("#nowhere"));
+}
+
+TEST_F(BrowserTest, Drags) {
+  show(R"(<div id="view" style="width: 600px; height: 400px"></div>
+    <script>
+      const path = [];
+      for (const kind of ["pointerdown", "pointermove", "pointerup"]) {
+        addEventListener(kind, event => { if (event.buttons || kind === "pointerup") path.push([event.x, event.y]); });
+      }
+    </script>)");
+  browser().drag("#view", 120, -30);
+  EXPECT_EQ(browser().run("return path[0]"), nlohmann::json({300, 200}));
+  EXPECT_EQ(browser().run("return path[path.length - 1]"), nlohmann::json({420, 170}));
+  EXPECT_GT(browser().run("return path.length"), 2);
+}
+
+TEST_F(BrowserTest, ShowsThePageOnAScreenOfTheSizeThatWasAskedFor) {
+  const std::string size = "return [innerWidth, innerHeight, devicePixelRatio, navigator.maxTouchPoints > 0]";
+  show("<p>before</p>");
+  EXPECT_EQ(browser().run(size), nlohmann::json({1280, 720, 1, false}));
+  browser().resize(kPhone);
+  EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
+  show("<button id='go' onclick='window.clicked = true'>after</button>");
+  EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
+  const Picture picture = browser().screenshot();
+  EXPECT_EQ(picture.width(), 390);
+  EXPECT_EQ(picture.height(), 844);
+  browser().click("#go");
+  browser().wait_until("window.clicked");
+  browser().resize(kDesktop);
+  show("<p>again</p>");
+  EXPECT_EQ(browser().run(size), nlohmann::json({1280, 720, 1, false}));
+}
+
+TEST_F(BrowserTest, TakesArgumentsAndReturnsWhatTheScriptReturns) {
+  show("");
+  EXPECT_EQ(browser().run("return arguments[0] + arguments[1].b[0]", 40, nlohmann::json{{"b", {2, 3}}}), 42);
+  EXPECT_EQ(browser().run("return Promise.resolve('later')"), "later");
+  EXPECT_TRUE(browser().run("document.title = arguments[0]", "title").is_null());
+  EXPECT_EQ(browser().run("return document.title"), "title");
+  EXPECT_THAT(what_is_thrown([] { browser().run("throw new Error('out of water')"); }),
+              HasSubstr("out of water"));
+}
+
+TEST_F(BrowserTest, SaysWhatItSawInsteadOfWhatItWaitedFor) {
+  show("<script>console.error('the duck is lost'); window.steps = 0;</script>");
+  EXPECT_THAT(
+      what_is_thrown([] { browser().wait_until("steps > 0 && 'done'", 0.1); }),
+      testing::AllOf(HasSubstr("steps > 0"), HasSubstr("it is false"), HasSubstr("the duck is lost")));
+  EXPECT_THAT(what_is_thrown([] { browser().wait_until("replay.ready", 0.1); }),
+              HasSubstr("ReferenceError: replay is not defined"));
+  browser().run("setTimeout(() => { window.steps = 7; }, 50)");
+  EXPECT_EQ(browser().wait_until("steps"), 7);
+}
+
+TEST_F(BrowserTest, KnowsNoOtherHost) {
+  show(R"(<script>
+      const fetched = url => fetch(url, {mode: "no-cors"}).then(() => "reached", error => "refused");
+      window.all = Promise.all([fetched("http://example.org/"), fetched("http://192.0.2.1/")]);
+    </script>)");
+  EXPECT_EQ(browser().run("return window.all"), nlohmann::json({"refused", "refused"}));
+  const std::vector<std::string> errors = browser().console_errors();
+  EXPECT_THAT(errors, ElementsAre(HasSubstr("ERR_NAME_NOT_RESOLVED"), HasSubstr("ERR_NAME_NOT_RESOLVED")));
+}
+
+TEST_F(BrowserTest, ShowsAPageOfAServerThatNeverStopsSending) {
+  httplib::Server server;
+  server.set_keep_alive_timeout(1);  // s; stopping waits for it
+  std::atomic<bool> over = false;
+  server.Get("/", [](const httplib::Request&, httplib::Response& response) {
+    response.set_content(
+        "<!doctype html><link rel='icon' href='data:,'><script>const heard = [];"
+        "new EventSource('events').onmessage = event => heard.push(event.data);</script>",
+        "text/html");
+  });
+  server.Get("/events", [&](const httplib::Request&, httplib::Response& response) {
+    response.set_chunked_content_provider("text/event-stream", [&](std::size_t, httplib::DataSink& sink) {
+      const std::string event = "data: a wave\n\n";
+      sink.write(event.data(), event.size());
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      return !over;
+    });
+  });
+  const int port = server.bind_to_any_port("127.0.0.1");
+  std::thread serving([&] { server.listen_after_bind(); });
+
+  const std::string trouble = what_is_thrown([&] {
+    browser().open("http://127.0.0.1:" + std::to_string(port) + "/");
+    EXPECT_EQ(browser().wait_until("heard.length > 3 && heard[3]"), "a wave");
+    EXPECT_THAT(browser().console_errors(), IsEmpty());
+    browser().open("about:blank");
+  });
+  over = true;
+  server.stop();
+  serving.join();
+  EXPECT_EQ(trouble, "nothing");
+}
+
+int processes_that_name(const std::string& path, const std::string& option = {}) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    // A process that has ended has no command line, and one that ends just now cannot be read.
+    std::ifstream file(entry.path() / "cmdline");
+    std::string line;
+    std::getline(file, line);
+    if (line.find(path) != std::string::npos && line.find(option) != std::string::npos) ++count;
+  }
+  return count;
+}
+
+template <typename Condition>
+bool comes_true(Condition&& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+// A test of this program as a process of its own, whose browser has its files in `directory`.
+ChildCommand this_program(std::vector<std::string> arguments, const ScratchDirectory& directory) {
+  arguments.insert(arguments.begin(), std::filesystem::read_symlink("/proc/self/exe").string());
+  ChildCommand whole = command_of(std::move(arguments));
+  whole.environment = {"TMPDIR=" + directory.path("")};
+  return whole;
+}
+
+TEST(BrowserProcesses, LeaveNothingBehind) {
+  const ScratchDirectory directory;
+  ChildProcess test(this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory));
+  EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path(""), "--type=renderer") > 0; }));
+  EXPECT_EQ(test.wait(kPatience), 0) << test.standard_output();
+  EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path("")) == 0; }));
+  EXPECT_TRUE(std::filesystem::is_empty(directory.path("")));
+}
+
+TEST(BrowserProcesses, EndWithATestThatIsKilled) {
+  const ScratchDirectory directory;
+  ChildProcess test(this_program({"--gtest_filter=BrowserTest.DrawsText", "--gtest_repeat=-1"}, directory));
+  EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path(""), "--type=renderer") > 0; }));
+  test.send_signal(SIGKILL);
+  EXPECT_EQ(test.wait(kPatience), 128 + SIGKILL);
+  EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path("")) == 0; }));
+}
+
+TEST(BrowserProcesses, FailWithTheNamesOfTheirPackagesWhereTheyAreMissing) {
+  const ScratchDirectory directory;
+  ChildCommand without = this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory);
+  without.environment.emplace_back("PATH=" + directory.path(""));
+  const FinishedProcess finished = run_to_end(without, kPatience);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_THAT(finished.standard_output, HasSubstr("Install Debian's packages chromium and chromium-driver"));
+  EXPECT_THAT(finished.standard_output, testing::Not(HasSubstr("SKIPPED")));
+}
+
+}  // namespace
+}  // namespace buoyancy
