@@ -57,7 +57,7 @@ Expected<void> write_page(const std::filesystem::path& path, const std::string& 
   return file->flush();
 }
 
-std::string summary_of(const Scene& scene, const Run& run, const ReportArguments& arguments,
+std::string summary_of(const Scene& scene, const RecordedRun& run, const ReportArguments& arguments,
                        std::size_t bytes) {
   std::int64_t recorded = 0;
   std::int64_t kept = 0;
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     progress.update(done, total, rows);
     return !signals.pending();
   };
-  const Expected<Run> run = read_run(arguments.run, *scene, kMostRows, arguments.file);
+  const Expected<RecordedRun> run = read_run(arguments.run, *scene, kMostRows, arguments.file);
   progress.clear();
   if (!run) return refuse(run.error(), kWrongInput);
   for (const std::string& trouble : run->troubles) print_error(app, arguments.run.string() + ": " + trouble);

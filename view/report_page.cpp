@@ -113,7 +113,7 @@ Json status_json(const ServiceStatus& status) {
 
 }  // namespace
 
-std::string report_data(const Scene& scene, const Run& run, const ReportOptions& options) {
+std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options) {
   Json data{{"file", options.file},
             {"version", options.version},
             {"columns", kColumnNames},

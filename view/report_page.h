@@ -15,7 +15,7 @@ struct ReportOptions {
 
 // The data that the page's script reads (view/page/report.js). Of bodies that ask for hydrostatics the
 // metacentres are computed for every row that is left. O(rows * a query).
-std::string report_data(const Scene& scene, const Run& run, const ReportOptions& options);
+std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options);
 
 std::string report_page(const std::string& data, std::string_view three);
 

@@ -77,7 +77,7 @@ struct BodyRun {
   SkippedRows skipped;
 };
 
-struct Run {
+struct RecordedRun {
   std::vector<BodyRun> bodies;        // as Scene::bodies()
   std::int64_t unknown_bodies = 0;    // rows about bodies that the scene has not
   std::int64_t sessions = 0;          // of questions; one after the other on the axis of time

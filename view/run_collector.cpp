@@ -155,7 +155,7 @@ void RunCollector::add_trouble(std::string trouble) {
   }
 }
 
-Run RunCollector::take() {
+RecordedRun RunCollector::take() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     run_.bodies[i] = {bodies_[i].rows.rows(), bodies_[i].rows.added(), bodies_[i].skipped};
     // A question that waited in vain comes late.

@@ -41,7 +41,7 @@ class RunCollector {
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 
   // What it all came to; the collector is done for then.
-  Run take();
+  RecordedRun take();
 
  private:
   struct Collected {
@@ -68,7 +68,7 @@ class RunCollector {
   std::unordered_set<std::int64_t> sessions_;  // up to a bound
   std::optional<std::int64_t> first_utime_;
   std::int64_t number_ = 0;
-  Run run_;
+  RecordedRun run_;
 };
 
 }  // namespace buoyancy

@@ -5,8 +5,8 @@
 
 namespace buoyancy {
 
-Expected<Run> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
-                       const RunFileOptions& options) {
+Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
+                               const RunFileOptions& options) {
   const std::string extension = path.extension().string();
   if (extension != ".csv" && extension != ".lcmlog") {
     return failure({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
@@ -15,7 +15,7 @@ Expected<Run> read_run(const std::filesystem::path& path, const Scene& scene, st
   const Expected<void> read =
       extension == ".csv" ? read_run_csv(path, options, collector) : read_run_log(path, options, collector);
   if (!read) return tl::unexpected(read.error());
-  Run run = collector.take();
+  RecordedRun run = collector.take();
   for (const BodyRun& body : run.bodies) {
     if (body.recorded > 0) return run;
   }

@@ -31,7 +31,7 @@ struct RunFileOptions {
 
 // By the extension: .csv or .lcmlog. Memory does not grow with the file. Errors: another extension, not
 // readable, a first line that is no such header, not one row about a body of the scene.
-Expected<Run> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
-                       const RunFileOptions& options);
+Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
+                               const RunFileOptions& options);
 
 }  // namespace buoyancy

@@ -1,6 +1,7 @@
 #include "view/thinned_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace buoyancy {
 namespace {
@@ -25,9 +26,10 @@ void ThinnedRows::join(Cut& cut, const Cut& other) {
     Numbered& largest = cut[2 + 2 * i];
     const Numbered& other_least = other[1 + 2 * i];
     const Numbered& other_largest = other[2 + 2 * i];
-    // Turned round so that a NaN gives way to any number.
-    if (!(least.row[column] <= other_least.row[column])) least = other_least;
-    if (!(largest.row[column] >= other_largest.row[column])) largest = other_largest;
+    // A NaN is passed over and gives way to any number.
+    if (other_least.row[column] < least.row[column] || std::isnan(least.row[column])) least = other_least;
+    if (other_largest.row[column] > largest.row[column] || std::isnan(largest.row[column]))
+      largest = other_largest;
   }
 }
 

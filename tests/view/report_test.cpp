@@ -1,0 +1,290 @@
+// buoyancy-report as its reader meets it: a run of buoyancy-client, in a browser.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/child_process.h"
+#include "tests/service/one_box_scene.h"
+#include "tests/service/scratch_directory.h"
+#include "tests/view/page_test.h"
+
+namespace buoyancy {
+namespace {
+
+// A box that floats half deep and is pushed 1 m down at the start.
+const std::string kBobbingBox = kOneBoxScene + R"(outputs = ["wrench", "hydrostatics"]
+[body.client]
+density = 500.0
+position = [0, 0, -1]
+linear_damping = 8000
+)";
+
+FinishedProcess report(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{BUOYANCY_REPORT};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run_to_end(command_of(std::move(command)), kPatience);
+}
+
+class TheReport : public PageTest {
+ protected:
+  static void SetUpTestSuite() {
+    directory_ = std::make_unique<ScratchDirectory>();
+    const std::string scene = directory_->write("box.toml", kBobbingBox);
+    const FinishedProcess simulated = run_to_end(
+        command_of({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "5", "--csv", csv()}),
+        kPatience);
+    made_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
+  }
+  static void TearDownTestSuite() {
+    PageTest::TearDownTestSuite();
+    directory_.reset();
+  }
+
+  void SetUp() override {
+    ASSERT_TRUE(made_) << "buoyancy-client or buoyancy-report failed";
+    PageTest::SetUp();
+    open();
+  }
+
+  static std::string csv() { return directory_->path("run.csv"); }
+  static std::string page() { return directory_->path("run.html"); }
+  static void open() {
+    browser().open_file(page());
+    browser().wait_until("window.buoyancy_report !== undefined");
+  }
+
+  // The column of the CSV, as its own numbers.
+  static std::vector<double> recorded(const std::string& name) {
+    std::ifstream file(csv());
+    std::string line;
+    std::getline(file, line);
+    const auto cells = [](const std::string& text) {
+      std::vector<std::string> found;
+      std::istringstream stream(text);
+      for (std::string cell; std::getline(stream, cell, ',');) found.push_back(cell);
+      return found;
+    };
+    const std::vector<std::string> names = cells(line);
+    const auto place = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    std::vector<double> column;
+    while (std::getline(file, line)) column.push_back(std::stod(cells(line).at(place)));
+    return column;
+  }
+
+  static void go_to(double time) { browser().run("buoyancy_report.seek(arguments[0])", time); }
+  static double time() { return browser().run("return buoyancy_report.state().time").get<double>(); }
+
+  // The pixel of the screenshot where a point of the world is drawn.
+  static std::array<int, 2> pixel_of(double x, double y, double z) {
+    const nlohmann::json at = browser().run(
+        "const box = document.getElementById('canvas').getBoundingClientRect();"
+        "const [x, y] = buoyancy_report.scene.project(arguments[0]); return [x + box.left, y + box.top];",
+        std::array{x, y, z});
+    return {static_cast<int>(at[0].get<double>()), static_cast<int>(at[1].get<double>())};
+  }
+
+ private:
+  static inline std::unique_ptr<ScratchDirectory> directory_;
+  static inline bool made_ = false;
+};
+
+TEST_F(TheReport, OpensWithoutAnErrorAndWithoutAnotherFile) {
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+  EXPECT_EQ(browser().run("return performance.getEntriesByType('resource').length"), 0);
+  EXPECT_LT(contents_of(page()).size(), 5'000'000);
+}
+
+TEST_F(TheReport, DrawsSkyWaterDryHullWettedHullAndTheWaterlineInBetween) {
+  go_to(5.0);
+  const double heave = recorded("pz").back();
+  const Picture picture = browser().screenshot();
+  const auto at = [&picture](std::array<int, 2> place) { return picture.pixel(place[0], place[1]); };
+  // The face at y = -1.5 looks at the camera.
+  const Colour dry = at(pixel_of(0.7, -1.5, 0.7 + heave));
+  EXPECT_GT(dry.red, dry.green);
+  EXPECT_GT(dry.green, dry.blue + 60) << "orange";
+  const Colour wetted = at(pixel_of(0.7, -1.5, -1.2));
+  EXPECT_GT(wetted.blue, wetted.red + 60) << "blue";
+  const Region canvas = browser().region_of("#canvas");
+  const Colour sky = picture.pixel(canvas.left + 5, canvas.top + 5);
+  EXPECT_TRUE(is_near({234, 243, 250}, 4)(sky));
+  const Colour water = picture.pixel(canvas.left + 8, canvas.top + canvas.height - 8);
+  EXPECT_GT(water.blue, water.red + 50);
+  EXPECT_LT(wetted.red + wetted.green + wetted.blue, water.red + water.green + water.blue - 60)
+      << "hull, not water";
+
+  const std::array<int, 2> line = pixel_of(0.7, -1.5, 0.0);
+  bool white = false;
+  for (int dy = -3; dy <= 3; ++dy)
+    white = white || is_near({255, 255, 255}, 45)(picture.pixel(line[0], line[1] + dy));
+  EXPECT_TRUE(white) << "the waterline at the face's middle";
+  EXPECT_FALSE(is_near({255, 255, 255}, 45)(at({line[0], line[1] - 12})));
+}
+
+TEST_F(TheReport, MovesTheBodyWithTheSlider) {
+  const auto height = [] {
+    return browser().run("return buoyancy_report.scene.bodies.get(1).group.position.z").get<double>();
+  };
+  const Region canvas = browser().region_of("#canvas");
+  const Picture at_start = browser().screenshot();
+  EXPECT_NEAR(height(), recorded("pz").front(), 1e-6);
+  browser().drag("#slider", 60, 0);
+  const double later = time();
+  EXPECT_GT(later, 2.0);
+  EXPECT_NEAR(height(), recorded("pz").at(static_cast<std::size_t>(later * 1e3)), 0.01);
+  EXPECT_GT(browser().screenshot().share_changed(at_start, canvas), 0.01);
+}
+
+TEST_F(TheReport, PlotsTheNumbersOfTheRun) {
+  const auto shown = [](const std::string& plot, int series) {
+    return browser()
+        .run("return Array.from(buoyancy_report.plots[arguments[0]].series[arguments[1]].values)", plot,
+             series)
+        .get<std::vector<double>>();
+  };
+  EXPECT_EQ(shown("heave", 0), recorded("pz"));
+  EXPECT_EQ(shown("force", 0), recorded("fz"));
+  EXPECT_EQ(shown("torque", 1), recorded("tx"));
+  EXPECT_EQ(shown("energy", 0), recorded("energy"));
+  // And it is they that are drawn: the path's lowest point is the highest value, at its place between first
+  // and last.
+  const nlohmann::json drawn = browser().run(R"(
+    const plot = buoyancy_report.plots.heave;
+    const points = plot.svg.querySelector('path').getAttribute('d').split(/[ML]/).slice(1).map((p) => p.split(' ').map(Number));
+    const top = points.reduce((a, b) => (b[1] < a[1] ? b : a));
+    return {count: points.length, time: plot.time(top[0])};)");
+  const std::vector<double> heave = recorded("pz");
+  EXPECT_EQ(drawn["count"], heave.size());
+  const auto highest = std::ranges::max_element(heave) - heave.begin();
+  EXPECT_NEAR(drawn["time"].get<double>(), 1e-3 * static_cast<double>(highest), 0.05);
+}
+
+TEST_F(TheReport, GoesWhereSomebodyPointsInAPlot) {
+  browser().run("document.querySelector('#plots figure:nth-of-type(2) svg').id = 'angles'");
+  browser().click("#angles");
+  EXPECT_GT(time(), 1.5);
+  EXPECT_LT(time(), 3.5);
+}
+
+TEST_F(TheReport, IsPlayedByTheKeyboard) {
+  browser().press("End");
+  EXPECT_EQ(time(), 5.0);
+  browser().press("Home");
+  EXPECT_EQ(time(), 0.0);
+  browser().press("ArrowRight");
+  EXPECT_NEAR(time(), 0.05, 1e-9);
+  browser().press("+");
+  EXPECT_EQ(browser().run("return buoyancy_report.state().speed"), 2);
+  browser().press(" ");
+  browser().wait_until("buoyancy_report.state().time > 1 && buoyancy_report.state().playing");
+  browser().press(" ");
+  EXPECT_EQ(browser().run("return buoyancy_report.state().playing"), false);
+  const double azimuth = browser().run("return buoyancy_report.scene.azimuth").get<double>();
+  browser().press("a");
+  EXPECT_NE(browser().run("return buoyancy_report.scene.azimuth").get<double>(), azimuth);
+}
+
+TEST_F(TheReport, TurnsItsCameraWhereSomebodyDrags) {
+  const Picture before = browser().screenshot();
+  browser().drag("#canvas", 120, 20);
+  EXPECT_GT(browser().screenshot().share_changed(before, browser().region_of("#canvas")), 0.01);
+}
+
+TEST_F(TheReport, ShowsTheMetacentreOfABodyThatAsksForHydrostatics) {
+  go_to(5.0);
+  // BM = I / V of the softer axis over the middle of what is under water.
+  const double heave = recorded("pz").back();
+  const double draft = 2.0 - heave;
+  const double expected = -0.5 * draft + 3.0 * 8.0 / 12.0 / (6.0 * draft);
+  EXPECT_NEAR(
+      browser().run("return buoyancy_report.scene.bodies.get(1).marks.metacentre.position.z").get<double>(),
+      expected, 1e-3);
+}
+
+TEST_F(TheReport, TellsThoseWhoCannotSeeThePlotsWhatTheyShow) {
+  const auto labels = browser()
+                          .run(
+                              "return Array.from(document.querySelectorAll('#plots svg')).map((svg) => "
+                              "svg.getAttribute('role') + ': ' + svg.getAttribute('aria-label'))")
+                          .get<std::vector<std::string>>();
+  ASSERT_EQ(labels.size(), 6);
+  EXPECT_EQ(labels[0].find("img: Heave in m over time from 0 to 5 s: B's origin over the water from -1 to "),
+            0);
+  EXPECT_NE(labels[5].find("was not recorded"), std::string::npos);
+}
+
+TEST_F(TheReport, KeepsDryAndWettedApartByLightAlone) {
+  const auto luminance = [](const std::string& name) {
+    return browser()
+        .run(
+            "const c = parseInt(WaterScene.colours[arguments[0]].slice(1), 16);"
+            "const part = (v) => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; "
+            "};"
+            "return 0.2126 * part(c >> 16) + 0.7152 * part(c >> 8 & 255) + 0.0722 * part(c & 255);",
+            name)
+        .get<double>();
+  };
+  const auto contrast = [&](const std::string& brighter, const std::string& darker) {
+    return (luminance(brighter) + 0.05) / (luminance(darker) + 0.05);
+  };
+  EXPECT_GT(contrast("dry", "wet"), 3.0);
+  EXPECT_GT(contrast("waterline", "wet"), 3.0);
+  EXPECT_GT(contrast("waterline", "dry"), 1.5);
+}
+
+TEST_F(TheReport, FitsAPhone) {
+  browser().resize(kPhone);
+  open();
+  EXPECT_LE(browser().run("return document.documentElement.scrollWidth").get<int>(), kPhone.width);
+  EXPECT_GT(browser().region_of("#canvas").width, 300);
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("box.toml", kOneBoxScene);
+  const std::string run =
+      directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
+  const FinishedProcess no_scene = report({run, directory.path("page.html")});
+  EXPECT_EQ(no_scene.exit_code, 2);
+  EXPECT_NE(no_scene.standard_error.find("--scene is required"), std::string::npos)
+      << no_scene.standard_error;
+  EXPECT_EQ(report({"--scene", scene, run, run}).exit_code, 2) << "RUN would be overwritten";
+  EXPECT_EQ(report({"--scene", scene, directory.path("no.csv"), directory.path("page.html")}).exit_code, 2);
+}
+
+TEST(ReportOutput, ThatCannotBeWrittenIsAnErrorWithExitCode1) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("box.toml", kOneBoxScene);
+  const std::string run =
+      directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
+  const FinishedProcess full = report({"--scene", scene, run, "/dev/full"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.standard_error.find("/dev/full"), std::string::npos);
+  const FinishedProcess no_three =
+      report({"--scene", scene, "--three", directory.path("none.js"), run, directory.path("page.html")});
+  EXPECT_EQ(no_three.exit_code, 1);
+  EXPECT_NE(no_three.standard_error.find("libjs-three"), std::string::npos);
+}
+
+TEST(ReportOfADamagedRun, IsWrittenAndFailsWithWhatWasLeftOut) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("box.toml", kOneBoxScene);
+  const std::string run =
+      directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n</script>,1\n");
+  const FinishedProcess finished = report({"--scene", scene, run, directory.path("page.html")});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("line 3"), std::string::npos);
+  EXPECT_NE(contents_of(directory.path("page.html")).find("line 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,195 @@
+#include "view/run_file.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "exchange/exchange.h"
+#include "recording/event_log.h"
+#include "tests/service/one_box_scene.h"
+#include "tests/service/scratch_directory.h"
+
+namespace buoyancy {
+namespace {
+
+Scene scene_of(const std::string& text) {
+  return Scene::prepare(parse_scene(text, "scene.toml", {}).value()).value();
+}
+
+Question question_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
+  Question question;
+  question.key = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq};
+  question.bodies.resize(1);
+  question.bodies[0] = {
+      .body_id = 1, .position = {0.0, 0.0, height}, .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}};
+  return question;
+}
+
+class ARunFile : public testing::Test {
+ protected:
+  Expected<RecordedRun> read(const std::string& path) const { return read_run(path, scene_, 1'000, {}); }
+  Expected<RecordedRun> read_csv(const std::string& text) const {
+    return read(directory_.write("run.csv", text));
+  }
+
+  // As lcm-logger would have heard it.
+  void log(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
+    std::vector<std::uint8_t> event;
+    encode_event(number_++, timestamp, channel, bytes, event);
+    log_.insert(log_.end(), event.begin(), event.end());
+  }
+  void log_question(std::int64_t timestamp, const Question& question) {
+    std::vector<std::uint8_t> bytes;
+    encode(question, bytes);
+    log(timestamp, kStatesChannel, bytes);
+  }
+  void log_answer(std::int64_t timestamp, const Question& question) {
+    std::vector<std::uint8_t> bytes;
+    encode(question, bytes);
+    log(timestamp, kWrenchesChannel, exchange_.answer(bytes));
+  }
+  Expected<RecordedRun> read_log() const {
+    return read(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}));
+  }
+
+  ScratchDirectory directory_;
+  Scene scene_ = scene_of(kOneBoxScene);
+  Exchange exchange_{scene_};
+  std::vector<std::uint8_t> log_;
+  std::int64_t number_ = 0;
+};
+
+TEST_F(ARunFile, OfPosesAloneHasItsForcesComputed) {
+  const RecordedRun run = read_csv(
+                              "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
+                              "5000000,1,0,0,0,1,0,0,0\n"
+                              "5001000,1,0,0,1,1,0,0,0\n")
+                              .value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 2);
+  EXPECT_EQ(run.computed, 2);
+  const Row& half_deep = run.bodies[0].rows[0];
+  EXPECT_EQ(half_deep[kTime], 0.0);
+  EXPECT_NEAR(half_deep[kFz], 12.0 * kDensity * kGravity, 1e-6);
+  EXPECT_TRUE(std::isnan(half_deep[kEnergy])) << "nobody said the box's mass";
+  const Row& higher = run.bodies[0].rows[1];
+  EXPECT_DOUBLE_EQ(higher[kTime], 1e-3);
+  EXPECT_EQ(higher[kHeave], 1.0);
+  EXPECT_NEAR(higher[kForce], 6.0 * kDensity * kGravity, 1e-6);
+}
+
+TEST_F(ARunFile, KeepsWhatWasRecordedAndComputesNothingOfIt) {
+  const RecordedRun run =
+      read_csv(
+          "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,status,fx,fy,fz,tx,ty,tz,volume,"
+          "bx,by,bz,energy\n"
+          "0,1,0,0,0,1,0,0,0,0,0,0,0,0,0,0,1,2,3,4,5,6,7,8,9,10,11.25\n")
+          .value();
+  const Row& row = run.bodies[0].rows.at(0);
+  EXPECT_EQ(run.computed, 0);
+  EXPECT_EQ(std::vector(row.begin() + kFx, row.begin() + kRoundTrip),
+            (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.25}));
+}
+
+TEST_F(ARunFile, LeavesOutRowsThatAreDamagedAndSaysWhich) {
+  const RecordedRun run = read_csv(
+                              "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
+                              "0,1,0,0,0,1,0,0,0\n"
+                              "1000,1,0,0,zero,1,0,0,0\n"
+                              "2000,1,0,0\n"
+                              "3000,1,0,0,0,1,0,0,0\n")
+                              .value();
+  EXPECT_EQ(run.bodies[0].recorded, 2);
+  EXPECT_EQ(run.troubles, (std::vector<std::string>{"line 3 is not 9 numbers: left out",
+                                                    "line 4 is not 9 numbers: left out"}));
+}
+
+TEST_F(ARunFile, IsRefusedWhereItHasNoPoses) {
+  const auto answers_alone = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
+  ASSERT_FALSE(answers_alone);
+  EXPECT_NE(answers_alone.error().message().find("px, py, pz"), std::string::npos);
+  const auto of_another_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(of_another_scene);
+  EXPECT_NE(of_another_scene.error().message().find("1 rows, none about a body of scene.toml"),
+            std::string::npos);
+  EXPECT_FALSE(read(directory_.write("run.txt", ""))) << "neither .csv nor .lcmlog";
+  EXPECT_FALSE(read(directory_.path("missing.csv")));
+  EXPECT_FALSE(read(directory_.path("missing.lcmlog")));
+}
+
+TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
+  for (std::int64_t seq = 0; seq < 10; ++seq) {
+    const Question question = question_at(seq, 0.1 * static_cast<double>(seq));
+    log_question(1'000'000 + 1'000 * seq, question);
+    log_answer(1'000'000 + 1'000 * seq + 250, question);
+  }
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 10);
+  EXPECT_EQ(run.computed, 0);
+  for (const Row& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
+  EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
+}
+
+TEST_F(ARunFile, ThatIsALogCountsARepeatedQuestionOnceAndComputesAnAnswerThatNeverCame) {
+  const Question lost = question_at(0, 0.5);
+  const Question repeated = question_at(1, 0.0);
+  log_question(0, lost);
+  log_question(1'000, repeated);
+  log_question(2'000, repeated);
+  log_answer(2'100, repeated);
+  log_answer(2'200, repeated);
+  log_question(2'300, repeated);
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 2);
+  EXPECT_EQ(run.computed, 1);
+  EXPECT_EQ(run.bodies[0].rows[0][kHeave], 0.5) << "in order of time, although it was given up last";
+  EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
+  EXPECT_TRUE(std::isnan(run.bodies[0].rows[0][kRoundTrip]));
+  EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first asking";
+}
+
+TEST_F(ARunFile, PutsASessionThatStartsItsClockAgainBehindTheOneBefore) {
+  for (const std::int64_t session : {1, 2}) {
+    for (std::int64_t seq = 0; seq < 3; ++seq) {
+      const Question question = question_at(seq, 0.0, session);
+      log_question(1'000 * seq, question);
+      log_answer(1'000 * seq + 100, question);
+    }
+  }
+  const RecordedRun run = read_log().value();
+  EXPECT_EQ(run.sessions, 2);
+  ASSERT_EQ(run.bodies[0].rows.size(), 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(run.bodies[0].rows[i][kTime], 1e-3 * static_cast<double>(i), 1e-9);
+  }
+}
+
+TEST_F(ARunFile, SaysWhatItsPosesLetTheServiceSkip) {
+  const RecordedRun run = read_csv(
+                              "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
+                              "0,1,0,0,0,1,0,0,0\n"      // crosses the surface
+                              "1000,1,0,0,0,1,0,0,0\n"   // again
+                              "2000,1,0,0,50,1,0,0,0\n"  // dry
+                              "3000,1,0,0,0,0,0,0,0\n"   // no turn at all
+                              "4000,1,0,0,-50,1,0,0,0\n")
+                              .value();
+  const SkippedRows& skipped = run.bodies[0].skipped;
+  EXPECT_EQ(skipped.unchanged, 1);
+  EXPECT_EQ(skipped.dry, 1);
+  EXPECT_EQ(skipped.refused, 1);
+  EXPECT_EQ(skipped.wet, 0) << "method exact computes what is wholly wet";
+  EXPECT_EQ(skipped.crossing, 2);
+}
+
+TEST_F(ARunFile, HasTheEnergyOfALogWhereTheSceneSaysTheMass) {
+  scene_ = scene_of(kOneBoxScene + "[body.client]\ndensity = 500.0\n");
+  Question falling = question_at(0, 10.0);
+  falling.bodies[0].linear_velocity = {0.0, 0.0, -2.0};
+  log_question(0, falling);
+  const double mass = 24.0 * 500.0;
+  EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
+}
+
+}  // namespace
+}  // namespace buoyancy
