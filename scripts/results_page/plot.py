@@ -48,7 +48,8 @@ TOLERANCE_MARKERS = ["plus", "cross", "star", "circle"]
 
 
 def tolerance_style(tolerance, index):
-    return Style(f"hierarchical, tolerance {float(tolerance):.0e}".replace("e-0", "e-"), "#aa4488", TOLERANCE_MARKERS[index % 4], "m-tolerance")
+    label = f"hierarchical, tolerance {float(tolerance):.0e}".replace("e-0", "e-")
+    return Style(label, "#aa4488", TOLERANCE_MARKERS[index % len(TOLERANCE_MARKERS)], "m-tolerance")
 
 
 def number(value):
@@ -66,6 +67,20 @@ def text(x, y, content, *, css="ink", anchor="start", size=13, weight="", halo=F
         extra += f' transform="rotate({rotate} {number(x)} {number(y)})"'
     return (f'<text class="{css}" x="{number(x)}" y="{number(y)}" text-anchor="{anchor}" font-size="{size}" '
             f'fill="{colour}"{extra}>{content}</text>')
+
+
+def note(x, y, content, *, anchor="middle", size=12, halo=False, rotate=None):
+    """What stands back behind the names: ticks, sizes, explanations."""
+    return text(x, y, content, css="soft", anchor=anchor, size=size, halo=halo, rotate=rotate, colour=SOFT)
+
+
+def heading(width, wide, title, short_title):
+    shown = escape(title if wide else short_title)
+    return text(width / 2, 24, shown, anchor="middle", size=17 if wide else 15, weight="600")
+
+
+def grid_line(path):
+    return f'<path class="grid" d="{path}" stroke="{GRID}"/>'
 
 
 def marker(x, y, style, tooltip=""):
@@ -136,23 +151,22 @@ class Panel:
         bottom, right = self.top + self.height, self.left + self.width
         for value, label in self.y.ticks() if self.y else []:
             at = self.at_y(value)
-            self.parts.append(f'<path class="grid" d="M{number(self.left)} {number(at)}H{number(right)}" stroke="{GRID}"/>')
-            self.parts.append(text(self.left - 7, at + 4, label, css="soft", anchor="end", size=12, colour=SOFT))
+            self.parts.append(grid_line(f"M{number(self.left)} {number(at)}H{number(right)}"))
+            self.parts.append(note(self.left - 7, at + 4, label, anchor="end"))
         for value, label in self.x.ticks():
             at = self.at_x(value)
-            self.parts.append(f'<path class="grid" d="M{number(at)} {number(self.top)}V{number(bottom)}" stroke="{GRID}"/>')
-            self.parts.append(text(at, bottom + 18, label, css="soft", anchor="middle", size=12, colour=SOFT))
+            self.parts.append(grid_line(f"M{number(at)} {number(self.top)}V{number(bottom)}"))
+            self.parts.append(note(at, bottom + 18, label))
         self.parts.append(f'<path class="axis" d="M{number(self.left)} {number(self.top)}V{number(bottom)}'
                           f'H{number(right)}" fill="none" stroke="{AXIS}"/>')
         middle = self.left + self.width / 2
         if self.title:
             self.parts.append(text(middle, self.top - 10, escape(self.title), anchor="middle", size=14, weight="600"))
         if self.x.label:
-            self.parts.append(text(middle, bottom + 38, escape(self.x.label), css="soft", anchor="middle", colour=SOFT))
+            self.parts.append(note(middle, bottom + 38, escape(self.x.label), size=13))
         if self.y and self.y.label:
             across = self.left - 48
-            self.parts.append(text(across, self.top + self.height / 2, escape(self.y.label), css="soft", anchor="middle",
-                                   rotate=-90, colour=SOFT))
+            self.parts.append(note(across, self.top + self.height / 2, escape(self.y.label), size=13, rotate=-90))
 
     def at_x(self, value):
         return self.left + self.width * self.x.share(value)
