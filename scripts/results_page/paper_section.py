@@ -9,6 +9,7 @@ from markdown import Table
 from parts import card, details, file_of, not_measured, picture, source_line, table_with
 from plot import METHODS, Figure, Panel, Scale, heading, marker, note, text
 
+FIND_MODELS = "Rocks of their size stood in; <code>BUOYANCY_MESHES</code> names the folder of the scanned models."
 PAPER = Path(__file__).resolve().parents[2] / "bench" / "paper_numbers.csv"
 
 
@@ -72,7 +73,7 @@ def paper_table1_figure(compared, wide):
 
 
 def paper_card(part):
-    claim = "Beside the paper: its exact answer, on its largest model"
+    claim = "Beside the paper: its exact answer, on its largest model at hand"
     if not part.measured():
         return card(claim, None, "", "", part)
     compared = [r for r in compared_table1(part) if r[2] in ("exact", "hierarchical")]
@@ -174,9 +175,13 @@ def table1_section(part):
         return not_measured(part)
     compared = compared_table1(part)
     if not compared:
-        return ('<p class="absent">None of the paper\'s models was measured: other meshes stood in for them. '
-                "BUOYANCY_MESHES names the folder of the scanned models.</p>" + source_line(part))
+        return f"<p class=\"absent\">None of the paper's models was measured. {FIND_MODELS}</p>" + source_line(part)
     said = {r["quantity"]: r["value"] for r in paper_rows()}
+    measured = {model for model, *_ in compared}
+    absent = list(dict.fromkeys(r["model"] for r in paper_rows()
+                                if r["place"] == "table 1" and r["model"] not in measured))
+    missing = (f'<p class="absent">Not at hand, and so not compared: {escape(", ".join(absent))}. {FIND_MODELS}</p>'
+               if absent else "")
     facts = part.facts
     return "\n".join([
         picture(lambda wide: paper_table1_figure(compared, wide),
@@ -186,6 +191,7 @@ def table1_section(part):
         f"{escape(facts['processor'])}, {escape(facts['system'])}, {escape(facts['compiler'])}, one thread, the median "
         "of five runs over poses from almost dry to almost submerged, as in the paper. The ratio contains all of that, "
         "so it is no measure of an algorithm by itself.</p>",
+        missing,
         details("The numbers: table 1 beside this run",
                 markdown.table_html(table1_table(compared), "the paper's table 1 beside this run")
                 + "<p>* Beside the paper's time for <code>exact</code>, which answers the same question.</p>"),
