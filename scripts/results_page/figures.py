@@ -109,7 +109,7 @@ def name_beside(panel, style, points):
         return [text(x - 10, y + 4, style.label, css=style.css, anchor="end", colour=style.colour, halo=True)]
     if style is METHODS["hierarchical"]:
         x, y = panel.at(points[0].shown())
-        return [text(x - 22, y + 4, style.label, css=style.css, anchor="end", weight="600", colour=style.colour,
+        return [text(x - 28, y + 4, style.label, css=style.css, anchor="end", weight="600", colour=style.colour,
                      halo=True)]
     # exact and exact_surface lie on each other: one is named below, one above.
     x, y = panel.at(points[-1].shown())
