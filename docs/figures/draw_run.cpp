@@ -1,11 +1,14 @@
 // Draws a scene's bodies in the water as an SVG strip, one picture for each time asked for, from the poses of
 // a run that buoyancy-client --csv wrote.
 //
-//   draw_run SCENE RUN_CSV OUTPUT.svg SECONDS...
+//   draw_run [--from-ahead] SCENE RUN_CSV OUTPUT.svg SECONDS...
 //
 // Orthographic, seen from above the water: what is above it can hide, but never be hidden by, what is below,
 // so the two are painted one after the other, each back to front. The triangles are cut at the water by the
 // very clip that the solvers use.
+//
+// --from-ahead: against the x axis instead, with the water's surface as a line, as stability is drawn: the
+// run's force where it acts, the centre of mass, and the metacentre at that pose. Up has to be +z.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,11 +16,13 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/triangle_clip.h"
 #include "scene/scene.h"
 
@@ -33,6 +38,8 @@ struct Row {
   double seconds = 0.0;
   std::int32_t body_id = 0;
   Pose pose;
+  Vec3 force_W = Vec3::Zero();               // N
+  Vec3 center_of_buoyancy_W = Vec3::Zero();  // m, relative to the pose's position
 };
 
 std::vector<Row> read_run(const char* path) {
@@ -53,23 +60,34 @@ std::vector<Row> read_run(const char* path) {
     };
     rows.push_back(Row{number("utime") * 1e-6, static_cast<std::int32_t>(number("body_id")),
                        Pose{Vec3(number("px"), number("py"), number("pz")),
-                            Eigen::Quaterniond(number("qw"), number("qx"), number("qy"), number("qz"))}});
+                            Eigen::Quaterniond(number("qw"), number("qx"), number("qy"), number("qz"))},
+                       Vec3(number("fx"), number("fy"), number("fz")),
+                       Vec3(number("bx"), number("by"), number("bz"))});
   }
   return rows;
 }
 
+struct View {
+  double azimuth, elevation;           // rad
+  double size;                         // of the bodies, as a share of the panel
+  double ambient;                      // light from everywhere, 0 to 1
+  std::array<double, 3> above, below;  // colours of what is above and below the water
+  bool from_ahead;
+};
+constexpr View kFromAbove{-0.6, 0.33, 0.56, 0.35, {1.0, 0.80, 0.16}, {0.44, 0.65, 0.62}, false};
+constexpr View kFromAhead{-0.5 * std::numbers::pi, 0.0, 0.72, 0.6, {0.98, 0.90, 0.76},
+                          {0.62, 0.80, 0.90},      true};
+
 // World to picture: x to the right, y up the picture, z towards the eye.
-Mat3 camera() {
-  const double azimuth = -0.6;
-  const double elevation = 0.33;
-  return (Eigen::AngleAxisd(elevation - EIGEN_PI / 2, Vec3::UnitX()) *
-          Eigen::AngleAxisd(azimuth, Vec3::UnitZ()))
+Mat3 camera(const View& view) {
+  return (Eigen::AngleAxisd(view.elevation - 0.5 * std::numbers::pi, Vec3::UnitX()) *
+          Eigen::AngleAxisd(view.azimuth, Vec3::UnitZ()))
       .toRotationMatrix();
 }
 
 struct Facet {
   std::array<Vec3, 3> corners;  // in the picture's axes
-  double shade = 0.0;           // 0 to 1
+  double light = 0.0;           // that falls on it, 0 to 1
 };
 
 // What is to be painted, in the picture's axes: facets that face the eye, and where the water's surface meets
@@ -85,7 +103,7 @@ void add_facet(const Corner<double>& a, const Corner<double>& b, const Corner<do
   const Vec3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
   if (normal.z() <= 0.0) return;  // turned away from the eye
   const Vec3 light = Vec3(-0.45, 0.65, 0.62).normalized();
-  facet.shade = 0.35 + 0.65 * std::max(0.0, normal.normalized().dot(light));
+  facet.light = std::max(0.0, normal.normalized().dot(light));
   layer.push_back(facet);
 }
 
@@ -98,11 +116,11 @@ void add_wet_part(const std::array<Corner<double>, 3>& corner, std::vector<Facet
                  [&](const auto& a, const auto& b, const auto& c) { add_facet(a, b, c, layer); });
 }
 
-void add_body(const Body& body, const Pose& pose, const Water& water, Layers& layers) {
+void add_body(const Body& body, const Pose& pose, const Water& water, const Mat3& camera, Layers& layers) {
   const HydrostaticMesh& mesh = body.prepared->mesh;
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  const Mat3 R = camera() * pose.q_WB.normalized().toRotationMatrix();
-  const Vec3 p = camera() * pose.p_WB + R * mesh.center_B;
+  const Mat3 R = camera * pose.q_WB.normalized().toRotationMatrix();
+  const Vec3 p = camera * pose.p_WB + R * mesh.center_B;
   for (const Triangle& triangle : mesh.surface.triangles) {
     std::array<Corner<double>, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -134,11 +152,12 @@ class Panel {
  public:
   Panel(std::FILE* file, double scale, const Vec3& water) : file_(file), scale_(scale), water_(water) {}
 
-  void facets(const std::vector<Facet>& facets, const std::array<double, 3>& colour) const {
+  void facets(const std::vector<Facet>& facets, const std::array<double, 3>& colour, double ambient) const {
     for (const Facet& f : facets) {
+      const double shade = ambient + (1.0 - ambient) * f.light;
       std::array<int, 3> c{};
       for (std::size_t i = 0; i < 3; ++i)
-        c[i] = static_cast<int>(std::lround(255.0 * std::min(1.0, colour[i] * f.shade)));
+        c[i] = static_cast<int>(std::lround(255.0 * std::min(1.0, colour[i] * shade)));
       const auto& [p, q, r] = f.corners;
       std::fprintf(file_, "<path color=\"#%02x%02x%02x\" d=\"M%d %dL%d %d %d %dz\"/>\n", c[0], c[1], c[2],
                    x(p), y(p), x(q), y(q), x(r), y(r));
@@ -173,60 +192,143 @@ std::map<std::int32_t, Row> rows_at(const std::vector<Row>& rows, double seconds
   return at;
 }
 
-void draw_panel(std::FILE* file, const Scene& scene, const std::map<std::int32_t, Row>& at,
-                const Panel& panel, double extent) {
+// The water's surface: a round piece of it seen from above, or all below its line.
+void draw_water(std::FILE* file, const Water& water, const View& view, const Panel& panel, double extent) {
+  std::fputs("<path fill=\"#a9cfe3\" d=\"M", file);
+  if (view.from_ahead) {
+    const int surface = panel.y(camera(view) * (water.level * water.up_W));
+    std::fprintf(file, "0 %dH%gV%gH0", surface, 10.0 * kPanel, 10.0 * kHeight * kPanel);
+  } else {
+    const Vec3 up = water.up_W;
+    const Vec3 along = up.unitOrthogonal();
+    const Vec3 across = up.cross(along);
+    for (int i = 0; i < 64; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 64;
+      const Vec3 rim =
+          camera(view) * (water.level * up + extent * (std::cos(angle) * along + std::sin(angle) * across));
+      std::fprintf(file, "%d %d ", panel.x(rim), panel.y(rim));
+    }
+  }
+  std::fputs("z\"/>\n", file);
+}
+
+void draw_point(std::FILE* file, const Panel& panel, const Vec3& at, const char* colour, const char* letter) {
+  std::fprintf(file,
+               "<circle cx=\"%d\" cy=\"%d\" r=\"42\" fill=\"%s\" stroke=\"#fff\" stroke-width=\"12\"/>\n"
+               "<text x=\"%d\" y=\"%d\" font-size=\"130\" font-weight=\"bold\" fill=\"%s\" stroke=\"#fff\" "
+               "stroke-width=\"30\" paint-order=\"stroke\">%s</text>\n",
+               panel.x(at), panel.y(at), colour, panel.x(at) + 75, panel.y(at) + 45, colour, letter);
+}
+
+// The force where it acts, the centre of mass and the metacentre of heeling about the length, and the line
+// on which the latter lies over the centre of buoyancy.
+void draw_balance(std::FILE* file, const Body& body, const Row& row, const Water& water, const View& view,
+                  const Panel& panel, double metres_per_newton) {
+  const auto state =
+      hydrostatics(body.prepared->mesh, row.pose, water, body.reference_B, body.center_of_mass_B);
+  if (!state || !body.center_of_mass_B) return;
+  const Mat3 C = camera(view);
+  const Vec3 buoyancy = C * (row.pose.p_WB + row.center_of_buoyancy_W);
+  const Vec3 metacentre = C * (row.pose.p_WB + state->metacenters_W[0]);
+  const Vec3 mass = C * (row.pose.p_WB + row.pose.q_WB.normalized() * *body.center_of_mass_B);
+  const Vec3 tip = buoyancy + metres_per_newton * (C * row.force_W);
+  std::fprintf(file,
+               "<path d=\"M%d %dL%d %d\" stroke=\"#0072b2\" stroke-width=\"26\"/>\n"
+               "<path d=\"M%d %dl-55 110h110z\" fill=\"#0072b2\"/>\n",
+               panel.x(buoyancy), panel.y(buoyancy), panel.x(tip), panel.y(tip) + 90, panel.x(tip),
+               panel.y(tip));
+  draw_point(file, panel, buoyancy, "#0072b2", "B");
+  draw_point(file, panel, mass, "#222222", "G");
+  draw_point(file, panel, metacentre, "#b34700", "M");
+}
+
+void draw_panel(std::FILE* file, const Scene& scene, const std::map<std::int32_t, Row>& at, const View& view,
+                const Panel& panel, double extent, double metres_per_newton) {
   Layers layers;
   for (const auto& [id, row] : at) {
-    if (const Body* body = scene.find(id)) add_body(*body, row.pose, scene.water(), layers);
+    if (const Body* body = scene.find(id)) add_body(*body, row.pose, scene.water(), camera(view), layers);
   }
   sort_back_to_front(layers.below);
   sort_back_to_front(layers.above);
 
-  std::fputs("<path fill=\"#a9cfe3\" d=\"M", file);
-  const Vec3 up = scene.water().up_W;
-  const Vec3 along = up.unitOrthogonal();
-  const Vec3 across = up.cross(along);
-  for (int i = 0; i < 64; ++i) {
-    const double angle = 2.0 * EIGEN_PI * i / 64;
-    const Vec3 rim =
-        camera() * (scene.water().level * up + extent * (std::cos(angle) * along + std::sin(angle) * across));
-    std::fprintf(file, "%d %d ", panel.x(rim), panel.y(rim));
-  }
-  std::fputs("z\"/>\n", file);
+  draw_water(file, scene.water(), view, panel, extent);
   std::fputs(kFacets, file);
-  panel.facets(layers.below, {0.44, 0.65, 0.62});
+  panel.facets(layers.below, view.below, view.ambient);
   std::fputs("</g>\n<g stroke=\"#eaf6fb\" stroke-width=\"14\" stroke-linecap=\"round\">\n", file);
   panel.lines(layers.waterline);
   std::fputs("</g>\n", file);
   std::fputs(kFacets, file);
-  panel.facets(layers.above, {1.0, 0.80, 0.16});
+  panel.facets(layers.above, view.above, view.ambient);
   std::fputs("</g>\n", file);
+  if (!view.from_ahead) return;
+  for (const auto& [id, row] : at) {
+    if (const Body* body = scene.find(id))
+      draw_balance(file, *body, row, scene.water(), view, panel, metres_per_newton);
+  }
 }
 
-int draw(const Scene& scene, const std::vector<Row>& rows, const char* path,
-         const std::vector<double>& times) {
+// Across the picture: of the bounding box, and seen from ahead of what turns about the x axis.
+double largest_width(const Scene& scene, const View& view) {
   double largest = 0.0;
-  for (const Body& body : scene.bodies()) largest = std::max(largest, body.prepared->mesh.diagonal);
-  const double scale = 0.56 * kPanel / largest;
+  for (const Body& body : scene.bodies()) {
+    const HydrostaticMesh& mesh = body.prepared->mesh;
+    if (!view.from_ahead) {
+      largest = std::max(largest, mesh.diagonal);
+      continue;
+    }
+    for (std::size_t i = 0; i < mesh.surface.vertex_count(); ++i)
+      largest = std::max(largest, 2.0 * mesh.vertex(static_cast<std::int32_t>(i)).tail<2>().norm());
+  }
+  return largest;
+}
+
+// rad, of the y axis over the water; 0 where the body is upright.
+double heel(const Pose& pose, const Water& water) {
+  return std::asin(std::clamp(water.up_W.dot(pose.q_WB.normalized() * Vec3::UnitY()), -1.0, 1.0));
+}
+
+int draw(const Scene& scene, const std::vector<Row>& rows, const char* path, const std::vector<double>& times,
+         const View& view) {
+  const double largest = largest_width(scene, view);
+  const double scale = view.size * kPanel / largest;
+  double largest_force = 0.0;
+  for (const double seconds : times) {
+    for (const auto& [id, row] : rows_at(rows, seconds))
+      largest_force = std::max(largest_force, row.force_W.norm());
+  }
+  const double metres_per_newton = largest_force > 0.0 ? 0.5 * largest / largest_force : 0.0;
 
   std::FILE* file = std::fopen(path, "w");
   if (file == nullptr) return std::perror(path), 1;
   const double width = kPanel * static_cast<double>(times.size());
   const double height = kHeight * kPanel;
+  const double captions = view.from_ahead ? 2.0 * kCaption : kCaption;
   std::fprintf(
       file,
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\" "
       "font-family=\"DejaVu Sans, sans-serif\" font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" "
       "fill=\"#fff\"/>\n",
-      width, height + kCaption, width, height + kCaption);
-  const Panel panel(file, scale, camera() * (scene.water().level * scene.water().up_W));
+      width, height + captions, width, height + captions);
+  const Panel panel(file, scale, camera(view) * (scene.water().level * scene.water().up_W));
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double left = kPanel * static_cast<double>(i);
+    const std::map<std::int32_t, Row> at = rows_at(rows, times[i]);
     std::fprintf(file, "<svg x=\"%g\" width=\"%g\" height=\"%g\" viewBox=\"0 0 %g %g\">\n", left, kPanel,
                  height, 10.0 * kPanel, 10.0 * height);
-    draw_panel(file, scene, rows_at(rows, times[i]), panel, 0.85 * largest);
-    std::fprintf(file, "</svg>\n<text x=\"%g\" y=\"%g\" text-anchor=\"middle\" fill=\"#444\">%g s</text>\n",
+    draw_panel(file, scene, at, view, panel, 0.85 * largest, metres_per_newton);
+    std::fprintf(file, "</svg>\n<text x=\"%g\" y=\"%g\" text-anchor=\"middle\" fill=\"#444\">%g s",
                  left + 0.5 * kPanel, height + 0.6 * kCaption, times[i]);
+    if (view.from_ahead && !at.empty())
+      std::fprintf(file, ", heel %.1f°",
+                   heel(at.begin()->second.pose, scene.water()) * 180.0 / std::numbers::pi);
+    std::fputs("</text>\n", file);
+  }
+  if (view.from_ahead) {
+    std::fprintf(
+        file,
+        "<text x=\"%g\" y=\"%g\" text-anchor=\"middle\" fill=\"#444\">B: centre of buoyancy, with the force; "
+        "G: centre of mass; M: metacentre</text>\n",
+        0.5 * width, height + 1.5 * kCaption);
   }
   std::fputs("</svg>\n", file);
   if (std::fclose(file) != 0) return std::perror(path), 1;
@@ -237,12 +339,17 @@ int draw(const Scene& scene, const std::vector<Row>& rows, const char* path,
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  if (argc < 5) return std::fputs("usage: draw_run SCENE RUN_CSV OUTPUT.svg SECONDS...\n", stderr), 2;
-  const auto scene = buoyancy::Scene::load(argv[1]);
+  const bool from_ahead = argc > 1 && std::string(argv[1]) == "--from-ahead";
+  const std::vector<std::string> arguments(argv + (from_ahead ? 2 : 1), argv + argc);
+  if (arguments.size() < 4)
+    return std::fputs("usage: draw_run [--from-ahead] SCENE RUN_CSV OUTPUT.svg SECONDS...\n", stderr), 2;
+  const auto scene = buoyancy::Scene::load(arguments[0]);
   if (!scene) return std::fprintf(stderr, "draw_run: %s\n", scene.error().message().c_str()), 2;
-  const auto rows = buoyancy::read_run(argv[2]);
-  if (rows.empty()) return std::fprintf(stderr, "draw_run: %s: no rows\n", argv[2]), 2;
+  const auto rows = buoyancy::read_run(arguments[1].c_str());
+  if (rows.empty()) return std::fprintf(stderr, "draw_run: %s: no rows\n", arguments[1].c_str()), 2;
   std::vector<double> times;
-  for (int i = 4; i < argc; ++i) times.push_back(std::strtod(argv[i], nullptr));
-  return buoyancy::draw(*scene, rows, argv[3], times);
+  for (std::size_t i = 3; i < arguments.size(); ++i)
+    times.push_back(std::strtod(arguments[i].c_str(), nullptr));
+  return buoyancy::draw(*scene, rows, arguments[2].c_str(), times,
+                        from_ahead ? buoyancy::kFromAhead : buoyancy::kFromAbove);
 }
