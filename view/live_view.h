@@ -1,9 +1,9 @@
 // Listens on the bus and lays down snapshots for the page, kSnapshotsPerSecond times a second, as long as
 // somebody looks: one thread.
 //
-// It must not slow down what it looks at: messages do not wake it (BusListener), and it runs where a processor
-// has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots, and packets
-// that the kernel had to drop.
+// It must not slow down what it looks at: messages do not wake it (BusListener), and it runs where a
+// processor has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots,
+// and packets that the kernel had to drop.
 #pragma once
 
 #include <functional>
