@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/service/running_service.h"
-#include "tests/view/http_peer.h"
+#include "tests/view/running_view.h"
 
 namespace buoyancy {
 namespace {
@@ -17,29 +16,6 @@ using nlohmann::json;
 
 // Body 2's hydrostatics are asked for, so that its metacentres are on the bus.
 const std::string kScene = kHydrostaticBoxScene;
-
-class RunningView {
- public:
-  explicit RunningView(std::vector<std::string> options = {}) : child_(command(std::move(options))) {
-    if (!child_.wait_for_text("ready: ", kPatience)) {
-      throw std::runtime_error("buoyancy-view did not get ready: " + child_.standard_error());
-    }
-    port_ = port_said(child_.standard_output());
-  }
-  ChildProcess& child() { return child_; }
-  std::uint16_t port() const { return port_; }
-
- private:
-  ChildCommand command(std::vector<std::string> options) {
-    options.insert(options.begin(),
-                   {BUOYANCY_VIEW, "--scene", directory_.write("scene.toml", kScene), "--port", "0"});
-    return command_of(std::move(options));
-  }
-
-  ScratchDirectory directory_;
-  ChildProcess child_;
-  std::uint16_t port_ = 0;
-};
 
 ChildCommand client(const std::string& scene, std::vector<std::string> options) {
   options.insert(options.begin(), {BUOYANCY_CLIENT, "--scene", scene});
@@ -61,7 +37,7 @@ json snapshot_where(EventReader& events, Wanted&& wanted) {
 }
 
 TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
-  RunningView view;
+  RunningView view(kScene);
   EventReader events(view.port());
   RunningService service({}, kScene);
   // Body 1 has no [body.client]; the client asks about body 2.
@@ -91,7 +67,7 @@ TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
 }
 
 TEST(View, SaysThatTheServiceIsSilentAndThatItIsBack) {
-  RunningView view;
+  RunningView view(kScene);
   EventReader events(view.port());
   const auto service_is = [](const std::string& state) {
     return [state](const json& now) { return now["service"] == state; };
@@ -114,7 +90,7 @@ TEST(View, SaysThatTheServiceIsSilentAndThatItIsBack) {
 }
 
 TEST(View, SaysThatAServiceWhichStandsStillDoesNotAnswer) {
-  RunningView view;
+  RunningView view(kScene);
   EventReader events(view.port());
   RunningService service({}, kScene);
   RawLcmSocket socket;
@@ -130,7 +106,7 @@ TEST(View, SaysThatAServiceWhichStandsStillDoesNotAnswer) {
 }
 
 TEST(View, SeesTwoServicesOnOneBusAndTheAnswersThatComeTwice) {
-  RunningView view;
+  RunningView view(kScene);
   EventReader events(view.port());
   RunningService one({}, kScene);
   RunningService other({}, kScene);
@@ -143,7 +119,7 @@ TEST(View, SeesTwoServicesOnOneBusAndTheAnswersThatComeTwice) {
 }
 
 TEST(View, ListensToChannelsByOtherNames) {
-  RunningView view({"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"});
+  RunningView view(kScene, {"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"});
   EventReader events(view.port());
   RunningService service({"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"},
                          kScene);
@@ -155,7 +131,7 @@ TEST(View, ListensToChannelsByOtherNames) {
 }
 
 TEST(View, LosesNoConnectionToAPacketThatIsNone) {
-  RunningView view;
+  RunningView view(kScene);
   EventReader events(view.port());
   RawLcmSocket socket;
   socket.send_packet({});
@@ -171,7 +147,7 @@ TEST(View, LosesNoConnectionToAPacketThatIsNone) {
 
 TEST(View, EndsBySignalWhilePagesAreConnected) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    RunningView view;
+    RunningView view(kScene);
     EventReader events(view.port());
     ASSERT_TRUE(events.next(kPatience));
     view.child().send_signal(signal);
@@ -202,7 +178,7 @@ TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
     EXPECT_TRUE(view.standard_error.starts_with("buoyancy-view: ")) << view.standard_error;
     EXPECT_EQ(view.standard_output, "");
   }
-  const RunningView other;
+  const RunningView other(kScene);
   const FinishedProcess taken = ended({"--scene", scene, "--port", std::to_string(other.port())});
   EXPECT_EQ(taken.exit_code, 1);
   EXPECT_NE(taken.standard_error.find("Address already in use"), std::string::npos) << taken.standard_error;
