@@ -1,16 +1,6 @@
 'use strict';
 // The report's text beside picture and plots: what was recorded, what the scene and its meshes are, what was skipped.
 
-function seconds_text(seconds) {
-  if (!Number.isFinite(seconds)) return '–';
-  const [factor, unit] = seconds < 1e-6 ? [1e9, 'ns'] : seconds < 1e-3 ? [1e6, 'µs'] : seconds < 1 ? [1e3, 'ms'] : [1, 's'];
-  return `${(seconds * factor).toPrecision(3)} ${unit}`;
-}
-
-function plural(count, one, many) {
-  return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
-}
-
 // What the reader has to know before believing the plots.
 function report_notices(data, bodies) {
   const notices = [];

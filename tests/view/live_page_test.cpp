@@ -1,0 +1,133 @@
+// The live page in a real browser, of the real programs over UDP.
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/view/page_test.h"
+#include "tests/view/running_view.h"
+
+namespace buoyancy {
+namespace {
+
+// A box that bobs for as long as anybody looks, and one that nobody asks about.
+const std::string kScene = R"(
+[[body]]
+id = 1
+name = "bobbing box"
+shape = { type = "box", size = [1, 1, 1] }
+outputs = ["wrench", "hydrostatics"]
+[body.client]
+density = 500
+position = [0, 0, 0.2]
+[[body]]
+id = 2
+name = "second box"
+shape = { type = "box", size = [1, 1, 1] }
+)";
+
+class LivePage : public PageTest {
+ protected:
+  void SetUp() override {
+    PageTest::SetUp();
+    service_ = std::make_unique<RunningService>(std::vector<std::string>{}, kScene);
+    view_ = std::make_unique<RunningView>(kScene);
+    client_ = std::make_unique<ChildProcess>(
+        command_of({BUOYANCY_CLIENT, "--scene", service_->path("scene.toml"), "--rate", "200", "--duration",
+                    "1000", "--retries", "100000"}));
+    browser().open(view_->url());
+  }
+  void TearDown() override {
+    PageTest::TearDown();
+    client_.reset();
+    view_.reset();
+    service_.reset();
+  }
+  static void wait_for_news(int snapshots = 3) {
+    browser().run("window.wanted = buoyancyView.snapshots + arguments[0];", snapshots);
+    browser().wait_until("buoyancyView.snapshots >= window.wanted");
+  }
+
+  std::unique_ptr<RunningService> service_;
+  std::unique_ptr<RunningView> view_;
+  std::unique_ptr<ChildProcess> client_;
+};
+
+TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
+  browser().wait_until(
+      "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 3");
+  browser().wait_until("buoyancyView.history.some((second) => second.p50 > 0)");
+  browser().wait_until("document.querySelector('#strip').textContent.includes('lockstep')");
+  browser().wait_until("document.querySelectorAll('#plots path').length >= 4");
+  EXPECT_GT(browser().run("return buoyancyView.last.bodies[0].f[2];").get<double>(), 0.0);
+  const Picture picture = browser().screenshot();
+  const Region canvas = browser().region_of("#canvas");
+  const auto amber = [](const Colour& colour) {
+    return colour.red > colour.green + 20 && colour.red > colour.blue + 60;
+  };
+  EXPECT_GT(picture.share(canvas, amber), 0.01) << "of the box over the water";
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePage, SaysThatTheServiceIsGoneAndThatItIsBack) {
+  browser().wait_until("window.buoyancyView && buoyancyView.state === 'answering'");
+  service_->child().send_signal(SIGKILL);
+  browser().wait_until("buoyancyView.state === 'silent'");
+  browser().wait_until("document.getElementById('state_text').textContent === 'The service is silent'");
+  browser().wait_until(
+      "document.getElementById('notices').textContent.includes('Nothing is heard of the service')");
+  service_ = std::make_unique<RunningService>(std::vector<std::string>{}, kScene);
+  browser().wait_until("buoyancyView.state === 'answering'");
+  browser().wait_until("!document.getElementById('notices').textContent.includes('Nothing is heard')");
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {
+  browser().wait_until("window.buoyancyView && buoyancyView.snapshots > 3");
+  const std::uint16_t port = view_->port();
+  view_.reset();
+  browser().wait_until("buoyancyView.state === 'connecting'");
+  view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, port);
+  browser().wait_until("buoyancyView.connections >= 2 && buoyancyView.state === 'answering'");
+  wait_for_news();
+}
+
+TEST_F(LivePage, IsWorkedByKeys) {
+  browser().wait_until("window.buoyancyView && buoyancyView.renders > 1");
+  browser().press("n");
+  EXPECT_EQ(browser().run("return buoyancyView.chosen;"), 2);
+  browser().wait_until("document.getElementById('body_facts').textContent.includes('not asked about yet')");
+  browser().press("p");
+  EXPECT_EQ(browser().run("return buoyancyView.chosen;"), 1);
+  browser().press("f");
+  EXPECT_EQ(browser().run("return [buoyancyView.following, document.getElementById('follow').checked];"),
+            nlohmann::json({true, true}));
+  const nlohmann::json azimuth = browser().run("return buoyancyView.scene.azimuth;");
+  browser().press("a");
+  EXPECT_NE(browser().run("return buoyancyView.scene.azimuth;"), azimuth);
+  browser().press(" ");
+  EXPECT_EQ(browser().run("return buoyancyView.paused;"), true);
+  const nlohmann::json renders = browser().run("return buoyancyView.renders;");
+  wait_for_news();
+  EXPECT_EQ(browser().run("return buoyancyView.renders;"), renders);
+  browser().press(" ");
+  browser().wait_until("buoyancyView.renders > " + renders.dump());
+}
+
+TEST_F(LivePage, FitsAPhoneAndADesktopWithoutScrollingSideways) {
+  for (const Screen& screen : {kPhone, kDesktop}) {
+    browser().resize(screen);
+    browser().wait_until("window.buoyancyView && buoyancyView.renders > 3");
+    browser().wait_until("document.querySelectorAll('#counters table').length === 4");
+    EXPECT_LE(browser().run("return document.documentElement.scrollWidth;"), screen.width);
+    EXPECT_GT(browser().run("return document.getElementById('canvas').clientHeight;"), 200);
+  }
+  EXPECT_EQ(
+      browser().run("return document.getElementById('pause').getBoundingClientRect().bottom <= innerHeight;"),
+      true)
+      << "picture and controls are on a desktop's first screen";
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,277 @@
+#include "view/page_server.h"
+
+#include <chrono>
+#include <list>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/service/patience.h"
+#include "tests/view/http_peer.h"
+
+namespace buoyancy {
+namespace {
+
+const std::string kModel(300'000, 'm');
+
+std::string status_line(const std::string& response) {
+  return response.substr(0, response.find("\r\n"));
+}
+
+std::string body(const std::string& response) {
+  const std::size_t end = response.find("\r\n\r\n");
+  return end == std::string::npos ? "" : response.substr(end + 4);
+}
+
+const PageLimits kLimits;
+
+class ServedPage : public testing::Test {
+ protected:
+  ServedPage() : ServedPage(PageLimits{.head_patience = kPatience, .write_patience = kPatience}) {}
+  explicit ServedPage(const PageLimits& limits) {
+    auto started = PageServer::start(
+        "127.0.0.1", 0,
+        {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}}, hub_,
+        limits);
+    if (!started) throw std::runtime_error(started.error().message());
+    server_ = std::move(*started);
+    port_ = port_said("ready: " + server_->url());
+  }
+
+  std::string response_to(const std::string& request) const {
+    HttpPeer peer(port_);
+    peer.send(request);
+    peer.end_sending();
+    return peer.receive_all(kPatience);
+  }
+  std::string status_of(const std::string& request) const { return status_line(response_to(request)); }
+
+  // Waits until so many streams are connected.
+  void wait_for_listeners(int count) const {
+    while (hub_.listeners() != count) std::this_thread::yield();
+  }
+
+  SnapshotHub hub_;
+  std::unique_ptr<PageServer> server_;
+  std::uint16_t port_ = 0;
+};
+
+TEST_F(ServedPage, GivesItsTextsWithHeadersThatKeepThemToThemselves) {
+  const std::string page = response_to(get_request("/"));
+  EXPECT_EQ(status_line(page), "HTTP/1.1 200 OK");
+  EXPECT_EQ(body(page), "<!doctype html>");
+  for (const char* header : {"\r\nCache-Control: no-store\r\n", "\r\nX-Content-Type-Options: nosniff\r\n",
+                             "\r\nContent-Security-Policy: default-src 'none'; ",
+                             "\r\nContent-Type: text/html; charset=utf-8\r\n"}) {
+    EXPECT_NE(page.find(header), std::string::npos) << header;
+  }
+  EXPECT_EQ(page.find("Access-Control-Allow-Origin"), std::string::npos);
+  EXPECT_TRUE(body(response_to(get_request("/model"))) == kModel);
+}
+
+TEST_F(ServedPage, GivesATextWholeWhateverPartOrCompressionIsAskedFor) {
+  for (const char* header :
+       {"Range: bytes=0-1\r\n", "Range: bytes=0-,0-,0-,0-,0-\r\n", "Accept-Encoding: gzip, br\r\n"}) {
+    EXPECT_TRUE(body(response_to(get_request("/model", header))) == kModel) << header;
+  }
+}
+
+TEST_F(ServedPage, HasNothingAtAnyOtherPath) {
+  for (const char* path : {"/events/", "/model/", "//", "/index.html", "/../etc/passwd", "/%2e%2e/etc/passwd",
+                           "/%2e%2e%2fetc%2fpasswd", "/..%5c..%5cetc", "//etc/passwd", "/etc/passwd",
+                           "/proc/self/environ", "/model/../../etc/passwd", "/%00", "/model%00", "/./model",
+                           "/MODEL", "http://127.0.0.1/model/../etc/passwd", "file:///etc/passwd"}) {
+    EXPECT_EQ(status_of(get_request(path)), "HTTP/1.1 404 Not Found") << path;
+  }
+}
+
+TEST_F(ServedPage, TakesNoMethodButGet) {
+  for (const char* method : {"HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "CONNECT", "TRACE"}) {
+    const std::string request =
+        std::string(method) + " /model HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 3\r\n\r\nabc";
+    const std::string status = status_of(request);
+    EXPECT_TRUE(status.starts_with("HTTP/1.1 405 ")) << method << ": " << status;
+  }
+}
+
+TEST_F(ServedPage, AnswersOnlyWhoCallsItByANameOfTheLoopback) {
+  const auto status_for = [this](const std::string& hosts) {
+    return status_of("GET /model HTTP/1.1\r\n" + hosts + "\r\n");
+  };
+  for (const char* host : {"127.0.0.1", "localhost", "[::1]", "127.0.0.1:8667", "localhost:1", "[::1]:80"}) {
+    EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 200 OK") << host;
+  }
+  for (const char* host :
+       {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:8667", "", "10.0.0.1"}) {
+    EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 403 Forbidden") << host;
+  }
+  EXPECT_EQ(status_for(""), "HTTP/1.1 403 Forbidden") << "no Host at all";
+  EXPECT_EQ(status_for("Host: 127.0.0.1\r\nHost: evil.example\r\n"), "HTTP/1.1 403 Forbidden") << "two";
+}
+
+TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
+  HttpPeer first(port_);
+  HttpPeer second(port_);
+  for (HttpPeer* peer : {&first, &second}) peer->send(get_request("/events"));
+  wait_for_listeners(2);
+  hub_.publish("[1]", R"({"n":1})");
+  for (HttpPeer* peer : {&first, &second}) {
+    std::string text;
+    while (text.find("data: {\"n\":1}\n\n") == std::string::npos) {
+      const std::optional<std::string> part = peer->receive(kPatience);
+      ASSERT_TRUE(part && !part->empty()) << text;
+      text += *part;
+    }
+    EXPECT_NE(text.find("Content-Type: text/event-stream\r\n"), std::string::npos);
+    EXPECT_NE(text.find("event: history\ndata: [1]\n\n"), std::string::npos);
+  }
+  hub_.publish("[2]", R"({"n":2})");
+  std::string more;
+  while (more.find("data: {\"n\":2}\n\n") == std::string::npos) {
+    const std::optional<std::string> part = first.receive(kPatience);
+    ASSERT_TRUE(part && !part->empty());
+    more += *part;
+  }
+  EXPECT_EQ(more.find("history"), std::string::npos) << "once for each listener";
+}
+
+TEST_F(ServedPage, ForgetsAListenerThatWentAway) {
+  {
+    HttpPeer peer(port_);
+    peer.send(get_request("/events"));
+    wait_for_listeners(1);
+  }
+  for (int i = 0; hub_.listeners() > 0; ++i) {
+    hub_.publish("[]", "{}");
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
+}
+
+// Where it is the server that has no patience.
+class ImpatientPage : public ServedPage {
+ protected:
+  ImpatientPage() : ServedPage(PageLimits{.head_patience = 0.1, .write_patience = 0.1}) {}
+};
+
+TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
+  HttpPeer lazy(port_);
+  lazy.send(get_request("/events"));
+  wait_for_listeners(1);
+  const std::string large = "{\"" + std::string(1'000'000, 'x') + "\":1}";
+  while (hub_.listeners() > 0) {
+    hub_.publish("[]", large);
+  }
+  HttpPeer other(port_);
+  other.send(get_request("/"));
+  EXPECT_TRUE(other.receive_all(kPatience).starts_with("HTTP/1.1 "));
+}
+
+TEST_F(ServedPage, HasRoomForSoManyStreamsAndTellsFurtherOnes) {
+  std::list<HttpPeer> peers;
+  for (int i = 0; i < kLimits.streams; ++i) {
+    peers.emplace_back(port_).send(get_request("/events"));
+    wait_for_listeners(i + 1);
+  }
+  const std::string refused = response_to(get_request("/events"));
+  EXPECT_EQ(status_line(refused), "HTTP/1.1 503 Service Unavailable");
+  EXPECT_NE(body(refused).find("close one"), std::string::npos);
+  EXPECT_EQ(status_of(get_request("/model")), "HTTP/1.1 200 OK") << "the texts are there still";
+}
+
+TEST_F(ServedPage, TurnsAwayConnectionsBeyondItsNumberAndServesWhenTheyAreGone) {
+  std::list<HttpPeer> held;
+  for (int i = 0; i < 100; ++i) held.emplace_back(port_);
+  int turned_away = 0;
+  while (turned_away < 100 - kLimits.connections) {
+    turned_away = 0;
+    for (HttpPeer& peer : held) {
+      const std::optional<std::string> answer = peer.peek();
+      if (answer && answer->starts_with("HTTP/1.1 503 ")) ++turned_away;
+    }
+  }
+  EXPECT_EQ(turned_away, 100 - kLimits.connections);
+  held.clear();
+  while (status_of(get_request("/")) != "HTTP/1.1 200 OK") std::this_thread::yield();
+}
+
+TEST_F(ServedPage, RefusesAHeadThatHasNoEnd) {
+  HttpPeer peer(port_);
+  peer.send("GET / HTTP/1.1\r\n");
+  const std::string header = "X-Filler: " + std::string(1'000, 'x') + "\r\n";
+  for (int i = 0; i < 100 && peer.send(header); ++i) {
+  }
+  EXPECT_EQ(status_line(peer.receive_all(kPatience)), "HTTP/1.1 431 Request Header Fields Too Large");
+}
+
+TEST_F(ImpatientPage, DoesNotWaitForAHeadThatNeverComes) {
+  HttpPeer peer(port_);
+  peer.send("GET / HT");
+  EXPECT_EQ(status_line(peer.receive_all(kPatience)), "HTTP/1.1 408 Request Timeout");
+}
+
+TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
+  std::mt19937 random(1);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same every time
+  const std::vector<std::string> beginnings{
+      "",
+      "GET",
+      "GET /",
+      "GET / HTTP/9.9\r\n",
+      "GET  / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+      "get / http/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+      "GET / HTTP/1.1\n\n",
+      "GET /% HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+      "GET /%zz%u0000 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+      "GET /" + std::string(9'000, 'a') + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: -1\r\n\r\n",
+      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffffffffffff\r\n",
+      "POST /model HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999999999999999\r\n\r\n",
+      "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nExpect: 100-continue\r\nContent-Length: 5\r\n\r\n",
+      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=" + std::string(8'000, '-') + "\r\n\r\n",
+      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=9-1,,,\r\n\r\n",
+      "GET / HTTP/1.1\r\n: \r\n:\r\nHost\r\n\r\n",
+      std::string("GET /\0 HTTP/1.1\r\nHost: \0\r\n\r\n", 29),
+      "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+      "\x16\x03\x01\x02\x01\x01\xfc\x03\x03",
+  };
+  for (int i = 0; i < 500; ++i) {
+    std::string request = beginnings[static_cast<std::size_t>(i) % beginnings.size()];
+    for (int j = 0; j < i / 20 && !request.empty(); ++j)
+      request[random() % request.size()] = static_cast<char>(random());
+    response_to(request);
+  }
+  EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
+  EXPECT_TRUE(server_->serving());
+}
+
+TEST_F(ServedPage, SaysThatItsPortIsTaken) {
+  SnapshotHub other_hub;
+  const auto second = PageServer::start("127.0.0.1", port_, {}, other_hub);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message().find("Address already in use"), std::string::npos)
+      << second.error().message();
+}
+
+TEST_F(ServedPage, EndsWithStreamsOpenAndRequestsHalfSent) {
+  HttpPeer stream(port_);
+  stream.send(get_request("/events"));
+  wait_for_listeners(1);
+  HttpPeer half(port_);
+  half.send("GET /");
+  server_.reset();
+  EXPECT_NE(stream.receive_all(kPatience).find("HTTP/1.1 200 OK"), std::string::npos);
+  EXPECT_THROW(HttpPeer{port_}, std::runtime_error);
+}
+
+TEST(PageServer, ListensOnAddressesInDigitsOnly) {
+  for (const char* address : {"127.0.0.1", "0.0.0.0", "::1", "::", "192.168.1.7"}) {
+    EXPECT_TRUE(check_listen_address(address)) << address;
+  }
+  for (const char* address : {"", "localhost", "127.0.0", "1.2.3.4.5", ":::", "example.org"}) {
+    EXPECT_FALSE(check_listen_address(address)) << address;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

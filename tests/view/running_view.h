@@ -1,0 +1,44 @@
+// buoyancy-view as a process of its own.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/service/running_service.h"
+#include "tests/view/http_peer.h"
+
+namespace buoyancy {
+
+// Ready when constructed.
+class RunningView {
+ public:
+  // port: 0 for any that is free.
+  explicit RunningView(const std::string& scene, std::vector<std::string> options = {},
+                       std::uint16_t port = 0)
+      : child_(command(directory_.write("scene.toml", scene), std::move(options), port)) {
+    if (!child_.wait_for_text("ready: ", kPatience)) {
+      throw std::runtime_error("buoyancy-view did not get ready: " + child_.standard_error());
+    }
+    port_ = port_said(child_.standard_output());
+  }
+
+  ChildProcess& child() { return child_; }
+  std::uint16_t port() const { return port_; }
+  std::string url() const { return "http://127.0.0.1:" + std::to_string(port_) + "/"; }
+
+ private:
+  static ChildCommand command(const std::string& scene, std::vector<std::string> options,
+                              std::uint16_t port) {
+    options.insert(options.begin(), {BUOYANCY_VIEW, "--scene", scene, "--port", std::to_string(port)});
+    return command_of(std::move(options));
+  }
+
+  ScratchDirectory directory_;
+  ChildProcess child_;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace buoyancy

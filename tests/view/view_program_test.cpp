@@ -1,0 +1,188 @@
+// buoyancy-view as a process of its own, beside the real service and the real client, over UDP.
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/view/running_view.h"
+
+namespace buoyancy {
+namespace {
+
+using nlohmann::json;
+
+// Body 2's hydrostatics are asked for, so that its metacentres are on the bus.
+const std::string kScene = kHydrostaticBoxScene;
+
+ChildCommand client(const std::string& scene, std::vector<std::string> options) {
+  options.insert(options.begin(), {BUOYANCY_CLIENT, "--scene", scene});
+  return command_of(std::move(options));
+}
+
+// The first snapshot that satisfies `wanted`. Throws: none within kPatience.
+template <typename Wanted>
+json snapshot_where(EventReader& events, Wanted&& wanted) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  json snapshot;
+  while (std::chrono::steady_clock::now() < limit) {
+    const std::optional<std::string> text = events.next(kPatience);
+    if (!text) break;
+    snapshot = json::parse(*text);
+    if (wanted(snapshot)) return snapshot;
+  }
+  throw std::runtime_error("no such snapshot; the last one: " + snapshot.dump());
+}
+
+TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
+  RunningView view(kScene);
+  EventReader events(view.port());
+  RunningService service({}, kScene);
+  // Body 1 has no [body.client]; the client asks about body 2.
+  const FinishedProcess run =
+      run_to_end(client(service.path("scene.toml"), {"--duration", "0.5"}), kPatience);
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  RawLcmSocket socket;
+  ask(socket, one_body(7, 1, 0.0));
+  const json snapshot = snapshot_where(events, [](const json& now) {
+    return now["counts"]["answers"].get<int>() > 500 && now["bodies"].size() == 2 &&
+           !now["bodies"][0]["f"].is_null();
+  });
+  const json& counts = snapshot["counts"];
+  EXPECT_EQ(counts["answers"], counts["questions"]);
+  EXPECT_EQ(counts["answers_without_question"], 0);
+  EXPECT_EQ(counts["questions_missed"], 0);
+  EXPECT_EQ(snapshot["service"], "answering");
+  EXPECT_GT(snapshot["latency"]["p50"].get<double>(), 0.0);
+  EXPECT_LE(snapshot["latency"]["p50"].get<double>(), snapshot["latency"]["max"].get<double>());
+  const json& upright = snapshot["bodies"][0];
+  EXPECT_EQ(upright["p"], json({1.0, 2.0, 0.0}));
+  EXPECT_NEAR(upright["f"][2].get<double>(), 2.0 * 3.0 * 2.0 * 1e4, 1e-2) << "half under water";
+  EXPECT_TRUE(upright["m"].is_null());
+  const json& floating = snapshot["bodies"][1];
+  EXPECT_EQ(floating["status"], 0);
+  EXPECT_TRUE(floating["m"].is_array()) << floating;
+}
+
+TEST(View, SaysThatTheServiceIsSilentAndThatItIsBack) {
+  RunningView view(kScene);
+  EventReader events(view.port());
+  const auto service_is = [](const std::string& state) {
+    return [state](const json& now) { return now["service"] == state; };
+  };
+  std::string first_instance;
+  {
+    RunningService service({}, kScene);
+    const json snapshot = snapshot_where(events, service_is("waiting"));
+    first_instance = snapshot["status"]["instance_id"];
+    EXPECT_EQ(snapshot["services"], json({first_instance}));
+    service.child().send_signal(SIGKILL);
+  }
+  const json silent = snapshot_where(events, service_is("silent"));
+  EXPECT_GT(silent["status_age"].get<double>(), 3.0);
+  EXPECT_EQ(silent["status"]["instance_id"], first_instance) << "the last one is shown still";
+  RunningService again({}, kScene);
+  const json back = snapshot_where(events, service_is("waiting"));
+  EXPECT_NE(back["status"]["instance_id"], first_instance);
+  EXPECT_EQ(back["counts"]["services_started"], 2);
+}
+
+TEST(View, SaysThatAServiceWhichStandsStillDoesNotAnswer) {
+  RunningView view(kScene);
+  EventReader events(view.port());
+  RunningService service({}, kScene);
+  RawLcmSocket socket;
+  snapshot_where(events, [](const json& now) { return now["service"] == "waiting"; });
+  service.stop();
+  auto ask_again = [&socket, seq = 0](const json& now) mutable {
+    ask(socket, one_body(7, ++seq, 0.0));
+    return now["service"] == "not answering";
+  };
+  snapshot_where(events, ask_again);
+  service.child().send_signal(SIGCONT);
+  snapshot_where(events, [](const json& now) { return now["service"] != "not answering"; });
+}
+
+TEST(View, SeesTwoServicesOnOneBusAndTheAnswersThatComeTwice) {
+  RunningView view(kScene);
+  EventReader events(view.port());
+  RunningService one({}, kScene);
+  RunningService other({}, kScene);
+  RawLcmSocket socket;
+  ask(socket, one_body(7, 1, 0.0));
+  const json snapshot = snapshot_where(events, [](const json& now) {
+    return now["services"].size() == 2 && now["counts"]["answers_repeated"].get<int>() > 0;
+  });
+  EXPECT_EQ(snapshot["counts"]["answers"], 1);
+}
+
+TEST(View, ListensToChannelsByOtherNames) {
+  RunningView view(kScene, {"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"});
+  EventReader events(view.port());
+  RunningService service({"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"},
+                         kScene);
+  RawLcmSocket socket;
+  ask(socket, one_body(7, 1, 0.0));  // on the channel that it does not hear
+  socket.send("S.*", encode_states(one_body(8, 1, 0.0)));
+  const json snapshot = snapshot_where(events, [](const json& now) { return now["counts"]["answers"] == 1; });
+  EXPECT_EQ(snapshot["counts"]["questions"], 1);
+}
+
+TEST(View, LosesNoConnectionToAPacketThatIsNone) {
+  RunningView view(kScene);
+  EventReader events(view.port());
+  RawLcmSocket socket;
+  socket.send_packet({});
+  socket.send_packet({'L', 'C', '0', '2'});
+  socket.send("BUOYANCY_STATES", {});
+  socket.send("BUOYANCY_STATUS", RawBytes(100, 0xff));
+  const json snapshot = snapshot_where(events, [](const json& now) {
+    const json& malformed = now["counts"]["malformed"];
+    return malformed["shorter than the fixed fields"].get<int>() == 2;
+  });
+  EXPECT_EQ(snapshot["service"], "silent");
+}
+
+TEST(View, EndsBySignalWhilePagesAreConnected) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    RunningView view(kScene);
+    EventReader events(view.port());
+    ASSERT_TRUE(events.next(kPatience));
+    view.child().send_signal(signal);
+    EXPECT_EQ(view.child().wait(kPatience), 0);
+    while (events.next(kPatience)) {
+    }
+    EXPECT_EQ(view.child().standard_error(), "");
+  }
+}
+
+TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
+  ScratchDirectory directory;
+  const std::string scene = directory.write("scene.toml", kScene);
+  const auto ended = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), BUOYANCY_VIEW);
+    return run_to_end(command_of(std::move(options)), kPatience);
+  };
+  for (const std::vector<std::string>& options : {std::vector<std::string>{},
+                                                  {"--scene", scene, "--port", "65536"},
+                                                  {"--scene", scene, "--port", "-1"},
+                                                  {"--scene", scene, "--listen", "localhost"},
+                                                  {"--scene", scene, "-l", "tcpq://"},
+                                                  {"--scene", scene, "--what"},
+                                                  {"--scene", scene, "--states-channel", "BUOYANCY_STATUS"},
+                                                  {"--scene", directory.path("absent.toml")}}) {
+    const FinishedProcess view = ended(options);
+    EXPECT_EQ(view.exit_code, 2) << testing::PrintToString(options);
+    EXPECT_TRUE(view.standard_error.starts_with("buoyancy-view: ")) << view.standard_error;
+    EXPECT_EQ(view.standard_output, "");
+  }
+  const RunningView other(kScene);
+  const FinishedProcess taken = ended({"--scene", scene, "--port", std::to_string(other.port())});
+  EXPECT_EQ(taken.exit_code, 1);
+  EXPECT_NE(taken.standard_error.find("Address already in use"), std::string::npos) << taken.standard_error;
+}
+
+}  // namespace
+}  // namespace buoyancy

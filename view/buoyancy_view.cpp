@@ -1,0 +1,124 @@
+// buoyancy-view: shows in a browser what a buoyancy service and its askers say to each other. Exit codes: 0
+// ended by SIGINT or SIGTERM, 1 it ran and failed, 2 wrong arguments, scene or mesh.
+
+#include <array>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "scene/scene.h"
+#include "terminal/command_line.h"
+#include "terminal/termination_signals.h"
+#include "transport/lcm_connection.h"
+#include "view/live_page.h"
+#include "view/live_view.h"
+#include "view/page_server.h"
+#include "view/page_text.h"
+
+namespace buoyancy {
+namespace {
+
+struct Arguments {
+  std::string scene;
+  std::string lcm_url;
+  std::string address = "127.0.0.1";
+  int port = 8667;
+  std::string three = kThreeJs;
+  WatchedChannels channels;
+};
+
+void define_arguments(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version", "buoyancy-view " BUOYANCY_VERSION);
+  app.add_option("--scene", arguments.scene, "Scene file: what the service loaded")->required();
+  app.add_option("-l,--lcm-url", arguments.lcm_url, "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
+  app.add_option("--port", arguments.port, "Port of the page; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->option_text("PORT [8667]");
+  app.add_option("--listen", arguments.address,
+                 "Address to serve the page on. Whoever reaches another than a loopback's sees the scene and "
+                 "the run: there is no password")
+      ->option_text("ADDRESS [127.0.0.1]");
+  app.add_option("--three", arguments.three, "three.js, which draws the bodies: a three.min.js")
+      ->option_text("FILE [" + std::string(kThreeJs) + "]");
+  app.add_option("--states-channel", arguments.channels.states, "Channel of the questions")
+      ->capture_default_str();
+  app.add_option("--wrenches-channel", arguments.channels.wrenches, "Channel of the answers")
+      ->capture_default_str();
+  app.add_option("--hydrostatics-channel", arguments.channels.hydrostatics, "Channel of the hydrostatics")
+      ->capture_default_str();
+  app.add_option("--status-channel", arguments.channels.status, "Channel of the service's status")
+      ->capture_default_str();
+}
+
+// What no single option shows.
+Expected<void> check_arguments(const Arguments& arguments) {
+  const WatchedChannels& channels = arguments.channels;
+  const std::array names{channels.states, channels.wrenches, channels.hydrostatics, channels.status};
+  for (const std::string& channel : names) {
+    if (Expected<void> checked = check_channel(channel); !checked) return checked;
+  }
+  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
+    return failure({"channels " + names[0] + ", " + names[1] + ", " + names[2] + " and " + names[3],
+                    "two are the same", "four different names", "", ""});
+  }
+  if (Expected<void> checked = check_listen_address(arguments.address); !checked) return checked;
+  return check_lcm_url(arguments.lcm_url);
+}
+
+int report(const CLI::App& app, const Error& error, ExitCode exit_code) {
+  print_error(app, error);
+  return exit_code;
+}
+
+int show(const CLI::App& app, const Arguments& arguments) {
+  if (const Expected<void> checked = check_arguments(arguments); !checked) {
+    return report(app, checked.error(), kWrongInput);
+  }
+  const Expected<Scene> scene = Scene::load(arguments.scene);
+  if (!scene) return report(app, scene.error(), kWrongInput);
+  Expected<std::vector<ServedText>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
+  if (!page) return report(app, page.error(), kFailed);
+  TerminationSignals termination;  // before any thread is started, which must not get them
+  keep_in_the_background();
+  SnapshotHub hub;
+  Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, arguments.channels, hub);
+  if (!view) return report(app, view.error(), kFailed);
+  const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), hub);
+  if (!server) return report(app, server.error(), kFailed);
+
+  if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailed;
+  view->run(termination, [&server] { return (*server)->serving(); });
+  if (!(*server)->serving()) {
+    return report(app,
+                  {(*server)->url(), "the kernel gives no more connections", "a port that lasts",
+                   "memory or file descriptors are at their end", "Start the view again"},
+                  kFailed);
+  }
+  return kDone;
+}
+
+int view_main(int argc, char** argv) {
+  CLI::App app(
+      "Shows in a browser what a buoyancy service and its askers say to each other on LCM: the bodies in the "
+      "water,\n"
+      "latency, counters, losses. Only listens.\n"
+      "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
+      "mesh.",
+      "buoyancy-view");
+  Arguments arguments;
+  define_arguments(app, arguments);
+  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  return show(app, arguments);
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  return buoyancy::view_main(argc, argv);
+}

@@ -1,0 +1,109 @@
+#include "view/bus_listener.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <time.h>
+
+#include "transport/lcm_connection.h"
+#include "transport/multicast_probe.h"
+#include "transport/udpm_url.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::int32_t kReceiveBufferBytes = 4'194'304;
+constexpr std::size_t kLargestPacket = 65'536;
+
+template <typename T>
+bool set(const FileDescriptor& socket, int level, int option, const T& value) {
+  return ::setsockopt(socket.value(), level, option, &value, sizeof value) == 0;
+}
+
+template <typename T>
+T data_of(cmsghdr* message) {
+  T value;
+  std::memcpy(&value, CMSG_DATA(message), sizeof value);
+  return value;
+}
+
+}  // namespace
+
+BusListener::BusListener(FileDescriptor socket, std::vector<std::string> channels)
+    : socket_(std::move(socket)), packets_(std::move(channels)), packet_(kLargestPacket) {}
+
+Expected<BusListener> BusListener::open(const std::string& url, std::vector<std::string> channels) {
+  const std::string shown = effective_lcm_url(url);
+  const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+  if (!parsed) return tl::unexpected(parsed.error());
+  const Expected<std::int32_t> buffer =
+      probe_multicast(*parsed, parsed->recv_buf_size.value_or(kReceiveBufferBytes));
+  if (!buffer) return tl::unexpected(buffer.error());
+
+  FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(parsed->port);
+  ::inet_pton(AF_INET, parsed->group.c_str(), &group.sin_addr);
+  ip_mreq membership{};
+  membership.imr_multiaddr = group.sin_addr;
+  membership.imr_interface.s_addr = htonl(INADDR_ANY);
+  // Bound to the group's address: what comes to the port by another one is not ours.
+  const bool listens = socket.valid() && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
+                       set(socket, SOL_SOCKET, SO_RCVBUF, *buffer) &&
+                       set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) &&
+                       set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
+                       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
+                       set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
+  if (!listens) {
+    return failure({shown, std::generic_category().message(errno),
+                    "a UDP socket that may listen to the group",
+                    "another program holds the port alone, or sockets are forbidden to this one", ""});
+  }
+  return BusListener(std::move(socket), std::move(channels));
+}
+
+void BusListener::take_in(int most, const Handler& handler) {
+  for (int i = 0; i < most; ++i) {
+    sockaddr_in sender{};
+    iovec data{packet_.data(), packet_.size()};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))>
+        control{};
+    msghdr packet{};
+    packet.msg_name = &sender;
+    packet.msg_namelen = sizeof sender;
+    packet.msg_iov = &data;
+    packet.msg_iovlen = 1;
+    packet.msg_control = control.data();
+    packet.msg_controllen = control.size();
+    const ssize_t size = ::recvmsg(socket_.value(), &packet, MSG_DONTWAIT);
+    if (size < 0) {
+      if (errno == EINTR) continue;
+      return;
+    }
+    timespec arrived{};
+    for (cmsghdr* one = CMSG_FIRSTHDR(&packet); one != nullptr; one = CMSG_NXTHDR(&packet, one)) {
+      if (one->cmsg_level != SOL_SOCKET) continue;
+      if (one->cmsg_type == SCM_TIMESTAMPNS) arrived = data_of<timespec>(one);
+      if (one->cmsg_type == SO_RXQ_OVFL) {
+        const auto drops = data_of<std::uint32_t>(one);
+        packets_dropped_ += drops - std::exchange(kernel_drops_, drops);
+      }
+    }
+    const std::uint64_t from = std::uint64_t{sender.sin_addr.s_addr} << 16U | sender.sin_port;
+    const auto message = packets_.take({packet_.data(), static_cast<std::size_t>(size)}, from);
+    if (message) {
+      handler(message->channel, message->payload,
+              std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000);
+    }
+  }
+}
+
+}  // namespace buoyancy

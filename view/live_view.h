@@ -1,0 +1,56 @@
+// Listens on the bus and lays down snapshots for the page, kSnapshotsPerSecond times a second, as long as
+// somebody looks: one thread.
+//
+// It must not slow down what it looks at: messages do not wake it (BusListener), and it never takes a
+// processor from a thread that is running (keep_in_the_background()).
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "geometry/error.h"
+#include "messages/wire.h"
+#include "scene/scene.h"
+#include "terminal/termination_signals.h"
+#include "view/bus_listener.h"
+#include "view/bus_watch.h"
+#include "view/snapshot_hub.h"
+
+namespace buoyancy {
+
+struct WatchedChannels {
+  std::string states{kStatesChannel};
+  std::string wrenches{kWrenchesChannel};
+  std::string hydrostatics{kHydrostaticsChannel};
+  std::string status{kStatusChannel};
+};
+
+// This thread, and those that it starts from here on, wait until a processor is free or their turn has come,
+// and interrupt nobody.
+void keep_in_the_background();
+
+class LiveView {
+ public:
+  static constexpr double kSnapshotsPerSecond = 30.0;
+
+  // scene and hub must live as long. Listens from here on. Errors: as BusListener::open.
+  static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
+                                 const WatchedChannels& channels, SnapshotHub& hub);
+
+  // Until a signal of termination comes or goes_on says no; once.
+  void run(const TerminationSignals& termination, const std::function<bool()>& goes_on);
+
+ private:
+  LiveView(const Scene& scene, BusListener listener, SnapshotHub& hub);
+  void take_in();
+  void publish();
+
+  BusListener listener_;
+  SnapshotHub* hub_;
+  double start_;  // s, of the steady clock
+  double now_;
+  BusWatch watch_;
+  std::int64_t snapshots_ = 0;
+};
+
+}  // namespace buoyancy

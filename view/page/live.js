@@ -1,0 +1,328 @@
+'use strict';
+// Shows what buoyancy-view hears on the bus: each snapshot of /events as picture, strip, plots and tables.
+(async () => {
+  const element = (id) => document.getElementById(id);
+  const kept_seconds = 60;      // as buoyancy-view keeps
+  const track_interval = 0.1;   // s between two points of a body's plots
+  const text_interval = 200;    // ms
+  const plot_interval = 500;    // ms
+  const stale_after = 2000;     // ms without a snapshot
+
+  const states = {
+    answering: ['●', 'The service answers'],
+    waiting: ['○', 'The service waits for questions'],
+    'not answering': ['▲', 'The service does not answer'],
+    silent: ['■', 'The service is silent'],
+    connecting: ['…', 'No connection to buoyancy-view; trying again'],
+  };
+
+  async function fetch_model() {
+    const response = await fetch('model', { cache: 'no-store' });
+    if (!response.ok) throw new Error(`the model: ${response.status}`);
+    return response.text();
+  }
+
+  const model_text = await fetch_model();
+  const { model, statuses, version } = JSON.parse(model_text);
+  const up = model.water.up;
+  const heave = (p) => p[0] * up[0] + p[1] * up[1] + p[2] * up[2] - model.water.level;
+  const along_up = (f) => f[0] * up[0] + f[1] * up[1] + f[2] * up[2];
+  const scene = make_water_scene(element('canvas'), model);
+  const view = { snapshots: 0, renders: 0, connections: 0, last: null, state: 'connecting', history: [], paused: false,
+                 chosen: model.bodies[0].id, following: false, model };
+  window.buoyancyView = view;
+
+  // What the plots show: of the bus one entry a second, of every body a point every tenth of one.
+  const tracks = { times: [], bodies: new Map() };
+  let spoken = '';
+
+  function say_state(state) {
+    view.state = state;
+    const [sign, words] = states[state];
+    element('state').dataset.state = state;
+    element('state_sign').textContent = sign;
+    if (spoken !== words) element('state_text').textContent = words;  // only news is read aloud
+    spoken = words;
+  }
+
+  function take_second(second) {
+    const newest = view.history[view.history.length - 1];
+    if (!second || (newest && newest.number === second.number)) return;
+    if (newest && second.number < newest.number) view.history = [];  // buoyancy-view began anew
+    view.history.push(second);
+    if (view.history.length > kept_seconds) view.history.shift();
+  }
+
+  function track(snapshot) {
+    const now = snapshot.listening;
+    const newest = tracks.times[tracks.times.length - 1];
+    if (newest !== undefined && now < newest) {
+      tracks.times = [];
+      tracks.bodies.clear();
+    } else if (newest !== undefined && now < newest + track_interval) {
+      return;
+    }
+    tracks.times.push(now);
+    for (const body of snapshot.bodies) {
+      if (!tracks.bodies.has(body.id)) {
+        tracks.bodies.set(body.id, { heave: new Array(tracks.times.length - 1).fill(NaN), force: new Array(tracks.times.length - 1).fill(NaN) });
+      }
+      const of_body = tracks.bodies.get(body.id);
+      of_body.heave.push(heave(body.p));
+      of_body.force.push(body.f ? along_up(body.f) : NaN);
+    }
+    while (tracks.times.length > 0 && tracks.times[0] < now - kept_seconds) {
+      tracks.times.shift();
+      for (const of_body of tracks.bodies.values()) { of_body.heave.shift(); of_body.force.shift(); }
+    }
+  }
+
+  const nothing_yet = 'nothing yet';
+  const bus_series = (columns) => () => {
+    const newest = view.history.length > 0 ? view.history[view.history.length - 1].number : 0;
+    const times = view.history.map((second) => second.number - newest);
+    return columns.map(([name, value]) => ({ name, times, values: view.history.map(value) }));
+  };
+  const body_series = (name, column) => () => {
+    const newest = tracks.times[tracks.times.length - 1];
+    const of_body = tracks.bodies.get(view.chosen);
+    return [{ name, times: tracks.times.map((time) => time - newest), values: of_body ? of_body[column] : [] }];
+  };
+  const milliseconds = (value) => (value === null ? NaN : 1e3 * value);
+  const plots = [
+    { title: 'Question to answer', unit: 'ms', missing: 'no answers yet',
+      make: bus_series([['median', (second) => milliseconds(second.p50)], ['99 %', (second) => milliseconds(second.p99)]]) },
+    { title: 'Messages', unit: 'a second', missing: nothing_yet,
+      make: bus_series([['questions', (second) => second.questions], ['answers', (second) => second.answers], ['unanswered', (second) => second.unanswered]]) },
+    { title: 'Heave of the body', unit: 'm', missing: nothing_yet, make: body_series('origin over the water', 'heave') },
+    { title: 'Buoyant force on the body', unit: 'N', missing: nothing_yet, make: body_series('upwards', 'force') },
+  ];
+  for (const plot of plots) {
+    plot.plot = new Plot(element('plots'), { title: plot.title, unit: plot.unit, series: plot.make(), missing: plot.missing });
+  }
+
+  function draw_plots() {
+    for (const { plot, make } of plots) {
+      plot.update(make());
+      plot.show(0);
+    }
+  }
+
+  const age_text = (age) => (age === null ? 'never' : age < 1 ? 'now' : `${seconds_text(age)} ago`);
+  const count_text = (count) => count.toLocaleString('en');
+
+  function strip_entries(now) {
+    const status = now.status;
+    const second = now.second || { questions: 0, answers: 0, p50: null, p99: null, max: null };
+    const time = (value) => (value === null ? '–' : seconds_text(value));
+    const entries = [
+      ['questions', `${count_text(second.questions)} a second`], ['answers', `${count_text(second.answers)} a second`],
+      ['median', time(second.p50)], ['99 %', time(second.p99)], ['slowest', time(second.max)],
+      ['unanswered', count_text(now.counts.unanswered)], ['missed by this view', count_text(now.counts.questions_missed)], ['packets dropped', count_text(now.counts.packets_dropped)],
+    ];
+    if (!status) return entries;
+    return entries.concat([
+      ['service', status.version], ['mode', status.mode], ['up for', seconds_text(status.uptime)],
+      ['status', age_text(now.status_age)], ['rejected', count_text(status.rejected)], ['not sent', count_text(status.not_sent)],
+    ]);
+  }
+
+  function fill_strip(entries) {
+    const strip = element('strip');
+    while (strip.children.length > entries.length) strip.lastElementChild.remove();
+    while (strip.children.length < entries.length) {
+      const item = document.createElement('li');
+      item.append(document.createElement('span'), ' ', document.createElement('b'));
+      strip.append(item);
+    }
+    entries.forEach(([name, value], i) => {
+      const [label, number] = [strip.children[i].children[0], strip.children[i].children[1]];
+      if (label.textContent !== name) label.textContent = name;
+      if (number.textContent !== value) number.textContent = value;
+    });
+  }
+
+  function notices(now) {
+    const found = [];
+    if (now.services.length > 1) {
+      found.push(`${now.services.length} services are on this bus (${now.services.join(', ')}): if they hear the same channels, every ` +
+        'question is answered as often. Stop all but one, or give each its own channels.');
+    }
+    if (now.state === 'silent' && now.status) {
+      found.push(`Nothing is heard of the service: its last status came ${age_text(now.status_age)}. What is shown is the last that was heard.`);
+    }
+    if (now.state === 'not answering') found.push(`Questions are on the bus, and the last answer came ${age_text(now.answer_age)}.`);
+    if (now.counts.bodies_not_in_scene > 0) {
+      found.push(`${plural(now.counts.bodies_not_in_scene, 'time', 'times')} a body was asked about that ${model.scene} has not: is the service's scene another one?`);
+    }
+    if (now.status && now.status.scene_bodies !== model.bodies.length) {
+      found.push(`The service has ${plural(now.status.scene_bodies, 'body', 'bodies')}, the scene shown here ${model.bodies.length}.`);
+    }
+    return found;
+  }
+
+  function fill_notices(found) {
+    const box = element('notices');
+    const shown = [...box.children].map((line) => line.textContent);
+    if (shown.join('\n') === found.join('\n')) return;
+    box.replaceChildren(...found.map((text) => {
+      const line = document.createElement('p');
+      line.className = 'notice';
+      line.textContent = text;
+      return line;
+    }));
+  }
+
+  function body_table(now) {
+    const body = now.bodies.find((one) => one.id === view.chosen);
+    const description = model.bodies.find((one) => one.id === view.chosen);
+    if (!body) return table_of(`Body ${description.id} ${description.name}: not asked about yet`, [], []);
+    const vector = (values) => (values ? values.map(number_text).join(', ') : '–');
+    const rows = [
+      ['status', body.status === null ? 'asked, not answered yet' : statuses[body.status] || `status ${body.status}`],
+      ['position, m', vector(body.p)], ['quaternion w, x, y, z', vector(body.q)],
+      ['force, N', vector(body.f)], ['torque, N m', vector(body.t)],
+      ['error bounds, N and N m', body.f ? `${number_text(body.force_bound)}, ${number_text(body.torque_bound)}` : '–'],
+      ['submerged volume, m³', body.f ? number_text(body.volume) : '–'],
+    ];
+    if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : number_text(height))).join(', ')]);
+    rows.push(['asked about', age_text(body.age)]);
+    return table_of(`Body ${description.id} ${description.name}`, ['', ''], rows);
+  }
+
+  function counter_tables(now) {
+    const counts = now.counts;
+    const heard = [
+      ['questions', counts.questions], ['repeated questions', counts.questions_repeated], ['answers', counts.answers],
+      ['further answers to a question', counts.answers_repeated], ['answers without a question', counts.answers_without_question],
+      ['unanswered', counts.unanswered], ['numbers missing between questions', counts.questions_missed], ['sessions', counts.sessions],
+      ...Object.entries(counts.malformed).map(([cause, count]) => [`malformed: ${cause}`, count]),
+      ['packets dropped, before this view could take them', counts.packets_dropped], ['fragments of messages that did not come whole', counts.fragments_dropped], ['services started', counts.services_started],
+    ];
+    const tables = [table_of('Heard on the bus', ['since this view began', ''], heard)];
+    if (!now.status) return tables;
+    const status = now.status;
+    tables.push(table_of('Said by the service', ['since it began', ''], [
+      ['questions', status.questions], ['answered', status.answered], ['repeated', status.repeated], ['changed repeats', status.changed_repeats],
+      ['stale', status.stale], ['overtaken', status.overtaken], ['rejected', status.rejected], ['not sent', status.not_sent],
+      ['sessions', status.sessions], ['sessions forgotten', status.sessions_forgotten], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
+    ]));
+    const answered = status.bodies;
+    tables.push(table_of('Bodies it answered', ['', 'count'], [
+      ['skipped: dry, above the water', status.bodies_dry], ['skipped: wet, below the surface', status.bodies_wet],
+      ['skipped: unchanged', status.bodies_unchanged], ['computed: crossing the surface', status.bodies_crossing],
+      ...Object.entries(answered).map(([name, count]) => [name, count]),
+      ['quaternions normalised', status.quaternions_normalised], ['hydrostatics', status.hydrostatics],
+    ]));
+    tables.push(table_of('Its own time', ['from receipt to publication', 'ms'], [
+      ['median', 1e3 * status.latency.p50], ['99 %', 1e3 * status.latency.p99], ['99.9 %', 1e3 * status.latency.p999],
+      ['slowest', 1e3 * status.latency.max], ['longest wait in the queue, last second', 1e3 * status.queue_wait],
+    ]));
+    return tables;
+  }
+
+  function show_text(now) {
+    say_state(now.service);
+    fill_strip(strip_entries(now));
+    fill_notices(notices({ ...now, state: now.service }));
+    element('subtitle').textContent = now.status ? `${model.scene}, instance ${now.status.instance_id}` : model.scene;
+    element('body_facts').replaceChildren(body_table(now));
+    element('counters').replaceChildren(...counter_tables(now));
+    document.body.classList.toggle('silent', now.service === 'silent');
+  }
+
+  function show_bodies(now) {
+    if (!scene) return;
+    scene.show(now.bodies.map((body) => ({ ...body, f: body.f || [0, 0, 0], t: body.t || [0, 0, 0] })));
+    scene.follow(view.following ? view.chosen : null);
+    scene.render();
+    view.renders += 1;
+  }
+
+  let frame_due = false, text_shown = -Infinity, plots_shown = -Infinity, arrived = -Infinity;
+  function show_newest(time) {
+    frame_due = false;
+    if (view.paused || !view.last) return;
+    show_bodies(view.last);
+    if (time >= text_shown + text_interval) { show_text(view.last); text_shown = time; }
+    if (time >= plots_shown + plot_interval) { draw_plots(); plots_shown = time; }
+  }
+
+  function take_snapshot(snapshot) {
+    view.last = snapshot;
+    view.snapshots += 1;
+    arrived = performance.now();
+    element('canvas').classList.remove('stale');
+    take_second(snapshot.second);
+    track(snapshot);
+    if (!frame_due) { frame_due = true; requestAnimationFrame(show_newest); }
+  }
+
+  function choose(id) {
+    view.chosen = id;
+    element('body').value = String(id);
+    text_shown = plots_shown = -Infinity;
+    if (view.last) { draw_plots(); show_text(view.last); show_bodies(view.last); }
+  }
+  function choose_next(by) {
+    const at = model.bodies.findIndex((body) => body.id === view.chosen);
+    choose(model.bodies[(at + by + model.bodies.length) % model.bodies.length].id);
+  }
+  function pause(on) {
+    view.paused = on;
+    element('pause').textContent = on ? 'Go on' : 'Pause';
+    element('pause').setAttribute('aria-pressed', String(on));
+  }
+  function follow(on) {
+    view.following = on;
+    element('follow').checked = on;
+    if (view.last) show_bodies(view.last);
+  }
+  Object.assign(view, { scene, choose, pause, follow });
+
+  for (const body of model.bodies) element('body').add(new Option(`${body.id} ${body.name}`, String(body.id)));
+  element('body').addEventListener('change', (event) => choose(Number(event.target.value)));
+  element('pause').addEventListener('click', () => pause(!view.paused));
+  element('follow').addEventListener('change', (event) => follow(event.target.checked));
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT') return;
+    if (event.key === ' ' && ['BUTTON', 'INPUT', 'SUMMARY'].includes(event.target.tagName)) return;  // that is pressed by it
+    const moves = { ' ': () => pause(!view.paused), n: () => choose_next(1), p: () => choose_next(-1), f: () => follow(!view.following) };
+    const move = moves[event.key.toLowerCase()];
+    if (move) move();
+    if (move || (scene && scene.key(event))) event.preventDefault();
+  });
+
+  element('title').textContent = model.scene;
+  document.title = `buoyancy: ${model.scene}, live`;
+  element('footer').textContent = `buoyancy-view ${version}. Drawn with three.js. It listens and sends nothing on the bus.`;
+  fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.hydrostatics));
+
+  function connect() {
+    const events = new EventSource('events');
+    events.addEventListener('open', async () => {
+      view.connections += 1;
+      if (view.connections === 1) return;
+      // buoyancy-view may have begun anew, with another scene.
+      try {
+        if (await fetch_model() !== model_text) location.reload();
+      } catch (error) {
+        // It is gone again; the events say so too.
+      }
+    });
+    events.addEventListener('history', (event) => { view.history = JSON.parse(event.data); });
+    events.addEventListener('message', (event) => take_snapshot(JSON.parse(event.data)));
+    events.addEventListener('error', () => {
+      say_state('connecting');
+      if (events.readyState !== EventSource.CLOSED) return;  // it tries again by itself
+      events.close();
+      setTimeout(connect, 2000);
+    });
+  }
+  setInterval(() => {
+    if (performance.now() < arrived + stale_after) return;
+    element('canvas').classList.add('stale');
+    say_state('connecting');
+  }, 500);
+  connect();
+})();

@@ -1,0 +1,58 @@
+// The HTTP server of the live page: a few texts from memory at fixed paths, and snapshots as server-sent
+// events. No path of the machine can be asked for: there is no file behind any address.
+//
+// Bounded on every side, since whoever reaches the port may send anything: connections and streams at a time,
+// bytes and time of a request's head, time for a chunk to be taken; bodies are never read, a connection
+// carries one request. Bound to a loopback address it answers only requests whose Host names the loopback, so
+// that no web page of somebody else's can read it under a name of its own (DNS rebinding).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/error.h"
+#include "view/snapshot_hub.h"
+
+namespace buoyancy {
+
+struct ServedText {
+  std::string path;          // "/model"
+  std::string content_type;  // "application/json"
+  std::string body;
+};
+
+// Is address an IPv4 or IPv6 address, in digits?
+Expected<void> check_listen_address(const std::string& address);
+
+struct PageLimits {
+  int connections = 64;             // at a time; further ones get 503 and are closed
+  int streams = 32;                 // of these; further ones get 503
+  std::size_t head_bytes = 16'384;  // a larger request gets 431
+  double head_patience = 5.0;       // s; a slower request gets 408
+  double write_patience = 5.0;      // s for a chunk; a slower reader is dropped
+};
+
+class PageServer {
+ public:
+  // Listens and serves from threads of its own, which inherit the signal mask. port: 0 for any that is free.
+  // "/events" is the hub's. Errors: the port cannot be had.
+  static Expected<std::unique_ptr<PageServer>> start(const std::string& address, int port,
+                                                     std::vector<ServedText> texts, SnapshotHub& hub,
+                                                     const PageLimits& limits = {});
+  PageServer(const PageServer&) = delete;
+  PageServer& operator=(const PageServer&) = delete;
+  ~PageServer();  // closes the hub and every connection
+
+  const std::string& url() const { return url_; }  // "http://127.0.0.1:8667/"
+  bool serving() const;  // false: the kernel gives no more connections, nothing will be served again
+
+ private:
+  class Http;
+  PageServer(std::unique_ptr<Http> http, std::string url);
+  std::unique_ptr<Http> http_;
+  std::string url_;
+};
+
+}  // namespace buoyancy
