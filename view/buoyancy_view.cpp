@@ -84,7 +84,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   Expected<std::vector<ServedText>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
   if (!page) return report(app, page.error(), kFailed);
   TerminationSignals termination;  // before any thread is started, which must not get them
-  keep_in_the_background();
+  give_way_to_others();
   SnapshotHub hub;
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, arguments.channels, hub);
   if (!view) return report(app, view.error(), kFailed);

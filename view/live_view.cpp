@@ -33,9 +33,9 @@ timespec to_timespec(double seconds) {
 
 }  // namespace
 
-void keep_in_the_background() {
+void give_way_to_others() {
   const sched_param none{};
-  ::sched_setscheduler(0, SCHED_BATCH, &none);
+  ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
 
 LiveView::LiveView(const Scene& scene, BusListener listener, SnapshotHub& hub)

@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <list>
-#include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "tests/service/patience.h"
 #include "tests/view/http_peer.h"
+#include "tests/view/malformed_requests.h"
 
 namespace buoyancy {
 namespace {
@@ -212,35 +212,8 @@ TEST_F(ImpatientPage, DoesNotWaitForAHeadThatNeverComes) {
 }
 
 TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
-  std::mt19937 random(1);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same every time
-  const std::vector<std::string> beginnings{
-      "",
-      "GET",
-      "GET /",
-      "GET / HTTP/9.9\r\n",
-      "GET  / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
-      "get / http/1.1\r\nHost: 127.0.0.1\r\n\r\n",
-      "GET / HTTP/1.1\n\n",
-      "GET /% HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
-      "GET /%zz%u0000 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
-      "GET /" + std::string(9'000, 'a') + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
-      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: -1\r\n\r\n",
-      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffffffffffff\r\n",
-      "POST /model HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999999999999999\r\n\r\n",
-      "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nExpect: 100-continue\r\nContent-Length: 5\r\n\r\n",
-      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=" + std::string(8'000, '-') + "\r\n\r\n",
-      "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=9-1,,,\r\n\r\n",
-      "GET / HTTP/1.1\r\n: \r\n:\r\nHost\r\n\r\n",
-      std::string("GET /\0 HTTP/1.1\r\nHost: \0\r\n\r\n", 29),
-      "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-      "\x16\x03\x01\x02\x01\x01\xfc\x03\x03",
-  };
-  for (int i = 0; i < 500; ++i) {
-    std::string request = beginnings[static_cast<std::size_t>(i) % beginnings.size()];
-    for (int j = 0; j < i / 20 && !request.empty(); ++j)
-      request[random() % request.size()] = static_cast<char>(random());
-    response_to(request);
-  }
+  MalformedRequests malformed(1);
+  for (int i = 0; i < 10'000; ++i) response_to(malformed.next());
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
   EXPECT_TRUE(server_->serving());
 }
