@@ -1,18 +1,18 @@
 // Listens on the bus and lays down snapshots for the page, kSnapshotsPerSecond times a second, as long as
 // somebody looks: one thread.
 //
-// It must not slow down what it looks at: messages do not wake it (BusListener), and it runs where a processor
-// has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots, and packets
-// that the kernel had to drop.
+// It must not slow down what it looks at: messages do not wake it (BusListener), and it runs where a
+// processor has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots,
+// and packets that the kernel had to drop.
 #pragma once
 
 #include <functional>
 #include <string>
 
+#include "command_line/termination_signals.h"
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
-#include "terminal/termination_signals.h"
 #include "view/bus_listener.h"
 #include "view/bus_watch.h"
 #include "view/snapshot_hub.h"
