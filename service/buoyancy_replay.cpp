@@ -3,13 +3,13 @@
 
 #include <CLI/App.hpp>
 
+#include "command_line/command_line.h"
+#include "command_line/termination_signals.h"
 #include "scene/scene.h"
 #include "service/replay.h"
 #include "service/replay_options.h"
 #include "service/replay_summary.h"
-#include "terminal/command_line.h"
 #include "terminal/progress_bar.h"
-#include "terminal/termination_signals.h"
 
 namespace {
 

@@ -6,14 +6,14 @@
 
 #include <CLI/App.hpp>
 
+#include "command_line/blocked_signals.h"
+#include "command_line/command_line.h"
+#include "command_line/termination_signals.h"
 #include "scene/scene.h"
 #include "scene/scene_report.h"
 #include "service/daemon.h"
 #include "service/daemon_options.h"
 #include "service/log_output.h"
-#include "terminal/blocked_signals.h"
-#include "terminal/command_line.h"
-#include "terminal/termination_signals.h"
 
 namespace {
 

@@ -18,17 +18,17 @@
 #include <string_view>
 #include <vector>
 
+#include "command_line/blocked_signals.h"
+#include "command_line/termination_signals.h"
 #include "exchange/exchange.h"
 #include "exchange/pose_questions.h"
 #include "geometry/error.h"
 #include "messages/latency_histogram.h"
 #include "scene/scene.h"
-#include "terminal/blocked_signals.h"
 #include "service/latest_questions.h"
 #include "service/other_instances.h"
 #include "service/scene_loader.h"
 #include "service/service_manager.h"
-#include "terminal/termination_signals.h"
 #include "service/trouble_log.h"
 #include "transport/lcm_connection.h"
 

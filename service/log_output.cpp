@@ -7,7 +7,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "terminal/journal.h"
+#include "command_line/journal.h"
 
 namespace buoyancy {
 namespace {

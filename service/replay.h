@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "command_line/termination_signals.h"
 #include "exchange/pose_questions.h"
 #include "geometry/error.h"
 #include "messages/status.h"
@@ -15,7 +16,6 @@
 #include "service/replay_channels.h"
 #include "service/replay_input.h"
 #include "service/replay_output.h"
-#include "terminal/termination_signals.h"
 
 namespace buoyancy {
 

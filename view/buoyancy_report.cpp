@@ -6,11 +6,11 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "command_line/command_line.h"
+#include "command_line/termination_signals.h"
 #include "recording/record_file.h"
 #include "scene/scene.h"
-#include "terminal/command_line.h"
 #include "terminal/progress_bar.h"
-#include "terminal/termination_signals.h"
 #include "view/page_text.h"
 #include "view/report_page.h"
 #include "view/run_file.h"

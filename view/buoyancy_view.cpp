@@ -11,9 +11,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "command_line/command_line.h"
+#include "command_line/termination_signals.h"
 #include "scene/scene.h"
-#include "terminal/command_line.h"
-#include "terminal/termination_signals.h"
 #include "transport/lcm_connection.h"
 #include "view/live_page.h"
 #include "view/live_view.h"

@@ -9,10 +9,10 @@
 #include <functional>
 #include <string>
 
+#include "command_line/termination_signals.h"
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
-#include "terminal/termination_signals.h"
 #include "view/bus_listener.h"
 #include "view/bus_watch.h"
 #include "view/snapshot_hub.h"

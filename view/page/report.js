@@ -153,6 +153,7 @@
   // page.html#t=12.5 opens there.
   seek(Number(new URLSearchParams(location.hash.slice(1)).get('t') || start));
 
-  window.buoyancy_report = { data, bodies, plots, scene, seek, play, choose, body_at,
+  // For tests and measurements. shown_after: ms since the page was asked for.
+  window.buoyancy_report = { shown_after: performance.now(), data, bodies, plots, scene, seek, play, choose, body_at,
                              state: () => ({ time, speed, playing, start, end, body: chosen.id }) };
 })();

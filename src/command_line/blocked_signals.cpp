@@ -1,4 +1,4 @@
-#include "terminal/blocked_signals.h"
+#include "command_line/blocked_signals.h"
 
 #include <csignal>
 

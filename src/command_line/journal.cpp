@@ -1,4 +1,4 @@
-#include "terminal/journal.h"
+#include "command_line/journal.h"
 
 #include <cstdlib>
 #include <string>

@@ -1,4 +1,4 @@
-#include "terminal/command_line.h"
+#include "command_line/command_line.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -9,7 +9,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "terminal/journal.h"
+#include "command_line/journal.h"
 
 namespace buoyancy {
 

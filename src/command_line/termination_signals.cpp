@@ -1,4 +1,4 @@
-#include "terminal/termination_signals.h"
+#include "command_line/termination_signals.h"
 
 namespace buoyancy {
 

@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "terminal/blocked_signals.h"
+#include "command_line/blocked_signals.h"
 
 namespace buoyancy {
 
