@@ -44,7 +44,8 @@ void declare_options(CLI::App& app, ReportArguments& arguments) {
       ->capture_default_str();
   app.add_option("--status-channel", arguments.file.status_channel, "Channel of the status in an LCM log")
       ->capture_default_str();
-  app.add_option("--three", arguments.three, "three.js, which goes into the page")->capture_default_str();
+  app.add_option("--three", arguments.three,
+                 "Another three.js than Debian's libjs-three, to go into the page");
   app.add_option("RUN", arguments.run, "A .csv or .lcmlog file")->required();
   app.add_option("OUTPUT", arguments.output, "The page; overwritten")->required();
 }
