@@ -79,7 +79,7 @@ class Plot {
 
   draw() {
     const width = Math.max(160, this.figure.clientWidth), height = Plot.height;
-    const left = 58, right = 10, top = 6, bottom = 20;
+    const left = 58, right = 16, top = 6, bottom = 20;
     const range = this.range();
     this.svg.replaceChildren();
     this.svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
