@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "geometry/error.h"
-#include "scene/scene.h"
 #include "recording/file_descriptor.h"
+#include "scene/scene.h"
 
 namespace buoyancy {
 

@@ -67,6 +67,14 @@ TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
     return colour.red > colour.green + 20 && colour.red > colour.blue + 60;
   };
   EXPECT_GT(picture.share(canvas, amber), 0.01) << "of the box over the water";
+  const auto dark_blue = [](const Colour& colour) {
+    return colour.blue > colour.red + 80 && colour.red < 90;
+  };
+  EXPECT_GT(picture.share(canvas, dark_blue), 0.01) << "of the box under water";
+  EXPECT_GT(picture.share(canvas, is_near({255, 255, 255}, 4)), 0.0005) << "of the waterline";
+  EXPECT_TRUE(is_near({234, 243, 250}, 4)(picture.pixel(canvas.left + 6, canvas.top + 6))) << "the sky";
+  const Colour water = picture.pixel(canvas.left + 6, canvas.top + canvas.height - 6);
+  EXPECT_GT(water.blue, water.red + 50) << "the water";
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 

@@ -296,7 +296,7 @@
   element('title').textContent = model.scene;
   document.title = `buoyancy: ${model.scene}, live`;
   element('footer').textContent = `buoyancy-view ${version}. Drawn with three.js. It listens and sends nothing on the bus.`;
-  fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.hydrostatics));
+  fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.outputs.includes('hydrostatics')));
 
   function connect() {
     const events = new EventSource('events');
