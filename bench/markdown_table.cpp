@@ -1,6 +1,7 @@
 #include "markdown_table.h"
 
 #include <algorithm>
+#include <array>
 
 namespace buoyancy {
 
@@ -23,6 +24,12 @@ void MarkdownTable::print(std::FILE* file, std::size_t text_columns) const {
     std::fprintf(file, "|\n");
   }
   std::fprintf(file, "\n");
+}
+
+std::string text(const char* format, double value) {
+  std::array<char, 64> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
 }
 
 }  // namespace buoyancy

@@ -21,4 +21,10 @@ class MarkdownTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
+std::string text(const char* format, double value);  // of a cell, as printf has it
+
+inline std::string met(bool holds) {
+  return holds ? "met" : "MISSED";
+}
+
 }  // namespace buoyancy

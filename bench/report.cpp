@@ -31,12 +31,6 @@ constexpr double kToleranceGrowth = 3.0;  // at most, of its time from the small
 constexpr double kBuildNs = 1000.0;       // per triangle, at most
 constexpr double kTreeBytes = 250.0;      // likewise
 
-std::string text(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
 // Three digits that count, without an exponent.
 std::string microseconds(double ns) {
   const double us = 1e-3 * ns;

@@ -8,7 +8,6 @@
 // before they are timed. Exit codes: 0 measured; 1 a wrong answer or no network; 2 wrong arguments. A goal
 // that is missed is printed and changes no exit code: times depend on the machine and on what else it does.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -45,22 +44,6 @@ constexpr double kRealTime = 1000.0;       // steps per second
 // A box of 1,200 triangles.
 const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
 const std::string kRock = R"(shape = { type = "rock", radius = 1, frequency = 39 })";  // 30,420 triangles
-
-double percentile(Times times, double share) {
-  std::sort(times.begin(), times.end());
-  const double rank = std::ceil(share * static_cast<double>(times.size()));
-  return times[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
-
-std::string text(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
-std::string met(bool holds) {
-  return holds ? "met" : "MISSED";
-}
 
 double microseconds(Clock::duration duration) {
   return std::chrono::duration<double, std::micro>(duration).count();

@@ -8,7 +8,6 @@
 // wrong answer or no network; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
 // times depend on the machine and on what else it does.
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -42,21 +41,6 @@ constexpr double kLeastUpdates = 20.0;  // Hz
 
 // A box of 1,200 triangles.
 const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
-
-double percentile(Times times, double share) {
-  std::sort(times.begin(), times.end());
-  return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
-}
-
-std::string text(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
-std::string met(bool holds) {
-  return holds ? "met" : "MISSED";
-}
 
 // s of processor time that a process has used, all its threads.
 double processor_time(pid_t process) {

@@ -1,8 +1,6 @@
 #include "service/daemon_options.h"
 
-#include <array>
 #include <map>
-#include <set>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -55,13 +53,10 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
 
 Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
-  const std::array names{channels.states, channels.wrenches, channels.hydrostatics, channels.status};
-  for (const std::string& channel : names) {
-    if (Expected<void> checked = check_channel(channel); !checked) return checked;
-  }
-  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
-    return failure({"channels " + names[0] + ", " + names[1] + ", " + names[2] + " and " + names[3],
-                    "two are the same", "four different names", "", ""});
+  if (Expected<void> checked = check_different_channels(
+          {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
+      !checked) {
+    return checked;
   }
   return check_lcm_url(options.lcm_url);
 }

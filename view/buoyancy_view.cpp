@@ -1,8 +1,6 @@
 // buoyancy-view: shows in a browser what a buoyancy service and its askers say to each other. Exit codes: 0
 // ended by SIGINT or SIGTERM, 1 it ran and failed, 2 wrong arguments, scene or mesh.
 
-#include <array>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,13 +56,10 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
 // What no single option shows.
 Expected<void> check_arguments(const Arguments& arguments) {
   const WatchedChannels& channels = arguments.channels;
-  const std::array names{channels.states, channels.wrenches, channels.hydrostatics, channels.status};
-  for (const std::string& channel : names) {
-    if (Expected<void> checked = check_channel(channel); !checked) return checked;
-  }
-  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
-    return failure({"channels " + names[0] + ", " + names[1] + ", " + names[2] + " and " + names[3],
-                    "two are the same", "four different names", "", ""});
+  if (Expected<void> checked = check_different_channels(
+          {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
+      !checked) {
+    return checked;
   }
   if (Expected<void> checked = check_listen_address(arguments.address); !checked) return checked;
   return check_lcm_url(arguments.lcm_url);

@@ -66,7 +66,7 @@ std::string self_contained_page(std::string_view file_name, std::string_view thr
   }
 }
 
-std::string escaped_for_script(std::string json) {
+std::string escaped_for_script(std::string_view json) {
   std::string escaped;
   escaped.reserve(json.size());
   for (const char c : json) {

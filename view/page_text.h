@@ -24,6 +24,6 @@ Expected<std::string> three_js(const std::filesystem::path& path = kThreeJs);
 std::string self_contained_page(std::string_view file_name, std::string_view three);
 
 // JSON as a script's text, where "</script>" and "<!--" would mean something: '<' is escaped.
-std::string escaped_for_script(std::string json);
+std::string escaped_for_script(std::string_view json);
 
 }  // namespace buoyancy

@@ -2,8 +2,8 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <set>
 #include <system_error>
-#include <vector>
 
 #include <lcm/lcm.h>
 #include <poll.h>
@@ -75,6 +75,16 @@ Expected<void> check_channel(const std::string& channel) {
                     "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
   }
   return {};
+}
+
+Expected<void> check_different_channels(const std::vector<std::string>& channels) {
+  std::string names;
+  for (const std::string& channel : channels) {
+    if (Expected<void> checked = check_channel(channel); !checked) return checked;
+    names += (names.empty() ? "" : ", ") + channel;
+  }
+  if (std::set<std::string>(channels.begin(), channels.end()).size() == channels.size()) return {};
+  return failure({"channels " + names, "two are the same", "different names", "", ""});
 }
 
 struct LcmConnection::Impl {

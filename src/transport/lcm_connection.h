@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geometry/error.h"
 #include "messages/wire.h"
@@ -25,6 +26,9 @@ Expected<void> check_lcm_url(const std::string& url);
 
 // Is channel a name that LCM can carry: 1 to 63 characters?
 Expected<void> check_channel(const std::string& channel);
+
+// The same of each, and that no two are the same.
+Expected<void> check_different_channels(const std::vector<std::string>& channels);
 
 class LcmConnection {
  public:

@@ -47,7 +47,7 @@ class MalformedRequests {
       "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=" + std::string(8'000, '-') + "\r\n\r\n",
       "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nRange: bytes=9-1,,,\r\n\r\n",
       "GET / HTTP/1.1\r\n: \r\n:\r\nHost\r\n\r\n",
-      std::string("GET /\0 HTTP/1.1\r\nHost: \0\r\n\r\n", 29),
+      std::string("GET /\0 HTTP/1.1\r\nHost: \0\r\n\r\n", 28),
       "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
       "\x16\x03\x01\x02\x01\x01\xfc\x03\x03",
   };

@@ -8,15 +8,12 @@
 
 #include "exchange/exchange.h"
 #include "recording/event_log.h"
+#include "tests/exchange/box_scene.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
 namespace {
-
-Scene scene_of(const std::string& text) {
-  return Scene::prepare(parse_scene(text, "scene.toml", {}).value()).value();
-}
 
 Question question_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
   Question question;
