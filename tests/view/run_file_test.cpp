@@ -108,7 +108,7 @@ TEST_F(ARunFile, IsRefusedWhereItHasNoPoses) {
   EXPECT_NE(answers_alone.error().message().find("px, py, pz"), std::string::npos);
   const auto of_another_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(of_another_scene);
-  EXPECT_NE(of_another_scene.error().message().find("1 rows, none about a body of scene.toml"),
+  EXPECT_NE(of_another_scene.error().message().find("1 rows, none about a body of test scene"),
             std::string::npos);
   EXPECT_FALSE(read(directory_.write("run.txt", ""))) << "neither .csv nor .lcmlog";
   EXPECT_FALSE(read(directory_.path("missing.csv")));
