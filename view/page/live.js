@@ -148,8 +148,10 @@
       found.push(`${now.services.length} services are on this bus (${now.services.join(', ')}): if they hear the same channels, every ` +
         'question is answered as often. Stop all but one, or give each its own channels.');
     }
-    if (now.state === 'silent' && now.status) {
-      found.push(`Nothing is heard of the service: its last status came ${age_text(now.status_age)}. What is shown is the last that was heard.`);
+    if (now.state === 'silent') {
+      found.push(now.status
+        ? `Nothing is heard of the service: its last status came ${age_text(now.status_age)}. What is shown is the last that was heard.`
+        : 'Nothing is heard of the service, and no status of it since this view was started.');
     }
     if (now.state === 'not answering') found.push(`Questions are on the bus, and the last answer came ${age_text(now.answer_age)}.`);
     if (now.counts.bodies_not_in_scene > 0) {
