@@ -23,18 +23,25 @@ class BodyText {
     text_ += characters;
     return *this;
   }
-  BodyText& number(double value) {
-    const auto rounded = static_cast<float>(value);
+  // As many digits as its type needs.
+  template <typename T>
+  BodyText& number_as(double value) {
+    const auto rounded = static_cast<T>(value);
     if (!std::isfinite(rounded)) return plain("null");
     std::array<char, 32> digits{};
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), rounded).ptr;
     text_.append(digits.data(), end);
     return *this;
   }
+  BodyText& number(double value) { return number_as<float>(value); }
   BodyText& whole_number(std::int64_t value) { return plain(std::to_string(value)); }
   template <std::size_t kSize>
   BodyText& numbers(const std::array<double, kSize>& values) {
-    for (std::size_t i = 0; i < kSize; ++i) plain(i == 0 ? "[" : ",").number(values[i]);
+    return numbers_as<float>(values);
+  }
+  template <typename T, std::size_t kSize>
+  BodyText& numbers_as(const std::array<double, kSize>& values) {
+    for (std::size_t i = 0; i < kSize; ++i) plain(i == 0 ? "[" : ",").template number_as<T>(values[i]);
     return plain("]");
   }
 
@@ -50,7 +57,8 @@ void append(std::string& text, const WatchedBody& body, double now) {
   } else {
     out.plain("null");
   }
-  out.plain(R"(,"p":)").numbers(body.pose->position);
+  // Whole: a thousand kilometres from W's origin a float is half a metre.
+  out.plain(R"(,"p":)").numbers_as<double>(body.pose->position);
   out.plain(R"(,"q":)").numbers(body.pose->quaternion_wxyz);
   if (body.wrench) {
     const BodyWrench& wrench = *body.wrench;

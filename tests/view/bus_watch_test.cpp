@@ -105,6 +105,12 @@ TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }
 
+TEST_F(WatchedBus, RoundsNoPositionFarFromTheWorldsOrigin) {
+  constexpr double kFarHeight = 5'000'000.125;  // m: a float would be 0.5 m apart there
+  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
+  EXPECT_EQ(snapshot(0.0)["bodies"][0]["p"], json({3.0, -2.0, kFarHeight}));
+}
+
 TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   std::array<std::int64_t, 4> expected{};
   for (const MalformedMessage& malformed : malformed_messages()) {
