@@ -19,14 +19,11 @@
 #include "client/run_summary.h"
 #include "client/run_warnings.h"
 #include "client/simulation.h"
+#include "command_line/command_line.h"
 #include "terminal/progress_bar.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongInput = 2;
 
 constexpr double kMostSteps = 1e15;  // whole numbers up to here are exact as doubles
 constexpr std::int64_t kMostCount = std::int64_t{1} << 40U;

@@ -8,13 +8,16 @@ namespace buoyancy {
 inline constexpr double kDensity = 1000.0;
 inline constexpr double kGravity = 10.0;
 
-// A box of 2 x 3 x 4 m about B's origin, in water of kDensity and kGravity.
-inline const std::string kOneBoxScene = R"(
+// A scene's beginning: water of kDensity and kGravity.
+inline const std::string kTestWater = R"(
 [world]
 gravity = 10.0
 [water]
 density = 1000.0
-[[body]]
+)";
+
+// A box of 2 x 3 x 4 m about B's origin.
+inline const std::string kOneBoxScene = kTestWater + R"([[body]]
 id = 1
 shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
 method = "exact"

@@ -29,12 +29,7 @@ reference_point = [0.5, -0.25, 0.0]
 )";
 
 // The same box, whose hydrostatics are asked for.
-inline constexpr const char* kHydrostaticBoxScene = R"(
-[world]
-gravity = 10.0
-[water]
-density = 1000.0
-[[body]]
+inline const std::string kHydrostaticBoxScene = kTestWater + R"([[body]]
 id = 1
 shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
 [[body]]
