@@ -217,12 +217,10 @@ void print_round_trips(std::size_t questions) {
       "Bodies of 1,200 triangles that cross the water. The echo is a bare LCM process that answers with as "
       "many "
       "bytes. Medians of\n%zu runs of %zu questions each, of the ratios too; in every run service and echo "
-      "take "
-      "turns. A round trip wakes four threads in two\nprocesses, one after the other. Where waking another "
-      "processor "
-      "is dear, as on a virtual machine, it depends on the kernel's\nscheduler how many of them do, for the "
-      "service as "
-      "for the echo; with one processor for all, none.\n\n",
+      "take turns.\nThe echo is woken twice for each question, by liblcm's thread and as that thread. Where "
+      "waking another processor is dear, as on\na virtual machine, it depends on the kernel's scheduler how "
+      "much that costs; with one processor for all, little. The service\nlooks for the next question before "
+      "it sleeps, as the asker does, of both.\n\n",
       kRuns, questions);
   MarkdownTable table(
       {"processors", "bodies", "", "service, us", "echo, us", "solver, us", "ratio", "must", ""});

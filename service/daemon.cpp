@@ -12,18 +12,15 @@
 #include <spdlog/spdlog.h>
 #include <sys/timerfd.h>
 
+#include "geometry/file_descriptor.h"
 #include "geometry/wording.h"
 #include "hydrostatics/wet_tree_sum.h"
 #include "messages/status.h"
-#include "recording/file_descriptor.h"
 #include "service/troubles.h"
 
 namespace buoyancy {
 namespace {
 
-// Messages that liblcm keeps for us while we compute. Beyond it liblcm drops the newest; a bound there must
-// be, or a sender that is faster than we are takes all memory.
-constexpr int kQueueCapacity = 10'000;
 constexpr int kDrainedAtOnce = 4096;  // mode latest, so that a flood cannot keep us from answering
 constexpr std::size_t kMaxSessions = ExchangeOptions{}.max_sessions;
 
@@ -82,22 +79,18 @@ Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Mod
       other_instances_(instance_id_) {}
 
 Expected<void> Daemon::subscribe() {
-  Expected<void> subscribed = connection_.subscribe(
-      channels_.states,
-      [this](Bytes question, std::string_view) {
+  Expected<void> subscribed =
+      connection_.subscribe(channels_.states, [this](Bytes question, std::string_view) {
         note_queue_wait();
         hear_question(question);
-      },
-      kQueueCapacity);
+      });
   for (std::size_t i = 0; subscribed && i < poses_.channels().size(); ++i) {
-    subscribed = connection_.subscribe(
-        poses_.channels()[i].channel, [this, i](Bytes pose, std::string_view) { hear_pose(i, pose); },
-        kQueueCapacity);
+    subscribed = connection_.subscribe(poses_.channels()[i].channel,
+                                       [this, i](Bytes pose, std::string_view) { hear_pose(i, pose); });
   }
   if (!subscribed) return subscribed;
-  return connection_.subscribe(
-      channels_.status, [this](Bytes status, std::string_view) { other_instances_.hear(status); },
-      kQueueCapacity);
+  return connection_.subscribe(channels_.status,
+                               [this](Bytes status, std::string_view) { other_instances_.hear(status); });
 }
 
 Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& reload) {
@@ -128,7 +121,8 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
   manager_.ready();
 
   while (true) {
-    const int forever_or_not_at_all = latest_.empty() ? -1 : 0;
+    const bool at_work = !latest_.empty() || connection_.handle_one_soon();
+    const int forever_or_not_at_all = at_work ? 0 : -1;
     if (::poll(waiting.data(), waiting.size(), forever_or_not_at_all) < 0) {
       if (errno == EINTR) continue;  // a debugger, a stop and go
       return failure(
@@ -139,9 +133,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
     if (loaded.revents != 0) end_reload();
     if (second.revents != 0 && take_expiration(every_second)) report();
     if (beat.revents != 0 && take_expiration(watchdog_timer) && watchdog) manager_.watchdog_beat();
-    if (messages.revents != 0) {
-      if (Expected<void> received = receive(); !received) return received;
-    }
+    if (messages.revents != 0) receive();
     answer_next_waiting();
   }
   manager_.stopping();
@@ -151,16 +143,10 @@ Expected<void> Daemon::run(TerminationSignals& termination, BlockedSignals& relo
   return {};
 }
 
-Expected<void> Daemon::receive() {
-  if (!connection_.handle_one()) {
-    return failure({connection_.url(), "LCM stopped receiving", "a connection that lasts",
-                    "what LCM itself printed above", "Start the service again"});
+void Daemon::receive() {
+  const int most = mode_ == Mode::kLatest ? kDrainedAtOnce : 1;
+  for (int received = 0; received < most && connection_.handle_one(); ++received) {
   }
-  if (mode_ == Mode::kLatest) {
-    for (int drained = 1; drained < kDrainedAtOnce && connection_.handle_one(); ++drained) {
-    }
-  }
-  return {};
 }
 
 void Daemon::note_queue_wait() {
@@ -263,6 +249,7 @@ void Daemon::end_reload() {
 
 void Daemon::report() {
   const Counters& counters = exchange_.counters();
+  const ReceiveLosses losses = connection_.losses();
   const double now = seconds_now();
   encode(ServiceStatus{.utime = utime_now(),
                        .instance_id = instance_id_,
@@ -276,6 +263,8 @@ void Daemon::report() {
                        .reloads = reloads_,
                        .reloads_failed = reloads_failed_,
                        .not_sent = not_sent_,
+                       .packets_dropped = losses.packets,
+                       .fragments_dropped = losses.fragments,
                        .counters = counters,
                        .latency = latency_.percentiles(),
                        .queue_wait = std::exchange(queue_wait_, 0.0)},
@@ -285,6 +274,7 @@ void Daemon::report() {
                               counted(counters.answered + counters.repeated, "question", "questions"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : ""));
   for (const Trouble& trouble : troubles_between(reported_, counters)) troubles_.add(trouble, now);
+  for (const Trouble& trouble : troubles_between(reported_losses_, losses)) troubles_.add(trouble, now);
   for (const std::string& line : troubles_.take(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : other_instances_.take_new()) {
     spdlog::warn(
@@ -293,6 +283,7 @@ void Daemon::report() {
         other, channels_.status, channels_.states);
   }
   reported_ = counters;
+  reported_losses_ = losses;
 }
 
 }  // namespace buoyancy

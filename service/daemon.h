@@ -60,7 +60,7 @@ class Daemon {
 
  private:
   Expected<void> subscribe();
-  Expected<void> receive();
+  void receive();
   void note_queue_wait();
   void hear_question(Bytes question);
   void hear_pose(std::size_t channel, Bytes pose);  // channel: of poses_
@@ -93,6 +93,7 @@ class Daemon {
   TroubleLog troubles_;
   ServiceManager manager_;
   Counters reported_;
+  ReceiveLosses reported_losses_;
   std::vector<std::uint8_t> status_bytes_;        // reused
   Answer answer_;                                 // reused, of poses
   std::vector<std::uint8_t> force_torque_bytes_;  // reused

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "geometry/error.h"
-#include "recording/file_descriptor.h"
+#include "geometry/file_descriptor.h"
 #include "scene/scene.h"
 
 namespace buoyancy {

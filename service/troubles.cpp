@@ -32,6 +32,20 @@ std::vector<Trouble> troubles_between(const Counters& before, const Counters& no
   return troubles;
 }
 
+std::vector<Trouble> troubles_between(const ReceiveLosses& before, const ReceiveLosses& now) {
+  std::vector<Trouble> troubles;
+  if (now.packets > before.packets) {
+    troubles.push_back({"packets dropped by the kernel before they were read", now.packets - before.packets,
+                        "they came faster than they are read: sysctl -w net.core.rmem_max=4194304 and start "
+                        "again, or a port that carries less else"});
+  }
+  if (now.fragments > before.fragments) {
+    troubles.push_back(
+        {"fragments of incomplete or contradictory messages dropped", now.fragments - before.fragments, {}});
+  }
+  return troubles;
+}
+
 std::string describe_totals(const Counters& counters, const LatencyPercentiles& latency) {
   std::int64_t bodies = 0;
   for (const std::int64_t count : counters.bodies) bodies += count;

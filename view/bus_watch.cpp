@@ -56,7 +56,7 @@ WatchedBody* BusWatch::find(std::int32_t id) {
   return index ? &bodies_[*index] : nullptr;
 }
 
-void BusWatch::hear_question(Bytes bytes, Arrival arrival) {
+void BusWatch::hear_question(Bytes bytes, HeardAt arrival) {
   if (!take(bytes, question_)) return;
   ledger_.hear_question(question_.key, arrival.utime, arrival.now);
   const bool asked_lately = question_heard_ && *question_heard_ + kStatusPatience >= arrival.now;
@@ -73,7 +73,7 @@ void BusWatch::hear_question(Bytes bytes, Arrival arrival) {
   }
 }
 
-void BusWatch::hear_answer(Bytes bytes, Arrival arrival) {
+void BusWatch::hear_answer(Bytes bytes, HeardAt arrival) {
   if (!take(bytes, answer_)) return;
   answer_heard_ = arrival.now;
   waiting_since_.reset();
@@ -118,9 +118,8 @@ void BusWatch::hear_status(Bytes bytes, double now) {
   services_.push_back({id, now});
 }
 
-void BusWatch::note_drops(std::int64_t packets, std::int64_t fragments) {
-  counts_.packets_dropped = packets;
-  counts_.fragments_dropped = fragments;
+void BusWatch::note_losses(const ReceiveLosses& losses) {
+  counts_.losses = losses;
 }
 
 void BusWatch::pass_time(double now) {

@@ -19,13 +19,14 @@
 #include "messages/status.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
+#include "transport/udpm_receiver.h"
 #include "view/question_ledger.h"
 
 namespace buoyancy {
 
 // When a message arrived, by two clocks: us since 1970 as the kernel stamped it, and s of a clock that never
 // jumps.
-struct Arrival {
+struct HeardAt {
   std::int64_t utime = 0;
   double now = 0.0;
 };
@@ -71,7 +72,7 @@ class BusWatch {
 
   struct Counts {
     std::array<std::int64_t, 4> malformed{};  // by Rejection
-    std::int64_t packets_dropped = 0, fragments_dropped = 0;
+    ReceiveLosses losses;
     std::int64_t bodies_not_in_scene = 0;  // asked about
     std::int64_t statuses = 0;
     std::int64_t services_started = 0;  // another instance_id than those known; the first one too
@@ -80,11 +81,11 @@ class BusWatch {
   // scene must live as long.
   BusWatch(const Scene& scene, double now);
 
-  void hear_question(Bytes bytes, Arrival arrival);
-  void hear_answer(Bytes bytes, Arrival arrival);
+  void hear_question(Bytes bytes, HeardAt arrival);
+  void hear_answer(Bytes bytes, HeardAt arrival);
   void hear_hydrostatics(Bytes bytes);
   void hear_status(Bytes bytes, double now);
-  void note_drops(std::int64_t packets, std::int64_t fragments);  // so far, before anybody heard them
+  void note_losses(const ReceiveLosses& losses);  // so far
 
   // To be called many times a second: gives up what waited too long, closes a second that is over.
   void pass_time(double now);

@@ -38,8 +38,8 @@ void give_way_to_others() {
   ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
 
-LiveView::LiveView(const Scene& scene, BusListener listener, SnapshotHub& hub)
-    : listener_(std::move(listener)),
+LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, SnapshotHub& hub)
+    : receiver_(std::move(receiver)),
       hub_(&hub),
       start_(seconds_now()),
       now_(start_),
@@ -47,10 +47,15 @@ LiveView::LiveView(const Scene& scene, BusListener listener, SnapshotHub& hub)
 
 Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url,
                                   const WatchedChannels& channels, SnapshotHub& hub) {
-  Expected<BusListener> listener = BusListener::open(
-      lcm_url, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
-  if (!listener) return tl::unexpected(listener.error());
-  return LiveView(scene, std::move(*listener), hub);
+  Expected<UdpmReceiver> receiver = UdpmReceiver::open(lcm_url);
+  if (!receiver) return tl::unexpected(receiver.error());
+  // In the order of which take_in() knows them.
+  for (const std::string& channel :
+       {channels.states, channels.wrenches, channels.hydrostatics, channels.status}) {
+    const Expected<std::size_t> subscribed = receiver->subscribe(channel);
+    if (!subscribed) return tl::unexpected(subscribed.error());
+  }
+  return LiveView(scene, std::move(*receiver), hub);
 }
 
 void LiveView::run(const TerminationSignals& termination, const std::function<bool()>& goes_on) {
@@ -72,19 +77,25 @@ void LiveView::run(const TerminationSignals& termination, const std::function<bo
 }
 
 void LiveView::take_in() {
-  listener_.take_in(kMostAtOnce, [this](std::size_t channel, Bytes payload, std::int64_t arrived) {
-    switch (channel) {
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    const auto message = receiver_.take(kMostAtOnce);
+    if (!message) break;
+    const HeardAt arrival{message->arrived, now_};
+    switch (message->channel) {
       case 0:
-        return watch_.hear_question(payload, {arrived, now_});
+        watch_.hear_question(message->payload, arrival);
+        break;
       case 1:
-        return watch_.hear_answer(payload, {arrived, now_});
+        watch_.hear_answer(message->payload, arrival);
+        break;
       case 2:
-        return watch_.hear_hydrostatics(payload);
+        watch_.hear_hydrostatics(message->payload);
+        break;
       default:
-        return watch_.hear_status(payload, now_);
+        watch_.hear_status(message->payload, now_);
     }
-  });
-  watch_.note_drops(listener_.packets_dropped(), listener_.fragments_dropped());
+  }
+  watch_.note_losses(receiver_.losses());
 }
 
 void LiveView::publish() {

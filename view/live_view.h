@@ -1,7 +1,7 @@
 // Listens on the bus and lays down snapshots for the page, kSnapshotsPerSecond times a second, as long as
 // somebody looks: one thread.
 //
-// It must not slow down what it looks at: messages do not wake it (BusListener), and it runs where a
+// It must not slow down what it looks at: messages do not wake it (UdpmReceiver), and it runs where a
 // processor has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots,
 // and packets that the kernel had to drop.
 #pragma once
@@ -13,7 +13,7 @@
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
-#include "view/bus_listener.h"
+#include "transport/udpm_receiver.h"
 #include "view/bus_watch.h"
 #include "view/snapshot_hub.h"
 
@@ -33,7 +33,8 @@ class LiveView {
  public:
   static constexpr double kSnapshotsPerSecond = 30.0;
 
-  // scene and hub must live as long. Listens from here on. Errors: as BusListener::open.
+  // scene and hub must live as long. Listens from here on. Errors: as UdpmReceiver::open, and two channels of
+  // one name.
   static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
                                  const WatchedChannels& channels, SnapshotHub& hub);
 
@@ -41,11 +42,11 @@ class LiveView {
   void run(const TerminationSignals& termination, const std::function<bool()>& goes_on);
 
  private:
-  LiveView(const Scene& scene, BusListener listener, SnapshotHub& hub);
+  LiveView(const Scene& scene, UdpmReceiver receiver, SnapshotHub& hub);
   void take_in();
   void publish();
 
-  BusListener listener_;
+  UdpmReceiver receiver_;
   SnapshotHub* hub_;
   double start_;  // s, of the steady clock
   double now_;

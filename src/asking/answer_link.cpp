@@ -65,13 +65,11 @@ bool AnswerLink::wait_for(std::int64_t seq, Clock::time_point deadline) {
     const Clock::duration left = std::max(deadline - Clock::now(), Clock::duration::zero());
     const bool over = left == Clock::duration::zero();
     if (over && ++after_deadline > kMostAfterDeadline) return false;
+    if (connection_.handle_one_soon(left)) continue;
+    if (over || stopped()) return false;
     const timespec sleep = to_timespec(std::min<Clock::duration>(left, kLongestSleep));
     pollfd readable{connection_.fileno(), POLLIN, 0};
-    if (ppoll(&readable, 1, &sleep, nullptr) > 0) {
-      connection_.handle_one();
-    } else if (over || stopped()) {
-      return false;
-    }
+    ppoll(&readable, 1, &sleep, nullptr);
   }
   return true;
 }

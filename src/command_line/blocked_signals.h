@@ -4,14 +4,14 @@
 #include <initializer_list>
 #include <optional>
 
-#include "recording/file_descriptor.h"
+#include "geometry/file_descriptor.h"
 
 namespace buoyancy {
 
 class BlockedSignals {
  public:
   // Blocks them from here on, in this thread and in those it starts: construct it before anything that starts
-  // threads (an LcmConnection does).
+  // threads (a Daemon does).
   explicit BlockedSignals(std::initializer_list<int> signals);
 
   int fileno() const { return descriptor_.value(); }  // readable once one of them has come

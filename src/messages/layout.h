@@ -105,6 +105,7 @@ template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_tail(Status& status, Visitor& visitor) {
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
   visitor(status.reloads, status.reloads_failed, status.not_sent);
+  visitor(status.packets_dropped, status.fragments_dropped);
   visit_counters(visitor, status.counters);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
   visitor(status.queue_wait);

@@ -78,6 +78,8 @@ struct ServiceStatus {
   std::int64_t reloads = 0;
   std::int64_t reloads_failed = 0;
   std::int64_t not_sent = 0;
+  std::int64_t packets_dropped = 0;
+  std::int64_t fragments_dropped = 0;
   Counters counters;
   LatencyPercentiles latency;
   double queue_wait = 0.0;  // s

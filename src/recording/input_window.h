@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/file_descriptor.h"
 #include "messages/wire.h"
-#include "recording/file_descriptor.h"
 
 namespace buoyancy {
 

@@ -2,13 +2,15 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <optional>
 #include <set>
 #include <system_error>
 
 #include <lcm/lcm.h>
 #include <poll.h>
+#include <sched.h>
 
-#include "transport/multicast_probe.h"
+#include "transport/quick_wait.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy {
@@ -17,8 +19,8 @@ namespace {
 constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr std::size_t kLongestChannel = 63;  // LCM's own limit
 
-// Holds 200,000 small messages a second without loss; the kernel's default holds a few hundred.
-constexpr std::int32_t kReceiveBufferBytes = 4'194'304;
+// Looked at by one handle_one(), so that a flood on other channels cannot hold up whoever calls it.
+constexpr int kMostForeignPackets = 1'000;
 
 bool is_memq(const std::string& url) {
   return url.starts_with("memq://");
@@ -34,22 +36,18 @@ std::string literal(const std::string& channel) {
   return escaped;
 }
 
-// liblcm's own limit. Of a packet that ends before its channel's name does liblcm says a size below zero,
-// which reads as one of 4 GB.
-constexpr std::size_t kLargestMessage = std::size_t{1} << 28U;
-
 struct Subscription {
   LcmConnection::Handler handler;
+  std::string channel;
   std::int64_t* received_utime;
 };
 
+// Of memq://.
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
                                       void* subscription) noexcept {
-  const std::size_t size = received->data_size <= kLargestMessage ? received->data_size : 0;
-  const Bytes bytes(static_cast<const std::uint8_t*>(received->data), size);
   const auto* to = static_cast<Subscription*>(subscription);
   *to->received_utime = received->recv_utime;
-  to->handler(bytes, channel);
+  to->handler({static_cast<const std::uint8_t*>(received->data), received->data_size}, channel);
 }
 
 }  // namespace
@@ -88,14 +86,24 @@ Expected<void> check_different_channels(const std::vector<std::string>& channels
 }
 
 struct LcmConnection::Impl {
-  explicit Impl(lcm_t* connection) : lcm(connection) {}
+  Impl(lcm_t* connection, std::optional<UdpmReceiver> its_receiver)
+      : lcm(connection), receiver(std::move(its_receiver)) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() { lcm_destroy(lcm); }
 
-  lcm_t* lcm;
+  lcm_t* lcm;                            // sends, and is all of memq://
+  std::optional<UdpmReceiver> receiver;  // not with memq://
+  QuickWait quick_wait;
   std::int64_t received_utime = 0;
-  std::vector<std::unique_ptr<Subscription>> subscriptions;  // liblcm holds their addresses
+  // By the receiver's numbers of the channels. With memq:// liblcm holds their addresses.
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+
+  void dispatch(const UdpmReceiver::Message& message) noexcept {
+    const Subscription& to = *subscriptions[message.channel];
+    received_utime = message.arrived;
+    to.handler(message.payload, to.channel);
+  }
 };
 
 LcmConnection::LcmConnection(std::unique_ptr<Impl> impl, std::string url)
@@ -106,38 +114,33 @@ LcmConnection::~LcmConnection() = default;
 
 Expected<LcmConnection> LcmConnection::open(const std::string& url) {
   const std::string shown = effective_lcm_url(url);
-  std::string provider = shown;
+  std::optional<UdpmReceiver> receiver;
   if (!is_memq(shown)) {
-    const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
-    if (!parsed) return tl::unexpected(parsed.error());
-    const Expected<std::int32_t> receive_buffer = probe_multicast(*parsed, kReceiveBufferBytes);
-    if (!receive_buffer) return tl::unexpected(receive_buffer.error());
-    if (!parsed->recv_buf_size) {
-      provider += (shown.find('?') == shown.npos ? "?" : "&");
-      provider += "recv_buf_size=" + std::to_string(*receive_buffer);
-    }
+    Expected<UdpmReceiver> opened = UdpmReceiver::open(shown);
+    if (!opened) return tl::unexpected(opened.error());
+    receiver = std::move(*opened);
   }
-  lcm_t* lcm = lcm_create(provider.c_str());
-  // The descriptor exists only once liblcm has set up its receiving half: here it fails, if it fails, and not
-  // in a later subscribe() or handle() that would not say so.
-  if (lcm != nullptr && lcm_get_fileno(lcm) < 0) {
-    lcm_destroy(lcm);
-    lcm = nullptr;
-  }
+  lcm_t* lcm = lcm_create(shown.c_str());
   if (lcm == nullptr) {
     return failure({"LCM URL '" + shown + "'", "LCM could not open it", "a working LCM connection",
                     "what LCM itself printed above", ""});
   }
-  return LcmConnection(std::make_unique<Impl>(lcm), shown);
+  return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver)), shown);
 }
 
-Expected<void> LcmConnection::subscribe(const std::string& channel, Handler handler, int queue_capacity) {
+Expected<void> LcmConnection::subscribe(const std::string& channel, Handler handler) {
   if (Expected<void> checked = check_channel(channel); !checked) return checked;
-  auto& subscription = impl_->subscriptions.emplace_back(
-      std::make_unique<Subscription>(Subscription{std::move(handler), &impl_->received_utime}));
+  if (impl_->receiver) {
+    const Expected<std::size_t> number = impl_->receiver->subscribe(channel);
+    if (!number) return tl::unexpected(number.error());
+  }
+  const auto& subscription = impl_->subscriptions.emplace_back(
+      std::make_unique<Subscription>(Subscription{std::move(handler), channel, &impl_->received_utime}));
+  if (impl_->receiver) return {};
   lcm_subscription_t* made =
       lcm_subscribe(impl_->lcm, literal(channel).c_str(), buoyancy_lcm_dispatch, subscription.get());
-  if (made == nullptr || lcm_subscription_set_queue_capacity(made, queue_capacity) != 0) {
+  constexpr int kUnbounded = 0;
+  if (made == nullptr || lcm_subscription_set_queue_capacity(made, kUnbounded) != 0) {
     return failure(
         {"LCM channel '" + channel + "'", "LCM refused the subscription", "a channel's name", "", ""});
   }
@@ -157,17 +160,49 @@ Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
 }
 
 int LcmConnection::fileno() const {
-  return lcm_get_fileno(impl_->lcm);
+  return impl_->receiver ? impl_->receiver->fileno() : lcm_get_fileno(impl_->lcm);
 }
 
 std::int64_t LcmConnection::received_utime() const {
   return impl_->received_utime;
 }
 
+ReceiveLosses LcmConnection::losses() const {
+  return impl_->receiver ? impl_->receiver->losses() : ReceiveLosses{};
+}
+
 bool LcmConnection::handle_one() {
-  pollfd waiting{fileno(), POLLIN, 0};
-  if (::poll(&waiting, 1, 0) <= 0) return false;
-  return lcm_handle(impl_->lcm) == 0;
+  if (!impl_->receiver) {
+    pollfd waiting{fileno(), POLLIN, 0};
+    return ::poll(&waiting, 1, 0) > 0 && lcm_handle(impl_->lcm) == 0;
+  }
+  const auto message = impl_->receiver->take(kMostForeignPackets);
+  if (message) impl_->dispatch(*message);
+  return message.has_value();
+}
+
+bool LcmConnection::handle_one_soon(std::chrono::nanoseconds most) {
+  using Clock = std::chrono::steady_clock;
+  if (handle_one()) return true;
+  if (!impl_->receiver || most < QuickWait::kLongest || !impl_->quick_wait.pays()) return false;
+  const Clock::time_point end = Clock::now() + QuickWait::kLongest;
+  bool in_time = true;
+  while (in_time) {
+    // Where sender and receiver share a processor, it is the sender's turn.
+    ::sched_yield();
+    const auto message = impl_->receiver->take(kMostForeignPackets);
+    in_time = Clock::now() <= end;
+    if (!message) continue;
+    if (in_time) {
+      impl_->quick_wait.found();
+    } else {
+      impl_->quick_wait.missed();
+    }
+    impl_->dispatch(*message);
+    return true;
+  }
+  impl_->quick_wait.missed();
+  return false;
 }
 
 }  // namespace buoyancy

@@ -1,11 +1,13 @@
 // An LCM connection that says what is wrong instead of blocking or aborting, and that delivers bytes, not
 // decoded messages: service, client and tests all talk through it.
 //
-// liblcm's traps that this file keeps in one place: a machine without a multicast route (one Error, with the
-// command that mends it), subscribe() hiding that failure, handle() asserting after an exception, select()
-// and EINTR, the queue that drops the newest message. One thread at a time.
+// Sends through liblcm and receives, over UDP, through UdpmReceiver, which says why. liblcm's traps that this
+// file keeps in one place: a machine without a multicast route (one Error, with the command that mends it),
+// subscribe() hiding that failure, handle() asserting after an exception, select() and EINTR. One thread at a
+// time, and none is started but for memq://.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +17,7 @@
 
 #include "geometry/error.h"
 #include "messages/wire.h"
+#include "transport/udpm_receiver.h"
 
 namespace buoyancy {
 
@@ -37,27 +40,31 @@ class LcmConnection {
 
   // url: "" for the default, "udpm://239.255.76.67:7667?ttl=1", or "memq://" (within this connection only, no
   // network). LCM's other providers are refused: the death of a tcpq server aborts its clients. Asks the
-  // kernel for a receive buffer of 4 MB where the URL does not say. Starts a thread of liblcm's own, which
-  // inherits the caller's signal mask. Errors: not such a URL, no multicast route (at once) or one that
-  // brings nothing back (after 2 s).
+  // kernel for a receive buffer of 4 MB where the URL does not say. Errors: not such a URL, no multicast
+  // route (at once) or one that brings nothing back (after 2 s).
   static Expected<LcmConnection> open(const std::string& url);
 
   LcmConnection(LcmConnection&&) noexcept;
   LcmConnection& operator=(LcmConnection&&) noexcept;
   ~LcmConnection();
 
-  // channel: exactly this name (regular-expression characters are taken literally). queue_capacity: messages
-  // kept between handle() calls, 0: no bound.
-  Expected<void> subscribe(const std::string& channel, Handler handler, int queue_capacity = 0);
+  // channel: exactly this name, and once (regular-expression characters are taken literally).
+  Expected<void> subscribe(const std::string& channel, Handler handler);
 
   // Errors: the transport refused (message too large, route gone).
   Expected<void> publish(const std::string& channel, Bytes bytes);
 
-  int fileno() const;  // readable when a message waits: for poll()
-  bool handle_one();   // dispatches one message that fileno() announced; false: none was there
+  int fileno() const;  // for poll(): readable when something waits, though perhaps of other channels
+  bool handle_one();   // dispatches one message that has come; false: none was there
+  // The same, but looks for it for up to `most`, and QuickWait::kLongest, if that has paid lately: for
+  // whoever would go to sleep next.
+  bool handle_one_soon(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
+
   // us since 1970: when the message came in that was handled last; what lies between is the time that it
   // waited for handle_one(). 0: none has been handled.
   std::int64_t received_utime() const;
+  // What did not become a message; of memq:// nothing.
+  ReceiveLosses losses() const;
   const std::string& url() const { return url_; }
 
  private:

@@ -93,7 +93,7 @@ bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in&
 
 }  // namespace
 
-Expected<std::int32_t> probe_multicast(const UdpmUrl& url, std::int32_t wanted_receive_buffer) {
+Expected<void> probe_multicast(const UdpmUrl& url) {
   sockaddr_in group{};
   group.sin_family = AF_INET;
   group.sin_port = htons(url.port);
@@ -127,14 +127,7 @@ Expected<std::int32_t> probe_multicast(const UdpmUrl& url, std::int32_t wanted_r
          "multicast packets to be looped back on this machine",
          "a firewall, or a multicast route through an interface without multicast", kRemedy});
   }
-
-  std::int32_t granted = 0;
-  socklen_t size = sizeof granted;
-  if (!receiver.set(SOL_SOCKET, SO_RCVBUF, wanted_receive_buffer) ||
-      ::getsockopt(receiver.descriptor(), SOL_SOCKET, SO_RCVBUF, &granted, &size) != 0) {
-    return socket_failed(url, "SO_RCVBUF", errno);
-  }
-  return std::min(wanted_receive_buffer, granted);
+  return {};
 }
 
 }  // namespace buoyancy

@@ -5,8 +5,6 @@
 // message on LCM_SELF_TEST that stays on this machine (ttl 0), and waits until it comes back.
 #pragma once
 
-#include <cstdint>
-
 #include "geometry/error.h"
 #include "transport/udpm_url.h"
 
@@ -14,9 +12,7 @@ namespace buoyancy {
 
 inline constexpr int kMulticastProbeMilliseconds = 2000;
 
-// The receive buffer, in bytes, that the kernel grants of the wanted size: what to ask of it without liblcm
-// warning that it got less.
 // Errors: no route to the group, port taken, packets that do not come back.
-Expected<std::int32_t> probe_multicast(const UdpmUrl& url, std::int32_t wanted_receive_buffer);
+Expected<void> probe_multicast(const UdpmUrl& url);
 
 }  // namespace buoyancy

@@ -18,7 +18,7 @@ using ByteVector = std::vector<std::uint8_t>;
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTail = 8 + 4 * 4 + 8 * std::size_t{3 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
+constexpr std::size_t kTail = 8 + 4 * 4 + 8 * std::size_t{5 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -55,7 +55,9 @@ ServiceStatus random_status() {
                                 &c.hydrostatics,
                                 &status.reloads,
                                 &status.reloads_failed,
-                                &status.not_sent}) {
+                                &status.not_sent,
+                                &status.packets_dropped,
+                                &status.fragments_dropped}) {
     *counter = random_integer<std::int64_t>();
   }
   for (std::int64_t& counter : c.bodies) counter = random_integer<std::int64_t>();
@@ -86,6 +88,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.reloads = status.reloads;
   message.reloads_failed = status.reloads_failed;
   message.not_sent = status.not_sent;
+  message.packets_dropped = status.packets_dropped;
+  message.fragments_dropped = status.fragments_dropped;
   message.questions = c.questions;
   message.answered = c.answered;
   message.repeated = c.repeated;

@@ -7,7 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "recording/file_descriptor.h"
+#include "geometry/file_descriptor.h"
 
 namespace buoyancy {
 

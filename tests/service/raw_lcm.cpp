@@ -223,6 +223,7 @@ std::optional<RawBytes> RawLcmSocket::receive(const std::string& channel, double
 std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std::uint64_t sender) {
   constexpr std::size_t kShortHeader = 8;
   constexpr std::size_t kLongHeader = 20;
+  constexpr std::size_t kLargestMessage = std::size_t{1} << 28U;  // liblcm's limit
   if (packet.size() < kShortHeader) return std::nullopt;
   RawReader reader(packet);
   const std::int32_t magic = reader.int32();
@@ -235,8 +236,9 @@ std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std:
   if (magic == kShortMagic) return split(kShortHeader);
   if (magic != kLongMagic || packet.size() < kLongHeader) return std::nullopt;
 
-  const auto size = static_cast<std::size_t>(reader.int32());
-  const auto offset = static_cast<std::size_t>(reader.int32());
+  const std::size_t size = static_cast<std::uint32_t>(reader.int32());
+  const std::size_t offset = static_cast<std::uint32_t>(reader.int32());
+  if (size > kLargestMessage) return std::nullopt;
   const std::int32_t fragment_and_count = reader.int32();
   Fragments& fragments = incomplete_[{sender, sequence}];
   fragments.payload.resize(size);
@@ -246,7 +248,7 @@ std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std:
     fragments.channel = std::move(first.channel);
     part = std::move(first.payload);
   }
-  if (offset + part.size() > size) return std::nullopt;
+  if (offset > size || part.size() > size - offset) return std::nullopt;
   std::copy(part.begin(), part.end(), fragments.payload.begin() + static_cast<std::ptrdiff_t>(offset));
   fragments.received += part.size();
   if (fragments.received < size) return std::nullopt;

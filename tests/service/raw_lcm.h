@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "recording/file_descriptor.h"
+#include "geometry/file_descriptor.h"
 
 namespace buoyancy {
 

@@ -99,6 +99,55 @@ TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {
   EXPECT_FALSE(receiver.handle_one()) << "nothing is left";
 }
 
+TEST(LcmConnection, FindsAMessageThatComesSoonWithoutSleeping) {
+  LcmConnection sender = open_or_die();
+  LcmConnection receiver = open_or_die();
+  int received = 0;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
+  EXPECT_FALSE(receiver.handle_one_soon()) << "nothing was sent";
+  const std::uint8_t byte = 7;
+  ASSERT_TRUE(sender.publish("A", {&byte, 1}));
+  EXPECT_TRUE(receiver.handle_one_soon());
+  EXPECT_EQ(received, 1);
+}
+
+TEST(LcmConnection, CountsWhatTheKernelHadNoRoomFor) {
+  LcmConnection sender = open_or_die();
+  LcmConnection receiver = open_or_die("udpm://239.255.76.67:7667?recv_buf_size=20000");
+  std::int64_t received = 0;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
+  const std::vector<std::uint8_t> bytes(100);
+  constexpr std::int64_t kSent = 500;
+  for (std::int64_t i = 0; i < kSent; ++i) ASSERT_TRUE(sender.publish("A", bytes));
+  while (receiver.handle_one()) {
+  }
+  EXPECT_LT(received, kSent);
+  EXPECT_GT(received, 0);
+  ASSERT_TRUE(sender.publish("A", bytes));
+  ASSERT_TRUE(wait_and_handle(receiver)) << "the kernel says it with the next packet that it has room for";
+  EXPECT_EQ(received + receiver.losses().packets, kSent + 1);
+}
+
+TEST(LcmConnection, HearsNothingThatWasSentToThePortByAnotherAddress) {
+  LcmConnection receiver = open_or_die();
+  ASSERT_TRUE(receiver.subscribe("A", [](Bytes, std::string_view) { ADD_FAILURE(); }));
+  LcmConnection neighbour = open_or_die("udpm://239.255.76.68:7667");
+  bool heard = false;
+  ASSERT_TRUE(neighbour.subscribe("A", [&](Bytes, std::string_view) { heard = true; }));
+  const std::uint8_t byte = 7;
+  ASSERT_TRUE(neighbour.publish("A", {&byte, 1}));
+  ASSERT_TRUE(wait_and_handle(neighbour));
+  EXPECT_TRUE(heard);
+  EXPECT_FALSE(receiver.handle_one());
+}
+
+TEST(LcmConnection, SubscribesToAChannelOnce) {
+  LcmConnection connection = open_or_die();
+  const auto ignore = [](Bytes, std::string_view) {};
+  EXPECT_TRUE(connection.subscribe("A", ignore));
+  EXPECT_FALSE(connection.subscribe("A", ignore));
+}
+
 TEST(LcmConnection, TakesChannelNamesLiterally) {
   LcmConnection connection = open_or_die();
   const std::string name = R"(A.*(b|c)[d]^$+?{1}\-)";

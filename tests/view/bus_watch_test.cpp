@@ -44,7 +44,7 @@ BodyWrench lifted(std::int32_t id, double force) {
 
 class WatchedBus : public testing::Test {
  protected:
-  Arrival at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
+  HeardAt at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
   json snapshot(double now) { return json::parse(snapshot_json(watch_, 1, 0.0, now, now)); }
 
   const Scene scene_ = box_scene();

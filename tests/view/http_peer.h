@@ -15,7 +15,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "recording/file_descriptor.h"
+#include "geometry/file_descriptor.h"
 
 namespace buoyancy {
 

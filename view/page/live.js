@@ -207,6 +207,7 @@
     tables.push(table_of('Said by the service', ['since it began', ''], [
       ['questions', status.questions], ['answered', status.answered], ['repeated', status.repeated], ['changed repeats', status.changed_repeats],
       ['stale', status.stale], ['overtaken', status.overtaken], ['rejected', status.rejected], ['not sent', status.not_sent],
+      ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
       ['sessions', status.sessions], ['sessions forgotten', status.sessions_forgotten], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
     const answered = status.bodies;
@@ -218,7 +219,7 @@
     ]));
     tables.push(table_of('Its own time', ['from receipt to publication', 'ms'], [
       ['median', 1e3 * status.latency.p50], ['99 %', 1e3 * status.latency.p99], ['99.9 %', 1e3 * status.latency.p999],
-      ['slowest', 1e3 * status.latency.max], ['longest wait in the queue, last second', 1e3 * status.queue_wait],
+      ['slowest', 1e3 * status.latency.max], ['longest wait to be read, last second', 1e3 * status.queue_wait],
     ]));
     return tables;
   }

@@ -1,4 +1,4 @@
-#include "view/lcm_packets.h"
+#include "transport/lcm_packets.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -57,20 +57,26 @@ RawBytes counting(std::size_t size) {
   return payload;
 }
 
+LcmPackets listening_to(const std::vector<std::string>& channels) {
+  LcmPackets packets;
+  for (std::size_t i = 0; i < channels.size(); ++i) EXPECT_EQ(packets.add_channel(channels[i]), i);
+  return packets;
+}
+
 bool holds(const std::optional<LcmPackets::Message>& message, std::size_t channel, const RawBytes& payload) {
   return message && message->channel == channel &&
          RawBytes(message->payload.begin(), message->payload.end()) == payload;
 }
 
 TEST(LcmPackets, GivesWhatIsOnTheChannelsThatAreNamedAndNothingElse) {
-  LcmPackets packets({"A", "BB"});
+  LcmPackets packets = listening_to({"A", "BB"});
   EXPECT_TRUE(holds(packets.take(whole("BB", {1, 2, 3}), 1), 1, {1, 2, 3}));
   EXPECT_TRUE(holds(packets.take(whole("A", {}), 1), 0, {}));
   for (const char* other : {"", "B", "BBB", "a"}) EXPECT_FALSE(packets.take(whole(other, {1}), 1)) << other;
 }
 
 TEST(LcmPackets, PutsFragmentsTogetherOfSeveralSendersAtATime) {
-  LcmPackets packets({"A"});
+  LcmPackets packets = listening_to({"A"});
   const RawBytes one = counting(1'000);
   const RawBytes other = counting(900);
   const auto of_one = fragments("A", one, 300, 5);
@@ -87,19 +93,56 @@ TEST(LcmPackets, PutsFragmentsTogetherOfSeveralSendersAtATime) {
   EXPECT_EQ(packets.fragments_dropped(), 0);
 }
 
+TEST(LcmPackets, TakesAChannelOnce) {
+  LcmPackets packets = listening_to({"A"});
+  EXPECT_FALSE(packets.add_channel("A"));
+  EXPECT_EQ(packets.add_channel("B"), 1U);
+}
+
 TEST(LcmPackets, LosesAMessageWholeThatLostAFragmentAndTakesTheNext) {
-  LcmPackets packets({"A"});
+  LcmPackets packets = listening_to({"A"});
   const auto lost = fragments("A", counting(1'000), 300, 5);
   for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(packets.take(lost[i], 1));
-  EXPECT_EQ(packets.fragments_dropped(), 2);
   const RawBytes payload = counting(1'000);
   const auto next = fragments("A", payload, 300, 6);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(packets.take(next[i], 1));
   EXPECT_TRUE(holds(packets.take(next[3], 1), 0, payload));
+  EXPECT_EQ(packets.fragments_dropped(), 3);
+}
+
+RC_GTEST_PROP(LcmPackets, TakesFragmentsInAnyOrderBehindTheFirstAndAnyOfThemTwice, ()) {
+  LcmPackets packets = listening_to({"A"});
+  for (int number = 0; number < 3; ++number) {  // what an earlier message left behind is in none
+    const RawBytes payload = counting(static_cast<std::size_t>(*rc::gen::inRange(301, 3'000)));
+    auto packets_of_it = fragments("A", payload, 300, number);
+    for (std::size_t i = packets_of_it.size() - 1; i > 1; --i) {
+      std::swap(packets_of_it[i], packets_of_it[*rc::gen::inRange<std::size_t>(1, i + 1)]);
+    }
+    const RawBytes last = packets_of_it.back();
+    packets_of_it.pop_back();
+    for (const RawBytes& packet : packets_of_it) {
+      RC_ASSERT(!packets.take(packet, 1));
+      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!packets.take(packet, 1));
+    }
+    RC_ASSERT(holds(packets.take(last, 1), 0, payload));
+  }
+  RC_ASSERT(packets.fragments_dropped() == 0);
+}
+
+TEST(LcmPackets, DropsFragmentsThatLeaveAGapOrLieOnEachOther) {
+  constexpr std::size_t kOffsetsLowByte = 15;
+  LcmPackets packets = listening_to({"A"});
+  int number = 0;
+  for (const int moved : {-1, 1}) {
+    auto some = fragments("A", counting(1'000), 400, ++number);
+    some[1][kOffsetsLowByte] = static_cast<std::uint8_t>(some[1][kOffsetsLowByte] + moved);
+    for (const RawBytes& packet : some) EXPECT_FALSE(packets.take(packet, 1)) << moved;
+    EXPECT_EQ(packets.fragments_dropped(), 3 * number);
+  }
 }
 
 TEST(LcmPackets, GivesUpTheOldestOfMoreThanItHasRoomFor) {
-  LcmPackets packets({"A"});
+  LcmPackets packets = listening_to({"A"});
   for (std::uint64_t sender = 0; sender < 100; ++sender) {
     EXPECT_FALSE(packets.take(fragments("A", counting(1'000), 600, 1)[0], sender));
   }
@@ -109,7 +152,7 @@ TEST(LcmPackets, GivesUpTheOldestOfMoreThanItHasRoomFor) {
 }
 
 TEST(LcmPackets, BeginsNoMessageThatIsLargerThanItTakes) {
-  LcmPackets packets({"A"});
+  LcmPackets packets = listening_to({"A"});
   RawBytes first = fragments("A", counting(1'000), 600, 1)[0];
   for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // its size
   EXPECT_FALSE(packets.take(first, 1));
@@ -117,7 +160,7 @@ TEST(LcmPackets, BeginsNoMessageThatIsLargerThanItTakes) {
 }
 
 RC_GTEST_PROP(LcmPackets, TakesAnyBytesAndEveryWholeMessageAfterThem, ()) {
-  LcmPackets packets({"A"});
+  LcmPackets packets = listening_to({"A"});
   const RawBytes payload = counting(1'000);
   const int damages = *rc::gen::inRange(0, 30);
   for (int i = 0; i < damages; ++i) {

@@ -1,4 +1,4 @@
-#include "view/bus_listener.h"
+#include "transport/udpm_receiver.h"
 
 #include <array>
 #include <cerrno>
@@ -19,6 +19,7 @@
 namespace buoyancy {
 namespace {
 
+// Holds 5,000 small messages; the kernel's default holds 270.
 constexpr std::int32_t kReceiveBufferBytes = 4'194'304;
 constexpr std::size_t kLargestPacket = 65'536;
 
@@ -36,16 +37,13 @@ T data_of(cmsghdr* message) {
 
 }  // namespace
 
-BusListener::BusListener(FileDescriptor socket, std::vector<std::string> channels)
-    : socket_(std::move(socket)), packets_(std::move(channels)), packet_(kLargestPacket) {}
+UdpmReceiver::UdpmReceiver(FileDescriptor socket) : socket_(std::move(socket)), packet_(kLargestPacket) {}
 
-Expected<BusListener> BusListener::open(const std::string& url, std::vector<std::string> channels) {
+Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
   const std::string shown = effective_lcm_url(url);
   const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
   if (!parsed) return tl::unexpected(parsed.error());
-  const Expected<std::int32_t> buffer =
-      probe_multicast(*parsed, parsed->recv_buf_size.value_or(kReceiveBufferBytes));
-  if (!buffer) return tl::unexpected(buffer.error());
+  if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
 
   FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in group{};
@@ -55,23 +53,35 @@ Expected<BusListener> BusListener::open(const std::string& url, std::vector<std:
   ip_mreq membership{};
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  // Bound to the group's address: what comes to the port by another one is not ours.
-  const bool listens = socket.valid() && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
-                       set(socket, SOL_SOCKET, SO_RCVBUF, *buffer) &&
-                       set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) &&
-                       set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
-                       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
-                       set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
+  const std::int32_t buffer = parsed->recv_buf_size.value_or(kReceiveBufferBytes);
+  // Root gets what it asks for, others up to net.core.rmem_max. Bound to the group's address: what comes to
+  // the port by another one is not ours; nor, with IP_MULTICAST_ALL, what comes by an interface on which
+  // another program has joined the group.
+  const bool listens =
+      socket.valid() && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
+      (set(socket, SOL_SOCKET, SO_RCVBUFFORCE, buffer) || set(socket, SOL_SOCKET, SO_RCVBUF, buffer)) &&
+      set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
+      ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
+      set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0) && set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
   if (!listens) {
     return failure({shown, std::generic_category().message(errno),
                     "a UDP socket that may listen to the group",
                     "another program holds the port alone, or sockets are forbidden to this one", ""});
   }
-  return BusListener(std::move(socket), std::move(channels));
+  return UdpmReceiver(std::move(socket));
 }
 
-void BusListener::take_in(int most, const Handler& handler) {
-  for (int i = 0; i < most; ++i) {
+Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
+  if (Expected<void> checked = check_channel(channel); !checked) return tl::unexpected(checked.error());
+  const std::optional<std::size_t> number = packets_.add_channel(channel);
+  if (!number) {
+    return failure({"LCM channel '" + channel + "'", "is subscribed to twice", "one subscription", "", ""});
+  }
+  return *number;
+}
+
+std::optional<UdpmReceiver::Message> UdpmReceiver::take(int most_packets) {
+  for (int i = 0; i < most_packets; ++i) {
     sockaddr_in sender{};
     iovec data{packet_.data(), packet_.size()};
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))>
@@ -86,7 +96,7 @@ void BusListener::take_in(int most, const Handler& handler) {
     const ssize_t size = ::recvmsg(socket_.value(), &packet, MSG_DONTWAIT);
     if (size < 0) {
       if (errno == EINTR) continue;
-      return;
+      return std::nullopt;
     }
     timespec arrived{};
     for (cmsghdr* one = CMSG_FIRSTHDR(&packet); one != nullptr; one = CMSG_NXTHDR(&packet, one)) {
@@ -98,12 +108,12 @@ void BusListener::take_in(int most, const Handler& handler) {
       }
     }
     const std::uint64_t from = std::uint64_t{sender.sin_addr.s_addr} << 16U | sender.sin_port;
-    const auto message = packets_.take({packet_.data(), static_cast<std::size_t>(size)}, from);
-    if (message) {
-      handler(message->channel, message->payload,
-              std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000);
+    if (const auto message = packets_.take({packet_.data(), static_cast<std::size_t>(size)}, from)) {
+      return Message{message->channel, message->payload,
+                     std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000};
     }
   }
+  return std::nullopt;
 }
 
 }  // namespace buoyancy

@@ -1,0 +1,65 @@
+// The receiving half of LCM over UDP multicast, on a socket of its own: packets wait in the kernel, stamped
+// with the time of their arrival, until somebody comes to take them. Nobody is woken who does not wait.
+//
+// liblcm has a thread that each packet wakes, of whatever channel, and that wakes the one who waits for the
+// message: two wake-ups each way, paid for partly by the process that sends. Its stamp is the time at which
+// that thread read the packet; it remembers every channel's name that was ever seen; and a fragment made for
+// it ends the process. What it has in return is room: packets that come while nobody reads wait in the
+// kernel's buffer here, and are lost, and counted, where that is full.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/file_descriptor.h"
+#include "messages/wire.h"
+#include "transport/lcm_packets.h"
+#include "transport/udpm_url.h"
+
+namespace buoyancy {
+
+// Packets and fragments that came for this socket and did not become messages, since it was opened.
+struct ReceiveLosses {
+  std::int64_t packets = 0;    // dropped by the kernel: they came faster than they were taken. Of any channel
+  std::int64_t fragments = 0;  // of messages of our channels that lost others of theirs, or made no sense
+};
+
+class UdpmReceiver {
+ public:
+  struct Message {
+    std::size_t channel;   // as subscribe() numbered it
+    Bytes payload;         // valid until the next take()
+    std::int64_t arrived;  // us since 1970
+  };
+
+  // url: "" for the default; as LcmConnection::open has it. Joins the group on the interface that the routing
+  // table names for it; hears what is sent to the group there or by this machine, and nothing else that comes
+  // to the port. Asks the kernel for a buffer of 4 MB where the URL does
+  // not say. Errors: not a udpm URL, no multicast (at once, or after 2 s).
+  static Expected<UdpmReceiver> open(const std::string& url);
+
+  // channel: this very name, of 1 to 63 characters. Its number: 0, 1, ... Errors: not such a name, or one
+  // that is subscribed to.
+  Expected<std::size_t> subscribe(const std::string& channel);
+
+  // The next message of our channels among at most `most_packets` that wait. nullopt: there is none.
+  std::optional<Message> take(int most_packets);
+
+  int fileno() const { return socket_.value(); }  // readable when a packet waits, of any channel
+  ReceiveLosses losses() const { return {packets_dropped_, packets_.fragments_dropped()}; }
+
+ private:
+  explicit UdpmReceiver(FileDescriptor socket);
+
+  FileDescriptor socket_;
+  LcmPackets packets_;
+  std::vector<std::uint8_t> packet_;  // reused
+  std::int64_t packets_dropped_ = 0;
+  std::uint32_t kernel_drops_ = 0;  // as the kernel said last; it wraps around
+};
+
+}  // namespace buoyancy
