@@ -1,10 +1,13 @@
 #include "transport/lcm_connection.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include <lcm/lcm.h>
 #include <poll.h>
@@ -34,6 +37,12 @@ std::string literal(const std::string& channel) {
     escaped += c;
   }
   return escaped;
+}
+
+std::int64_t utime_now() {
+  using std::chrono::microseconds;
+  return std::chrono::duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 struct Subscription {
@@ -95,6 +104,7 @@ struct LcmConnection::Impl {
   lcm_t* lcm;                            // sends, and is all of memq://
   std::optional<UdpmReceiver> receiver;  // not with memq://
   QuickWait quick_wait;
+  std::int64_t asleep_since = 0;  // us since 1970: when a wait found nothing that has not ended. 0: none
   std::int64_t received_utime = 0;
   // By the receiver's numbers of the channels. With memq:// liblcm holds their addresses.
   std::vector<std::unique_ptr<Subscription>> subscriptions;
@@ -177,31 +187,35 @@ bool LcmConnection::handle_one() {
     return ::poll(&waiting, 1, 0) > 0 && lcm_handle(impl_->lcm) == 0;
   }
   const auto message = impl_->receiver->take(kMostForeignPackets);
-  if (message) impl_->dispatch(*message);
-  return message.has_value();
+  if (!message) return false;
+  if (const std::int64_t asleep_since = std::exchange(impl_->asleep_since, 0); asleep_since != 0) {
+    impl_->quick_wait.slept(std::chrono::microseconds(message->arrived - asleep_since));
+  }
+  impl_->dispatch(*message);
+  return true;
 }
 
 bool LcmConnection::handle_one_soon(std::chrono::nanoseconds most) {
   using Clock = std::chrono::steady_clock;
   if (handle_one()) return true;
-  if (!impl_->receiver || most < QuickWait::kLongest || !impl_->quick_wait.pays()) return false;
-  const Clock::time_point end = Clock::now() + QuickWait::kLongest;
-  bool in_time = true;
-  while (in_time) {
-    // Where sender and receiver share a processor, it is the sender's turn.
-    ::sched_yield();
-    const auto message = impl_->receiver->take(kMostForeignPackets);
-    in_time = Clock::now() <= end;
-    if (!message) continue;
-    if (in_time) {
-      impl_->quick_wait.found();
-    } else {
-      impl_->quick_wait.missed();
+  if (!impl_->receiver || impl_->asleep_since != 0) return false;
+  const QuickWait::Duration longest = std::min(most, impl_->quick_wait.begin());
+  if (longest > QuickWait::Duration::zero()) {
+    const Clock::time_point start = Clock::now();
+    QuickWait::Duration took{0};
+    while (took < longest) {
+      // Where sender and receiver share a processor, it is the sender's turn.
+      ::sched_yield();
+      const auto message = impl_->receiver->take(kMostForeignPackets);
+      took = Clock::now() - start;
+      if (!message) continue;
+      impl_->quick_wait.looked(took, true);
+      impl_->dispatch(*message);
+      return true;
     }
-    impl_->dispatch(*message);
-    return true;
+    impl_->quick_wait.looked(took, false);
   }
-  impl_->quick_wait.missed();
+  impl_->asleep_since = utime_now();
   return false;
 }
 

@@ -56,8 +56,8 @@ class LcmConnection {
 
   int fileno() const;  // for poll(): readable when something waits, though perhaps of other channels
   bool handle_one();   // dispatches one message that has come; false: none was there
-  // The same, but looks for it for up to `most`, and QuickWait::kLongest, if that has paid lately: for
-  // whoever would go to sleep next.
+  // The same, but looks for it for a moment (QuickWait), up to `most`, where that pays: for whoever goes to
+  // sleep where it says false.
   bool handle_one_soon(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
 
   // us since 1970: when the message came in that was handled last; what lies between is the time that it

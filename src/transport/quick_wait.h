@@ -1,10 +1,17 @@
-// Whether it pays to look for a message for a moment before going to sleep: it does while they come quickly,
-// as in lock-step. On a virtual machine a sleeper is woken some 30 us after the message came; somebody who
-// looks has it after one.
+// Whether whoever waits for a message should look for it for a moment before going to sleep: it pays while
+// messages come quickly, as in lock-step. On a virtual machine a sleeper is woken some 30 us after its
+// message came; somebody who looks has it after one. Looking gives the processor away at each look, to
+// whoever wants it.
 //
-// The law: a wait that looks and finds the message in time makes looking twice as likely, one that does not
-// makes it eight times less likely, down to one wait of kRarest. Where the processors are busy with others,
-// looking would cost a share of theirs, so time is measured on the clock: given away and late is no find.
+// The law:
+//   - A wait looks, for kQuick, if the messages of the two before it came within kQuick. That holds of those
+//     that slept too, by the kernel's stamp of arrival.
+//   - Two ends that both sleep keep each other waiting for so long that neither looks. So after kTrialEvery
+//     waits without a look, and at first, the next kTrialWaits look for kTrial, longer than it takes to wake
+//     the other end, which then sees messages that come quickly. The first that finds nothing ends the trial.
+//   - Where processors are busy with others, one that is given away comes back after milliseconds: after a
+//     look that took longer than kGivenAway no wait looks for 1, 8, 64, ... kMostSkipped waits; each look
+//     that finds its message halves what comes next.
 #pragma once
 
 #include <algorithm>
@@ -15,23 +22,54 @@ namespace buoyancy {
 
 class QuickWait {
  public:
-  static constexpr std::chrono::microseconds kLongest{50};  // of looking
-  static constexpr std::int64_t kRarest = 4096;             // waits of which one looks, where it never pays
+  using Duration = std::chrono::nanoseconds;
+  static constexpr Duration kQuick = std::chrono::microseconds(50);
+  static constexpr Duration kTrial = std::chrono::microseconds(200);
+  static constexpr Duration kGivenAway = std::chrono::microseconds(400);
+  static constexpr int kTrialEvery = 128;
+  static constexpr int kTrialWaits = 8;
+  static constexpr std::int64_t kMostSkipped = 4096;
 
-  // Asked at the beginning of each wait: look before sleeping?
-  bool pays() {
-    if (to_skip_ == 0) return true;
-    --to_skip_;
-    return false;
+  // At the beginning of each wait: for how long it should look. 0: not at all.
+  Duration begin() {
+    if (to_skip_ > 0) {
+      --to_skip_;
+      return Duration::zero();
+    }
+    if (quick_in_a_row_ >= 2) {
+      without_look_ = 0;
+      return kQuick;
+    }
+    if (trial_left_ == 0 && ++without_look_ < kTrialEvery) return Duration::zero();
+    if (trial_left_ == 0) trial_left_ = kTrialWaits;
+    --trial_left_;
+    without_look_ = 0;
+    return kTrial;
   }
 
-  // After a wait that looked.
-  void found() { every_ = std::max<std::int64_t>(every_ / 2, 1), to_skip_ = every_ - 1; }
-  void missed() { every_ = std::min(every_ * 8, kRarest), to_skip_ = every_ - 1; }
+  // After a wait that looked for so long, until it found a message or gave up.
+  void looked(Duration took, bool found) {
+    if (took > kGivenAway) {
+      to_skip_ = next_skip_;
+      next_skip_ = std::min(8 * next_skip_, kMostSkipped);
+    } else if (found) {
+      next_skip_ = std::max<std::int64_t>(next_skip_ / 2, 1);
+    }
+    if (!found) trial_left_ = 0;
+    note(found && took <= kQuick);
+  }
+
+  // After one that slept: how long after its beginning the message arrived.
+  void slept(Duration arrived_after) { note(arrived_after <= kQuick); }
 
  private:
-  std::int64_t every_ = 1;  // so many waits, one of which looks
+  void note(bool quick) { quick_in_a_row_ = quick ? std::min(quick_in_a_row_ + 1, 2) : 0; }
+
+  int quick_in_a_row_ = 0;
+  int trial_left_ = kTrialWaits;
+  int without_look_ = 0;  // waits since the last that looked
   std::int64_t to_skip_ = 0;
+  std::int64_t next_skip_ = 1;
 };
 
 }  // namespace buoyancy
