@@ -28,12 +28,6 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::int64_t utime_now() {
-  using std::chrono::microseconds;
-  return std::chrono::duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::int64_t random_id() {
   std::random_device device;
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32U | device());

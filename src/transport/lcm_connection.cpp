@@ -39,12 +39,6 @@ std::string literal(const std::string& channel) {
   return escaped;
 }
 
-std::int64_t utime_now() {
-  using std::chrono::microseconds;
-  return std::chrono::duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 struct Subscription {
   LcmConnection::Handler handler;
   std::string channel;
@@ -60,6 +54,12 @@ extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char
 }
 
 }  // namespace
+
+std::int64_t utime_now() {
+  using std::chrono::microseconds;
+  return std::chrono::duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
 
 std::string effective_lcm_url(const std::string& url) {
   if (!url.empty()) return url;

@@ -33,6 +33,9 @@ Expected<void> check_channel(const std::string& channel);
 // The same of each, and that no two are the same.
 Expected<void> check_different_channels(const std::vector<std::string>& channels);
 
+// us since 1970, by the clock that messages are stamped with.
+std::int64_t utime_now();
+
 class LcmConnection {
  public:
   // Called for every message: bytes are valid during the call only. Must not throw.
