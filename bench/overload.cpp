@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include <poll.h>
+#include <sched.h>
 
 #include "exchange/exchange.h"
 #include "quick_option.h"
@@ -97,12 +97,11 @@ class Askers {
   }
 
  private:
+  // Without going to sleep: waking takes a virtual machine milliseconds now and then, which are not the
+  // service's.
   void listen_until(Clock::time_point due) {
     do {
-      const double left = std::max(0.0, seconds(due - Clock::now()));
-      const timespec sleep{0, static_cast<long>(1e9 * std::min(left, 0.9))};
-      pollfd waiting{connection_.fileno(), POLLIN, 0};
-      if (::ppoll(&waiting, 1, &sleep, nullptr) > 0) connection_.handle_one();
+      if (!connection_.handle_one()) ::sched_yield();
     } while (Clock::now() < due);
   }
 
