@@ -16,6 +16,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "tests/allocation_count.h"
+
 namespace buoyancy {
 namespace {
 
@@ -97,6 +99,26 @@ TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {
   }
   EXPECT_EQ(received, sent);
   EXPECT_FALSE(receiver.handle_one()) << "nothing is left";
+}
+
+TEST(LcmConnection, TakesNothingFromTheHeapForAMessageNoLargerThanTheLargestYet) {
+  LcmConnection connection = open_or_die();
+  int received = 0;
+  ASSERT_TRUE(connection.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
+  const std::string channel = "A";
+  const auto in_one_packet = pattern(100);
+  const auto in_fragments = pattern(200'000);
+  const auto round_trip = [&](Bytes sent) {
+    return connection.publish(channel, sent) && wait_and_handle(connection);
+  };
+  ASSERT_TRUE(round_trip(in_fragments));
+  const AllocationCount allocations;
+  constexpr int kEach = 20;
+  int done = 0;
+  for (int i = 0; i < kEach; ++i)
+    done += (round_trip(in_one_packet) ? 1 : 0) + (round_trip(in_fragments) ? 1 : 0);
+  EXPECT_EQ(allocations.count(), 0);
+  EXPECT_EQ(done, 2 * kEach);
 }
 
 TEST(LcmConnection, FindsAMessageThatComesSoonWithoutSleeping) {
