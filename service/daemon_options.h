@@ -6,9 +6,9 @@
 
 #include <CLI/App.hpp>
 
+#include "command_line/pose_options.h"
 #include "geometry/error.h"
 #include "service/daemon.h"
-#include "service/pose_options.h"
 
 namespace buoyancy {
 

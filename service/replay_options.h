@@ -8,11 +8,11 @@
 
 #include <CLI/App.hpp>
 
+#include "command_line/pose_options.h"
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
 #include "scene/scene_file.h"
-#include "service/pose_options.h"
 #include "service/replay_channels.h"
 #include "service/replay_input.h"
 

@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "command_line/command_line.h"
+#include "command_line/pose_options.h"
 #include "command_line/termination_signals.h"
 #include "recording/record_file.h"
 #include "scene/scene.h"
@@ -25,6 +26,7 @@ struct ReportArguments {
   std::filesystem::path scene, run, output;
   std::filesystem::path three = kThreeJs;
   RunFileOptions file;
+  PoseOptions poses;
 };
 
 void declare_options(CLI::App& app, ReportArguments& arguments) {
@@ -44,6 +46,7 @@ void declare_options(CLI::App& app, ReportArguments& arguments) {
       ->capture_default_str();
   app.add_option("--status-channel", arguments.file.status_channel, "Channel of the status in an LCM log")
       ->capture_default_str();
+  declare_options(app, arguments.poses);
   app.add_option("--three", arguments.three,
                  "Another three.js than Debian's libjs-three, to go into the page");
   app.add_option("RUN", arguments.run, "A .csv or .lcmlog file")->required();
@@ -92,6 +95,11 @@ int main(int argc, char** argv) {
   if (!three) return refuse(three.error(), kFailed);
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return refuse(scene.error(), kWrongInput);
+  Expected<PoseChannels> poses = pose_channels(
+      arguments.poses, *scene,
+      {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.status_channel});
+  if (!poses) return refuse(poses.error(), kWrongInput);
+  arguments.file.poses = *std::move(poses);
 
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message

@@ -10,6 +10,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "command_line/command_line.h"
+#include "command_line/pose_options.h"
 #include "command_line/termination_signals.h"
 #include "scene/scene.h"
 #include "transport/lcm_connection.h"
@@ -28,6 +29,7 @@ struct Arguments {
   int port = 8667;
   std::string three = kThreeJs;
   WatchedChannels channels;
+  PoseOptions poses;
 };
 
 void define_arguments(CLI::App& app, Arguments& arguments) {
@@ -51,6 +53,7 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--status-channel", arguments.channels.status, "Channel of the service's status")
       ->capture_default_str();
+  declare_pose_channels(app, arguments.poses);
 }
 
 // What no single option shows.
@@ -76,12 +79,17 @@ int show(const CLI::App& app, const Arguments& arguments) {
   }
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kWrongInput);
+  WatchedChannels channels = arguments.channels;
+  Expected<PoseChannels> poses = pose_channels(
+      arguments.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
+  if (!poses) return report(app, poses.error(), kWrongInput);
+  channels.poses = *std::move(poses);
   Expected<std::vector<ServedText>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
   if (!page) return report(app, page.error(), kFailed);
   TerminationSignals termination;  // before any thread is started, which must not get them
   give_way_to_others();
   SnapshotHub hub;
-  Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, arguments.channels, hub);
+  Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, hub);
   if (!view) return report(app, view.error(), kFailed);
   const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), hub);
   if (!server) return report(app, server.error(), kFailed);

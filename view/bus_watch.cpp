@@ -37,7 +37,8 @@ std::string_view name(ServiceState state) {
   return "unknown";
 }
 
-BusWatch::BusWatch(const Scene& scene, double now) : scene_(&scene), second_begun_(now) {
+BusWatch::BusWatch(const Scene& scene, double now, PoseChannels poses)
+    : scene_(&scene), poses_(std::move(poses)), second_begun_(now) {
   for (const Body& body : scene.bodies()) {
     WatchedBody& watched = bodies_.emplace_back();
     watched.id = body.id;
@@ -47,8 +48,12 @@ BusWatch::BusWatch(const Scene& scene, double now) : scene_(&scene), second_begu
 template <typename Message>
 bool BusWatch::take(Bytes bytes, Message& message) {
   const std::optional<Rejection> rejection = decode(bytes, message);
-  if (rejection) ++counts_.malformed[static_cast<std::size_t>(*rejection)];
+  if (rejection) count_malformed(*rejection);
   return !rejection;
+}
+
+void BusWatch::count_malformed(Rejection cause) {
+  ++counts_.malformed[static_cast<std::size_t>(cause)];
 }
 
 WatchedBody* BusWatch::find(std::int32_t id) {
@@ -57,12 +62,23 @@ WatchedBody* BusWatch::find(std::int32_t id) {
 }
 
 void BusWatch::hear_question(Bytes bytes, HeardAt arrival) {
-  if (!take(bytes, question_)) return;
-  ledger_.hear_question(question_.key, arrival.utime, arrival.now);
+  if (take(bytes, question_)) note_question(question_, arrival, QuestionLedger::Seq::kCounted);
+}
+
+void BusWatch::hear_pose(std::size_t index, Bytes bytes, HeardAt arrival) {
+  if (const auto question = poses_.question(index, bytes)) {
+    note_question(*question, arrival, QuestionLedger::Seq::kAnyNumber);
+  } else {
+    count_malformed(question.error());
+  }
+}
+
+void BusWatch::note_question(const Question& question, HeardAt arrival, QuestionLedger::Seq seq) {
+  ledger_.hear_question(question.key, arrival.utime, arrival.now, seq);
   const bool asked_lately = question_heard_ && *question_heard_ + kStatusPatience >= arrival.now;
   if (!waiting_since_ || !asked_lately) waiting_since_ = arrival.now;
   question_heard_ = arrival.now;
-  for (const BodyState& state : question_.bodies) {
+  for (const BodyState& state : question.bodies) {
     WatchedBody* const body = find(state.body_id);
     if (body == nullptr) {
       ++counts_.bodies_not_in_scene;
@@ -75,14 +91,36 @@ void BusWatch::hear_question(Bytes bytes, HeardAt arrival) {
 
 void BusWatch::hear_answer(Bytes bytes, HeardAt arrival) {
   if (!take(bytes, answer_)) return;
+  QuestionKey key = answer_.key;
+  if (answer_.bodies.size() == 1 && !ledger_.remembers(key)) {
+    key = poses_.asked_by_pose(answer_.bodies.front().body_id, key.utime).value_or(key);
+  }
+  note_answer(key, arrival);
+  for (const BodyWrench& wrench : answer_.bodies) {
+    WatchedBody* const body = find(wrench.body_id);
+    if (body == nullptr) continue;
+    body->wrench = wrench;
+    body->says_force_and_torque_alone = false;
+  }
+}
+
+void BusWatch::hear_force_torque(std::size_t index, Bytes bytes, HeardAt arrival) {
+  const auto heard = decode_six_axis_force_torque(bytes);
+  if (!heard) return count_malformed(heard.error());
+  const std::int32_t body_id = poses_.asked_on().channels[index].body_id;
+  note_answer(poses_.asked_by_pose(body_id, heard->utime).value(), arrival);
+  WatchedBody* const body = find(body_id);
+  if (body == nullptr) return;
+  body->wrench = BodyWrench{.body_id = body_id, .force = heard->force, .torque = heard->torque};
+  body->says_force_and_torque_alone = true;
+}
+
+void BusWatch::note_answer(const QuestionKey& key, HeardAt arrival) {
   answer_heard_ = arrival.now;
   waiting_since_.reset();
-  if (const auto latency = ledger_.hear_answer(answer_.key, arrival.utime)) {
+  if (const auto latency = ledger_.hear_answer(key, arrival.utime)) {
     latency_.add(*latency);
     latency_of_second_.add(*latency);
-  }
-  for (const BodyWrench& wrench : answer_.bodies) {
-    if (WatchedBody* const body = find(wrench.body_id)) body->wrench = wrench;
   }
 }
 

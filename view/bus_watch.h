@@ -20,6 +20,7 @@
 #include "messages/wire.h"
 #include "scene/scene.h"
 #include "transport/udpm_receiver.h"
+#include "view/heard_poses.h"
 #include "view/question_ledger.h"
 
 namespace buoyancy {
@@ -45,6 +46,8 @@ struct WatchedBody {
   std::optional<Pose> pose;          // the newest that could be one: a NaN moves nothing
   std::optional<double> asked;       // s, when the newest question about it came
   std::optional<BodyWrench> wrench;  // as answered, also where it is not OK
+  bool says_force_and_torque_alone =
+      false;  // wrench: it came as six_axis_force_torque_t, the rest is unknown
   std::optional<Metacenters> metacenters;
 };
 
@@ -79,10 +82,13 @@ class BusWatch {
   };
 
   // scene must live as long.
-  BusWatch(const Scene& scene, double now);
+  BusWatch(const Scene& scene, double now, PoseChannels poses = {});
 
   void hear_question(Bytes bytes, HeardAt arrival);
   void hear_answer(Bytes bytes, HeardAt arrival);
+  // On the pose channel of this index; on its channel for force and torque.
+  void hear_pose(std::size_t index, Bytes bytes, HeardAt arrival);
+  void hear_force_torque(std::size_t index, Bytes bytes, HeardAt arrival);
   void hear_hydrostatics(Bytes bytes);
   void hear_status(Bytes bytes, double now);
   void note_losses(const ReceiveLosses& losses);  // so far
@@ -110,9 +116,13 @@ class BusWatch {
 
   template <typename Message>
   bool take(Bytes bytes, Message& message);
+  void count_malformed(Rejection cause);
   WatchedBody* find(std::int32_t id);
+  void note_question(const Question& question, HeardAt arrival, QuestionLedger::Seq seq);
+  void note_answer(const QuestionKey& key, HeardAt arrival);
 
   const Scene* scene_;
+  HeardPoses poses_;
   std::vector<WatchedBody> bodies_;
   QuestionLedger ledger_;
   Counts counts_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include <poll.h>
@@ -38,24 +39,38 @@ void give_way_to_others() {
   ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
 
-LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, SnapshotHub& hub)
+LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route> routes, PoseChannels poses,
+                   SnapshotHub& hub)
     : receiver_(std::move(receiver)),
+      routes_(std::move(routes)),
       hub_(&hub),
       start_(seconds_now()),
       now_(start_),
-      watch_(scene, start_) {}
+      watch_(scene, start_, std::move(poses)) {}
 
 Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url,
                                   const WatchedChannels& channels, SnapshotHub& hub) {
   Expected<UdpmReceiver> receiver = UdpmReceiver::open(lcm_url);
   if (!receiver) return tl::unexpected(receiver.error());
-  // In the order of which take_in() knows them.
-  for (const std::string& channel :
-       {channels.states, channels.wrenches, channels.hydrostatics, channels.status}) {
+  std::vector<std::pair<std::string, Route>> named{{channels.states, {Carries::kQuestions}},
+                                                   {channels.wrenches, {Carries::kAnswers}},
+                                                   {channels.hydrostatics, {Carries::kHydrostatics}},
+                                                   {channels.status, {Carries::kStatus}}};
+  std::set<std::string> force_torques;  // several channels with poses of one body share its answers' channel
+  for (std::size_t i = 0; i < channels.poses.channels.size(); ++i) {
+    const PoseChannel& pose = channels.poses.channels[i];
+    named.emplace_back(pose.channel, Route{Carries::kPoses, i});
+    if (!pose.force_torque_channel.empty() && force_torques.insert(pose.force_torque_channel).second) {
+      named.emplace_back(pose.force_torque_channel, Route{Carries::kForceTorques, i});
+    }
+  }
+  std::vector<Route> routes;
+  for (const auto& [channel, route] : named) {
     const Expected<std::size_t> subscribed = receiver->subscribe(channel);
     if (!subscribed) return tl::unexpected(subscribed.error());
+    routes.push_back(route);
   }
-  return LiveView(scene, std::move(*receiver), hub);
+  return LiveView(scene, std::move(*receiver), std::move(routes), channels.poses, hub);
 }
 
 void LiveView::run(const TerminationSignals& termination, const std::function<bool()>& goes_on) {
@@ -80,22 +95,26 @@ void LiveView::take_in() {
   for (int i = 0; i < kMostAtOnce; ++i) {
     const auto message = receiver_.take(kMostAtOnce);
     if (!message) break;
-    const HeardAt arrival{message->arrived, now_};
-    switch (message->channel) {
-      case 0:
-        watch_.hear_question(message->payload, arrival);
-        break;
-      case 1:
-        watch_.hear_answer(message->payload, arrival);
-        break;
-      case 2:
-        watch_.hear_hydrostatics(message->payload);
-        break;
-      default:
-        watch_.hear_status(message->payload, now_);
-    }
+    hear(routes_[message->channel], message->payload, {message->arrived, now_});
   }
   watch_.note_losses(receiver_.losses());
+}
+
+void LiveView::hear(const Route& route, Bytes bytes, HeardAt arrival) {
+  switch (route.carries) {
+    case Carries::kQuestions:
+      return watch_.hear_question(bytes, arrival);
+    case Carries::kAnswers:
+      return watch_.hear_answer(bytes, arrival);
+    case Carries::kHydrostatics:
+      return watch_.hear_hydrostatics(bytes);
+    case Carries::kStatus:
+      return watch_.hear_status(bytes, arrival.now);
+    case Carries::kPoses:
+      return watch_.hear_pose(route.index, bytes, arrival);
+    case Carries::kForceTorques:
+      return watch_.hear_force_torque(route.index, bytes, arrival);
+  }
 }
 
 void LiveView::publish() {

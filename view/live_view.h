@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "command_line/termination_signals.h"
 #include "geometry/error.h"
@@ -24,6 +25,7 @@ struct WatchedChannels {
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
   std::string status{kStatusChannel};
+  PoseChannels poses;
 };
 
 // This thread, and those that it starts from here on, run only while a processor would otherwise be idle.
@@ -42,11 +44,21 @@ class LiveView {
   void run(const TerminationSignals& termination, const std::function<bool()>& goes_on);
 
  private:
-  LiveView(const Scene& scene, UdpmReceiver receiver, SnapshotHub& hub);
+  // What a channel of the receiver carries.
+  enum class Carries { kQuestions, kAnswers, kHydrostatics, kStatus, kPoses, kForceTorques };
+  struct Route {
+    Carries carries;
+    std::size_t index = 0;  // of the pose channel
+  };
+
+  LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route> routes, PoseChannels poses,
+           SnapshotHub& hub);
   void take_in();
+  void hear(const Route& route, Bytes bytes, HeardAt arrival);
   void publish();
 
   UdpmReceiver receiver_;
+  std::vector<Route> routes_;  // by the receiver's number of the channel
   SnapshotHub* hub_;
   double start_;  // s, of the steady clock
   double now_;

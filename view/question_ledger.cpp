@@ -4,9 +4,9 @@
 
 namespace buoyancy {
 
-bool QuestionLedger::hear_question(const QuestionKey& key, std::int64_t utime, double now) {
+bool QuestionLedger::hear_question(const QuestionKey& key, std::int64_t utime, double now, Seq seq) {
   const Key question{key.session_id, key.seq};
-  const bool is_new = note_in_session(key, now);
+  const bool is_new = note_in_session(key, now, seq);
   if (questions_.contains(question)) {
     ++counts_.questions_repeated;
     return false;
@@ -18,7 +18,7 @@ bool QuestionLedger::hear_question(const QuestionKey& key, std::int64_t utime, d
   return is_new;
 }
 
-bool QuestionLedger::note_in_session(const QuestionKey& key, double now) {
+bool QuestionLedger::note_in_session(const QuestionKey& key, double now, Seq seq) {
   const auto found = sessions_.find(key.session_id);
   if (found == sessions_.end()) {
     if (sessions_.size() == kMostSessions) {
@@ -35,7 +35,7 @@ bool QuestionLedger::note_in_session(const QuestionKey& key, double now) {
   const std::uint64_t ahead =
       static_cast<std::uint64_t>(key.seq) - static_cast<std::uint64_t>(session.newest_seq);
   const bool is_repeat = ahead == 0;
-  if (key.seq > session.newest_seq && ahead <= kLargestGap) {
+  if (seq == Seq::kCounted && key.seq > session.newest_seq && ahead <= kLargestGap) {
     counts_.questions_missed += static_cast<std::int64_t>(ahead) - 1;
   }
   session.newest_seq = key.seq;

@@ -36,9 +36,13 @@ class QuestionLedger {
     std::int64_t sessions = 0;                  // begun
   };
 
+  // What seq is: counted up by one with each question of a session, so that a gap is a loss; or any number.
+  enum class Seq { kCounted, kAnyNumber };
+
   // utime: us since 1970, when it arrived; now: s of a clock that never jumps, for kPatience. False: a
   // repeat.
-  bool hear_question(const QuestionKey& key, std::int64_t utime, double now);
+  bool hear_question(const QuestionKey& key, std::int64_t utime, double now, Seq seq = Seq::kCounted);
+  bool remembers(const QuestionKey& key) const { return questions_.contains({key.session_id, key.seq}); }
 
   // s: between the first hearing of its question and this first answer to it; 0 where the clock went back.
   // nullopt: no such question is waiting.
@@ -69,7 +73,7 @@ class QuestionLedger {
     double heard;
   };
 
-  bool note_in_session(const QuestionKey& key, double now);  // false: heard before
+  bool note_in_session(const QuestionKey& key, double now, Seq seq);  // false: heard before
   void forget_oldest();
 
   std::unordered_map<Key, Remembered, HashKey> questions_;

@@ -77,8 +77,10 @@ std::int64_t RunCollector::time_of(Collected& body, const RecordedState& recorde
     }
   }
   const std::int64_t time = recorded.utime + body.offset;
-  body.last_step = std::max<std::int64_t>(0, time - body.last_time);
-  body.last_time = time;
+  if (time > body.last_time) {
+    body.last_step = time - body.last_time;
+    body.last_time = time;
+  }
   return time;
 }
 
@@ -119,8 +121,12 @@ void RunCollector::add(const RecordedState& recorded) {
   Collected& collected = bodies_[*index];
   const AskedPose asked = asked_pose(recorded.state, recorded.lead_time);
   classify(collected, body, asked);
-  if (!recorded.wrench) ++run_.computed;
-  const BodyWrench wrench = recorded.wrench ? *recorded.wrench : computed_wrench(body, scene_.water(), asked);
+  if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
+  BodyWrench wrench = recorded.wrench ? *recorded.wrench : computed_wrench(body, scene_.water(), asked);
+  if (recorded.force_torque) {
+    wrench.force = recorded.force_torque->force;
+    wrench.torque = recorded.force_torque->torque;
+  }
 
   Row row;
   row[kTime] = 1e-6 * static_cast<double>(time_of(collected, recorded));

@@ -10,6 +10,7 @@
 
 #include "client/rigid_body.h"
 #include "exchange/body_exchange.h"
+#include "messages/bot_core.h"
 #include "scene/scene.h"
 #include "view/attitude.h"
 #include "view/run.h"
@@ -26,6 +27,8 @@ struct RecordedState {
   BodyState state;
   double lead_time = 0.0;            // s
   std::optional<BodyWrench> wrench;  // nullopt: to be computed
+  std::optional<BotForceTorque>
+      force_torque;               // where nothing else of the wrench is known: the rest is computed
   std::optional<double> energy;   // J; nullopt: to be computed, where velocities and [body.client] allow it
   bool velocities = false;        // state has them
   double round_trip = kNotKnown;  // s
@@ -56,7 +59,7 @@ class RunCollector {
     // behind.
     std::int64_t session_id = 0;
     std::int64_t offset = 0;
-    std::int64_t last_time = 0;
+    std::int64_t last_time = 0;  // the latest
     std::int64_t last_step = 0;
   };
 

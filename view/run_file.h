@@ -5,8 +5,9 @@
 // of vx..wz; status, fx..tz, volume, bx..bz; energy each group is read where all of it is there. What lacks
 // is computed.
 //
-// Log: questions and answers are matched by session and seq; a repeated question is one, and an answer that
-// never came is computed. At most 4,096 questions wait for their answers. What is damaged is passed over
+// Log: questions and answers are matched by session and seq, poses and their answers by body and utime; a
+// repeated question is one, and an answer that never came is computed. Of an answer that is force and torque
+// alone the rest is computed. At most 4,096 questions wait for their answers. What is damaged is passed over
 // (recording/event_log.h).
 #pragma once
 
@@ -15,6 +16,7 @@
 #include <functional>
 #include <string>
 
+#include "exchange/pose_questions.h"
 #include "geometry/error.h"
 #include "messages/wire.h"
 #include "view/run_collector.h"
@@ -25,12 +27,14 @@ struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string status_channel{kStatusChannel};
+  PoseChannels poses;  // of a log
   // Called now and then: bytes read, bytes in all, rows. False: stop reading, what was read is the run.
   std::function<bool(std::int64_t, std::int64_t, std::int64_t)> progress;
 };
 
 // By the extension: .csv or .lcmlog. Memory does not grow with the file. Errors: another extension, not
-// readable, a first line that is no such header, not one row about a body of the scene.
+// readable, a first line that is no such header, a .csv where options name pose channels, not one row about a
+// body of the scene.
 Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
                                const RunFileOptions& options);
 

@@ -1,10 +1,17 @@
 #include "view/run_log_file.h"
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
+#include <functional>
+#include <limits>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "recording/event_log.h"
+#include "view/heard_poses.h"
 
 namespace buoyancy {
 namespace {
@@ -12,36 +19,55 @@ namespace {
 constexpr std::size_t kMostWaiting = 4'096;
 constexpr std::int64_t kEventsBetweenProgress = 4'096;
 
+// Beyond it a pose's clock did not jitter, it began again.
+constexpr std::int64_t kClockBeganAgain = 1'000'000;  // us
+
+bool is_finite(const std::array<double, 3>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
 // Questions until their answers come, in order of arrival.
 class Conversation {
  public:
-  explicit Conversation(RunCollector& collector) : collector_(collector) {}
+  Conversation(PoseChannels poses, RunCollector& collector)
+      : poses_(std::move(poses)), collector_(collector) {}
 
   void question(std::int64_t timestamp, Bytes bytes) {
-    Asked asked{timestamp, {}};
-    if (const auto rejection = decode(bytes, asked.question)) {
-      collector_.add_trouble(std::string("a question that is ") + describe(*rejection) + ": left out");
-      return;
+    Question question;
+    if (const auto rejection = decode(bytes, question)) return leave_out("a question", *rejection);
+    const std::int64_t session_id = question.key.session_id;
+    wait_for_answer({timestamp, session_id, true, std::move(question)});
+  }
+
+  void pose(std::int64_t timestamp, std::size_t index, Bytes bytes) {
+    tl::expected<Question, Rejection> question = poses_.question(index, bytes);
+    if (!question) return leave_out("a pose", question.error());
+    const std::int64_t utime = question->key.utime;
+    if (newest_pose_ && utime < *newest_pose_ - kClockBeganAgain) {
+      ++session_of_poses_;
+      newest_pose_.reset();
     }
-    const Key key{asked.question.key.session_id, asked.question.key.seq};
-    if (waiting_.contains(key) || key == last_answered_) return;  // asked again
-    waiting_.emplace(key, std::move(asked));
-    order_.push_back(key);
-    while (waiting_.size() > kMostWaiting) give_up_oldest();
+    newest_pose_ = std::max(utime, newest_pose_.value_or(utime));
+    const BodyState& state = question->bodies.front();
+    const bool velocities = poses_.asked_on().velocity_frame && is_finite(state.linear_velocity) &&
+                            is_finite(state.angular_velocity);
+    wait_for_answer({timestamp, session_of_poses_, velocities, *std::move(question)});
   }
 
   void answer(std::int64_t timestamp, Bytes bytes) {
-    if (const auto rejection = decode(bytes, answer_)) {
-      collector_.add_trouble(std::string("an answer that is ") + describe(*rejection) + ": left out");
-      return;
+    if (const auto rejection = decode(bytes, answer_)) return leave_out("an answer", *rejection);
+    auto asked = waiting_.find(key_of(answer_.key));
+    if (asked == waiting_.end() && answer_.bodies.size() == 1) {
+      asked = find_pose(answer_.bodies.front().body_id, answer_.key.utime);
     }
-    const auto asked = waiting_.find({answer_.key.session_id, answer_.key.seq});
-    if (asked == waiting_.end())
-      return;  // of a question that the log does not hold, or the same answer again
-    last_answered_ = asked->first;
-    add(asked->second, 1e-6 * static_cast<double>(timestamp - asked->second.timestamp));
-    waiting_.erase(asked);
-    while (!order_.empty() && !waiting_.contains(order_.front())) order_.pop_front();
+    answered(timestamp, asked, std::nullopt);
+  }
+
+  void force_torque(std::int64_t timestamp, std::size_t index, Bytes bytes) {
+    const auto heard = decode_six_axis_force_torque(bytes);
+    if (!heard) return leave_out("a force and torque", heard.error());
+    answer_.bodies.clear();
+    answered(timestamp, find_pose(poses_.asked_on().channels[index].body_id, heard->utime), *heard);
   }
 
   void give_up_all() {
@@ -53,29 +79,62 @@ class Conversation {
   using Key = std::pair<std::int64_t, std::int64_t>;  // session, seq
   struct Asked {
     std::int64_t timestamp = 0;
+    std::int64_t session_id = 0;  // in which its rows stand
+    bool velocities = false;      // are known
     Question question;
   };
+  using Waiting = std::map<Key, Asked>;
+
+  static Key key_of(const QuestionKey& key) { return {key.session_id, key.seq}; }
+
+  void leave_out(const char* what, Rejection rejection) {
+    collector_.add_trouble(std::string(what) + " was left out: " + describe(rejection));
+  }
+
+  void wait_for_answer(Asked asked) {
+    const Key key = key_of(asked.question.key);
+    if (waiting_.contains(key) || key == last_answered_) return;  // asked again
+    waiting_.emplace(key, std::move(asked));
+    order_.push_back(key);
+    while (waiting_.size() > kMostWaiting) give_up_oldest();
+  }
+
+  Waiting::iterator find_pose(std::int32_t body_id, std::int64_t utime) {
+    const auto key = poses_.asked_by_pose(body_id, utime);
+    return key ? waiting_.find(key_of(*key)) : waiting_.end();
+  }
+
+  // asked: the end where the log does not hold the question, or the same answer comes again.
+  void answered(std::int64_t timestamp, Waiting::iterator asked,
+                const std::optional<BotForceTorque>& force_torque) {
+    if (asked == waiting_.end()) return;
+    last_answered_ = asked->first;
+    add(asked->second, 1e-6 * static_cast<double>(timestamp - asked->second.timestamp), force_torque);
+    waiting_.erase(asked);
+    while (!order_.empty() && !waiting_.contains(order_.front())) order_.pop_front();
+  }
 
   void give_up_oldest() {
     const auto asked = waiting_.find(order_.front());
     order_.pop_front();
     if (asked == waiting_.end()) return;
     answer_.bodies.clear();
-    add(asked->second, kNotKnown);
+    add(asked->second, kNotKnown, std::nullopt);
     waiting_.erase(asked);
   }
 
   // With the wrenches of answer_, which stand in the question's order.
-  void add(const Asked& asked, double round_trip) {
+  void add(const Asked& asked, double round_trip, const std::optional<BotForceTorque>& force_torque) {
     const Question& question = asked.question;
     for (std::size_t i = 0; i < question.bodies.size(); ++i) {
       RecordedState row{.utime = question.key.utime,
-                        .session_id = question.key.session_id,
+                        .session_id = asked.session_id,
                         .state = question.bodies[i],
                         .lead_time = question.lead_time,
                         .wrench = std::nullopt,
+                        .force_torque = force_torque,
                         .energy = std::nullopt,
-                        .velocities = true,
+                        .velocities = asked.velocities,
                         .round_trip = round_trip};
       if (i < answer_.bodies.size() && answer_.bodies[i].body_id == row.state.body_id)
         row.wrench = answer_.bodies[i];
@@ -84,8 +143,11 @@ class Conversation {
     }
   }
 
+  HeardPoses poses_;
   RunCollector& collector_;
-  std::map<Key, Asked> waiting_;
+  std::optional<std::int64_t> newest_pose_;  // us
+  std::int64_t session_of_poses_ = std::numeric_limits<std::int64_t>::min();
+  Waiting waiting_;
   std::deque<Key> order_;
   std::optional<Key> last_answered_;
   Answer answer_;  // reused
@@ -96,12 +158,29 @@ class Conversation {
 
 Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOptions& options,
                             RunCollector& collector) {
-  Expected<EventLogReader> log = EventLogReader::open(path, [&options](std::string_view channel) {
-    return channel == options.states_channel || channel == options.wrenches_channel ||
-           channel == options.status_channel;
-  });
+  Conversation conversation(options.poses, collector);
+  using Hear = std::function<void(const RecordedEvent&)>;
+  std::map<std::string, Hear, std::less<>> heard{
+      {options.states_channel,
+       [&](const RecordedEvent& event) { conversation.question(event.timestamp, event.bytes); }},
+      {options.wrenches_channel,
+       [&](const RecordedEvent& event) { conversation.answer(event.timestamp, event.bytes); }},
+      {options.status_channel, [&](const RecordedEvent& event) {
+         if (ServiceStatus status; !decode(event.bytes, status)) collector.set_status(std::move(status));
+       }}};
+  for (std::size_t i = 0; i < options.poses.channels.size(); ++i) {
+    const PoseChannel& pose = options.poses.channels[i];
+    heard[pose.channel] = [&conversation, i](const RecordedEvent& event) {
+      conversation.pose(event.timestamp, i, event.bytes);
+    };
+    if (pose.force_torque_channel.empty()) continue;
+    heard[pose.force_torque_channel] = [&conversation, i](const RecordedEvent& event) {
+      conversation.force_torque(event.timestamp, i, event.bytes);
+    };
+  }
+  Expected<EventLogReader> log =
+      EventLogReader::open(path, [&heard](std::string_view channel) { return heard.contains(channel); });
   if (!log) return tl::unexpected(log.error());
-  Conversation conversation(collector);
   for (std::int64_t number = 1;; ++number) {
     const InputItem item = log->next();
     if (std::holds_alternative<EndOfInput>(item)) break;
@@ -110,13 +189,7 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
       continue;
     }
     const auto& event = std::get<RecordedEvent>(item);
-    if (event.channel == options.states_channel) {
-      conversation.question(event.timestamp, event.bytes);
-    } else if (event.channel == options.wrenches_channel) {
-      conversation.answer(event.timestamp, event.bytes);
-    } else if (ServiceStatus status; !decode(event.bytes, status)) {
-      collector.set_status(std::move(status));
-    }
+    heard.find(event.channel)->second(event);
     if (number % kEventsBetweenProgress == 0 && options.progress &&
         !options.progress(log->offset(), log->size(), conversation.rows())) {
       break;

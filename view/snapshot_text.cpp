@@ -52,7 +52,7 @@ class BodyText {
 void append(std::string& text, const WatchedBody& body, double now) {
   BodyText out(text);
   out.plain(R"({"id":)").whole_number(body.id).plain(R"(,"status":)");
-  if (body.wrench) {
+  if (body.wrench && !body.says_force_and_torque_alone) {
     out.whole_number(static_cast<std::int64_t>(body.wrench->status));
   } else {
     out.plain("null");
@@ -63,12 +63,17 @@ void append(std::string& text, const WatchedBody& body, double now) {
   if (body.wrench) {
     const BodyWrench& wrench = *body.wrench;
     out.plain(R"(,"f":)").numbers(wrench.force).plain(R"(,"t":)").numbers(wrench.torque);
+  } else {
+    out.plain(R"(,"f":null,"t":null)");
+  }
+  if (body.wrench && !body.says_force_and_torque_alone) {
+    const BodyWrench& wrench = *body.wrench;
     out.plain(R"(,"b":)").numbers(wrench.center_of_buoyancy);
     out.plain(R"(,"volume":)").number(wrench.submerged_volume);
     out.plain(R"(,"force_bound":)").number(wrench.force_error_bound);
     out.plain(R"(,"torque_bound":)").number(wrench.torque_error_bound);
   } else {
-    out.plain(R"(,"f":null,"t":null,"b":null,"volume":null,"force_bound":null,"torque_bound":null)");
+    out.plain(R"(,"b":null,"volume":null,"force_bound":null,"torque_bound":null)");
   }
   if (body.metacenters) {
     const auto& [points, heights] = *body.metacenters;

@@ -11,17 +11,28 @@
 namespace buoyancy {
 
 // One line, without a line break:
-//   "number"             of this snapshot, "time": s since 1970, "listening": s since the start
-//   "bodies"             those whose pose was heard, each {"id", "status": BodyStatus as a number or null
-//   before the first
-//                        answer, "p": [3], "q": [w, x, y, z], "f": [3] | null, "t": [3] | null,
-//                        "b": [3] | null, "m": [[3], [3]] | null, "gm": [2] | null, "volume", "force_bound",
-//                        "torque_bound", "age": s since the body was asked about}. b: centre of buoyancy, m:
-//                        metacentres, relative to p in W's axes
-//   "service"            as name(ServiceState); "services": the instance ids heard within 3 s
-//   "status"             the newest service_status_t | null; "status_age", "answer_age", "question_age": s |
-//   null "second"             the last whole second, as in history_json | null "latency"            {"p50",
-//   "p99", "p999", "max"} s, since the start "counts"             as BusWatch counts
+//
+//   number         of this snapshot
+//   time           s since 1970
+//   listening      s since the start
+//   bodies         those whose pose was heard, each
+//                    id
+//                    status       a BodyStatus as a number
+//                    p, q         [3], [w, x, y, z]
+//                    f, t         [3]
+//                    b            [3], the centre of buoyancy
+//                    m, gm        [[3], [3]], the metacentres, and [2], their heights
+//                    volume, force_bound, torque_bound
+//                    age          s since the body was asked about
+//                  b and m relative to p in W's axes. null: from f to torque_bound what was not answered yet;
+//                  status, b, volume and the bounds too where a six_axis_force_torque_t answered
+//   service        as name(ServiceState)
+//   services       the instance ids heard within 3 s
+//   status         the newest service_status_t, or null
+//   status_age, answer_age, question_age   s, or null
+//   second         the last whole second, as in history_json, or null
+//   latency        p50, p99, p999, max: s, since the start
+//   counts         as BusWatch counts
 std::string snapshot_json(const BusWatch& watch, std::int64_t number, double time, double listening,
                           double now);
 

@@ -16,6 +16,19 @@ std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::arr
 
 }  // namespace
 
+tl::expected<PosedBody, Rejection> posed_body(const PoseChannels& poses, std::size_t index, Bytes pose) {
+  const tl::expected<BotPose, Rejection> read = decode_bot_pose(pose);
+  if (!read) return tl::unexpected(read.error());
+  PosedBody posed{read->utime,
+                  {poses.channels[index].body_id, read->position, read->quaternion_wxyz, read->velocity,
+                   read->rotation_rate}};
+  if (poses.velocity_frame == VelocityFrame::kBody) {
+    posed.state.linear_velocity = to_world(read->quaternion_wxyz, read->velocity);
+    posed.state.angular_velocity = to_world(read->quaternion_wxyz, read->rotation_rate);
+  }
+  return posed;
+}
+
 PoseQuestions::PoseQuestions(PoseChannels poses, std::int64_t first_session)
     : poses_(std::move(poses)), first_session_(first_session), asked_(poses_.channels.size()) {
   question_.lead_time = poses_.lead_time;
@@ -29,17 +42,11 @@ const PoseChannel* PoseQuestions::asks_in(std::int64_t session_id) const {
 }
 
 tl::expected<Bytes, Rejection> PoseQuestions::question(std::size_t index, Bytes pose) {
-  const tl::expected<BotPose, Rejection> read = decode_bot_pose(pose);
-  if (!read) return tl::unexpected(read.error());
+  const tl::expected<PosedBody, Rejection> posed = posed_body(poses_, index, pose);
+  if (!posed) return tl::unexpected(posed.error());
   const auto session = static_cast<std::uint64_t>(first_session_) + index;
-  question_.key = {read->utime, static_cast<std::int64_t>(session), asked_[index]++};
-  BodyState& state = question_.bodies.front();
-  state = {poses_.channels[index].body_id, read->position, read->quaternion_wxyz, read->velocity,
-           read->rotation_rate};
-  if (poses_.velocity_frame == VelocityFrame::kBody) {
-    state.linear_velocity = to_world(read->quaternion_wxyz, read->velocity);
-    state.angular_velocity = to_world(read->quaternion_wxyz, read->rotation_rate);
-  }
+  question_.key = {posed->utime, static_cast<std::int64_t>(session), asked_[index]++};
+  question_.bodies.front() = posed->state;
   encode(question_, bytes_);
   return Bytes(bytes_);
 }

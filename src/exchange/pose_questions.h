@@ -2,7 +2,9 @@
 // pose turned into a question for Exchange, and the answer turned into the message that goes back.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +24,18 @@ struct PoseChannel {
 
 struct PoseChannels {
   std::vector<PoseChannel> channels;
-  VelocityFrame velocity_frame = VelocityFrame::kWorld;
+  std::optional<VelocityFrame> velocity_frame{};  // nullopt: not known, velocities mean nothing
   double lead_time = 0.0;  // s, of every question; not 0: a rigid_transform_t cannot be answered
 };
+
+// What a pose says of its body.
+struct PosedBody {
+  std::int64_t utime = 0;  // us
+  BodyState state;         // velocities in W; as they stand where their frame is not known
+};
+
+// What a message on poses.channels[index] says. Causes: as decode_bot_pose().
+tl::expected<PosedBody, Rejection> posed_body(const PoseChannels& poses, std::size_t index, Bytes pose);
 
 class PoseQuestions {
  public:

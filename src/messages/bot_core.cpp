@@ -43,6 +43,19 @@ tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes) {
   return pose;
 }
 
+tl::expected<BotForceTorque, Rejection> decode_six_axis_force_torque(Bytes bytes) {
+  std::uint64_t fingerprint = 0;
+  if (bytes.size() < sizeof fingerprint) return tl::unexpected(Rejection::kTruncated);
+  BigEndianReader reader(bytes.data());
+  reader(fingerprint);
+  if (fingerprint != kSixAxisForceTorque) return tl::unexpected(Rejection::kFingerprint);
+  if (bytes.size() < kSixAxisForceTorqueSize) return tl::unexpected(Rejection::kTruncated);
+  if (bytes.size() > kSixAxisForceTorqueSize) return tl::unexpected(Rejection::kLength);
+  BotForceTorque message;
+  reader(message.utime, message.force, message.torque);
+  return message;
+}
+
 void encode_six_axis_force_torque(std::int64_t utime, const std::array<double, 3>& force,
                                   const std::array<double, 3>& torque, std::vector<std::uint8_t>& bytes) {
   bytes.resize(kSixAxisForceTorqueSize);

@@ -29,9 +29,18 @@ struct BotPose {
   std::array<double, 3> rotation_rate{};
 };
 
+struct BotForceTorque {
+  std::int64_t utime = 0;          // us
+  std::array<double, 3> force{};   // N
+  std::array<double, 3> torque{};  // N m
+};
+
 // A pose_t or a rigid_transform_t, of exactly its length. Values are not judged. Causes: kTruncated,
 // kFingerprint, kLength. O(1).
 tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes);
+
+// A six_axis_force_torque_t of exactly its length; else as decode_bot_pose().
+tl::expected<BotForceTorque, Rejection> decode_six_axis_force_torque(Bytes bytes);
 
 // Replaces bytes by a six_axis_force_torque_t. utime: us; force: N; torque: N m.
 void encode_six_axis_force_torque(std::int64_t utime, const std::array<double, 3>& force,

@@ -76,6 +76,17 @@ TEST(PoseQuestions, VelocitiesAreTurnedIntoTheWorldWhereTheyAreTheBodys) {
   EXPECT_NEAR(body.bodies[0].angular_velocity[1], 3.0, 1e-15);
 }
 
+TEST(PoseQuestions, VelocitiesStandAsTheyAreWhereNobodySaidTheirFrame) {
+  bot_core::pose_t pose = upright_pose(0.0, 9);
+  pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);
+  pose.vel[0] = 2.0;
+  const auto posed = posed_body({.channels = {{"HULL", kBox, ""}}}, 0, encoded_by_lcm(pose));
+  ASSERT_TRUE(posed);
+  EXPECT_EQ(posed->utime, 9);
+  EXPECT_EQ(posed->state.body_id, kBox);
+  EXPECT_EQ(posed->state.linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
+}
+
 TEST(PoseQuestions, AnsweringAPoseTakesNoHeapOnceItIsWarm) {
   const Scene scene = box_scene();
   Exchange exchange(scene, {.threads = 1});

@@ -64,23 +64,35 @@ TEST(BotCore, ForceAndTorqueAreReadByTheirOwnGenerator) {
     EXPECT_EQ(message.force[i], 1.0 + i);
     EXPECT_EQ(message.moment[i], 4.0 + i);
   }
+  const auto read = decode_six_axis_force_torque(bytes);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->utime, 77);
+  EXPECT_EQ(read->force, (Three{1, 2, 3}));
+  EXPECT_EQ(read->torque, (Three{4, 5, 6}));
 }
 
-TEST(BotCore, NothingButAPoseOfItsExactLengthIsRead) {
-  for (const std::vector<std::uint8_t>& whole :
-       {encoded_by_lcm(pose()), encoded_by_lcm(bot_core::rigid_transform_t{})}) {
-    for (std::size_t size = 0; size < whole.size(); ++size) {
-      EXPECT_EQ(decode_bot_pose(Bytes(whole).first(size)).error(), Rejection::kTruncated) << size;
-    }
-    std::vector<std::uint8_t> longer = whole;
-    longer.push_back(0);
-    EXPECT_EQ(decode_bot_pose(longer).error(), Rejection::kLength);
-    std::vector<std::uint8_t> other = whole;
-    ++other[3];
-    EXPECT_EQ(decode_bot_pose(other).error(), Rejection::kFingerprint);
+// Of decode, given a message that it reads.
+template <typename Decode>
+void expect_only_the_exact_length(const Decode& decode, const std::vector<std::uint8_t>& whole) {
+  ASSERT_TRUE(decode(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(decode(Bytes(whole).first(size)).error(), Rejection::kTruncated) << size;
   }
-  EXPECT_EQ(decode_bot_pose(encoded_by_lcm(bot_core::six_axis_force_torque_t{})).error(),
-            Rejection::kFingerprint);
+  std::vector<std::uint8_t> longer = whole;
+  longer.push_back(0);
+  EXPECT_EQ(decode(longer).error(), Rejection::kLength);
+  std::vector<std::uint8_t> other = whole;
+  ++other[3];
+  EXPECT_EQ(decode(other).error(), Rejection::kFingerprint);
+}
+
+TEST(BotCore, NothingButAMessageOfItsTypesExactLengthIsRead) {
+  const std::vector<std::uint8_t> force_torque = encoded_by_lcm(bot_core::six_axis_force_torque_t{});
+  expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(pose()));
+  expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(bot_core::rigid_transform_t{}));
+  expect_only_the_exact_length(decode_six_axis_force_torque, force_torque);
+  EXPECT_EQ(decode_bot_pose(force_torque).error(), Rejection::kFingerprint);
+  EXPECT_EQ(decode_six_axis_force_torque(encoded_by_lcm(pose())).error(), Rejection::kFingerprint);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 #include "tests/exchange/box_scene.h"
 #include "tests/exchange/malformed_messages.h"
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "view/snapshot_text.h"
 
 namespace buoyancy {
@@ -44,11 +46,12 @@ BodyWrench lifted(std::int32_t id, double force) {
 
 class WatchedBus : public testing::Test {
  protected:
+  explicit WatchedBus(PoseChannels poses = {}) : watch_(scene_, 0.0, std::move(poses)) {}
   HeardAt at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
   json snapshot(double now) { return json::parse(snapshot_json(watch_, 1, 0.0, now, now)); }
 
   const Scene scene_ = box_scene();
-  BusWatch watch_{scene_, 0.0};
+  BusWatch watch_;
 };
 
 TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
@@ -121,6 +124,78 @@ TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   EXPECT_EQ(watch_.ledger().questions, 0);
   watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 1U);
+}
+
+// Poses of bot_core: of the box, answered as wrenches, and of the fast box, answered as force and torque.
+class WatchedPoses : public WatchedBus {
+ protected:
+  WatchedPoses() : WatchedBus({.channels = {{"BOX", kBox, ""}, {"FAST", kFastBox, "FORCE"}}}) {}
+  void hear_pose(std::size_t channel, std::int64_t utime, double height) {
+    watch_.hear_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
+                     at(1e-6 * static_cast<double>(utime)));
+  }
+  void hear_force(std::int64_t utime, double force, double now) {
+    std::vector<std::uint8_t> bytes;
+    encode_six_axis_force_torque(utime, {0.0, 0.0, force}, {1.0, 2.0, 3.0}, bytes);
+    watch_.hear_force_torque(1, bytes, at(now));
+  }
+};
+
+TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
+  hear_pose(0, 100'000, 0.25);
+  hear_pose(1, 100'000, 0.5);
+  EXPECT_EQ(snapshot(0.1)["bodies"].size(), 2U);
+  watch_.hear_answer(answer_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
+  EXPECT_EQ(watch_.ledger().answers, 1) << "its session and number are the service's own";
+  EXPECT_NEAR(watch_.latency().max, 0.003, 1e-5);
+  hear_force(100'000, 7.0, 0.104);
+  EXPECT_EQ(watch_.ledger().answers, 2);
+  EXPECT_EQ(watch_.ledger().questions, 2);
+  EXPECT_EQ(watch_.ledger().answers_without_question, 0);
+  EXPECT_EQ(watch_.service_state(0.2), ServiceState::kAnswering);
+  const json bodies = snapshot(0.2)["bodies"];
+  EXPECT_EQ(bodies[0]["p"], json({0.0, 0.0, 0.25}));
+  EXPECT_EQ(bodies[0]["f"], json({0.0, 0.0, 5.0}));
+  EXPECT_EQ(bodies[0]["status"], 0);
+  EXPECT_EQ(bodies[1]["f"], json({0.0, 0.0, 7.0}));
+  EXPECT_EQ(bodies[1]["t"], json({1.0, 2.0, 3.0}));
+  for (const char* unsaid : {"status", "b", "volume", "force_bound", "torque_bound"}) {
+    EXPECT_TRUE(bodies[1][unsaid].is_null()) << unsaid;
+  }
+}
+
+TEST_F(WatchedPoses, LeaveNoGapsAndWaitInVainLikeAnyQuestion) {
+  for (std::int64_t i = 0; i < 5; ++i) hear_pose(0, 10'000 * i, 0.0);
+  watch_.hear_answer(answer_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
+  watch_.hear_answer(answer_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
+  watch_.pass_time(3.0);
+  EXPECT_EQ(watch_.ledger().questions_missed, 0);
+  EXPECT_EQ(watch_.ledger().unanswered, 4);
+  EXPECT_EQ(watch_.ledger().answers_without_question, 1) << "a microsecond beside the newest pose";
+}
+
+TEST_F(WatchedPoses, DoNotTakeAnAnswerThatBelongsToAQuestion) {
+  hear_pose(0, 100'000, 0.25);
+  watch_.hear_question(question_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
+  watch_.hear_answer(answer_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
+  EXPECT_NEAR(watch_.latency().max, 0.005, 1e-5) << "from the question, not from the pose";
+  watch_.pass_time(3.0);
+  EXPECT_EQ(watch_.ledger().answers, 1);
+  EXPECT_EQ(watch_.ledger().unanswered, 1) << "the pose";
+}
+
+TEST_F(WatchedPoses, ThatAreNoneAreCountedByTheirCause) {
+  watch_.hear_pose(0, Bytes(), at(0.0));
+  watch_.hear_pose(0, question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
+  std::vector<std::uint8_t> longer = encoded_by_lcm(upright_pose(0.0, 1));
+  watch_.hear_force_torque(1, longer, at(0.0));
+  longer.push_back(0);
+  watch_.hear_pose(0, longer, at(0.0));
+  const std::array<std::int64_t, 4>& malformed = watch_.counts().malformed;
+  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kTruncated)], 1);
+  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kFingerprint)], 2);
+  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kLength)], 1);
+  EXPECT_EQ(watch_.ledger().questions, 0);
 }
 
 TEST_F(WatchedBus, CountsBodiesThatItsSceneDoesNotHave) {

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
 
@@ -27,12 +29,15 @@ name = "second box"
 shape = { type = "box", size = [1, 1, 1] }
 )";
 
+// Of the second box.
+const std::vector<std::string> kPoseChannels{"--pose", "POSE=2", "--force-torque", "FORCE=2"};
+
 class LivePage : public PageTest {
  protected:
   void SetUp() override {
     PageTest::SetUp();
-    service_ = std::make_unique<RunningService>(std::vector<std::string>{}, kScene);
-    view_ = std::make_unique<RunningView>(kScene);
+    service_ = std::make_unique<RunningService>(kPoseChannels, kScene);
+    view_ = std::make_unique<RunningView>(kScene, kPoseChannels);
     client_ = std::make_unique<ChildProcess>(
         command_of({BUOYANCY_CLIENT, "--scene", service_->path("scene.toml"), "--rate", "200", "--duration",
                     "1000", "--retries", "100000"}));
@@ -99,6 +104,23 @@ TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {
   view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, port);
   browser().wait_until("buoyancyView.connections >= 2 && buoyancyView.state === 'answering'");
   wait_for_news();
+}
+
+TEST_F(LivePage, ShowsABodyThatIsPosedByBotCoreAndAForceOfWhichNothingElseIsSaid) {
+  browser().wait_until("window.buoyancyView && buoyancyView.renders > 1");
+  RawLcmSocket socket;
+  socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
+  browser().press("n");
+  browser().wait_until(
+      "document.getElementById('body_facts').textContent.includes('not said: force and torque alone')");
+  const nlohmann::json body = browser().run("return buoyancyView.last.bodies.find((one) => one.id === 2);");
+  EXPECT_NEAR(body["f"][2].get<double>(), 0.25 * 1'025.0 * 9.80665, 1.0) << "a quarter of a cubic metre";
+  browser().wait_until("buoyancyView.scene.bodies.get(2).marks.force.visible");
+  EXPECT_EQ(browser().run("const marks = buoyancyView.scene.bodies.get(2).marks;"
+                          "return [marks.centre_of_buoyancy.visible, marks.force.position.z];"),
+            nlohmann::json({false, 0.25}))
+      << "at the body's origin";
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(LivePage, IsWorkedByKeys) {

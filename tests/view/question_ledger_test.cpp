@@ -37,6 +37,17 @@ TEST(QuestionLedger, CountsARepeatOnceMoreAndMeasuresFromTheFirst) {
   EXPECT_EQ(ledger.counts().answers_repeated, 1);
 }
 
+TEST(QuestionLedger, MissesNoNumbersWhereTheyCountNothing) {
+  QuestionLedger ledger;
+  for (const std::int64_t utime : {5, 1'005, 2'005}) {
+    EXPECT_FALSE(ledger.remembers(key(1, utime)));
+    EXPECT_TRUE(ledger.hear_question(key(1, utime), utime, 0.0, QuestionLedger::Seq::kAnyNumber));
+    EXPECT_TRUE(ledger.remembers(key(1, utime)));
+  }
+  EXPECT_EQ(ledger.counts().questions_missed, 0);
+  EXPECT_EQ(ledger.counts().questions, 3);
+}
+
 TEST(QuestionLedger, GivesUpAQuestionThatNobodyAnswersAndCountsALateAnswerAsOneWithoutAQuestion) {
   QuestionLedger ledger;
   ledger.hear_question(key(1, 0), 0, 0.0);

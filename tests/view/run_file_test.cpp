@@ -9,6 +9,8 @@
 #include "exchange/exchange.h"
 #include "recording/event_log.h"
 #include "tests/exchange/box_scene.h"
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/scratch_directory.h"
 
@@ -26,7 +28,9 @@ Question question_at(std::int64_t seq, double height, std::int64_t session_id = 
 
 class ARunFile : public testing::Test {
  protected:
-  Expected<RecordedRun> read(const std::string& path) const { return read_run(path, scene_, 1'000, {}); }
+  Expected<RecordedRun> read(const std::string& path) const {
+    return read_run(path, scene_, 1'000, options_);
+  }
   Expected<RecordedRun> read_csv(const std::string& text) const {
     return read(directory_.write("run.csv", text));
   }
@@ -51,7 +55,13 @@ class ARunFile : public testing::Test {
     return read(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}));
   }
 
+  // A pose of the one body on channel POSE, which options_ name.
+  void log_pose(std::int64_t timestamp, const bot_core::pose_t& pose) {
+    log(timestamp, "POSE", encoded_by_lcm(pose));
+  }
+
   ScratchDirectory directory_;
+  RunFileOptions options_;
   Scene scene_ = scene_of(kOneBoxScene);
   Exchange exchange_{scene_};
   std::vector<std::uint8_t> log_;
@@ -186,6 +196,84 @@ TEST_F(ARunFile, HasTheEnergyOfALogWhereTheSceneSaysTheMass) {
   log_question(0, falling);
   const double mass = 24.0 * 500.0;
   EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
+}
+
+TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
+  options_.poses = {.channels = {{"POSE", 1, ""}}};
+  PoseQuestions asked(options_.poses, 70);
+  for (std::int64_t i = 0; i < 10; ++i) {
+    const bot_core::pose_t pose = upright_pose(0.1 * static_cast<double>(i), 5'000'000 + 1'000 * i);
+    log_pose(1'000 * i, pose);
+    const std::vector<std::uint8_t> question = [&] {
+      const auto bytes = asked.question(0, encoded_by_lcm(pose));
+      return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
+    }();
+    log(1'000 * i + 250, kWrenchesChannel, exchange_.answer(question));
+  }
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 10);
+  EXPECT_EQ(run.computed, 0);
+  EXPECT_EQ(run.sessions, 1);
+  EXPECT_TRUE(run.troubles.empty());
+  for (const Row& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
+  EXPECT_DOUBLE_EQ(run.bodies[0].rows[5][kTime], 5e-3);
+  EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
+}
+
+TEST_F(ARunFile, OfBotCorePosesComputesWhatNobodyAnsweredAndTheRestOfForcesAndTorques) {
+  options_.poses = {.channels = {{"POSE", 1, "FORCE"}}};
+  log_pose(0, upright_pose(0.5, 0));
+  log_pose(1'000, upright_pose(0.0, 1'000));
+  std::vector<std::uint8_t> bytes;
+  encode_six_axis_force_torque(1'000, {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, bytes);
+  log(1'400, "FORCE", bytes);
+  log(1'500, "POSE", bytes);
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 2);
+  EXPECT_EQ(run.computed, 1);
+  EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
+  const Row& answered = run.bodies[0].rows[1];
+  EXPECT_EQ(std::vector(answered.begin() + kFx, answered.begin() + kVolume),
+            (std::vector<double>{1, 2, 3, 4, 5, 6}))
+      << "as recorded";
+  EXPECT_NEAR(answered[kVolume], 12.0, 1e-9) << "of the scene's box";
+  EXPECT_NEAR(answered[kRoundTrip], 400e-6, 1e-12);
+  EXPECT_EQ(run.troubles,
+            (std::vector<std::string>{"a pose was left out: fingerprint of another type or version"}));
+}
+
+TEST_F(ARunFile, OfBotCorePosesHasTheirEnergyOnlyWhereSomebodySaidTheFrameOfTheirVelocities) {
+  scene_ = scene_of(kOneBoxScene + "[body.client]\ndensity = 500.0\n");
+  bot_core::pose_t falling = upright_pose(10.0, 0);
+  falling.vel[2] = -2.0;
+  log_pose(0, falling);
+  options_.poses = {.channels = {{"POSE", 1, ""}}};
+  EXPECT_TRUE(std::isnan(read_log().value().bodies[0].rows.at(0)[kEnergy]));
+  options_.poses.velocity_frame = VelocityFrame::kBody;
+  const double mass = 24.0 * 500.0;
+  EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
+}
+
+TEST_F(ARunFile, OfBotCorePosesWhoseClockBeganAgainGoesOnBehind) {
+  options_.poses = {.channels = {{"POSE", 1, ""}}};
+  for (const std::int64_t utime : {5'000'000, 5'001'000, 5'000'500, 0, 1'000}) {
+    log_pose(utime, upright_pose(0.0, utime));
+  }
+  const RecordedRun run = read_log().value();
+  std::vector<double> times;
+  for (const Row& row : run.bodies[0].rows) times.push_back(row[kTime]);
+  ASSERT_EQ(times.size(), 5U);
+  EXPECT_EQ(run.sessions, 2);
+  EXPECT_NEAR(times[1], 0.5e-3, 1e-9) << "a late one is put in its place";
+  EXPECT_GE(times[3], times[2]);
+  EXPECT_NEAR(times[4] - times[3], 1e-3, 1e-9);
+}
+
+TEST_F(ARunFile, ThatIsCsvHasNoChannels) {
+  options_.poses = {.channels = {{"POSE", 1, ""}}};
+  const auto refused = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("CSV has no channels"), std::string::npos);
 }
 
 }  // namespace

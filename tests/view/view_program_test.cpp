@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/messages/encoded_by_lcm.h"
+#include "tests/messages/upright_pose.h"
 #include "tests/view/running_view.h"
 
 namespace buoyancy {
@@ -130,6 +132,30 @@ TEST(View, ListensToChannelsByOtherNames) {
   EXPECT_EQ(snapshot["counts"]["questions"], 1);
 }
 
+TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
+  const std::vector<std::string> poses{"--pose",         "HULL=1",          "--pose", "HULL_ESTIMATE=2",
+                                       "--force-torque", "FORCE_ON_HULL=2", "--pose", "HULL_TRUTH=2"};
+  RunningView view(kScene, poses);
+  EventReader events(view.port());
+  RunningService service(poses, kScene);
+  RawLcmSocket socket;
+  for (std::int64_t i = 0; i < 10; ++i) {
+    socket.send("HULL", encoded_by_lcm(upright_pose(0.0, 100 + i)));
+    socket.send("HULL_ESTIMATE", encoded_by_lcm(upright_pose(1.0, 200 + i)));
+    socket.send("HULL_TRUTH", encoded_by_lcm(upright_pose(1.0, 300 + i)));
+  }
+  const json snapshot =
+      snapshot_where(events, [](const json& now) { return now["counts"]["answers"] == 30; });
+  EXPECT_EQ(snapshot["counts"]["answers_without_question"], 0);
+  EXPECT_EQ(snapshot["counts"]["questions_missed"], 0);
+  EXPECT_EQ(snapshot["service"], "answering");
+  EXPECT_GT(snapshot["latency"]["p50"].get<double>(), 0.0);
+  EXPECT_EQ(snapshot["bodies"][0]["p"], json({0.0, 0.0, 0.0}));
+  EXPECT_NEAR(snapshot["bodies"][0]["f"][2].get<double>(), 2.0 * 3.0 * 2.0 * 1e4, 1e-2);
+  EXPECT_NEAR(snapshot["bodies"][1]["f"][2].get<double>(), 2.0 * 3.0 * 1.0 * 1e4, 1e-2);
+  EXPECT_TRUE(snapshot["bodies"][1]["status"].is_null()) << "force and torque alone";
+}
+
 TEST(View, LosesNoConnectionToAPacketThatIsNone) {
   RunningView view(kScene);
   EventReader events(view.port());
@@ -172,6 +198,8 @@ TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
                                                   {"--scene", scene, "-l", "tcpq://"},
                                                   {"--scene", scene, "--what"},
                                                   {"--scene", scene, "--states-channel", "BUOYANCY_STATUS"},
+                                                  {"--scene", scene, "--pose", "HULL=77"},
+                                                  {"--scene", scene, "--pose", "BUOYANCY_STATUS=1"},
                                                   {"--scene", directory.path("absent.toml")}}) {
     const FinishedProcess view = ended(options);
     EXPECT_EQ(view.exit_code, 2) << testing::PrintToString(options);

@@ -181,11 +181,11 @@
     if (!body) return table_of(`Body ${description.id} ${description.name}: not asked about yet`, [], []);
     const vector = (values) => (values ? values.map(number_text).join(', ') : '–');
     const rows = [
-      ['status', body.status === null ? 'asked, not answered yet' : statuses[body.status] || `status ${body.status}`],
+      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'asked, not answered yet') : statuses[body.status] || `status ${body.status}`],
       ['position, m', vector(body.p)], ['quaternion w, x, y, z', vector(body.q)],
       ['force, N', vector(body.f)], ['torque, N m', vector(body.t)],
-      ['error bounds, N and N m', body.f ? `${number_text(body.force_bound)}, ${number_text(body.torque_bound)}` : '–'],
-      ['submerged volume, m³', body.f ? number_text(body.volume) : '–'],
+      ['error bounds, N and N m', body.force_bound !== null ? `${number_text(body.force_bound)}, ${number_text(body.torque_bound)}` : '–'],
+      ['submerged volume, m³', body.volume !== null ? number_text(body.volume) : '–'],
     ];
     if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : number_text(height))).join(', ')]);
     rows.push(['asked about', age_text(body.age)]);

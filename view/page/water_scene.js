@@ -37,7 +37,7 @@ class WaterScene {
     new ResizeObserver(() => this.render()).observe(canvas);
   }
 
-  // bodies: [{id, status, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}], as the messages have them.
+  // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}], as the messages have them.
   show(bodies) {
     for (const now of bodies) {
       const body = this.bodies.get(now.id);
@@ -217,11 +217,12 @@ class WaterScene {
       ball.visible = point !== null && point.every(Number.isFinite);
       if (ball.visible) ball.position.copy(offset(point));
     };
-    const wet = now.status === 0 && now.b !== null && now.f.some((part) => part !== 0);
+    // A wrench without its centre of buoyancy acts at the body's origin.
+    const wet = (now.status === 0 || now.status === null) && now.f.some((part) => part !== 0);
     place(body.marks.centre_of_buoyancy, wet ? now.b : null);
     const force = new THREE.Vector3(...now.f);
     const scale = 0.9 * body.size / body.whole_weight;
-    if (wet) this.place_arrow(body.marks.force, offset(now.b), force, scale * force.length());
+    if (wet) this.place_arrow(body.marks.force, offset(now.b || [0, 0, 0]), force, scale * force.length());
     else body.marks.force.visible = false;
     place(body.marks.metacentre, now.m ? now.m[0] : null);
     const centre = body.description.center_of_mass;

@@ -1,4 +1,5 @@
-// The options that name bot_core's channels, which service and replay have alike.
+// The options that name bot_core's channels: whoever answers such poses and whoever shows them has them
+// alike.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,8 @@ struct PoseOptions {
 
 // Declares the options on app; parsing fills options, which must live as long.
 void declare_options(CLI::App& app, PoseOptions& options);
+// Those that name channels alone, for whom velocities do not matter.
+void declare_pose_channels(CLI::App& app, PoseOptions& options);
 
 // What they come to in a scene. taken: channels that carry something else. Errors: not CHANNEL=BODY, a body
 // that the scene has not, a channel that LCM cannot carry or that is named twice or taken, a force-torque

@@ -1,4 +1,4 @@
-#include "service/pose_options.h"
+#include "command_line/pose_options.h"
 
 #include <charconv>
 #include <map>
@@ -50,7 +50,7 @@ Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::st
 
 }  // namespace
 
-void declare_options(CLI::App& app, PoseOptions& options) {
+void declare_pose_channels(CLI::App& app, PoseOptions& options) {
   app.add_option(
          "--pose", options.poses,
          "Each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL is a question about BODY, an id "
@@ -61,6 +61,10 @@ void declare_options(CLI::App& app, PoseOptions& options) {
          "Poses of BODY are answered as bot_core.six_axis_force_torque_t on CHANNEL, in the world frame "
          "about the body's reference point; without it as body_wrenches_t")
       ->option_text("CHANNEL=BODY");
+}
+
+void declare_options(CLI::App& app, PoseOptions& options) {
+  declare_pose_channels(app, options);
   app.add_option_function<std::string>(
          "--velocity-frame",
          [&options](const std::string& frame) {
@@ -115,7 +119,7 @@ Expected<PoseChannels> pose_channels(const PoseOptions& options, const Scene& sc
                     "the same type is used for both, and the log does not say which", ""});
   }
   poses.lead_time = options.lead_time;
-  poses.velocity_frame = options.velocity_frame.value_or(VelocityFrame::kWorld);
+  poses.velocity_frame = options.velocity_frame;
   return poses;
 }
 
