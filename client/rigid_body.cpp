@@ -8,17 +8,10 @@
 #include <Eigen/Eigenvalues>
 
 #include "hydrostatics/buoyancy.h"
+#include "messages/vectors.h"
 
 namespace buoyancy {
 namespace {
-
-Vec3 vec3(const std::array<double, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-std::array<double, 3> array3(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -97,19 +90,19 @@ BodyState message_state(std::int32_t body_id, const RigidBody& body, const Rigid
   const Vec3 w_W = angular_velocity_W(body, state);
   BodyState message;
   message.body_id = body_id;
-  message.position = array3(pose.p_WB);
+  message.position = as_array(pose.p_WB);
   message.quaternion_wxyz = {pose.q_WB.w(), pose.q_WB.x(), pose.q_WB.y(), pose.q_WB.z()};
-  message.linear_velocity = array3(state.velocity_W - w_W.cross(state.q_WB * body.center_of_mass_B));
-  message.angular_velocity = array3(w_W);
+  message.linear_velocity = as_array(state.velocity_W - w_W.cross(state.q_WB * body.center_of_mass_B));
+  message.angular_velocity = as_array(w_W);
   return message;
 }
 
 Load load_on(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
              const Water& water) {
-  const Vec3 buoyancy_W = vec3(wrench.force);
+  const Vec3 buoyancy_W = as_vec3(wrench.force);
   const Vec3 reference_from_center_W = state.q_WB * Vec3(body.reference_B - body.center_of_mass_B);
   return {buoyancy_W - body.mass * water.gravity * water.up_W,
-          vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
+          as_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
 }
 
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
@@ -120,7 +113,7 @@ double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water) {
   const double center_height = water.up_W.dot(state.center_W) - water.level;
-  const Vec3 center_of_buoyancy_W = pose_of(body, state).p_WB + vec3(wrench.center_of_buoyancy);
+  const Vec3 center_of_buoyancy_W = pose_of(body, state).p_WB + as_vec3(wrench.center_of_buoyancy);
   const double buoyancy_height = water.up_W.dot(center_of_buoyancy_W) - water.level;
   return kinetic_energy(body, state) + body.mass * water.gravity * center_height -
          water.density * water.gravity * wrench.submerged_volume * buoyancy_height;
@@ -132,7 +125,7 @@ std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodySt
   if (answer.status != BuoyancyStatus::kOk) return std::nullopt;
   BodyWrench wrench;
   wrench.submerged_volume = answer.volume;
-  wrench.center_of_buoyancy = array3(answer.center_of_buoyancy_W);
+  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
   return mechanical_energy(body, state, wrench, water);
 }
 

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "messages/vectors.h"
+
 namespace buoyancy {
 namespace {
 
 constexpr std::size_t kMostRowsOfBody = 12'000;
 constexpr std::size_t kTroublesKept = 20;
 constexpr std::size_t kSessionsCounted = 10'000;
-
-Vec3 vec3(const std::array<double, 3>& v) {
-  return {v[0], v[1], v[2]};
-}
 
 MeshUp mesh_up_of(const Body& body) {
   const std::string& axis = body.prepared->report.source.up_axis;
@@ -23,7 +21,7 @@ MeshUp mesh_up_of(const Body& body) {
 Pose raw_pose(const BodyState& state) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   const Eigen::Quaterniond q(w, x, y, z);
-  return {vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
+  return {as_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
 }
 
 double energy_of(const RigidBody& rigid, const RecordedState& recorded, const BodyWrench& wrench,
@@ -32,8 +30,8 @@ double energy_of(const RigidBody& rigid, const RecordedState& recorded, const Bo
   ClientSpec spec;
   spec.position = pose.p_WB;
   spec.orientation = pose.q_WB.normalized();
-  spec.linear_velocity = vec3(recorded.state.linear_velocity);
-  spec.angular_velocity = vec3(recorded.state.angular_velocity);
+  spec.linear_velocity = as_vec3(recorded.state.linear_velocity);
+  spec.angular_velocity = as_vec3(recorded.state.angular_velocity);
   const RigidBodyState state = initial_state(rigid, spec);
   return mechanical_energy(rigid, state, wrench, water);
 }
@@ -148,8 +146,8 @@ void RunCollector::add(const RecordedState& recorded) {
   row[kHeave] = lies.heave;
   row[kRoll] = lies.roll;
   row[kPitch] = lies.pitch;
-  row[kForce] = vec3(wrench.force).norm();
-  row[kTorque] = vec3(wrench.torque).norm();
+  row[kForce] = as_vec3(wrench.force).norm();
+  row[kTorque] = as_vec3(wrench.torque).norm();
   collected.rows.add(number_++, row);
 }
 

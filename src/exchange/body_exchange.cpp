@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hydrostatics/hydrostatics.h"
+#include "messages/vectors.h"
 
 namespace buoyancy {
 namespace {
@@ -19,14 +20,6 @@ bool all_finite(const std::array<double, kSize>& values) {
 
 bool all_finite(const Pose& pose) {
   return pose.p_WB.allFinite() && pose.q_WB.coeffs().allFinite();
-}
-
-Vec3 as_vec3(const std::array<double, 3>& values) {
-  return {values[0], values[1], values[2]};
-}
-
-std::array<double, 3> as_array(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) {

@@ -5,13 +5,14 @@
 
 #include <Eigen/Geometry>
 
+#include "messages/vectors.h"
+
 namespace buoyancy {
 namespace {
 
 std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_B) {
   const auto& [w, x, y, z] = q_WB;
-  const Eigen::Vector3d v_W = Eigen::Quaterniond(w, x, y, z).normalized() * Eigen::Vector3d(v_B.data());
-  return {v_W.x(), v_W.y(), v_W.z()};
+  return as_array(Eigen::Quaterniond(w, x, y, z).normalized() * as_vec3(v_B));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/buoyancy.h"
+#include "messages/vectors.h"
 #include "tests/client/embedded_run.h"
 
 namespace buoyancy {
@@ -28,13 +29,6 @@ RigidBody rigid_body_of(const Scene& scene) {
 
 Mat3 inertia_B(const RigidBody& body) {
   return body.principal_axes_B * body.principal_inertia.asDiagonal() * body.principal_axes_B.transpose();
-}
-
-Vec3 vec3(const std::array<double, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-std::array<double, 3> array3(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 TEST(RigidBody, TakesMassCentreAndInertiaFromTheMesh) {
@@ -79,9 +73,9 @@ TEST(RigidBody, StartsAndReportsItsStateAsGivenOfTheOriginOfB) {
 
   const BodyState message = message_state(42, body, state);
   EXPECT_EQ(message.body_id, 42);
-  EXPECT_LT((vec3(message.position) - Vec3(5, 6, 7)).norm(), 1e-14);
-  EXPECT_LT((vec3(message.linear_velocity) - Vec3(1, 2, 3)).norm(), 1e-14);
-  EXPECT_LT((vec3(message.angular_velocity) - Vec3(-0.3, 0.2, 0.9)).norm(), 1e-14);
+  EXPECT_LT((as_vec3(message.position) - Vec3(5, 6, 7)).norm(), 1e-14);
+  EXPECT_LT((as_vec3(message.linear_velocity) - Vec3(1, 2, 3)).norm(), 1e-14);
+  EXPECT_LT((as_vec3(message.angular_velocity) - Vec3(-0.3, 0.2, 0.9)).norm(), 1e-14);
   EXPECT_EQ(message.quaternion_wxyz, (std::array{0.5, 0.5, -0.5, 0.5}));
 }
 
@@ -102,8 +96,8 @@ TEST(RigidBody, CarriesTheTorqueFromTheReferencePointToTheCentreOfMass) {
     const Vec3 force_W = any();
     const Vec3 point_W = any();
     BodyWrench wrench;
-    wrench.force = array3(force_W);
-    wrench.torque = array3((point_W - reference_W).cross(force_W));
+    wrench.force = as_array(force_W);
+    wrench.torque = as_array((point_W - reference_W).cross(force_W));
 
     const Load load = load_on(body, state, wrench, scene.water());
     EXPECT_LT((load.torque_W - (point_W - state.center_W).cross(force_W)).norm(), 1e-13);
@@ -130,10 +124,10 @@ TEST(RigidBody, LosesInPotentialWhatTheForcesDo) {
     const BuoyancyAnswer answer =
         buoyancy(described.solver, pose_of(body, state), scene.water(), described.reference_B);
     BodyWrench wrench;
-    wrench.force = array3(answer.force_W);
-    wrench.torque = array3(answer.torque_W);
+    wrench.force = as_array(answer.force_W);
+    wrench.torque = as_array(answer.torque_W);
     wrench.submerged_volume = answer.volume;
-    wrench.center_of_buoyancy = array3(answer.center_of_buoyancy_W);
+    wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
     return wrench;
   };
   std::mt19937 random(2);

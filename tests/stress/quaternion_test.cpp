@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "exchange/exchange.h"
+#include "messages/vectors.h"
 #include "tests/exchange/box_scene.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
@@ -62,10 +63,6 @@ Answer answer_of(Exchange& exchange, const std::vector<BodyState>& bodies, doubl
   Answer answer;
   EXPECT_FALSE(decode(exchange.answer(question_bytes({.seq = ++seq}, bodies, lead_time)), answer));
   return answer;
-}
-
-Vec3 as_vec3(const std::array<double, 3>& a) {
-  return {a[0], a[1], a[2]};
 }
 
 TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
