@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -169,6 +170,11 @@ int simulate(Arguments arguments) {
   if (!simulation) return report(simulation.error(), kWrongInput);
   std::optional<RunCsv> csv;
   if (!arguments.csv.empty()) {
+    std::error_code no_such_file;
+    if (std::filesystem::equivalent(arguments.scene, arguments.csv, no_such_file)) {
+      return report({"--csv " + arguments.csv, "the scene file itself", "a file of its own", "", ""},
+                    kWrongInput);
+    }
     Expected<RunCsv> created = RunCsv::create(arguments.csv, arguments.csv_every);
     if (!created) return report(created.error(), kFailed);
     csv = std::move(*created);
@@ -239,11 +245,7 @@ int client_main(int argc, char** argv) {
       "buoyancy-client");
   Arguments arguments;
   define_arguments(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kWrongInput;
-  }
+  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   return simulate(std::move(arguments));
 }
 

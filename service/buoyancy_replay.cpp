@@ -16,7 +16,8 @@ namespace {
 using namespace buoyancy;
 
 constexpr int kTroublesShown = 20;
-constexpr std::int64_t kFirstPoseSession = 1;  // the same in every replay: so are the bytes
+// The same in every replay: so are the bytes. "pose" in ASCII, which no asker draws by any likelihood.
+constexpr std::int64_t kFirstPoseSession = 0x706f736500000000;
 
 int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
   TerminationSignals signals;
@@ -43,6 +44,13 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   if (*summary->ended_by != '\0') {
     print_error(app, std::string("ended by ") + summary->ended_by + "; " + options.output.string() +
                          " holds what was answered until then");
+  }
+  const bool read_all_channels = *summary->ended_by == '\0' && options.input.extension() == ".lcmlog";
+  for (const std::string& channel :
+       read_all_channels ? task.channels.never_seen() : std::vector<std::string>{}) {
+    print_error(app, Error{"warning: channel " + channel, "no event of " + options.input.string(),
+                           "questions or poses to answer", "the log has another name for it",
+                           "See --states-channel and --pose"});
   }
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);

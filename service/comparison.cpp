@@ -12,14 +12,25 @@ bool same(const QuestionKey& a, const QuestionKey& b) {
   return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
 }
 
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A number is infinitely far from what is none.
+double distance(double a, double b) {
+  const double difference = std::abs(a - b);
+  return std::isfinite(difference) ? difference : kInfinity;
 }
 
-// 0 / 0 is 0: both are exact and the same.
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  const double length = std::hypot(distance(a[0], b[0]), distance(a[1], b[1]), distance(a[2], b[2]));
+  return std::isnan(length) ? kInfinity
+                            : length;  // libstdc++'s of three numbers is NaN where one is infinite
+}
+
+// 0 / 0 is 0: both are exact and the same. A bound that is no number bounds nothing.
 double in_bounds(double difference, double bounds) {
+  if (!std::isfinite(bounds)) return kInfinity;
   if (difference == 0.0) return 0.0;
-  return bounds > 0.0 ? difference / bounds : std::numeric_limits<double>::infinity();
+  return bounds > 0.0 ? difference / bounds : kInfinity;
 }
 
 void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utime,
@@ -36,8 +47,7 @@ void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utim
   }
   differences.force = std::max(differences.force, force);
   differences.torque = std::max(differences.torque, torque);
-  differences.volume =
-      std::max(differences.volume, std::abs(now.submerged_volume - earlier.submerged_volume));
+  differences.volume = std::max(differences.volume, distance(now.submerged_volume, earlier.submerged_volume));
   differences.force_in_bounds = std::max(differences.force_in_bounds, force_in_bounds);
   differences.torque_in_bounds = std::max(differences.torque_in_bounds, torque_in_bounds);
 }

@@ -19,7 +19,10 @@ LatestQuestions::LatestQuestions(std::size_t max_sessions) : max_sessions_(max_s
 
 LatestQuestions::Fate LatestQuestions::offer(const QuestionKey& key, Bytes question, double arrival) {
   Session* session = find(key.session_id);
-  if (session != nullptr && !supersedes(key.seq, session->newest_seq)) return Fate::kStale;
+  if (session != nullptr && !supersedes(key.seq, session->newest_seq) &&
+      arrival <= session->arrival + kRestartSilence) {
+    return Fate::kStale;
+  }
   if (session == nullptr) session = place_for_new();
   if (session == nullptr) return Fate::kNoRoom;
 

@@ -1,10 +1,10 @@
 // Mode latest: of every session the newest question that waits, and nothing else.
 //
 // The law, per session: a question with a seq at least as high as another's is newer (of equals the last to
-// arrive); so is one whose seq is lower by more than kRestartGap, since an asker that starts over counts from
-// the beginning. What is lower by at most kRestartGap was overtaken on the way and is stale. What waits when
-// a newer one arrives is overtaken, and the newer one takes its place in the line: whoever asks fastest would
-// else never be answered.
+// arrive). An asker that starts over counts from the beginning: so is one whose seq is lower by more than
+// kRestartGap, or that comes more than kRestartSilence after the other. What is lower by less and comes
+// sooner was overtaken on the way and is stale. What waits when a newer one arrives is overtaken, and the
+// newer one takes its place in the line: whoever asks fastest would else never be answered.
 //
 // Memory is bounded: by max_sessions times the largest message. Of sessions with nothing waiting the least
 // recently used is forgotten, which costs only the knowledge of what would be stale.
@@ -18,6 +18,7 @@
 namespace buoyancy {
 
 inline constexpr std::uint64_t kRestartGap = 64;
+inline constexpr double kRestartSilence = 0.2;  // s
 
 // Is a question with seq `later`, which arrived after one with seq `earlier`, to be preferred to it?
 bool supersedes(std::int64_t later, std::int64_t earlier);
@@ -49,7 +50,7 @@ class LatestQuestions {
     std::int64_t id = 0;
     std::int64_t newest_seq = 0;  // of what waits, or else of what was taken last
     bool waits = false;
-    double arrival = 0.0;
+    double arrival = 0.0;  // of the same
     std::uint64_t last_use = 0;
     std::vector<std::uint8_t> question;
   };

@@ -30,12 +30,25 @@ ReplayChannels::ReplayChannels(std::string states_channel, const std::vector<Pos
                                std::vector<std::regex> copied, std::vector<std::string> answers)
     : states_channel_(std::move(states_channel)), copied_(std::move(copied)), answers_(std::move(answers)) {
   for (const PoseChannel& pose : poses) poses_.push_back(pose.channel);
+  saw_poses_.resize(poses_.size());
 }
 
 ReplayChannels::Use ReplayChannels::use_of(std::string_view channel) {
   if (const auto known = known_.find(channel); known != known_.end()) return known->second;
   if (known_.size() >= kMostKnown) known_.clear();
-  return known_.emplace(channel, look_up(channel)).first->second;
+  const Use use = look_up(channel);
+  if (use.question) saw_states_ = true;
+  if (use.pose) saw_poses_[*use.pose] = true;
+  return known_.emplace(channel, use).first->second;
+}
+
+std::vector<std::string> ReplayChannels::never_seen() const {
+  std::vector<std::string> names;
+  if (poses_.empty() && !saw_states_) names.push_back(states_channel_);
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    if (!saw_poses_[i]) names.push_back(poses_[i]);
+  }
+  return names;
 }
 
 ReplayChannels::Use ReplayChannels::look_up(std::string_view channel) const {

@@ -34,6 +34,10 @@ class ReplayChannels {
   // O(1) for a name seen before.
   Use use_of(std::string_view channel);
 
+  // The channels that were named for questions and poses, and that use_of() was never asked about: misspelt,
+  // perhaps. That of the questions only where there are no poses.
+  std::vector<std::string> never_seen() const;
+
  private:
   struct Hash : std::hash<std::string_view> {
     using is_transparent = void;
@@ -43,6 +47,8 @@ class ReplayChannels {
                  std::vector<std::regex> copied, std::vector<std::string> answers);
   Use look_up(std::string_view channel) const;
 
+  bool saw_states_ = false;
+  std::vector<bool> saw_poses_;  // as poses_
   std::string states_channel_;
   std::vector<std::string> poses_;
   std::vector<std::regex> copied_;

@@ -1,5 +1,6 @@
 #include "service/replay_options.h"
 
+#include <algorithm>
 #include <system_error>
 
 #include <CLI/Config.hpp>
@@ -99,6 +100,7 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
          "--copy", options.copied,
          "Copies the events of channels whose whole name matches, of an LCM log to an LCM log; '.*' copies "
          "all but the channels that answers go to. May be given again")
+      ->allow_extra_args(false)
       ->option_text("REGEX");
   app.add_option(
          "--compare", options.earlier,
@@ -133,14 +135,10 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
                       "replaying would overwrite what it reads", ""});
     }
   }
-  for (const std::string& channel :
-       {options.states_channel, options.wrenches_channel, options.hydrostatics_channel}) {
-    if (const Expected<void> checked = check_channel(channel); !checked)
-      return tl::unexpected(checked.error());
-  }
-  if (options.wrenches_channel == options.hydrostatics_channel) {
-    return failure({"channel " + options.wrenches_channel, "named for wrenches and for hydrostatics",
-                    "two different names", "", ""});
+  if (const Expected<void> checked = check_different_channels(
+          {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
+      !checked) {
+    return tl::unexpected(checked.error());
   }
   if (!options.mesh.empty()) {
     std::optional<Method> method = BodyDescription{}.method;
@@ -158,6 +156,8 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   Expected<PoseChannels> poses = pose_channels(
       options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
   if (!poses) return tl::unexpected(poses.error());
+  // Their sessions are counted from the first: the same whatever the order of the options.
+  std::ranges::sort(poses->channels, {}, &PoseChannel::channel);
   for (const PoseChannel& pose : poses->channels) {
     if (!pose.force_torque_channel.empty()) answers.push_back(pose.force_torque_channel);
   }

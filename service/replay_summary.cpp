@@ -31,8 +31,9 @@ std::string comparison_text(const Comparison& comparison) {
   line("answers have no counterpart in the earlier log", comparison.only_now());
   line("answers of the earlier log have no counterpart now", comparison.only_earlier());
   line("places of the earlier log could not be read", comparison.unreadable());
-  text += comparison.agrees() ? "Every answer agrees with the earlier one within their bounds.\n"
-                              : "The answers do NOT agree with the earlier ones within their bounds.\n";
+  text += comparison.agrees()
+              ? "Force, torque and status of every answer agree with the earlier one within their bounds.\n"
+              : "The answers do NOT agree with the earlier ones within their bounds.\n";
   return text;
 }
 

@@ -86,10 +86,13 @@ int main(int argc, char** argv) {
     print_error(app, error);
     return exit_code;
   };
-  std::error_code no_such_file;
-  if (std::filesystem::equivalent(arguments.run, arguments.output, no_such_file)) {
-    print_error(app, arguments.output.string() + ": is RUN itself; expected an OUTPUT of its own");
-    return kWrongInput;
+  for (const std::filesystem::path& read : {arguments.run, arguments.scene}) {
+    std::error_code no_such_file;
+    if (std::filesystem::equivalent(read, arguments.output, no_such_file)) {
+      return refuse(
+          {arguments.output.string(), "the same file as " + read.string(), "an OUTPUT of its own", "", ""},
+          kWrongInput);
+    }
   }
   const Expected<std::string> three = three_js(arguments.three);
   if (!three) return refuse(three.error(), kFailed);

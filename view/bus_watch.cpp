@@ -100,6 +100,7 @@ void BusWatch::hear_answer(Bytes bytes, HeardAt arrival) {
     WatchedBody* const body = find(wrench.body_id);
     if (body == nullptr) continue;
     body->wrench = wrench;
+    body->answered = arrival.now;
     body->says_force_and_torque_alone = false;
   }
 }
@@ -112,6 +113,7 @@ void BusWatch::hear_force_torque(std::size_t index, Bytes bytes, HeardAt arrival
   WatchedBody* const body = find(body_id);
   if (body == nullptr) return;
   body->wrench = BodyWrench{.body_id = body_id, .force = heard->force, .torque = heard->torque};
+  body->answered = arrival.now;
   body->says_force_and_torque_alone = true;
 }
 

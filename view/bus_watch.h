@@ -45,10 +45,14 @@ struct WatchedBody {
   std::int32_t id = 0;
   std::optional<Pose> pose;          // the newest that could be one: a NaN moves nothing
   std::optional<double> asked;       // s, when the newest question about it came
+  std::optional<double> answered;    // s, when the newest wrench came
   std::optional<BodyWrench> wrench;  // as answered, also where it is not OK
   bool says_force_and_torque_alone =
       false;  // wrench: it came as six_axis_force_torque_t, the rest is unknown
   std::optional<Metacenters> metacenters;
+
+  // Is the wrench too old to belong to the pose that is shown?
+  bool answer_is_overdue(double patience) const { return asked && answered && *answered + patience < *asked; }
 };
 
 struct WatchedSecond {

@@ -5,19 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "messages/question.h"
 #include "view/page_text.h"
 #include "view/scene_model.h"
 
 namespace buoyancy {
 namespace {
 
-// "model": as scene_model() has it, "statuses": the names of BodyStatus by value, "version".
+// "model": as scene_model() has it, "version".
 std::string model_text(const Scene& scene, const std::string& version) {
-  nlohmann::ordered_json statuses = nlohmann::ordered_json::array();
-  for (int i = 0; i < kBodyStatusCount; ++i) statuses.push_back(name(static_cast<BodyStatus>(i)));
-  const nlohmann::ordered_json whole{
-      {"version", version}, {"statuses", std::move(statuses)}, {"model", scene_model(scene)}};
+  const nlohmann::ordered_json whole{{"version", version}, {"model", scene_model(scene)}};
   return whole.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -1,11 +1,13 @@
 #include "view/page_server.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <list>
+#include <mutex>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -14,7 +16,9 @@
 
 #include <arpa/inet.h>
 #include <httplib.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "view/request_stream.h"
 
@@ -23,40 +27,98 @@ namespace {
 
 constexpr std::size_t kSlice = 65'536;  // bytes of a text that are one chunk
 
-// Set while the thread that accepts runs a connection's task in order to turn it away.
-thread_local bool turning_away = false;
+// Sent and not taken yet, at a time. The kernel would let it grow to megabytes: snapshots that are old before
+// they are read, for each of many connections.
+constexpr int kSendBuffer = 131'072;  // bytes
 
-// A fixed number of threads, and no queue: a connection that finds none free is turned away at once.
-class ConnectionThreads : public httplib::TaskQueue {
+// The connections that are held, in the order in which they came.
+class Connections {
  public:
-  explicit ConnectionThreads(int most) : most_(most), threads_(static_cast<std::size_t>(most)) {}
-  void enqueue(std::function<void()> task) override {
-    if (busy_.fetch_add(1) >= most_) {
-      --busy_;
-      turning_away = true;
-      task();
-      turning_away = false;
-      return;
-    }
-    threads_.enqueue([this, task = std::move(task)] {
-      task();
-      --busy_;
-    });
+  enum class Phase { kHead, kResponse, kStream };
+  struct Connection {
+    explicit Connection(socket_t its_socket) : socket(its_socket) {}
+    socket_t socket;
+    Phase phase = Phase::kHead;
+    std::atomic<bool> given_up{false};
+  };
+
+  // most: more than there can be streams.
+  explicit Connections(int most) : most_(static_cast<std::size_t>(most)) {}
+
+  // Waits for the one that gives way, which is at once: its thread is woken, and waits for nobody.
+  Connection& add(socket_t socket) {
+    std::unique_lock lock(mutex_);
+    if (held_.size() >= most_) give_up_one();
+    room_.wait(lock, [this] { return held_.size() < most_; });
+    Connection& added = held_.emplace_back(socket);
+    added.given_up = ended_;
+    return added;
   }
-  void shutdown() override { threads_.shutdown(); }
+
+  // False: it was given up.
+  bool set_phase(Connection& connection, Phase phase) {
+    const std::lock_guard lock(mutex_);
+    connection.phase = phase;
+    return !connection.given_up;
+  }
+
+  void close(const Connection& connection) {
+    {
+      const std::lock_guard lock(mutex_);  // else its number could be another's when it is given up
+      ::close(connection.socket);
+      held_.remove_if([&connection](const Connection& held) { return &held == &connection; });
+    }
+    room_.notify_one();
+  }
+
+  // Gives up all, and whatever comes.
+  void end() {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    for (Connection& held : held_) held.given_up = true;
+  }
 
  private:
-  int most_;
-  httplib::ThreadPool threads_;
-  std::atomic<int> busy_{0};
+  // The oldest whose request has not come; where there is none, the oldest that is slow to take its response.
+  void give_up_one() {
+    for (const Phase phase : {Phase::kHead, Phase::kResponse}) {
+      const auto oldest = std::ranges::find_if(
+          held_, [phase](const Connection& held) { return held.phase == phase && !held.given_up; });
+      if (oldest == held_.end()) continue;
+      oldest->given_up = true;
+      ::shutdown(oldest->socket, SHUT_RDWR);  // wakes its thread
+      return;
+    }
+  }
+
+  const std::size_t most_;
+  std::mutex mutex_;
+  std::condition_variable room_;
+  std::list<Connection> held_;
+  bool ended_ = false;
+};
+
+// The connection that this thread serves.
+thread_local Connections::Connection* served = nullptr;
+
+// Runs httplib's tasks on the thread that accepts: they only hand a connection to a thread of its own.
+class OnTheSpot : public httplib::TaskQueue {
+ public:
+  void enqueue(std::function<void()> task) override { task(); }
+  void shutdown() override {}
 };
 
 bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
 }
 
+// 127.0.0.0/8, also as IPv6 has it, and ::1, however written.
 bool is_loopback(const std::string& address) {
-  return address.starts_with("127.") || address == "::1";
+  in_addr ipv4{};
+  if (::inet_pton(AF_INET, address.c_str(), &ipv4) == 1) return ntohl(ipv4.s_addr) >> 24 == 127;
+  in6_addr ipv6{};
+  if (::inet_pton(AF_INET6, address.c_str(), &ipv6) != 1) return false;
+  return IN6_IS_ADDR_LOOPBACK(&ipv6) || (IN6_IS_ADDR_V4MAPPED(&ipv6) && ipv6.s6_addr[12] == 127);
 }
 
 std::string in_url(const std::string& address) {
@@ -70,6 +132,13 @@ std::string_view without_port(std::string_view host) {
   const bool has_port =
       colon != std::string_view::npos && (bracket == std::string_view::npos || bracket < colon);
   return has_port ? host.substr(0, colon) : host;
+}
+
+// Does a Host without its port name the loopback? An address may: nobody else's web page is at one of these.
+bool names_loopback(std::string_view host) {
+  const bool bracketed = host.starts_with('[') && host.ends_with(']');
+  const std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
+  return address == "localhost" ? !bracketed : bracketed == is_ipv6(address) && is_loopback(address);
 }
 
 void answer_with(httplib::Response& response, int status, const std::string& text) {
@@ -95,16 +164,17 @@ Expected<void> check_listen_address(const std::string& address) {
 class PageServer::Http : public httplib::Server {
  public:
   Http(std::string address, std::vector<ServedText> texts, SnapshotHub& hub, const PageLimits& limits)
-      : address_(std::move(address)), hub_(hub), limits_(limits) {
+      : address_(std::move(address)), hub_(hub), limits_(limits), connections_(limits.connections) {
     for (ServedText& text : texts) {
       texts_.emplace(std::move(text.path), Text{std::move(text.content_type),
                                                 std::make_shared<const std::string>(std::move(text.body))});
     }
-    new_task_queue = [this] { return new ConnectionThreads(limits_.connections); };  // httplib deletes it
+    new_task_queue = [] { return new OnTheSpot; };  // httplib deletes it
     // httplib's own SO_REUSEPORT would share the port with another view instead of reporting it taken.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+      ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);  // its connections' too
     });
     set_tcp_nodelay(true);
     set_default_headers({
@@ -138,6 +208,7 @@ class PageServer::Http : public httplib::Server {
 
   void start() {
     serving_ = true;
+    threads_ = std::make_unique<httplib::ThreadPool>(static_cast<std::size_t>(limits_.connections));
     thread_ = std::thread([this] {
       listen_after_bind();
       serving_ = false;
@@ -147,10 +218,11 @@ class PageServer::Http : public httplib::Server {
   bool serving() const { return serving_; }
 
   void end() {
-    ending_ = true;
+    connections_.end();
     hub_.close();
     stop();
     thread_.join();
+    threads_->shutdown();
   }
 
  private:
@@ -160,18 +232,26 @@ class PageServer::Http : public httplib::Server {
   };
 
   bool process_and_close_socket(socket_t socket) override {
-    if (turning_away) {
-      static const std::string kBusy = raw_response(
-          "503 Service Unavailable", "Too many connections at a time: close a page that shows this view.");
-      ::send(socket, kBusy.data(), kBusy.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-      ::shutdown(socket, SHUT_WR);
-      ::close(socket);
-      return false;
-    }
+    Connections::Connection& connection = connections_.add(socket);
+    threads_->enqueue([this, &connection] { serve(connection); });
+    return true;
+  }
+
+  void serve(Connections::Connection& connection) {
+    served = &connection;
     RequestStream stream(
-        socket, {limits_.head_bytes, Seconds(limits_.head_patience), Seconds(limits_.write_patience)},
-        ending_);
-    switch (stream.read_head()) {
+        connection.socket,
+        {limits_.head_bytes, Seconds(limits_.head_patience), Seconds(limits_.write_patience)},
+        connection.given_up);
+    const RequestStream::Head head = stream.read_head();
+    if (connections_.set_phase(connection, Connections::Phase::kResponse)) respond(stream, head);
+    connections_.set_phase(connection, Connections::Phase::kResponse);  // no stream any more
+    stream.finish();
+    connections_.close(connection);
+  }
+
+  void respond(RequestStream& stream, RequestStream::Head head) {
+    switch (head) {
       case RequestStream::Head::kRead: {
         bool closed = false;
         // Texts are given whole and as they are: parts of them, and compression, only cost time.
@@ -191,16 +271,12 @@ class PageServer::Http : public httplib::Server {
       case RequestStream::Head::kNothing:
         break;
     }
-    stream.finish();
-    return true;
   }
 
   bool is_host_ours(const httplib::Request& request) const {
     if (!is_loopback(address_)) return true;
-    const std::string header = request.get_header_value("Host");
-    const std::array<std::string, 4> ours{"localhost", "127.0.0.1", "[::1]", in_url(address_)};
     return request.get_header_value_count("Host") == 1 &&
-           std::ranges::find(ours, without_port(header)) != ours.end();
+           names_loopback(without_port(request.get_header_value("Host")));
   }
 
   void answer(const httplib::Request& request, httplib::Response& response) {
@@ -242,6 +318,7 @@ class PageServer::Http : public httplib::Server {
                   "Already " + std::to_string(limits_.streams) + " pages show this view: close one.");
       return;
     }
+    if (!connections_.set_phase(*served, Connections::Phase::kStream)) return;
     response.status = 200;
     response.set_chunked_content_provider(
         "text/event-stream",
@@ -266,8 +343,9 @@ class PageServer::Http : public httplib::Server {
   SnapshotHub& hub_;
   PageLimits limits_;
   std::unordered_map<std::string, Text> texts_;
+  Connections connections_;
   std::atomic<bool> serving_{false};
-  std::atomic<bool> ending_{false};
+  std::unique_ptr<httplib::ThreadPool> threads_;
   std::thread thread_;
 };
 

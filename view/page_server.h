@@ -2,9 +2,11 @@
 // events. No path of the machine can be asked for: there is no file behind any address.
 //
 // Bounded on every side, since whoever reaches the port may send anything: connections and streams at a time,
-// bytes and time of a request's head, time for a chunk to be taken; bodies are never read, a connection
-// carries one request. Bound to a loopback address it answers only requests whose Host names the loopback, so
-// that no web page of somebody else's can read it under a name of its own (DNS rebinding).
+// bytes and time of a request's head, bytes and time for what was written to be taken; bodies are never read,
+// a connection carries one request. Who holds connections keeps nobody out: where all places are taken, the
+// one that has waited longest for its request gives way. Bound to a loopback address it answers only requests
+// whose Host names the loopback, so that no web page of somebody else's can read it under a name of its own
+// (DNS rebinding).
 #pragma once
 
 #include <cstddef>
@@ -27,11 +29,11 @@ struct ServedText {
 Expected<void> check_listen_address(const std::string& address);
 
 struct PageLimits {
-  int connections = 64;             // at a time; further ones get 503 and are closed
-  int streams = 32;                 // of these; further ones get 503
+  int connections = 256;            // at a time, more than streams; a further one has an older one closed
+  int streams = 32;                 // of these, never closed for others; further ones get 503
   std::size_t head_bytes = 16'384;  // a larger request gets 431
   double head_patience = 5.0;       // s; a slower request gets 408
-  double write_patience = 5.0;      // s for a chunk; a slower reader is dropped
+  double write_patience = 5.0;      // s for a chunk, or for any of what waits; a slower reader is dropped
 };
 
 class PageServer {

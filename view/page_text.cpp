@@ -38,10 +38,13 @@ std::string_view page_text(std::string_view file_name) {
 }
 
 Expected<std::string> three_js(const std::filesystem::path& path) {
+  std::error_code no_such_file;
+  const bool is_directory = std::filesystem::is_directory(path, no_such_file);  // whose reading throws
   std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text;
+  if (!is_directory) text.assign(std::istreambuf_iterator<char>(file), {});
   const std::string subject = path.string();
-  if (!file.is_open() || file.bad()) {
+  if (is_directory || !file.is_open() || file.bad()) {
     return failure({subject, "cannot be read", "three.js as Debian installs it", "it is not installed",
                     "apt-get install libjs-three, or --three FILE"});
   }

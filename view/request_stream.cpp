@@ -4,9 +4,10 @@
 #include <array>
 #include <cerrno>
 
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace buoyancy {
 namespace {
@@ -60,7 +61,6 @@ void RequestStream::finish() {
     const ssize_t size = ::recv(socket_, ignored.data(), ignored.size(), MSG_DONTWAIT);
     if (size == 0 || (size < 0 && !would_block())) break;
   }
-  ::close(socket_);
 }
 
 bool RequestStream::is_writable() const {
@@ -73,13 +73,27 @@ ssize_t RequestStream::read(char* to, std::size_t size) {
   return static_cast<ssize_t>(given);
 }
 
+bool RequestStream::is_taking() {
+  int waiting = 0;
+  if (::ioctl(socket_, SIOCOUTQ, &waiting) != 0) return false;
+  const std::size_t taken = written_ - std::min(written_, static_cast<std::size_t>(waiting));
+  const Clock::time_point now = Clock::now();
+  if (taken == written_ || taken > taken_) {
+    taken_ = taken;
+    taken_at_ = now;
+  }
+  return now - taken_at_ <= limits_.chunk;
+}
+
 ssize_t RequestStream::write(const char* from, std::size_t size) {
+  if (!is_taking()) return -1;
   const auto deadline = in(limits_.chunk);
   std::size_t sent = 0;
   while (sent < size) {
     const ssize_t part = ::send(socket_, from + sent, size - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (part > 0) {
       sent += static_cast<std::size_t>(part);
+      written_ += static_cast<std::size_t>(part);
     } else if (!would_block() || !wait_for(POLLOUT, deadline)) {
       return -1;
     }

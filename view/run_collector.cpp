@@ -11,6 +11,17 @@ namespace {
 constexpr std::size_t kMostRowsOfBody = 12'000;
 constexpr std::size_t kTroublesKept = 20;
 constexpr std::size_t kSessionsCounted = 10'000;
+constexpr std::size_t kClocksKept = 8;
+constexpr std::int64_t kClockBeganAgain = 1'000'000;          // us: what is back by less came late
+constexpr std::int64_t kAnotherClock = 86'400 * 1'000'000LL;  // us
+
+// A file may say any utime.
+std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+std::int64_t wrapped_difference(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
 
 MeshUp mesh_up_of(const Body& body) {
   const std::string& axis = body.prepared->report.source.up_axis;
@@ -62,19 +73,37 @@ RunCollector::RunCollector(const Scene& scene, std::size_t most_rows) : scene_(s
   }
 }
 
-// A session that starts its clock again goes on one step behind the one before.
-std::int64_t RunCollector::time_of(Collected& body, const RecordedState& recorded) {
-  if (!first_utime_) first_utime_ = recorded.utime;
-  if (body.rows.added() == 0) {
-    body.session_id = recorded.session_id;
-    body.offset = -*first_utime_;
-  } else if (recorded.session_id != body.session_id) {
-    body.session_id = recorded.session_id;
-    if (recorded.utime + body.offset <= body.last_time) {
-      body.offset = body.last_time + body.last_step - recorded.utime;
-    }
+std::int64_t RunCollector::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
+  const std::optional<std::size_t> index = scene_.index_of(body_id);
+  if (!index) return 0;
+  if (sessions_.size() < kSessionsCounted) sessions_.insert(session_id);
+  if (*index >= bodies_.size()) return 0;
+  Collected& body = bodies_[*index];
+  if (!first_utime_) first_utime_ = utime;
+
+  const bool is_first = body.clocks.empty();
+  auto clock = std::ranges::find(body.clocks, session_id, &Clock::session_id);
+  const bool begins = clock == body.clocks.end();
+  if (begins) {
+    const std::int64_t offset = is_first ? wrapped_difference(0, *first_utime_) : body.clocks.front().offset;
+    const std::int64_t latest = is_first ? latest_ : body.last_time;
+    body.clocks.push_front({session_id, offset, latest});
+    clock = body.clocks.begin();
   }
-  const std::int64_t time = recorded.utime + body.offset;
+  if (body.clocks.size() > kClocksKept) body.clocks.pop_back();
+
+  std::int64_t time = wrapped_sum(utime, clock->offset);
+  const std::int64_t ahead = wrapped_difference(time, clock->latest);
+  // A body's first state may be older than another's; a further session of a body begins behind the one
+  // before.
+  const std::int64_t least_ahead = is_first ? -kAnotherClock : begins ? 1 : -kClockBeganAgain;
+  if (ahead < least_ahead || ahead > kAnotherClock) {
+    time = is_first ? latest_ : body.last_time + body.last_step;
+    clock->offset = wrapped_difference(time, utime);
+    clock->latest = time;
+  }
+  clock->latest = is_first ? time : std::max(clock->latest, time);
+  latest_ = std::max(latest_, time);
   if (time > body.last_time) {
     body.last_step = time - body.last_time;
     body.last_time = time;
@@ -113,7 +142,6 @@ void RunCollector::add(const RecordedState& recorded) {
     ++run_.unknown_bodies;
     return;
   }
-  if (sessions_.size() < kSessionsCounted) sessions_.insert(recorded.session_id);
   if (*index >= bodies_.size()) return;
   const Body& body = scene_.bodies()[*index];
   Collected& collected = bodies_[*index];
@@ -127,7 +155,7 @@ void RunCollector::add(const RecordedState& recorded) {
   }
 
   Row row;
-  row[kTime] = 1e-6 * static_cast<double>(time_of(collected, recorded));
+  row[kTime] = 1e-6 * static_cast<double>(recorded.time);
   put(row, kPx, recorded.state.position);
   put(row, kQw, recorded.state.quaternion_wxyz);
   row[kStatus] = static_cast<double>(wrench.status);

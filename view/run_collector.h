@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -22,8 +23,7 @@ inline constexpr std::size_t kMostBodies = 1'000;  // the scene's first; of more
 
 // What a file says of one body at one instant.
 struct RecordedState {
-  std::int64_t utime = 0;  // us
-  std::int64_t session_id = 0;
+  std::int64_t time = 0;  // us, on the run's axis: as RunCollector::time_of() said when it came
   BodyState state;
   double lead_time = 0.0;            // s
   std::optional<BodyWrench> wrench;  // nullopt: to be computed
@@ -39,6 +39,12 @@ class RunCollector {
   // scene must outlive this. most_rows: of all bodies together, roughly.
   RunCollector(const Scene& scene, std::size_t most_rows);
 
+  // Where on the run's axis a state of this body stands, us. To be asked once about each, in the order in
+  // which they came; 0 of a body that is not shown. The axis begins with the run's first state. A clock that
+  // began again, in a session of its own or within one, goes on behind what the body had before; so does
+  // one that differs by more than a day, which is another clock.
+  std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
+  // In any order.
   void add(const RecordedState& recorded);
   void add_trouble(std::string trouble);
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
@@ -47,6 +53,12 @@ class RunCollector {
   RecordedRun take();
 
  private:
+  // A session's, as a body knows it.
+  struct Clock {
+    std::int64_t session_id = 0;
+    std::int64_t offset = 0;  // us: time on the axis less utime, modulo 2^64
+    std::int64_t latest = 0;  // us, on the axis
+  };
   struct Collected {
     explicit Collected(std::size_t most_rows) : rows(most_rows) {}
 
@@ -55,21 +67,18 @@ class RunCollector {
     MeshUp mesh_up = MeshUp::kZ;
     SkippedRows skipped;
     std::optional<PoseBits> last_pose;
-    // us: where on the run's axis the body's session began, so that one that starts its clock again goes on
-    // behind.
-    std::int64_t session_id = 0;
-    std::int64_t offset = 0;
+    std::deque<Clock> clocks;    // of its last sessions, the newest in front
     std::int64_t last_time = 0;  // the latest
     std::int64_t last_step = 0;
   };
 
-  std::int64_t time_of(Collected& body, const RecordedState& recorded);
   void classify(Collected& collected, const Body& body, const AskedPose& asked) const;
 
   const Scene& scene_;
   std::vector<Collected> bodies_;              // of the scene's first kMostBodies
   std::unordered_set<std::int64_t> sessions_;  // up to a bound
   std::optional<std::int64_t> first_utime_;
+  std::int64_t latest_ = 0;  // us, on the axis: of all bodies
   std::int64_t number_ = 0;
   RecordedRun run_;
 };

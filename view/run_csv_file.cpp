@@ -65,7 +65,8 @@ std::array<double, kSize> part(const double* numbers) {
   return values;
 }
 
-bool read_row(const std::vector<std::string_view>& fields, const Places& places, RecordedState& row) {
+bool read_row(const std::vector<std::string_view>& fields, const Places& places, std::int64_t& utime,
+              RecordedState& row) {
   std::array<std::int64_t, 2> key{};
   std::array<double, 7> pose{};
   std::array<double, 6> velocities{};
@@ -76,7 +77,7 @@ bool read_row(const std::vector<std::string_view>& fields, const Places& places,
       !read(fields, places.energy, &energy)) {
     return false;
   }
-  row.utime = key[0];
+  utime = key[0];
   row.state = {.body_id = static_cast<std::int32_t>(key[1]),
                .position = part<3>(pose.data()),
                .quaternion_wxyz = part<4>(pose.data() + 3),
@@ -105,6 +106,8 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
     return failure(
         {path.string(), "cannot be read", "a CSV file", "no such file, or no right to read it", ""});
   }
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (header_line.starts_with(kByteOrderMark)) header_line.erase(0, kByteOrderMark.size());
   const Header header(header_line);
   const Places places{
       header.places({"utime", "body_id"}), header.places({"px", "py", "pz", "qw", "qx", "qy", "qz"}),
@@ -121,14 +124,16 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::string line;
   for (std::int64_t number = 2; std::getline(file, line); ++number) {
-    if (line.empty()) continue;
+    if (line.empty() || line == "\r") continue;
     const std::vector<std::string_view> fields = fields_of(line);
     RecordedState row;
-    if (fields.size() != header.size() || !read_row(fields, places, row)) {
+    std::int64_t utime = 0;
+    if (fields.size() != header.size() || !read_row(fields, places, utime, row)) {
       collector.add_trouble("line " + std::to_string(number) + " is not " + std::to_string(header.size()) +
                             " numbers: left out");
       continue;
     }
+    row.time = collector.time_of(row.state.body_id, 0, utime);
     collector.add(row);
     if (number % kRowsBetweenProgress == 0 && options.progress &&
         !options.progress(file.tellg(), bytes, number))

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "recording/event_log.h"
 #include "view/heard_poses.h"
@@ -19,8 +20,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 4'096;
 constexpr std::int64_t kEventsBetweenProgress = 4'096;
 
-// Beyond it a pose's clock did not jitter, it began again.
-constexpr std::int64_t kClockBeganAgain = 1'000'000;  // us
+constexpr std::int64_t kSessionOfPoses = std::numeric_limits<std::int64_t>::min();
 
 bool is_finite(const std::array<double, 3>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
@@ -36,22 +36,16 @@ class Conversation {
     Question question;
     if (const auto rejection = decode(bytes, question)) return leave_out("a question", *rejection);
     const std::int64_t session_id = question.key.session_id;
-    wait_for_answer({timestamp, session_id, true, std::move(question)});
+    wait_for_answer({timestamp, true, std::move(question), {}}, session_id);
   }
 
   void pose(std::int64_t timestamp, std::size_t index, Bytes bytes) {
     tl::expected<Question, Rejection> question = poses_.question(index, bytes);
     if (!question) return leave_out("a pose", question.error());
-    const std::int64_t utime = question->key.utime;
-    if (newest_pose_ && utime < *newest_pose_ - kClockBeganAgain) {
-      ++session_of_poses_;
-      newest_pose_.reset();
-    }
-    newest_pose_ = std::max(utime, newest_pose_.value_or(utime));
     const BodyState& state = question->bodies.front();
     const bool velocities = poses_.asked_on().velocity_frame && is_finite(state.linear_velocity) &&
                             is_finite(state.angular_velocity);
-    wait_for_answer({timestamp, session_of_poses_, velocities, *std::move(question)});
+    wait_for_answer({timestamp, velocities, *std::move(question), {}}, kSessionOfPoses);
   }
 
   void answer(std::int64_t timestamp, Bytes bytes) {
@@ -79,9 +73,9 @@ class Conversation {
   using Key = std::pair<std::int64_t, std::int64_t>;  // session, seq
   struct Asked {
     std::int64_t timestamp = 0;
-    std::int64_t session_id = 0;  // in which its rows stand
-    bool velocities = false;      // are known
+    bool velocities = false;  // are known
     Question question;
+    std::vector<std::int64_t> times;  // of its bodies, on the run's axis
   };
   using Waiting = std::map<Key, Asked>;
 
@@ -91,11 +85,13 @@ class Conversation {
     collector_.add_trouble(std::string(what) + " was left out: " + describe(rejection));
   }
 
-  void wait_for_answer(Asked asked) {
+  void wait_for_answer(Asked asked, std::int64_t session_id) {
     const Key key = key_of(asked.question.key);
     if (waiting_.contains(key) || key == last_answered_) return;  // asked again
-    waiting_.emplace(key, std::move(asked));
-    order_.push_back(key);
+    for (const BodyState& state : asked.question.bodies) {
+      asked.times.push_back(collector_.time_of(state.body_id, session_id, asked.question.key.utime));
+    }
+    order_.push_back(waiting_.emplace(key, std::move(asked)).first->first);
     while (waiting_.size() > kMostWaiting) give_up_oldest();
   }
 
@@ -127,8 +123,7 @@ class Conversation {
   void add(const Asked& asked, double round_trip, const std::optional<BotForceTorque>& force_torque) {
     const Question& question = asked.question;
     for (std::size_t i = 0; i < question.bodies.size(); ++i) {
-      RecordedState row{.utime = question.key.utime,
-                        .session_id = asked.session_id,
+      RecordedState row{.time = asked.times[i],
                         .state = question.bodies[i],
                         .lead_time = question.lead_time,
                         .wrench = std::nullopt,
@@ -145,8 +140,6 @@ class Conversation {
 
   HeardPoses poses_;
   RunCollector& collector_;
-  std::optional<std::int64_t> newest_pose_;  // us
-  std::int64_t session_of_poses_ = std::numeric_limits<std::int64_t>::min();
   Waiting waiting_;
   std::deque<Key> order_;
   std::optional<Key> last_answered_;

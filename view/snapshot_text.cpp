@@ -50,32 +50,33 @@ class BodyText {
 };
 
 void append(std::string& text, const WatchedBody& body, double now) {
+  const bool overdue = body.answer_is_overdue(BusWatch::kAnswerPatience);
+  const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
+  const bool whole = wrench != nullptr && !body.says_force_and_torque_alone;
   BodyText out(text);
   out.plain(R"({"id":)").whole_number(body.id).plain(R"(,"status":)");
-  if (body.wrench && !body.says_force_and_torque_alone) {
-    out.whole_number(static_cast<std::int64_t>(body.wrench->status));
+  if (whole) {
+    out.whole_number(static_cast<std::int64_t>(wrench->status));
   } else {
     out.plain("null");
   }
   // Whole: a thousand kilometres from W's origin a float is half a metre.
   out.plain(R"(,"p":)").numbers_as<double>(body.pose->position);
   out.plain(R"(,"q":)").numbers(body.pose->quaternion_wxyz);
-  if (body.wrench) {
-    const BodyWrench& wrench = *body.wrench;
-    out.plain(R"(,"f":)").numbers(wrench.force).plain(R"(,"t":)").numbers(wrench.torque);
+  if (wrench != nullptr) {
+    out.plain(R"(,"f":)").numbers(wrench->force).plain(R"(,"t":)").numbers(wrench->torque);
   } else {
     out.plain(R"(,"f":null,"t":null)");
   }
-  if (body.wrench && !body.says_force_and_torque_alone) {
-    const BodyWrench& wrench = *body.wrench;
-    out.plain(R"(,"b":)").numbers(wrench.center_of_buoyancy);
-    out.plain(R"(,"volume":)").number(wrench.submerged_volume);
-    out.plain(R"(,"force_bound":)").number(wrench.force_error_bound);
-    out.plain(R"(,"torque_bound":)").number(wrench.torque_error_bound);
+  if (whole) {
+    out.plain(R"(,"b":)").numbers(wrench->center_of_buoyancy);
+    out.plain(R"(,"volume":)").number(wrench->submerged_volume);
+    out.plain(R"(,"force_bound":)").number(wrench->force_error_bound);
+    out.plain(R"(,"torque_bound":)").number(wrench->torque_error_bound);
   } else {
     out.plain(R"(,"b":null,"volume":null,"force_bound":null,"torque_bound":null)");
   }
-  if (body.metacenters) {
+  if (body.metacenters && !overdue) {
     const auto& [points, heights] = *body.metacenters;
     out.plain(R"(,"m":[)").numbers(points[0]).plain(",").numbers(points[1]).plain("]");
     out.plain(R"(,"gm":)").numbers(heights);

@@ -24,8 +24,9 @@ namespace buoyancy {
 //                    m, gm        [[3], [3]], the metacentres, and [2], their heights
 //                    volume, force_bound, torque_bound
 //                    age          s since the body was asked about
-//                  b and m relative to p in W's axes. null: from f to torque_bound what was not answered yet;
-//                  status, b, volume and the bounds too where a six_axis_force_torque_t answered
+//                  b and m relative to p in W's axes. null: from f to torque_bound what was not answered, not
+//                  yet or not since BusWatch::kAnswerPatience; status, b, volume and the bounds too where a
+//                  six_axis_force_torque_t answered
 //   service        as name(ServiceState)
 //   services       the instance ids heard within 3 s
 //   status         the newest service_status_t, or null

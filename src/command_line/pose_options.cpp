@@ -17,15 +17,16 @@ struct ChannelOfBody {
   std::int32_t body_id = 0;
 };
 
-// By id or, where that is none, by name.
-std::optional<std::int32_t> body_named(const std::string& text, const Scene& scene) {
+// By id or, where that is none, by name: several, where several have it.
+std::vector<std::int32_t> bodies_named(const std::string& text, const Scene& scene) {
   std::int32_t id = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-  if (error == std::errc{} && end == text.data() + text.size() && scene.find(id) != nullptr) return id;
+  if (error == std::errc{} && end == text.data() + text.size() && scene.find(id) != nullptr) return {id};
+  std::vector<std::int32_t> found;
   for (const Body& body : scene.bodies()) {
-    if (body.name == text) return body.id;
+    if (body.name == text) found.push_back(body.id);
   }
-  return std::nullopt;
+  return found;
 }
 
 Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::string& text,
@@ -39,12 +40,16 @@ Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::st
     return tl::unexpected(checked.error());
   }
   const std::string body = text.substr(equals + 1);
-  const std::optional<std::int32_t> id = body_named(body, scene);
-  if (!id) {
+  const std::vector<std::int32_t> ids = bodies_named(body, scene);
+  if (ids.empty()) {
     return failure({option + " " + text, "body '" + body + "'",
                     "the id or the name of a body in " + scene.name(), "", ""});
   }
-  named.body_id = *id;
+  if (ids.size() > 1) {
+    return failure({option + " " + text, std::to_string(ids.size()) + " bodies are named '" + body + "'",
+                    "the name of one", "", "Say its id, such as " + std::to_string(ids.front())});
+  }
+  named.body_id = ids.front();
   return named;
 }
 
@@ -55,11 +60,13 @@ void declare_pose_channels(CLI::App& app, PoseOptions& options) {
          "--pose", options.poses,
          "Each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL is a question about BODY, an id "
          "or a name of the scene; may be given again for other channels")
+      ->allow_extra_args(false)
       ->option_text("CHANNEL=BODY");
   app.add_option(
          "--force-torque", options.force_torques,
          "Poses of BODY are answered as bot_core.six_axis_force_torque_t on CHANNEL, in the world frame "
          "about the body's reference point; without it as body_wrenches_t")
+      ->allow_extra_args(false)
       ->option_text("CHANNEL=BODY");
 }
 

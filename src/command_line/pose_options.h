@@ -27,8 +27,8 @@ void declare_options(CLI::App& app, PoseOptions& options);
 void declare_pose_channels(CLI::App& app, PoseOptions& options);
 
 // What they come to in a scene. taken: channels that carry something else. Errors: not CHANNEL=BODY, a body
-// that the scene has not, a channel that LCM cannot carry or that is named twice or taken, a force-torque
-// channel of a body without poses, a lead time without a velocity frame.
+// that the scene has not or has twice by that name, a channel that LCM cannot carry or that is named twice or
+// taken, a force-torque channel of a body without poses, a lead time without a velocity frame.
 Expected<PoseChannels> pose_channels(const PoseOptions& options, const Scene& scene,
                                      const std::vector<std::string>& taken);
 

@@ -13,6 +13,7 @@
 #include <poll.h>
 #include <sched.h>
 
+#include "transport/multicast_probe.h"
 #include "transport/quick_wait.h"
 #include "transport/udpm_url.h"
 
@@ -123,9 +124,13 @@ LcmConnection& LcmConnection::operator=(LcmConnection&&) noexcept = default;
 LcmConnection::~LcmConnection() = default;
 
 Expected<LcmConnection> LcmConnection::open(const std::string& url) {
-  const std::string shown = effective_lcm_url(url);
+  std::string shown = effective_lcm_url(url);
   std::optional<UdpmReceiver> receiver;
   if (!is_memq(shown)) {
+    const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+    if (!parsed) return tl::unexpected(parsed.error());
+    if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
+    shown = text_of(*parsed);
     Expected<UdpmReceiver> opened = UdpmReceiver::open(shown);
     if (!opened) return tl::unexpected(opened.error());
     receiver = std::move(*opened);

@@ -91,20 +91,42 @@ bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in&
   return false;
 }
 
-}  // namespace
-
-Expected<void> probe_multicast(const UdpmUrl& url) {
+sockaddr_in address_of(const UdpmUrl& url) {
   sockaddr_in group{};
   group.sin_family = AF_INET;
   group.sin_port = htons(url.port);
-  if (inet_pton(AF_INET, url.group.c_str(), &group.sin_addr) != 1) return no_route(url, EINVAL);
+  ::inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
+  return group;
+}
 
+bool join(const Socket& socket, const sockaddr_in& group) {
+  ip_mreq membership{};
+  membership.imr_multiaddr = group.sin_addr;
+  membership.imr_interface.s_addr = htonl(INADDR_ANY);
+  return socket.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
+}
+
+// Of UDP: nothing is sent.
+bool connect(const Socket& socket, const sockaddr_in& group) {
+  return ::connect(socket.descriptor(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0;
+}
+
+}  // namespace
+
+Expected<void> check_multicast_route(const UdpmUrl& url) {
+  const Socket socket;
+  if (socket.descriptor() < 0) return socket_failed(url, "socket", errno);
+  const sockaddr_in group = address_of(url);
+  if (!connect(socket, group) || !join(socket, group)) return no_route(url, errno);
+  return {};
+}
+
+Expected<void> probe_multicast(const UdpmUrl& url) {
+  const sockaddr_in group = address_of(url);
   const Socket sender;
   const Socket receiver;
   if (sender.descriptor() < 0 || receiver.descriptor() < 0) return socket_failed(url, "socket", errno);
-  if (::connect(sender.descriptor(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
-    return no_route(url, errno);
-  }
+  if (!connect(sender, group)) return no_route(url, errno);
 
   sockaddr_in any = group;
   any.sin_addr.s_addr = htonl(INADDR_ANY);
@@ -112,10 +134,7 @@ Expected<void> probe_multicast(const UdpmUrl& url) {
   if (::bind(receiver.descriptor(), reinterpret_cast<const sockaddr*>(&any), sizeof any) != 0) {
     return socket_failed(url, "bind", errno);
   }
-  ip_mreq membership{};
-  membership.imr_multiaddr = group.sin_addr;
-  membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  if (!receiver.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_route(url, errno);
+  if (!join(receiver, group)) return no_route(url, errno);
   if (!sender.set(IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(0))) {
     return socket_failed(url, "IP_MULTICAST_TTL", errno);
   }

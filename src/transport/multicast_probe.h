@@ -15,4 +15,7 @@ inline constexpr int kMulticastProbeMilliseconds = 2000;
 // Errors: no route to the group, port taken, packets that do not come back.
 Expected<void> probe_multicast(const UdpmUrl& url);
 
+// The part of it that a listener can have without sending anything. Errors: no route to the group.
+Expected<void> check_multicast_route(const UdpmUrl& url);
+
 }  // namespace buoyancy

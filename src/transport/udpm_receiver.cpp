@@ -43,7 +43,7 @@ Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
   const std::string shown = effective_lcm_url(url);
   const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
   if (!parsed) return tl::unexpected(parsed.error());
-  if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
+  if (Expected<void> routed = check_multicast_route(*parsed); !routed) return tl::unexpected(routed.error());
 
   FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in group{};

@@ -39,7 +39,7 @@ class UdpmReceiver {
   // url: "" for the default; as LcmConnection::open has it. Joins the group on the interface that the routing
   // table names for it; hears what is sent to the group there or by this machine, and nothing else that comes
   // to the port. Asks the kernel for a buffer of 4 MB where the URL does
-  // not say. Errors: not a udpm URL, no multicast (at once, or after 2 s).
+  // not say. Sends nothing. Errors: not a udpm URL, no multicast route.
   static Expected<UdpmReceiver> open(const std::string& url);
 
   // channel: this very name, of 1 to 63 characters. Its number: 0, 1, ... Errors: not such a name, or one

@@ -77,4 +77,11 @@ Expected<UdpmUrl> parse_udpm_url(const std::string& url) {
   return parsed;
 }
 
+std::string text_of(const UdpmUrl& url) {
+  std::string text =
+      std::string(kScheme) + url.group + ":" + std::to_string(url.port) + "?ttl=" + std::to_string(url.ttl);
+  if (url.recv_buf_size) text += "&recv_buf_size=" + std::to_string(*url.recv_buf_size);
+  return text;
+}
+
 }  // namespace buoyancy

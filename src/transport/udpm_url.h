@@ -22,4 +22,7 @@ struct UdpmUrl {
 // Errors: not udpm, a group that is no multicast address, a port or an option out of range or unknown.
 Expected<UdpmUrl> parse_udpm_url(const std::string& url);
 
+// As liblcm has to be told, which takes port 0 where a URL names none.
+std::string text_of(const UdpmUrl& url);
+
 }  // namespace buoyancy

@@ -154,6 +154,12 @@ TEST_F(ClientProgram, ACsvThatCannotBeCreatedIsAnErrorBeforeTheRun) {
   EXPECT_NE(finished.standard_error.find(path), std::string::npos) << finished.standard_error;
 }
 
+TEST_F(ClientProgram, ACsvThatIsTheSceneItselfIsRefused) {
+  const std::string before = read_file(scene_);
+  EXPECT_EQ(run({"--embedded", "--csv", scene_}).exit_code, 2);
+  EXPECT_EQ(read_file(scene_), before);
+}
+
 TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
   const std::string csv = directory_.path("run.csv");
   // A tray without its lid, too heavy for its sides.

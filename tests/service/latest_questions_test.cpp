@@ -59,6 +59,17 @@ TEST(LatestQuestions, KnowsWhatIsStaleAfterTheNewestWasTaken) {
   EXPECT_EQ(offer(latest, 1, 36, "e"), Fate::kWaits) << "and counts on from there";
 }
 
+TEST(LatestQuestions, TakesALowerSeqAfterASilenceForAnAskerThatStartedOver) {
+  LatestQuestions latest(8);
+  latest.offer({0, 1, 30}, bytes_of("old"), 10.0);
+  take_all(latest);
+  EXPECT_EQ(latest.offer({0, 1, 0}, bytes_of("late"), 10.1), Fate::kStale);
+  EXPECT_EQ(latest.offer({0, 1, 0}, bytes_of("new"), 10.3), Fate::kWaits);
+  EXPECT_EQ(latest.offer({0, 1, 1}, bytes_of("newer"), 10.301), Fate::kOvertook)
+      << "and counts on from there";
+  EXPECT_EQ(take_all(latest), Strings{"newer"});
+}
+
 TEST(LatestQuestions, AnswersEveryStepOfAnAskerThatStartedOver) {
   LatestQuestions latest(8);
   offer(latest, 1, 1000, "old");

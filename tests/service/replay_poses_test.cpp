@@ -1,5 +1,6 @@
 // Logs of other projects: bot_core's poses, as their own generator writes them.
 #include <cmath>
+#include <limits>
 
 #include <bot_core/rigid_transform_t.hpp>
 #include <bot_core/six_axis_force_torque_t.hpp>
@@ -239,6 +240,66 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   EXPECT_EQ(longer["unreadable"], 1);
 }
 
+TEST_F(ReplayPoses, DifferFromEarlierAnswersThatHoldNoNumbers) {
+  write("in.lcmlog", log_of_poses(3));
+  ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
+  for (double BodyWrench::*bound : {&BodyWrench::force_error_bound, &BodyWrench::torque_error_bound}) {
+    for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      for (const bool in_force : {true, false}) {
+        std::string changed;
+        for (Answer& answer : answers_in(path("earlier.lcmlog"))) {
+          BodyWrench& wrench = answer.bodies.at(0);
+          (in_force ? wrench.force[1] : wrench.*bound) = number;
+          std::vector<std::uint8_t> bytes;
+          encode(answer, bytes);
+          changed += event("BUOYANCY_WRENCHES", answer.key.utime / 10, bytes);
+        }
+        write("changed.lcmlog", changed);
+        EXPECT_EQ(
+            replay(path("in.lcmlog"), "/dev/null", {"--pose", "POSE=1", "--compare", path("changed.lcmlog")})
+                .exit_code,
+            1)
+            << number;
+      }
+    }
+  }
+}
+
+TEST_F(ReplayPoses, AreTheSameBytesInWhateverOrderTheirChannelsAreNamed) {
+  write("in.lcmlog", log_of_poses(5) + event("HULL", 900, encoded_by_lcm(upright_pose(0.5, 9'000))));
+  ASSERT_EQ(run({"--scene", scene_, "--pose", "POSE=1", "--pose", "HULL=1", path("in.lcmlog"),
+                 path("a.lcmlog"), "--jobs", "1"})
+                .exit_code,
+            0)
+      << "an option takes one value: INPUT is none of its";
+  ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog"), {"--pose", "HULL=1", "--pose", "POSE=1"}).exit_code,
+            0);
+  EXPECT_TRUE(contents_of(path("a.lcmlog")) == contents_of(path("b.lcmlog")));
+}
+
+TEST_F(ReplayPoses, OnAChannelThatTheLogDoesNotHaveAreWarnedAbout) {
+  write("in.lcmlog", log_of_poses(2));
+  const FinishedProcess misspelt =
+      replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--pose", "POZE=1"});
+  EXPECT_EQ(misspelt.exit_code, 0);
+  EXPECT_NE(misspelt.standard_error.find("warning: channel POZE: no event"), std::string::npos)
+      << misspelt.standard_error;
+  EXPECT_EQ(misspelt.standard_error.find("POSE:"), std::string::npos);
+  EXPECT_NE(replay(path("in.lcmlog"), path("out.lcmlog")).standard_error.find("channel BUOYANCY_STATES"),
+            std::string::npos);
+}
+
+TEST_F(ReplayPoses, OfANameThatTwoBodiesHaveAreRefused) {
+  write("scene.toml",
+        "[[body]]\nid = 1\nname = \"a\"\nshape = { type = \"box\", size = [1, 1, 1] }\n"
+        "[[body]]\nid = 2\nname = \"a\"\nshape = { type = \"box\", size = [2, 2, 2] }\n");
+  write("in.lcmlog", log_of_poses(1));
+  const FinishedProcess refused = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=a"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.standard_error.find("2 bodies are named 'a'"), std::string::npos)
+      << refused.standard_error;
+}
+
 TEST_F(ReplayPoses, WrongChannelsAndBodiesAreRefusedWith2) {
   const std::string in = write("in.lcmlog", log_of_poses(1));
   const std::string out = path("out.lcmlog");
@@ -257,6 +318,7 @@ TEST_F(ReplayPoses, WrongChannelsAndBodiesAreRefusedWith2) {
       {"--pose", "POSE=1", "--lead-time", "0.1"},
       {"--pose", "POSE=1", "--lead-time", "inf", "--velocity-frame", "body"},
       {"--pose", "POSE=1", "--velocity-frame", "sideways"},
+      {"--wrenches-channel", "BUOYANCY_STATES"},
       {"--copy", "("},
       {"--jobs", "-1"},
       {"--compare", path("gone.lcmlog")},

@@ -68,6 +68,17 @@ std::vector<std::uint8_t> pattern(std::size_t size) {
   return bytes;
 }
 
+TEST(LcmConnection, SendsWhereTheUrlNamesNoPort) {
+  LcmConnection sender = open_or_die("udpm://239.255.76.67");
+  LcmConnection receiver = open_or_die("udpm://:7667");
+  bool heard = false;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { heard = true; }));
+  const Expected<void> published = sender.publish("A", pattern(10));
+  ASSERT_TRUE(published) << published.error().message();
+  EXPECT_TRUE(wait_and_handle(receiver));
+  EXPECT_TRUE(heard);
+}
+
 TEST(LcmConnection, CarriesBytesUnchangedWhateverTheirLength) {
   LcmConnection sender = open_or_die();
   LcmConnection receiver = open_or_die();

@@ -90,6 +90,22 @@ TEST_F(WatchedBus, KeepsTheLastPoseThatIsOneAndSaysTheStatus) {
   EXPECT_EQ(body["status"], 3);
 }
 
+TEST_F(WatchedBus, ShowsNoWrenchBesideAPoseThatItIsTooOldFor) {
+  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  watch_.hear_answer(answer_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
+  EXPECT_FALSE(snapshot(100.0)["bodies"][0]["f"].is_null()) << "nobody asked since";
+  for (const double now : {0.5, 1.05}) {
+    watch_.hear_question(question_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
+    EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the answer is still being waited for";
+  }
+  watch_.hear_question(question_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
+  for (const char* unknown : {"status", "f", "t", "b", "volume"}) {
+    EXPECT_TRUE(snapshot(1.2)["bodies"][0][unknown].is_null()) << unknown;
+  }
+  watch_.hear_answer(answer_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
+  EXPECT_EQ(snapshot(1.3)["bodies"][0]["f"], json({0.0, 0.0, 6.0}));
+}
+
 TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
   watch_.hear_question(question_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
   BodyHydrostatics body;

@@ -21,8 +21,13 @@ namespace buoyancy {
 
 class HttpPeer {
  public:
-  // Connects to the port of 127.0.0.1. Throws where nobody listens.
-  explicit HttpPeer(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  // Connects to the port of 127.0.0.1. Throws where nobody listens. receive_buffer: bytes that the kernel
+  // takes before they are received; 0: as many as it likes.
+  explicit HttpPeer(std::uint16_t port, int receive_buffer = 0)
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    if (receive_buffer > 0) {
+      ::setsockopt(socket_.value(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    }
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);

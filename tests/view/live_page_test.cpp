@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "messages/question.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/view/page_test.h"
@@ -94,6 +95,61 @@ TEST_F(LivePage, SaysThatTheServiceIsGoneAndThatItIsBack) {
   browser().wait_until("buoyancyView.state === 'answering'");
   browser().wait_until("!document.getElementById('notices').textContent.includes('Nothing is heard')");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePage, SaysThatTheServiceIsGoneWhileItsPictureIsPaused) {
+  browser().wait_until(
+      "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 3");
+  browser().press(" ");
+  const nlohmann::json renders = browser().run("return buoyancyView.renders;");
+  service_->child().send_signal(SIGKILL);
+  browser().wait_until("document.getElementById('state_text').textContent === 'The service is silent'");
+  browser().wait_until(
+      "document.getElementById('notices').textContent.includes('Nothing is heard of the service')");
+  EXPECT_EQ(browser().run("return [buoyancyView.paused, buoyancyView.renders];"),
+            nlohmann::json({true, renders}));
+}
+
+TEST_F(LivePage, NoticesThatTheServiceHasASceneOfAnotherName) {
+  const std::string another =
+      "document.getElementById('notices').textContent.includes(\"The service's scene is other.toml\")";
+  browser().wait_until("window.buoyancyView && buoyancyView.last && buoyancyView.last.status");
+  wait_for_news();
+  EXPECT_EQ(browser().run("return document.getElementById('notices').textContent;"), "")
+      << "another folder is no news";
+  service_->child().send_signal(SIGKILL);
+  service_->write("other.toml", kScene);
+  ChildProcess other(command_of({BUOYANCYD, "--scene", service_->path("other.toml")}));
+  browser().wait_until(another);
+}
+
+TEST_F(LivePage, ShowsNoForceOfABodyThatIsNotAnsweredYet) {
+  browser().wait_until(
+      "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 1");
+  service_->child().send_signal(SIGKILL);
+  browser().wait_until("buoyancyView.state === 'silent'");
+  browser().press("n");
+  RawLcmSocket socket;
+  socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
+  const std::string facts = "document.getElementById('body_facts').textContent";
+  browser().wait_until(facts + ".includes('asked, not answered yet')");
+  browser().wait_until(facts + ".includes('force, N–')");
+  wait_for_news(30);
+  EXPECT_EQ(browser().run("const body = buoyancyView.scene.bodies.get(2);"
+                          "return [body.group.visible, body.marks.force.visible];"),
+            nlohmann::json({true, false}));
+  EXPECT_EQ(browser().run("return Array.from(document.querySelectorAll('#plots figure')).at(-1).className;"),
+            "empty");
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePage, NamesEveryStatusAsTheMessagesDo) {
+  browser().wait_until("window.buoyancyView !== undefined");
+  EXPECT_EQ(browser().run("return status_text(0);"), "OK");
+  for (int i = 1; i < kBodyStatusCount; ++i) {
+    EXPECT_EQ(browser().run("return status_text(arguments[0]).split(':')[0];", i),
+              name(static_cast<BodyStatus>(i)));
+  }
 }
 
 TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {

@@ -240,12 +240,150 @@ TEST_F(TheReport, KeepsDryAndWettedApartByLightAlone) {
   EXPECT_GT(contrast("waterline", "dry"), 1.5);
 }
 
+TEST_F(TheReport, OverwritesNothingThatItReadsAndSaysWhatIsNoThreeJs) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("box.toml", kBobbingBox);
+  EXPECT_EQ(report({"--scene", scene, csv(), scene}).exit_code, 2);
+  EXPECT_EQ(report({"--scene", scene, csv(), csv()}).exit_code, 2);
+  EXPECT_EQ(contents_of(scene), kBobbingBox);
+  const FinishedProcess refused =
+      report({"--scene", scene, csv(), directory.path("run.html"), "--three", directory.path("")});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.standard_error.find("cannot be read"), std::string::npos) << refused.standard_error;
+}
+
 TEST_F(TheReport, FitsAPhone) {
   browser().resize(kPhone);
   open();
   EXPECT_LE(browser().run("return document.documentElement.scrollWidth").get<int>(), kPhone.width);
   EXPECT_GT(browser().region_of("#canvas").width, 300);
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(TheReport, GoesWhereTheAddressSaysAndNowhereWithoutANumber) {
+  for (const std::string hash : {"#t=abc", "#t=", "#t=NaN", "#t=1e999", "#x"}) {
+    browser().open("about:blank");
+    browser().open("file://" + page() + hash);
+    browser().wait_until("window.buoyancy_report !== undefined");
+    EXPECT_EQ(time(), 0.0) << hash;
+    EXPECT_EQ(browser().run("return document.getElementById('clock').textContent"), "0.000 s") << hash;
+  }
+  browser().run("location.hash = '#t=2.5'");
+  browser().wait_until("buoyancy_report.state().time === 2.5");
+  browser().run("location.hash = '#t=-3'");
+  browser().wait_until("buoyancy_report.state().time === 0");
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(TheReport, KeepsMarksAsLargeOnTheScreenWhenSomebodyZooms) {
+  const auto pixel = [] {
+    return browser().run("return buoyancy_report.scene.bodies.get(1).marks.metacentre.scale.x").get<double>();
+  };
+  const double before = pixel();
+  browser().run("buoyancy_report.scene.zoom(0.25)");
+  EXPECT_NEAR(pixel(), 0.25 * before, 0.05 * before);
+}
+
+// What buoyancy-client --csv writes, but for the velocities.
+const std::string kAnsweredHeader =
+    "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,energy\n";
+
+TEST_F(TheReport, LeavesAGapWhereTheAnswerIsNotOkOrThePoseIsNone) {
+  const ScratchDirectory directory;
+  const std::string run = kAnsweredHeader +
+                          "0,1,0,0,0.1,1,0,0,0,0,0,0,1e5,0,0,0,1,0,0,0,5\n"
+                          "1000000,1,0,0,0.2,1,0,0,0,0,0,0,2e5,0,0,0,1,0,0,0,5\n"
+                          "2000000,1,0,0,0.3,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
+                          "3000000,1,0,0,0.4,1,0,0,0,0,0,0,4e5,0,0,0,1,0,0,0,5\n"
+                          "4000000,1,nan,0,0.5,1,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0\n"
+                          "5000000,1,0,0,0.6,0,0,0,0,3,0,0,0,0,0,0,0,0,0,0,0\n"
+                          "6000000,1,0,0,0.7,1,0,0,0,9,0,0,0,0,0,0,0,0,0,0,0\n";
+  const FinishedProcess made = report({"--scene", directory.write("box.toml", kBobbingBox),
+                                       directory.write("run.csv", run), directory.path("run.html")});
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  browser().open_file(directory.path("run.html"));
+  browser().wait_until("window.buoyancy_report !== undefined");
+
+  const auto plotted = [](const std::string& plot) {
+    return browser().run("return Array.from(buoyancy_report.plots[arguments[0]].series[0].values)", plot);
+  };
+  const nlohmann::json none;
+  EXPECT_EQ(plotted("force"), nlohmann::json({1e5, 2e5, none, 4e5, none, none, none}));
+  EXPECT_EQ(plotted("torque"), nlohmann::json({0, 0, none, 0, none, none, none}));
+  EXPECT_EQ(plotted("energy"), nlohmann::json({5, 5, none, 5, none, none, none}));
+  EXPECT_EQ(plotted("heave"), nlohmann::json({0.1, 0.2, 0.3, 0.4, none, none, 0.7}));
+  EXPECT_EQ(plotted("angles"), nlohmann::json({0, 0, 0, 0, none, none, 0}));
+  EXPECT_EQ(browser().run("return Array.from(buoyancy_report.bodies[0].columns.fz)"),
+            nlohmann::json({1e5, 2e5, 0, 4e5, 0, 0, 0}))
+      << "as recorded";
+  const nlohmann::json drawn = browser().run(R"(
+    const paths = Array.from(buoyancy_report.plots.force.svg.querySelectorAll('path')).slice(0, 2);
+    return paths.map((path) => path.getAttribute('d').replace(/[^MLh]/g, ''));)");
+  EXPECT_EQ(drawn, nlohmann::json({"MLM", "Mh"})) << "a line, and a dot where one row is alone";
+
+  const auto at = [](double when) {
+    go_to(when);
+    return browser().run(
+        "const body = buoyancy_report.scene.bodies.get(1);"
+        "return [document.getElementById('status').textContent.split(':')[1].trim(), body.group.visible, "
+        "body.marks.centre_of_mass.visible, body.marks.force.visible];");
+  };
+  EXPECT_EQ(at(1.5), nlohmann::json({"OK", true, true, true}));
+  EXPECT_EQ(at(2.5), nlohmann::json({"OPEN_EDGE_WET", true, true, false}));
+  EXPECT_EQ(at(3.5), nlohmann::json({"OK", true, true, true})) << "until the pose that is none";
+  EXPECT_EQ(at(4.5), nlohmann::json({"NON_FINITE_POSE", false, false, false}));
+  EXPECT_EQ(at(5.5), nlohmann::json({"BAD_QUATERNION", false, false, false}));
+  EXPECT_EQ(at(6.0), nlohmann::json({"status 9", true, true, false}));
+
+  const nlohmann::json counted = browser().run(R"(
+    const table = Array.from(document.querySelectorAll('#tables table')).find((one) => one.caption.textContent.includes('by the status'));
+    return Array.from(table.tBodies[0].rows).map((row) => [row.cells[1].textContent.split(':')[0], row.cells[2].textContent]);)");
+  const auto row = [](const char* status, const char* count) {
+    return nlohmann::json::array({status, count});
+  };
+  EXPECT_EQ(counted,
+            nlohmann::json::array({row("OK", "3"), row("NON_FINITE_POSE", "1"), row("BAD_QUATERNION", "1"),
+                                   row("OPEN_EDGE_WET", "1"), row("status 9", "1")}));
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(TheReport, CountsNoStatusesOfARunThatWasAlwaysAnswered) {
+  EXPECT_EQ(browser().run("return document.getElementById('tables').textContent.includes('by the status')"),
+            false);
+}
+
+TEST_F(TheReport, LooksAtASmallBodyBesideALargeOneFromNearby) {
+  const ScratchDirectory directory;
+  const std::string scene = directory.write("two.toml", kTestWater + R"([[body]]
+id = 1
+shape = { type = "box", size = [200, 30, 20] }
+[[body]]
+id = 2
+shape = { type = "box", size = [0.5, 0.5, 0.5] }
+)");
+  const std::string run =
+      directory.write("run.csv", kAnsweredHeader +
+                                     "0,1,0,100,0,1,0,0,0,0,0,0,6e8,0,0,0,1,0,0,-5,0\n"
+                                     "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,-0.125,0\n");
+  const FinishedProcess made = report({"--scene", scene, run, directory.path("run.html")});
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  browser().open_file(directory.path("run.html"));
+  browser().wait_until("window.buoyancy_report !== undefined");
+  browser().run("buoyancy_report.choose(2)");
+  const auto width = [] {
+    return browser()
+        .run(
+            "return buoyancy_report.scene.project([0.25, 0.25, 0])[0] - "
+            "buoyancy_report.scene.project([-0.25, -0.25, 0])[0]")
+        .get<double>();
+  };
+  EXPECT_GT(width(), 60.0) << "pixels";
+  EXPECT_EQ(browser().run("return buoyancy_report.scene.bodies.get(2).marks.force.visible"), true);
+  browser().run("buoyancy_report.scene.zoom(0.5)");
+  EXPECT_GT(width(), 120.0);
+  browser().run("buoyancy_report.choose(1)");
+  EXPECT_GT(browser().run("return buoyancy_report.scene.distance").get<double>(), 200.0)
+      << "the ship is seen, as near as the small body was";
 }
 
 TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {

@@ -23,7 +23,7 @@
   }
 
   const model_text = await fetch_model();
-  const { model, statuses, version } = JSON.parse(model_text);
+  const { model, version } = JSON.parse(model_text);
   const up = model.water.up;
   const heave = (p) => p[0] * up[0] + p[1] * up[1] + p[2] * up[2] - model.water.level;
   const along_up = (f) => f[0] * up[0] + f[1] * up[1] + f[2] * up[2];
@@ -69,7 +69,7 @@
       }
       const of_body = tracks.bodies.get(body.id);
       of_body.heave.push(heave(body.p));
-      of_body.force.push(body.f ? along_up(body.f) : NaN);
+      of_body.force.push(body.f && !body.status ? along_up(body.f) : NaN);  // not OK: zeros that are no force
     }
     while (tracks.times.length > 0 && tracks.times[0] < now - kept_seconds) {
       tracks.times.shift();
@@ -160,6 +160,9 @@
     if (now.status && now.status.scene_bodies !== model.bodies.length) {
       found.push(`The service has ${plural(now.status.scene_bodies, 'body', 'bodies')}, the scene shown here ${model.bodies.length}.`);
     }
+    // The service has its path, as it was given; buoyancy-view may run elsewhere.
+    const scene_of_service = now.status ? now.status.scene.split('/').pop() : model.scene;
+    if (scene_of_service !== model.scene) found.push(`The service's scene is ${scene_of_service}, the one shown here ${model.scene}.`);
     return found;
   }
 
@@ -181,7 +184,7 @@
     if (!body) return table_of(`Body ${description.id} ${description.name}: not asked about yet`, [], []);
     const vector = (values) => (values ? values.map(number_text).join(', ') : '–');
     const rows = [
-      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'asked, not answered yet') : statuses[body.status] || `status ${body.status}`],
+      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'asked, not answered yet') : status_text(body.status)],
       ['position, m', vector(body.p)], ['quaternion w, x, y, z', vector(body.q)],
       ['force, N', vector(body.f)], ['torque, N m', vector(body.t)],
       ['error bounds, N and N m', body.force_bound !== null ? `${number_text(body.force_bound)}, ${number_text(body.torque_bound)}` : '–'],
@@ -224,14 +227,18 @@
     return tables;
   }
 
-  function show_text(now) {
+  function show_state(now) {
     say_state(now.service);
-    fill_strip(strip_entries(now));
     fill_notices(notices({ ...now, state: now.service }));
+    document.body.classList.toggle('silent', now.service === 'silent');
+  }
+
+  function show_text(now) {
+    show_state(now);
+    fill_strip(strip_entries(now));
     element('subtitle').textContent = now.status ? `${model.scene}, instance ${now.status.instance_id}` : model.scene;
     element('body_facts').replaceChildren(body_table(now));
     element('counters').replaceChildren(...counter_tables(now));
-    document.body.classList.toggle('silent', now.service === 'silent');
   }
 
   function show_bodies(now) {
@@ -245,9 +252,14 @@
   let frame_due = false, text_shown = -Infinity, plots_shown = -Infinity, arrived = -Infinity;
   function show_newest(time) {
     frame_due = false;
-    if (view.paused || !view.last) return;
+    const text_due = time >= text_shown + text_interval;
+    if (text_due) text_shown = time;
+    if (view.paused) {
+      if (text_due) show_state(view.last);  // the picture waits, the service does not
+      return;
+    }
     show_bodies(view.last);
-    if (time >= text_shown + text_interval) { show_text(view.last); text_shown = time; }
+    if (text_due) show_text(view.last);
     if (time >= plots_shown + plot_interval) { draw_plots(); plots_shown = time; }
   }
 

@@ -67,11 +67,11 @@ class Plot {
     let low = Infinity, high = -Infinity, start = Infinity, end = -Infinity;
     for (const { times, values } of this.series) {
       for (let i = 0; i < values.length; i += 1) {
+        start = Math.min(start, times[i]);
+        end = Math.max(end, times[i]);
         if (!Number.isFinite(values[i])) continue;
         low = Math.min(low, values[i]);
         high = Math.max(high, values[i]);
-        start = Math.min(start, times[i]);
-        end = Math.max(end, times[i]);
       }
     }
     return { low, high, start, end, empty: low > high };
@@ -111,14 +111,17 @@ class Plot {
       label.textContent = `${tick.toFixed(columns.digits)} s`;
     }
     this.series.forEach(({ times, values }, i) => {
-      let path = '', pen_up = true;
+      let path = '', dots = '', pen_up = true;
       for (let n = 0; n < values.length; n += 1) {
         if (!Number.isFinite(values[n])) { pen_up = true; continue; }
-        path += `${pen_up ? 'M' : 'L'}${this.x(times[n]).toFixed(1)} ${y(values[n]).toFixed(1)}`;
+        const place = `${this.x(times[n]).toFixed(1)} ${y(values[n]).toFixed(1)}`;
+        path += `${pen_up ? 'M' : 'L'}${place}`;
+        if (pen_up && !Number.isFinite(values[n + 1])) dots += `M${place}h0`;  // no line begins or ends there
         pen_up = false;
       }
       svg_element('path', { d: path, fill: 'none', style: `stroke:${Plot.colours[i]}`, 'stroke-width': 1.7,
                             'stroke-linejoin': 'round', 'stroke-dasharray': ['none', '6 3', '2 2', '9 3 2 3'][i] }, this.svg);
+      if (dots) svg_element('path', { class: 'lone', d: dots, style: `stroke:${Plot.colours[i]}` }, this.svg);
     });
     this.now = svg_element('line', { class: 'now', y1: top, y2: height - bottom, x1: -9, x2: -9 }, this.svg);
     this.show(this.shown_time);

@@ -20,38 +20,44 @@
 
   const scene = make_water_scene(element('canvas'), data.model);
 
-  // A body at a time between two of its rows: place and turn in between, the rest as in the earlier row.
+  const place_names = ['px', 'py', 'pz'], turn_names = ['qw', 'qx', 'qy', 'qz'];
+  const at_row = (body, names, row) => names.map((name) => body.columns[name][row]);
+  const is_answered = (body, row) => body.columns.status[row] === 0;
+  const is_posed = (body, row) => is_pose(at_row(body, place_names, row), at_row(body, turn_names, row));
+
+  // A body at a time between two of its rows: place and turn in between, the rest as in the earlier row. Nothing is
+  // between a pose and none.
   function body_at(body, when) {
     const columns = body.columns;
     const row = row_at(columns.time, when);
-    const next = Math.min(row + 1, body.rows - 1);
+    const next = row + 1 < body.rows && is_posed(body, row) && is_posed(body, row + 1) ? row + 1 : row;
     const span = columns.time[next] - columns.time[row];
     const part = span > 0 ? Math.min(1, Math.max(0, (when - columns.time[row]) / span)) : 0;
     const between = (name) => columns[name][row] + part * (columns[name][next] - columns[name][row]);
-    const names = ['qw', 'qx', 'qy', 'qz'];
-    const from = names.map((name) => columns[name][row]), to = names.map((name) => columns[name][next]);
+    const from = at_row(body, turn_names, row), to = at_row(body, turn_names, next);
     const side = from.reduce((sum, value, i) => sum + value * to[i], 0) < 0 ? -1 : 1;
-    const at = (list) => list.map((name) => columns[name][row]);
-    return { id: body.id, status: columns.status[row], p: ['px', 'py', 'pz'].map(between),
+    const at = (names) => at_row(body, names, row);
+    return { id: body.id, status: columns.status[row], p: place_names.map(between),
              q: from.map((value, i) => (1 - part) * value + side * part * to[i]),
              f: at(['fx', 'fy', 'fz']), t: at(['tx', 'ty', 'tz']), b: at(['bx', 'by', 'bz']),
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
+  // stands: where a row's number says something. An answer that is not OK holds zeros.
   const groups = [
-    { key: 'heave', title: 'Heave', unit: 'm', columns: { 'B\'s origin over the water': 'heave' } },
-    { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' } },
-    { key: 'force', title: 'Buoyant force', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' } },
-    { key: 'torque', title: 'Buoyant torque', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' } },
-    { key: 'energy', title: 'Mechanical energy', unit: 'J', columns: { energy: 'energy' },
+    { key: 'heave', title: 'Heave', unit: 'm', columns: { 'B\'s origin over the water': 'heave' }, stands: is_posed },
+    { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' }, stands: is_posed },
+    { key: 'force', title: 'Buoyant force', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, stands: is_answered },
+    { key: 'torque', title: 'Buoyant torque', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, stands: is_answered },
+    { key: 'energy', title: 'Mechanical energy', unit: 'J', columns: { energy: 'energy' }, stands: is_answered,
       missing: 'not known: needs velocities and the body\'s mass in the scene' },
-    { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'question to answer': 'round_trip' }, scale: 1e3,
+    { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'question to answer': 'round_trip' }, stands: () => true, scale: 1e3,
       missing: 'not recorded: a CSV knows no clock, a log of the bus does' },
   ];
   function series_of(group) {
     return Object.entries(group.columns).map(([name, column]) => ({
       name, times: chosen.columns.time,
-      values: group.scale ? chosen.columns[column].map((value) => group.scale * value) : chosen.columns[column] }));
+      values: chosen.columns[column].map((value, row) => (group.stands(chosen, row) ? (group.scale || 1) * value : NaN)) }));
   }
   const plots = {};
   for (const group of groups) {
@@ -67,6 +73,9 @@
     element('slider').value = time;
     element('slider').setAttribute('aria-valuetext', `${time.toFixed(3)} seconds`);
     element('clock').textContent = `${time.toFixed(3)} s`;
+    const status = chosen.columns.status[row_at(chosen.columns.time, time)];
+    element('status').textContent = `Body ${chosen.id} ${chosen.description.name}: ${status_text(status)}`;
+    element('status').classList.toggle('refused', status !== 0);
     for (const plot of Object.values(plots)) plot.show(time);
   }
 
@@ -148,10 +157,16 @@
     line.textContent = notice;
     element('notices').append(line);
   }
-  report_tables(data);
+  report_tables(data, bodies);
   element('footer').textContent = `buoyancy-report ${data.version}. Drawn with three.js. Needs no network.`;
   // page.html#t=12.5 opens there.
-  seek(Number(new URLSearchParams(location.hash.slice(1)).get('t') || start));
+  function seek_to_hash() {
+    const asked = new URLSearchParams(location.hash.slice(1)).get('t');
+    if (asked && Number.isFinite(Number(asked))) seek(Number(asked));
+  }
+  window.addEventListener('hashchange', seek_to_hash);
+  show();
+  seek_to_hash();
 
   // For tests and measurements. shown_after: ms since the page was asked for.
   window.buoyancy_report = { shown_after: performance.now(), data, bodies, plots, scene, seek, play, choose, body_at,

@@ -54,14 +54,30 @@ function skipped_table(data) {
   return table_of(caption, ['body', 'its pose', 'rows', 'share', 'one costs', 'saved'], rows);
 }
 
-function report_tables(data) {
-  const { water, bodies, meshes, simd_target: target } = data.model;
+// Of the bodies that were not always answered; null: all were.
+function status_table(bodies) {
+  const rows = [];
+  for (const body of bodies) {
+    const counts = new Map();
+    for (const status of body.columns.status) counts.set(status, (counts.get(status) || 0) + 1);
+    if (counts.get(0) === body.rows) continue;
+    for (const [status, count] of [...counts].sort(([a], [b]) => a - b)) {
+      rows.push([`${body.id} ${body.description.name}`, status_text(status), count, `${(100 * count / body.rows).toFixed(1)} %`]);
+    }
+  }
+  if (rows.length === 0) return null;
+  const caption = 'Rows of this page by the status of their answer: one that is not OK holds zeros, which the plots leave out';
+  return table_of(caption, ['body', 'status', 'rows', 'share'], rows);
+}
+
+function report_tables(data, bodies) {
+  const { water, bodies: described, meshes, simd_target: target } = data.model;
   const section = (title, ...content) => {
     const heading = document.createElement('h2');
     heading.textContent = title;
     document.getElementById('tables').append(heading, ...content);
   };
-  section('What was skipped', skipped_table(data));
+  section('What was skipped', ...[skipped_table(data), status_table(bodies)].filter((table) => table !== null));
   if (data.status) {
     const status = data.status;
     section('The service\'s own account', table_of('The last status in the log, totals since its start', ['what', 'value'], [
@@ -76,7 +92,7 @@ function report_tables(data) {
     `Water: level ${number_text(water.level)} m along [${water.up.join(', ')}], ${number_text(water.density)} kg/m³, gravity ${number_text(water.gravity)} m/s². ` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
-    bodies.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));
+    described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));
   section('The meshes', table_of('As they were loaded', ['mesh', 'triangles', 'drawn', 'volume, m³', 'area, m²', 'diagonal, m', 'parts', 'what was found'],
     meshes.map((mesh) => [mesh.name, mesh.triangles, mesh.shown_triangles, mesh.volume, mesh.area, mesh.diagonal, mesh.components.length, mesh_findings(mesh)])));
 }

@@ -28,6 +28,7 @@ class WaterScene {
     this.level_x = slant.addScaledVector(this.up, -slant.dot(this.up)).normalize();
     this.level_y = this.up.clone().cross(this.level_x);
     this.size = Math.max(...model.meshes.map((mesh) => mesh.diagonal));
+    this.subject = this.size;  // of what the camera looks at
     this.distance = 2.4 * this.size;
     this.bodies = new Map();
     this.shapes = model.meshes.map((mesh) => this.shape(mesh));
@@ -41,13 +42,21 @@ class WaterScene {
   show(bodies) {
     for (const now of bodies) {
       const body = this.bodies.get(now.id);
-      if (!body || !now.p.every(Number.isFinite) || !now.q.every(Number.isFinite)) continue;
+      if (!body) continue;
+      if (!is_pose(now.p, now.q)) {
+        this.hide(body);
+        continue;
+      }
       if (!this.origin) this.place_origin(now.p);
       body.group.visible = true;
       body.group.position.copy(this.local(now.p));
       body.group.quaternion.set(now.q[1], now.q[2], now.q[3], now.q[0]).normalize();
       this.place_marks(body, now);
     }
+  }
+
+  hide(body) {
+    for (const part of [body.group, ...Object.values(body.marks)]) part.visible = false;
   }
 
   // The camera goes with this body, or with the middle of all: sideways, so that heave can be seen.
@@ -59,8 +68,13 @@ class WaterScene {
     this.target.copy(middle.addScaledVector(this.up, -middle.dot(this.up)));
     let spread = 0;
     for (const body of shown) spread = Math.max(spread, body.group.position.distanceTo(middle) + 0.7 * body.size);
-    if (!this.zoomed) this.distance = Math.max(2.4 * spread, 2.5 * this.size);
-    const cell = this.grid_cell;
+    const subject = id === null ? this.size : shown[0].size;
+    // What was zoomed to is a part of the picture, not a distance: beside a ship a buoy would be a dot.
+    if (this.zoomed) this.distance *= subject / this.subject;
+    else this.distance = Math.max(2.4 * spread, 2.5 * subject);
+    this.subject = subject;
+    const cell = Math.pow(10, Math.round(Math.log10(0.3 * subject)));
+    this.grid_cell.value = cell;
     const along = (axis) => Math.round(this.target.dot(axis) / cell) * cell;
     this.water.position.copy(this.level_x).multiplyScalar(along(this.level_x)).addScaledVector(this.level_y, along(this.level_y));
   }
@@ -77,10 +91,12 @@ class WaterScene {
       .addScaledVector(this.up, Math.sin(this.elevation));
     this.camera.position.copy(this.target).addScaledVector(back, this.distance / Math.min(1, this.camera.aspect));
     this.camera.near = 0.01 * this.distance;
-    this.camera.far = 80 * this.distance;
-    this.fade.value = 20 * this.distance;
+    // A larger body beside the one looked at is in the water too.
+    this.camera.far = Math.max(80 * this.distance, 20 * this.size);
+    this.fade.value = Math.max(20 * this.distance, 5 * this.size);
     this.camera.lookAt(this.target);
     this.camera.updateProjectionMatrix();
+    this.size_marks(back.negate(), 2 * Math.tan(this.camera.fov * Math.PI / 360) / height);
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -92,7 +108,7 @@ class WaterScene {
 
   zoom(factor) {
     this.zoomed = true;
-    this.distance = Math.min(500 * this.size, Math.max(0.3 * this.size, this.distance * factor));
+    this.distance = Math.min(500 * this.size, Math.max(0.3 * this.subject, this.distance * factor));
     this.render();
   }
 
@@ -160,11 +176,12 @@ class WaterScene {
     const size = mesh.diagonal;
     const water = this.model.water;
     const marks = {
-      force: this.arrow('force', size),
-      weight: this.arrow('weight', size),
-      centre_of_buoyancy: this.ball('centre_of_buoyancy', 0.022 * size),
-      centre_of_mass: this.ball('centre_of_mass', 0.022 * size),
-      metacentre: this.ball('metacentre', 0.022 * size),
+      force: this.arrow('force'),
+      weight: this.arrow('weight'),
+      centre_of_buoyancy: this.point('centre_of_buoyancy', new THREE.SphereGeometry(5, 20, 14)),
+      centre_of_mass: this.point('centre_of_mass', new THREE.SphereGeometry(5, 20, 14)),
+      // A ring, so that both are seen where it lies in the centre of mass.
+      metacentre: this.point('metacentre', new THREE.RingGeometry(5, 8, 28)),
     };
     return { description, group, size, marks, whole_weight: water.density * water.gravity * Math.abs(mesh.volume) };
   }
@@ -174,20 +191,21 @@ class WaterScene {
     return new THREE.MeshBasicMaterial({ color: WaterScene.colours[name], depthTest: false, transparent: true });
   }
 
-  ball(name, radius) {
-    const ball = new THREE.Mesh(new THREE.SphereGeometry(radius, 20, 14), this.mark_material(name));
-    ball.renderOrder = 3;
-    ball.visible = false;
-    this.scene.add(ball);
-    return ball;
+  // geometry: in pixels, as those of the arrows but for their length; size_marks() makes metres of them.
+  point(name, geometry) {
+    const point = new THREE.Mesh(geometry, this.mark_material(name));
+    point.renderOrder = name === 'metacentre' ? 4 : 3;
+    point.visible = false;
+    this.scene.add(point);
+    return point;
   }
 
   // Of length 1 along +y, scaled when it is shown.
-  arrow(name, size) {
+  arrow(name) {
     const material = this.mark_material(name);
-    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.008 * size, 0.008 * size, 1, 12), material);
+    const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1.9, 1.9, 1, 12), material);
     shaft.position.y = 0.5;
-    const head = new THREE.Mesh(new THREE.ConeGeometry(0.026 * size, 0.07 * size, 16), material);
+    const head = new THREE.Mesh(new THREE.ConeGeometry(6, 16, 16), material);
     head.position.y = 1;
     const arrow = new THREE.Group();
     arrow.add(shaft, head);
@@ -199,9 +217,27 @@ class WaterScene {
     return arrow;
   }
 
+  // Marks stay as large on the screen however near the camera is, so that zooming parts what lies close together, but
+  // never larger than a part of their body. ahead: where the camera looks; slope: of one pixel.
+  size_marks(ahead, slope) {
+    for (const { marks, size } of this.bodies.values()) {
+      for (const mark of Object.values(marks)) {
+        if (!mark.visible) continue;
+        const pixel = Math.min(0.01 * size, slope * Math.max(this.camera.near, mark.position.clone().sub(this.camera.position).dot(ahead)));
+        if (mark.head) {
+          mark.head.scale.setScalar(pixel);
+          mark.shaft.scale.x = mark.shaft.scale.z = pixel;
+        } else {
+          mark.scale.setScalar(pixel);
+          mark.quaternion.copy(this.camera.quaternion);
+        }
+      }
+    }
+  }
+
   // length: m
-  place_arrow(arrow, from, direction, length) {
-    arrow.visible = length > 1e-3 * this.size;
+  place_arrow(arrow, from, direction, length, size) {
+    arrow.visible = length > 1e-3 * size;
     if (!arrow.visible) return;
     arrow.position.copy(from);
     arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), direction.clone().normalize());
@@ -222,7 +258,7 @@ class WaterScene {
     place(body.marks.centre_of_buoyancy, wet ? now.b : null);
     const force = new THREE.Vector3(...now.f);
     const scale = 0.9 * body.size / body.whole_weight;
-    if (wet) this.place_arrow(body.marks.force, offset(now.b || [0, 0, 0]), force, scale * force.length());
+    if (wet) this.place_arrow(body.marks.force, offset(now.b || [0, 0, 0]), force, scale * force.length(), body.size);
     else body.marks.force.visible = false;
     place(body.marks.metacentre, now.m ? now.m[0] : null);
     const centre = body.description.center_of_mass;
@@ -230,19 +266,19 @@ class WaterScene {
     if (centre === null) return;
     body.marks.centre_of_mass.position.set(...centre).applyQuaternion(body.group.quaternion).add(at);
     const weight = (body.description.mass || 0) * this.model.water.gravity;
-    this.place_arrow(body.marks.weight, body.marks.centre_of_mass.position, this.up.clone().negate(), scale * weight);
+    this.place_arrow(body.marks.weight, body.marks.centre_of_mass.position, this.up.clone().negate(), scale * weight, body.size);
   }
 
   // A plane with a grid of metres, or of ten or a tenth, that fades into the sky before it ends.
   add_water() {
-    this.grid_cell = Math.pow(10, Math.round(Math.log10(0.3 * this.size)));
+    this.grid_cell = { value: 1 };
     this.fade = { value: 1 };
     const material = new THREE.ShaderMaterial({
       extensions: { derivatives: true },
       side: THREE.DoubleSide,
       transparent: true,
       depthWrite: false,
-      uniforms: { colour: { value: new THREE.Color(WaterScene.colours.water) }, cell: { value: this.grid_cell }, fade: this.fade },
+      uniforms: { colour: { value: new THREE.Color(WaterScene.colours.water) }, cell: this.grid_cell, fade: this.fade },
       vertexShader: `
         uniform float fade;
         varying vec2 at;
@@ -315,6 +351,11 @@ class WaterScene {
   }
 }
 
+// p, q: [w, x, y, z]; as recorded.
+function is_pose(p, q) {
+  return p.every(Number.isFinite) && q.every(Number.isFinite) && q.some((part) => part !== 0);
+}
+
 // Smooth edges cost a processor that draws by itself a third of its frames.
 function drawn_by_the_processor() {
   const probe = document.createElement('canvas').getContext('webgl');
@@ -351,12 +392,12 @@ function fill_legend(list, with_mass, with_metacentre) {
   const entries = [['dry', 'hull, dry', ''], ['wet', 'hull, wetted', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', ''],
                    ['force', 'buoyant force, at the centre of buoyancy', 'round']];
   if (with_mass) entries.push(['weight', 'weight', 'bar'], ['centre_of_mass', 'centre of mass', 'round']);
-  if (with_metacentre) entries.push(['metacentre', 'metacentre (of the softer axis)', 'round']);
+  if (with_metacentre) entries.push(['metacentre', 'metacentre (of the softer axis)', 'ring']);
   for (const [colour, text, shape] of entries) {
     const item = document.createElement('li');
     const sample = document.createElement('i');
     sample.className = shape;
-    sample.style.background = WaterScene.colours[colour];
+    sample.style.setProperty('--colour', WaterScene.colours[colour]);
     item.append(sample, text);
     list.append(item);
   }
