@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -170,11 +169,8 @@ int simulate(Arguments arguments) {
   if (!simulation) return report(simulation.error(), kWrongInput);
   std::optional<RunCsv> csv;
   if (!arguments.csv.empty()) {
-    std::error_code no_such_file;
-    if (std::filesystem::equivalent(arguments.scene, arguments.csv, no_such_file)) {
-      return report({"--csv " + arguments.csv, "the scene file itself", "a file of its own", "", ""},
-                    kWrongInput);
-    }
+    const Expected<void> own = check_output_is_its_own(arguments.csv, {arguments.scene});
+    if (!own) return report(own.error(), kWrongInput);
     Expected<RunCsv> created = RunCsv::create(arguments.csv, arguments.csv_every);
     if (!created) return report(created.error(), kFailed);
     csv = std::move(*created);

@@ -45,12 +45,12 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTa
     print_error(app, std::string("ended by ") + summary->ended_by + "; " + options.output.string() +
                          " holds what was answered until then");
   }
-  const bool read_all_channels = *summary->ended_by == '\0' && options.input.extension() == ".lcmlog";
-  for (const std::string& channel :
-       read_all_channels ? task.channels.never_seen() : std::vector<std::string>{}) {
-    print_error(app, Error{"warning: channel " + channel, "no event of " + options.input.string(),
-                           "questions or poses to answer", "the log has another name for it",
-                           "See --states-channel and --pose"});
+  if (*summary->ended_by == '\0' && options.input.extension() == ".lcmlog") {
+    for (const std::string& channel : task.channels.never_seen()) {
+      print_error(app, Error{"warning: channel " + channel, "no event of " + options.input.string(),
+                             "questions or poses to answer", "the log has another name for it",
+                             "See --states-channel and --pose"});
+    }
   }
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);

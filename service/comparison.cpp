@@ -22,8 +22,8 @@ double distance(double a, double b) {
 
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   const double length = std::hypot(distance(a[0], b[0]), distance(a[1], b[1]), distance(a[2], b[2]));
-  return std::isnan(length) ? kInfinity
-                            : length;  // libstdc++'s of three numbers is NaN where one is infinite
+  // libstdc++'s hypot() of three numbers is NaN where one of them is infinite.
+  return std::isnan(length) ? kInfinity : length;
 }
 
 // 0 / 0 is 0: both are exact and the same. A bound that is no number bounds nothing.

@@ -6,6 +6,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "command_line/command_line.h"
 #include "hydrostatics/solver.h"
 #include "transport/lcm_connection.h"
 
@@ -128,12 +129,10 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   if (const Expected<void> checked = check_formats(options, plan); !checked) {
     return tl::unexpected(checked.error());
   }
-  for (const std::filesystem::path& read : {options.input, options.scene, options.mesh, options.earlier}) {
-    std::error_code no_such_file;
-    if (std::filesystem::equivalent(read, options.output, no_such_file)) {
-      return failure({options.output.string(), "the same file as " + read.string(), "an OUTPUT of its own",
-                      "replaying would overwrite what it reads", ""});
-    }
+  if (const Expected<void> checked = check_output_is_its_own(
+          options.output, {options.input, options.scene, options.mesh, options.earlier});
+      !checked) {
+    return tl::unexpected(checked.error());
   }
   if (const Expected<void> checked = check_different_channels(
           {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});

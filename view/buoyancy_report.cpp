@@ -86,14 +86,8 @@ int main(int argc, char** argv) {
     print_error(app, error);
     return exit_code;
   };
-  for (const std::filesystem::path& read : {arguments.run, arguments.scene}) {
-    std::error_code no_such_file;
-    if (std::filesystem::equivalent(read, arguments.output, no_such_file)) {
-      return refuse(
-          {arguments.output.string(), "the same file as " + read.string(), "an OUTPUT of its own", "", ""},
-          kWrongInput);
-    }
-  }
+  const Expected<void> own = check_output_is_its_own(arguments.output, {arguments.run, arguments.scene});
+  if (!own) return refuse(own.error(), kWrongInput);
   const Expected<std::string> three = three_js(arguments.three);
   if (!three) return refuse(three.error(), kFailed);
   const Expected<Scene> scene = Scene::load(arguments.scene);

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "messages/vectors.h"
+
 namespace buoyancy {
 namespace {
 
-template <std::size_t kSize>
-bool is_finite(const std::array<double, kSize>& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
 std::optional<WatchedBody::Pose> pose_of(const BodyState& state) {
   constexpr double kMostNormError = 1e-3;  // as the service has it
-  if (!is_finite(state.position)) return std::nullopt;
+  if (!all_finite(state.position)) return std::nullopt;
   double norm = 0.0;
   for (const double part : state.quaternion_wxyz) norm = std::hypot(norm, part);
   if (!(std::abs(norm - 1.0) <= kMostNormError)) return std::nullopt;
@@ -132,7 +129,7 @@ void BusWatch::hear_hydrostatics(Bytes bytes) {
     WatchedBody* const body = find(heard.body_id);
     if (body == nullptr) continue;
     body->metacenters.reset();
-    if (heard.status != BodyStatus::kOk || !std::ranges::all_of(heard.metacenters, is_finite<3>)) continue;
+    if (heard.status != BodyStatus::kOk || !std::ranges::all_of(heard.metacenters, all_finite<3>)) continue;
     body->metacenters = WatchedBody::Metacenters{heard.metacenters, heard.metacentric_heights};
   }
 }

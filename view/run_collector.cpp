@@ -23,6 +23,15 @@ std::int64_t wrapped_difference(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
 
+// offset where it puts utime at least least_ahead, and less than a day, behind latest; else the one that puts
+// it at `otherwise`.
+std::int64_t fitting_offset(std::int64_t utime, std::int64_t offset, std::int64_t latest,
+                            std::int64_t least_ahead, std::int64_t otherwise) {
+  const std::int64_t ahead = wrapped_difference(wrapped_sum(utime, offset), latest);
+  const bool fits = ahead >= least_ahead && ahead <= kAnotherClock;
+  return fits ? offset : wrapped_difference(otherwise, utime);
+}
+
 MeshUp mesh_up_of(const Body& body) {
   const std::string& axis = body.prepared->report.source.up_axis;
   return axis == "y" ? MeshUp::kY : axis == "x" ? MeshUp::kX : MeshUp::kZ;
@@ -81,28 +90,22 @@ std::int64_t RunCollector::time_of(std::int32_t body_id, std::int64_t session_id
   Collected& body = bodies_[*index];
   if (!first_utime_) first_utime_ = utime;
 
-  const bool is_first = body.clocks.empty();
+  const std::int64_t behind = wrapped_sum(body.last_time, body.last_step);
   auto clock = std::ranges::find(body.clocks, session_id, &Clock::session_id);
-  const bool begins = clock == body.clocks.end();
-  if (begins) {
-    const std::int64_t offset = is_first ? wrapped_difference(0, *first_utime_) : body.clocks.front().offset;
-    const std::int64_t latest = is_first ? latest_ : body.last_time;
-    body.clocks.push_front({session_id, offset, latest});
+  if (clock != body.clocks.end()) {
+    clock->offset = fitting_offset(utime, clock->offset, clock->latest, -kClockBeganAgain, behind);
+  } else {
+    // Another body's states may be older than those that came before.
+    const std::int64_t offset =
+        body.clocks.empty()
+            ? fitting_offset(utime, wrapped_difference(0, *first_utime_), latest_, -kAnotherClock, latest_)
+            : fitting_offset(utime, body.clocks.front().offset, body.last_time, 1, behind);
+    body.clocks.push_front({session_id, offset, wrapped_sum(utime, offset)});
+    if (body.clocks.size() > kClocksKept) body.clocks.pop_back();
     clock = body.clocks.begin();
   }
-  if (body.clocks.size() > kClocksKept) body.clocks.pop_back();
-
-  std::int64_t time = wrapped_sum(utime, clock->offset);
-  const std::int64_t ahead = wrapped_difference(time, clock->latest);
-  // A body's first state may be older than another's; a further session of a body begins behind the one
-  // before.
-  const std::int64_t least_ahead = is_first ? -kAnotherClock : begins ? 1 : -kClockBeganAgain;
-  if (ahead < least_ahead || ahead > kAnotherClock) {
-    time = is_first ? latest_ : body.last_time + body.last_step;
-    clock->offset = wrapped_difference(time, utime);
-    clock->latest = time;
-  }
-  clock->latest = is_first ? time : std::max(clock->latest, time);
+  const std::int64_t time = wrapped_sum(utime, clock->offset);
+  clock->latest = std::max(clock->latest, time);
   latest_ = std::max(latest_, time);
   if (time > body.last_time) {
     body.last_step = time - body.last_time;

@@ -1,7 +1,5 @@
 #include "view/run_log_file.h"
 
-#include <algorithm>
-#include <cmath>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "messages/vectors.h"
 #include "recording/event_log.h"
 #include "view/heard_poses.h"
 
@@ -21,10 +20,6 @@ constexpr std::size_t kMostWaiting = 4'096;
 constexpr std::int64_t kEventsBetweenProgress = 4'096;
 
 constexpr std::int64_t kSessionOfPoses = std::numeric_limits<std::int64_t>::min();
-
-bool is_finite(const std::array<double, 3>& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
 
 // Questions until their answers come, in order of arrival.
 class Conversation {
@@ -43,8 +38,8 @@ class Conversation {
     tl::expected<Question, Rejection> question = poses_.question(index, bytes);
     if (!question) return leave_out("a pose", question.error());
     const BodyState& state = question->bodies.front();
-    const bool velocities = poses_.asked_on().velocity_frame && is_finite(state.linear_velocity) &&
-                            is_finite(state.angular_velocity);
+    const bool velocities = poses_.asked_on().velocity_frame && all_finite(state.linear_velocity) &&
+                            all_finite(state.angular_velocity);
     wait_for_answer({timestamp, velocities, *std::move(question), {}}, kSessionOfPoses);
   }
 

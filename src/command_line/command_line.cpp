@@ -27,6 +27,18 @@ std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* 
   }
 }
 
+Expected<void> check_output_is_its_own(const std::filesystem::path& output,
+                                       std::initializer_list<std::filesystem::path> read) {
+  for (const std::filesystem::path& file : read) {
+    std::error_code no_such_file;
+    if (std::filesystem::equivalent(file, output, no_such_file)) {
+      return failure({output.string(), "the same file as " + file.string(), "an output of its own",
+                      "it would overwrite what is read", ""});
+    }
+  }
+  return {};
+}
+
 void print_error(const CLI::App& app, const std::string& message) {
   const char* priority = standard_error_is_the_journal() ? "<3>" : "";
   std::fprintf(stderr, "%s%s: %s\n", priority, app.get_name().c_str(), message.c_str());

@@ -2,6 +2,8 @@
 // failing turned into one line on stderr and exit code 2.
 #pragma once
 
+#include <filesystem>
+#include <initializer_list>
 #include <optional>
 
 #include <CLI/App.hpp>
@@ -19,6 +21,10 @@ enum ExitCode : int {
 // nullopt: parsed, go on. Else the exit code: kDone after --help and --version, kWrongInput after one line on
 // stderr.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
+
+// Errors: output, there already, is one of the files that are read. An empty path is none.
+Expected<void> check_output_is_its_own(const std::filesystem::path& output,
+                                       std::initializer_list<std::filesystem::path> read);
 
 // One line on stderr: "<program>: <message>"; for the journal with its level in front (journal.h).
 void print_error(const CLI::App& app, const std::string& message);

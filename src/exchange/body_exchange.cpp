@@ -10,14 +10,6 @@
 namespace buoyancy {
 namespace {
 
-// Without a branch for each: infinity less itself is no number.
-template <std::size_t kSize>
-bool all_finite(const std::array<double, kSize>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value - value;
-  return sum == 0.0;
-}
-
 bool all_finite(const Pose& pose) {
   return pose.p_WB.allFinite() && pose.q_WB.coeffs().allFinite();
 }

@@ -1,11 +1,20 @@
-// Three-vectors as messages have them, for those who compute, and back.
+// Vectors as messages have them: checked, and turned into those that we compute with, and back.
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "geometry/vec3.h"
 
 namespace buoyancy {
+
+// Without a branch for each: infinity less itself is no number.
+template <std::size_t kSize>
+bool all_finite(const std::array<double, kSize>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value - value;
+  return sum == 0.0;
+}
 
 inline Vec3 as_vec3(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};

@@ -131,7 +131,7 @@ Expected<LcmConnection> LcmConnection::open(const std::string& url) {
     if (!parsed) return tl::unexpected(parsed.error());
     if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
     shown = text_of(*parsed);
-    Expected<UdpmReceiver> opened = UdpmReceiver::open(shown);
+    Expected<UdpmReceiver> opened = UdpmReceiver::open(*parsed);
     if (!opened) return tl::unexpected(opened.error());
     receiver = std::move(*opened);
   }

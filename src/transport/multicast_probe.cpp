@@ -50,12 +50,6 @@ std::string subject(const UdpmUrl& url) {
   return "UDP multicast to " + url.group + ":" + std::to_string(url.port);
 }
 
-tl::unexpected<Error> no_route(const UdpmUrl& url, int error) {
-  return failure({subject(url), "no multicast route (" + reason(error) + ")",
-                  "a network interface that LCM's UDP multicast can use",
-                  "this machine is on no network, or on none that has a route for multicast", kRemedy});
-}
-
 tl::unexpected<Error> socket_failed(const UdpmUrl& url, const std::string& what, int error) {
   return failure({subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
                   "another program holds the port alone, or sockets are forbidden to this one", ""});
@@ -91,42 +85,26 @@ bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in&
   return false;
 }
 
-sockaddr_in address_of(const UdpmUrl& url) {
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(url.port);
-  ::inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
-  return group;
-}
-
-bool join(const Socket& socket, const sockaddr_in& group) {
-  ip_mreq membership{};
-  membership.imr_multiaddr = group.sin_addr;
-  membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  return socket.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
-}
-
-// Of UDP: nothing is sent.
-bool connect(const Socket& socket, const sockaddr_in& group) {
-  return ::connect(socket.descriptor(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0;
-}
-
 }  // namespace
 
-Expected<void> check_multicast_route(const UdpmUrl& url) {
-  const Socket socket;
-  if (socket.descriptor() < 0) return socket_failed(url, "socket", errno);
-  const sockaddr_in group = address_of(url);
-  if (!connect(socket, group) || !join(socket, group)) return no_route(url, errno);
-  return {};
+tl::unexpected<Error> no_multicast_route(const UdpmUrl& url, int error) {
+  return failure({subject(url), "no multicast route (" + reason(error) + ")",
+                  "a network interface that LCM's UDP multicast can use",
+                  "this machine is on no network, or on none that has a route for multicast", kRemedy});
 }
 
 Expected<void> probe_multicast(const UdpmUrl& url) {
-  const sockaddr_in group = address_of(url);
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(url.port);
+  if (inet_pton(AF_INET, url.group.c_str(), &group.sin_addr) != 1) return no_multicast_route(url, EINVAL);
+
   const Socket sender;
   const Socket receiver;
   if (sender.descriptor() < 0 || receiver.descriptor() < 0) return socket_failed(url, "socket", errno);
-  if (!connect(sender, group)) return no_route(url, errno);
+  if (::connect(sender.descriptor(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
+    return no_multicast_route(url, errno);
+  }
 
   sockaddr_in any = group;
   any.sin_addr.s_addr = htonl(INADDR_ANY);
@@ -134,7 +112,10 @@ Expected<void> probe_multicast(const UdpmUrl& url) {
   if (::bind(receiver.descriptor(), reinterpret_cast<const sockaddr*>(&any), sizeof any) != 0) {
     return socket_failed(url, "bind", errno);
   }
-  if (!join(receiver, group)) return no_route(url, errno);
+  ip_mreq membership{};
+  membership.imr_multiaddr = group.sin_addr;
+  membership.imr_interface.s_addr = htonl(INADDR_ANY);
+  if (!receiver.set(IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
   if (!sender.set(IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(0))) {
     return socket_failed(url, "IP_MULTICAST_TTL", errno);
   }

@@ -15,7 +15,7 @@ inline constexpr int kMulticastProbeMilliseconds = 2000;
 // Errors: no route to the group, port taken, packets that do not come back.
 Expected<void> probe_multicast(const UdpmUrl& url);
 
-// The part of it that a listener can have without sending anything. Errors: no route to the group.
-Expected<void> check_multicast_route(const UdpmUrl& url);
+// What is told where the group could not be joined. error: errno.
+tl::unexpected<Error> no_multicast_route(const UdpmUrl& url, int error);
 
 }  // namespace buoyancy

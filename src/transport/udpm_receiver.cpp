@@ -40,20 +40,21 @@ T data_of(cmsghdr* message) {
 UdpmReceiver::UdpmReceiver(FileDescriptor socket) : socket_(std::move(socket)), packet_(kLargestPacket) {}
 
 Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
-  const std::string shown = effective_lcm_url(url);
-  const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+  const Expected<UdpmUrl> parsed = parse_udpm_url(effective_lcm_url(url));
   if (!parsed) return tl::unexpected(parsed.error());
-  if (Expected<void> routed = check_multicast_route(*parsed); !routed) return tl::unexpected(routed.error());
+  return open(*parsed);
+}
 
+Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
   FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in group{};
   group.sin_family = AF_INET;
-  group.sin_port = htons(parsed->port);
-  ::inet_pton(AF_INET, parsed->group.c_str(), &group.sin_addr);
+  group.sin_port = htons(url.port);
+  ::inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
   ip_mreq membership{};
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  const std::int32_t buffer = parsed->recv_buf_size.value_or(kReceiveBufferBytes);
+  const std::int32_t buffer = url.recv_buf_size.value_or(kReceiveBufferBytes);
   // Root gets what it asks for, others up to net.core.rmem_max. Bound to the group's address: what comes to
   // the port by another one is not ours; nor, with IP_MULTICAST_ALL, what comes by an interface on which
   // another program has joined the group.
@@ -62,12 +63,13 @@ Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
       (set(socket, SOL_SOCKET, SO_RCVBUFFORCE, buffer) || set(socket, SOL_SOCKET, SO_RCVBUF, buffer)) &&
       set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
-      set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0) && set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership);
+      set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
   if (!listens) {
-    return failure({shown, std::generic_category().message(errno),
+    return failure({text_of(url), std::generic_category().message(errno),
                     "a UDP socket that may listen to the group",
                     "another program holds the port alone, or sockets are forbidden to this one", ""});
   }
+  if (!set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
   return UdpmReceiver(std::move(socket));
 }
 

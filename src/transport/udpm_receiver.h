@@ -41,6 +41,7 @@ class UdpmReceiver {
   // to the port. Asks the kernel for a buffer of 4 MB where the URL does
   // not say. Sends nothing. Errors: not a udpm URL, no multicast route.
   static Expected<UdpmReceiver> open(const std::string& url);
+  static Expected<UdpmReceiver> open(const UdpmUrl& url);
 
   // channel: this very name, of 1 to 63 characters. Its number: 0, 1, ... Errors: not such a name, or one
   // that is subscribed to.

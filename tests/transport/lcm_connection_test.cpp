@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "tests/allocation_count.h"
+#include "transport/udpm_receiver.h"
 
 namespace buoyancy {
 namespace {
@@ -66,6 +67,28 @@ std::vector<std::uint8_t> pattern(std::size_t size) {
   std::vector<std::uint8_t> bytes(size);
   for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(i * 2654435761U >> 13U);
   return bytes;
+}
+
+TEST(UdpmReceiver, SendsNothing) {
+  Expected<UdpmReceiver> onlooker = UdpmReceiver::open("");
+  ASSERT_TRUE(onlooker) << onlooker.error().message();
+  const auto waits = [&onlooker](int timeout_ms) {
+    pollfd waiting{onlooker->fileno(), POLLIN, 0};
+    return ::poll(&waiting, 1, timeout_ms) == 1;
+  };
+  ASSERT_TRUE(UdpmReceiver::open(""));
+  EXPECT_FALSE(waits(200));
+  open_or_die();
+  EXPECT_TRUE(waits(kPatienceMs)) << "whoever means to send tries that first";
+}
+
+TEST(UdpmReceiver, SaysThatThereIsNoRoute) {
+  const NetworkWithoutRoutes network;
+  ASSERT_TRUE(network.entered());
+  const Expected<UdpmReceiver> refused = UdpmReceiver::open("");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("no multicast route"), std::string::npos)
+      << refused.error().message();
 }
 
 TEST(LcmConnection, SendsWhereTheUrlNamesNoPort) {
