@@ -14,6 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
 
@@ -95,7 +97,7 @@ ChildProcess::ChildProcess(const ChildCommand& command) {
 ChildProcess::~ChildProcess() {
   if (!exit_code_) {
     send_signal(SIGKILL);
-    wait(60.0);
+    wait(kWaitTimeout);
   }
   close(process_fd_);
   close(output_fd_);
@@ -148,7 +150,7 @@ FinishedProcess run_to_end(const ChildCommand& command, double seconds) {
   finished.exit_code = child.wait(seconds);
   if (!finished.exit_code) {
     child.send_signal(SIGKILL);
-    child.wait(60.0);
+    child.wait(kWaitTimeout);
   }
   finished.standard_output = child.standard_output();
   finished.standard_error = child.standard_error();

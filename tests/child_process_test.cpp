@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
 
@@ -13,29 +15,29 @@ ChildCommand shell(const std::string& script) {
 }
 
 TEST(ChildProcess, CapturesBothStreamsAndTheExitCode) {
-  const FinishedProcess finished = run_to_end(shell("echo out; echo error >&2; exit 3"), 60.0);
+  const FinishedProcess finished = run_to_end(shell("echo out; echo error >&2; exit 3"), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 3);
   EXPECT_EQ(finished.standard_output, "out\n");
   EXPECT_EQ(finished.standard_error, "error\n");
 }
 
 TEST(ChildProcess, DoesNotBlockOnMoreOutputThanAPipeHolds) {
-  const FinishedProcess finished = run_to_end(shell("head -c 1000000 /dev/zero"), 60.0);
+  const FinishedProcess finished = run_to_end(shell("head -c 1000000 /dev/zero"), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_EQ(finished.standard_output.size(), 1000000U);
 }
 
 TEST(ChildProcess, IsReadableWhileItRunsAndEndsBySignal) {
   ChildProcess child(shell("echo ready; exec sleep 600"));
-  EXPECT_TRUE(child.wait_for_text("ready\n", 60.0));
+  EXPECT_TRUE(child.wait_for_text("ready\n", kWaitTimeout));
   EXPECT_EQ(child.wait(0.0), std::nullopt);
   child.send_signal(SIGTERM);
-  EXPECT_EQ(child.wait(60.0), 128 + SIGTERM);
+  EXPECT_EQ(child.wait(kWaitTimeout), 128 + SIGTERM);
 }
 
 TEST(ChildProcess, StopsWaitingForTextThatNeverCame) {
   ChildProcess child(shell("echo something else"));
-  EXPECT_FALSE(child.wait_for_text("ready", 60.0));
+  EXPECT_FALSE(child.wait_for_text("ready", kWaitTimeout));
   EXPECT_EQ(child.wait(0.0), 0);
 }
 
@@ -52,15 +54,15 @@ TEST(ChildProcess, GivesEnvironmentDirectoryAndOutputFile) {
   ChildCommand command = shell("echo $GREETING $(pwd); test -e /dev/full");
   command.environment = {"GREETING=hello"};
   command.directory = std::string("/");
-  EXPECT_EQ(run_to_end(command, 60.0).standard_output, "hello /\n");
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).standard_output, "hello /\n");
   command.standard_output = "/dev/full";
-  EXPECT_EQ(run_to_end(command, 60.0).standard_output, "");
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).standard_output, "");
 }
 
 TEST(ChildProcess, ExitsWith127WhereTheProgramIsMissing) {
   ChildCommand command;
   command.arguments = {"/no/such/program"};
-  const FinishedProcess finished = run_to_end(command, 60.0);
+  const FinishedProcess finished = run_to_end(command, kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 127);
   EXPECT_NE(finished.standard_error.find("/no/such/program"), std::string::npos);
 }

@@ -8,14 +8,14 @@
 
 #include "hydrostatics/solver.h"
 #include "tests/child_process.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kPatience = 240.0;
-
 TEST(ErrorUnderStress, LeavesTheExactMethodsAloneAndBreaksSinglePrecisionFarAway) {
-  const FinishedProcess program = run_to_end({{BUOYANCY_STRESS_PROGRAM}, {}, "/dev/null", "", ""}, kPatience);
+  const FinishedProcess program =
+      run_to_end({{BUOYANCY_STRESS_PROGRAM}, {}, "/dev/null", "", ""}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
 
   std::istringstream lines(program.standard_output);

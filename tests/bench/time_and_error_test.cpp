@@ -10,11 +10,10 @@
 #include "hydrostatics/wet_tree_sum.h"
 #include "tests/child_process.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr double kPatience = 120.0;
 
 struct CsvRow {
   std::string mesh, triangles, method, tolerance, target, regime;
@@ -41,7 +40,7 @@ TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
   const ScratchDirectory directory;
   const std::string csv = directory.path("rows.csv");
   const FinishedProcess program =
-      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kPatience);
+      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
   EXPECT_NE(program.standard_output.find("### How many times faster than `exact`"), std::string::npos);
 
@@ -80,17 +79,17 @@ TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
 TEST(TimeAndError, SaysWhatItWasNotAbleToWrite) {
   const FinishedProcess program = run_to_end(
       {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/no/such/directory/rows.csv"}, {}, "/dev/null", "", ""},
-      kPatience);
+      kRunTimeout);
   EXPECT_EQ(program.exit_code, 1);
   EXPECT_NE(program.standard_error.find("/no/such/directory/rows.csv"), std::string::npos);
   const FinishedProcess full = run_to_end(
-      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""}, kPatience);
+      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""}, kRunTimeout);
   EXPECT_EQ(full.exit_code, 1);
 }
 
 TEST(TimeAndError, RefusesArgumentsThatContradictEachOther) {
   const FinishedProcess program =
-      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kPatience);
+      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
   EXPECT_EQ(program.exit_code, 2);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/closed_loop.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -18,7 +19,7 @@ std::string crate(const std::string& world = "", const std::string& client = "de
 class ClientProgram : public testing::Test {
  protected:
   FinishedProcess run(const Options& options) const {
-    return run_to_end(client_command(scene_, options), 200.0);
+    return run_to_end(client_command(scene_, options), kRunTimeout);
   }
 
   TemporaryDirectory directory_;
@@ -144,7 +145,7 @@ TEST_F(ClientProgram, AFullDiskIsAnError) {
   EXPECT_NE(finished.standard_error.find("/dev/full"), std::string::npos) << finished.standard_error;
   ChildCommand command = client_command(scene_, {"--embedded", "--duration", "0.01"});
   command.standard_output = "/dev/full";
-  EXPECT_EQ(run_to_end(command, 200.0).exit_code, 1);
+  EXPECT_EQ(run_to_end(command, kRunTimeout).exit_code, 1);
 }
 
 TEST_F(ClientProgram, ACsvThatCannotBeCreatedIsAnErrorBeforeTheRun) {
@@ -173,7 +174,7 @@ TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
           "\"\nopen = \"dry_boundary\"\n[body.client]\nmass = 300\ncenter_of_mass = [0.5, 0.5, 0]\n"
           "inertia = [50, 50, 50]\n");
   const FinishedProcess finished =
-      run_to_end(client_command(path, {"--embedded", "--step", "0.01", "--csv", csv}), 200.0);
+      run_to_end(client_command(path, {"--embedded", "--step", "0.01", "--csv", csv}), kRunTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
   EXPECT_NE(finished.standard_error.find("body 1 (tray)"), std::string::npos) << finished.standard_error;
@@ -197,7 +198,7 @@ TEST_F(ClientProgram, AMotionThatLeavesTheRangeOfNumbersIsAnErrorAndNoRowHidesIt
     const std::string path = directory_.write("far.toml", crate("", wrong.client));
     Options options = {"--embedded", "--csv", csv};
     options.insert(options.end(), wrong.options.begin(), wrong.options.end());
-    const FinishedProcess finished = run_to_end(client_command(path, options), 200.0);
+    const FinishedProcess finished = run_to_end(client_command(path, options), kRunTimeout);
     EXPECT_EQ(finished.exit_code, 1) << wrong.client << finished.standard_output;
     EXPECT_EQ(finished.standard_output, "");
     EXPECT_NE(finished.standard_error.find("body 1 (crate) at"), std::string::npos)
@@ -224,7 +225,7 @@ TEST_F(ClientProgram, WarnsOfAStepTooLargeBeforeTheRunAndOfTheEnergyAfterIt) {
   EXPECT_NE(std::string(summary["warnings"][1]).find("mechanical energy rose"), std::string::npos);
 
   const FinishedProcess table =
-      run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), 200.0);
+      run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), kRunTimeout);
   EXPECT_EQ(table.exit_code, 0);
   EXPECT_NE(table.standard_output.find("warning     body 1 (plate): step"), std::string::npos)
       << table.standard_output;
@@ -282,7 +283,7 @@ TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
       {nobody, {"--embedded"}, "[body.client]"},
   };
   for (const auto& wrong : cases) {
-    const FinishedProcess finished = run_to_end(client_command(wrong.scene, wrong.options), 200.0);
+    const FinishedProcess finished = run_to_end(client_command(wrong.scene, wrong.options), kRunTimeout);
     EXPECT_EQ(finished.exit_code, 2) << wrong.said;
     EXPECT_NE(finished.standard_error.find(wrong.said), std::string::npos)
         << wrong.said << ": " << finished.standard_error;
@@ -292,9 +293,9 @@ TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
 TEST_F(ClientProgram, TellsItsVersionAndHelp) {
   ChildCommand command = client_command(scene_, {});
   command.arguments = {command.arguments.front(), "--version"};
-  EXPECT_EQ(run_to_end(command, 60.0).exit_code, 0);
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).exit_code, 0);
   command.arguments.back() = "--help";
-  const FinishedProcess help = run_to_end(command, 60.0);
+  const FinishedProcess help = run_to_end(command, kWaitTimeout);
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_NE(help.standard_output.find("--lead-time"), std::string::npos);
 }

@@ -7,11 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
 
 // Far beyond what any run takes, also under sanitizers: a run that hangs fails.
-constexpr double kPatience = 250.0;
 
 ChildCommand command(const char* program, const std::string& scene, const Options& options) {
   ChildCommand command;
@@ -55,7 +56,7 @@ ChildCommand service_command(const std::string& scene, const Options& options) {
 nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options) {
   ChildCommand command = client_command(scene, options);
   command.arguments.emplace_back("--json");
-  const FinishedProcess finished = run_to_end(command, kPatience);
+  const FinishedProcess finished = run_to_end(command, kRunTimeout);
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
   if (finished.exit_code != 0) return nullptr;
   nlohmann::json summary = nlohmann::json::parse(finished.standard_output);

@@ -9,6 +9,7 @@
 
 #include "hydrostatics/buoyancy.h"
 #include "scene/scene.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 nlohmann::json simulate_with_service(const std::string& scene, Options options) {
   ChildProcess service(service_command(scene, {"-l", kServiceUrl}));
-  EXPECT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  EXPECT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   options.insert(options.end(), {"-l", kServiceUrl});
   return simulate(scene, options);
 }

@@ -8,6 +8,7 @@
 
 #include "tests/client/closed_loop.h"
 #include "tests/client/lossy_relay.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -59,7 +60,7 @@ TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLos
   const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "6"});
   ASSERT_GT(embedded.size(), 6000U * 300U);
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "6"}) == embedded);
 
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
@@ -81,7 +82,7 @@ TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
   EXPECT_EQ(client.wait(0.0), std::nullopt) << "the run was over before the service could be killed";
   service.reset();
   service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
-  EXPECT_EQ(client.wait(250.0), 0) << client.standard_error();
+  EXPECT_EQ(client.wait(kRunTimeout), 0) << client.standard_error();
   EXPECT_TRUE(read_file(csv) == embedded);
 }
 
@@ -89,7 +90,7 @@ TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
   const FinishedProcess finished = run_to_end(
       client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.01", "--retries", "3", "--states-channel",
                               "SOME_STATES", "--wrenches-channel", "SOME_WRENCHES"}),
-      60.0);
+      kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
   for (const char* word :
@@ -102,8 +103,8 @@ TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
 TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) {
   const std::string other = directory_.write("other.toml", "[[body]]\nid = 7\nshape = { type = \"box\" }\n");
   ChildProcess service(service_command(other, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
-  const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), 60.0);
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("body 8 (crate)"), std::string::npos) << finished.standard_error;
   EXPECT_NE(finished.standard_error.find("UNKNOWN_BODY"), std::string::npos) << finished.standard_error;
@@ -111,13 +112,13 @@ TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) 
 
 TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const std::string csv = directory_.path("interrupted.csv");
   ChildProcess client(
       client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--csv", csv, "--json"}));
   wait_for_rows(csv, 100'000, client);
   client.send_signal(SIGINT);
-  EXPECT_EQ(client.wait(60.0), 1);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1);
   const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
   EXPECT_EQ(summary["interrupted"], true);
   EXPECT_EQ(csv_column(read_file(csv), "energy").size(), 2 * (std::size_t{summary["steps"]} + 1));
@@ -127,14 +128,14 @@ TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
   ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1000"}));
   EXPECT_EQ(client.wait(0.5), std::nullopt);
   client.send_signal(SIGTERM);
-  EXPECT_EQ(client.wait(60.0), 1);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1);
 }
 
 using FreeRunning = Lockstep;
 
 TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   // Answers take eight intervals or more.
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
   const nlohmann::json summary =
@@ -155,7 +156,7 @@ TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
 
 TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
   // Warnings would be of the machine's load, not of this.
   const nlohmann::json summary =
@@ -168,13 +169,13 @@ TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
 
 TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", 60.0)) << service.standard_error();
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const std::string csv = directory_.path("free.csv");
   ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1000",
                                               "--timeout", "0.1", "--retries", "4", "--csv", csv}));
   wait_for_rows(csv, 20'000, client);
   service.send_signal(SIGKILL);
-  EXPECT_EQ(client.wait(60.0), 1);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1);
   EXPECT_NE(client.standard_error().find("no answer for"), std::string::npos) << client.standard_error();
 }
 

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
-
-constexpr double kPatience = 30.0;  // s
 
 // Holds a network namespace, empty but for a loopback that is down.
 ChildCommand empty_machine() {
@@ -74,7 +74,7 @@ void TwoMachines::run(const std::string& script) {
   ChildCommand command = command_of({"bash", "-euc", script});
   command.environment = {"SWITCH=" + std::to_string(switch_.pid()),
                          "SERVICE=" + std::to_string(service_.pid())};
-  const FinishedProcess finished = run_to_end(command, kPatience);
+  const FinishedProcess finished = run_to_end(command, kWaitTimeout);
   if (finished.exit_code != 0) trouble_ = script + ": " + finished.standard_error;
 }
 

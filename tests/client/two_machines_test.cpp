@@ -11,6 +11,7 @@
 
 #include "tests/client/closed_loop.h"
 #include "tests/client/lossy_relay.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -117,7 +118,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   EXPECT_EQ(written(), at_the_cut) << "the cable was not out";
   machines_.plug_cable();
   EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
-  ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
+  ASSERT_EQ(client.wait(kRunTimeout), 0) << client.standard_error();
   EXPECT_TRUE(read_file(csv_) == embedded("20"));
   const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
   EXPECT_GE(summary["round_trip"]["max"], cut_seconds());
@@ -134,7 +135,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
   EXPECT_EQ(client.wait(1.0), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
   EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
-  ASSERT_EQ(client.wait(200.0), 0) << client.standard_error();
+  ASSERT_EQ(client.wait(kRunTimeout), 0) << client.standard_error();
   EXPECT_TRUE(read_file(csv_) == embedded("20"));
 }
 

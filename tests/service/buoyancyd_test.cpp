@@ -7,13 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
 FinishedProcess run(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), BUOYANCYD);
-  return run_to_end(command_of(std::move(arguments)), kPatience);
+  return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
 }
 
 // Exit code, nothing on stdout, one line on stderr that says `text`.
@@ -34,7 +35,7 @@ TEST_P(Ended, BySignalItSaysWhatItDidAndExitsWith0) {
   ask(socket, one_body(1, 1, 0.0));
   hear(socket);
   service.child().send_signal(GetParam());
-  EXPECT_EQ(service.child().wait(kPatience), 0);
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
   EXPECT_NE(log.find(GetParam() == SIGINT ? "ended by SIGINT" : "ended by SIGTERM"), std::string::npos)
       << log;
@@ -97,12 +98,14 @@ TEST(Buoyancyd, SaysWithinSecondsWhatMendsAMissingMulticastRoute) {
 TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
   RunningService service;
   const std::vector<std::string> route{"224.0.0.0/4", "dev", "lo"};
-  ASSERT_EQ(run_to_end(command_of({"ip", "route", "del", route[0], route[1], route[2]}), kPatience).exit_code,
-            0);
-  EXPECT_TRUE(service.child().wait_for_text("was not sent (Network is unreachable)", kPatience))
+  ASSERT_EQ(
+      run_to_end(command_of({"ip", "route", "del", route[0], route[1], route[2]}), kWaitTimeout).exit_code,
+      0);
+  EXPECT_TRUE(service.child().wait_for_text("was not sent (Network is unreachable)", kWaitTimeout))
       << service.log();
-  ASSERT_EQ(run_to_end(command_of({"ip", "route", "add", route[0], route[1], route[2]}), kPatience).exit_code,
-            0);
+  ASSERT_EQ(
+      run_to_end(command_of({"ip", "route", "add", route[0], route[1], route[2]}), kWaitTimeout).exit_code,
+      0);
   RawLcmSocket socket;
   ask(socket, one_body(1, 1, 0.0));
   EXPECT_EQ(hear(socket).seq, 1);
@@ -112,11 +115,11 @@ TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
 TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
   RunningService first;
   RawLcmSocket bus;
-  for (int heard = 0; heard < 3; ++heard) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kPatience));
+  for (int heard = 0; heard < 3; ++heard) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kWaitTimeout));
   EXPECT_EQ(first.log().find("another buoyancyd"), std::string::npos) << first.log();  // its own status
   RunningService second;
-  EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kPatience)) << first.log();
-  EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kPatience)) << second.log();
+  EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kWaitTimeout)) << first.log();
+  EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kWaitTimeout)) << second.log();
 }
 
 // The words of a log line's level, as spdlog writes them, that stand in the log.
@@ -136,8 +139,8 @@ TEST_P(LogLevel, SaysWhatItIsAskedForAndWhatIsGraver) {
   const std::string scene = directory.write("scene.toml", kBoxScene);
   ChildProcess child(command_of({BUOYANCYD, "--scene", scene, "--log-level", level}));
   RawLcmSocket socket;
-  ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kPatience));  // ready, whatever it says
-  socket.send("BUOYANCY_STATES", {1, 2, 3});                  // a trouble
+  ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it says
+  socket.send("BUOYANCY_STATES", {1, 2, 3});                     // a trouble
   ask(socket, one_body(7, 3, 0.0));
   EXPECT_EQ(hear(socket).seq, 3);
   directory.write("scene.toml", "nothing");
@@ -146,7 +149,7 @@ TEST_P(LogLevel, SaysWhatItIsAskedForAndWhatIsGraver) {
     return status.counters.rejected() == 1 && status.reloads_failed == 1;
   }));
   child.send_signal(SIGTERM);
-  EXPECT_EQ(child.wait(kPatience), 0);
+  EXPECT_EQ(child.wait(kWaitTimeout), 0);
   const std::string log = child.standard_error();
   EXPECT_EQ(levels_in(log), expected) << log;
   EXPECT_EQ(log.find("session 7 starts with seq 3") != log.npos, expected.contains("debug")) << log;
@@ -173,18 +176,18 @@ TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
                        scene});
   };
   ChildProcess child(started("$(stat -L -c %d:%i /dev/stderr)"));
-  ASSERT_TRUE(child.wait_for_text("ready:", kPatience)) << child.standard_error();
+  ASSERT_TRUE(child.wait_for_text("ready:", kWaitTimeout)) << child.standard_error();
   EXPECT_TRUE(child.standard_error().starts_with("<6>ready: 2 bodies;")) << child.standard_error();
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
-  EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kPatience)) << child.standard_error();
+  EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kWaitTimeout)) << child.standard_error();
   ChildProcess refused(started("$(stat -L -c %d:%i /dev/stderr)"));
-  EXPECT_EQ(refused.wait(kPatience), 2);
+  EXPECT_EQ(refused.wait(kWaitTimeout), 2);
   EXPECT_TRUE(refused.standard_error().starts_with("<3>buoyancyd: ")) << refused.standard_error();
 
   directory.write("scene.toml", kBoxScene);
   ChildProcess redirected(started("1:2"));
-  ASSERT_TRUE(redirected.wait_for_text("[info] ready:", kPatience)) << redirected.standard_error();
+  ASSERT_TRUE(redirected.wait_for_text("[info] ready:", kWaitTimeout)) << redirected.standard_error();
 }
 
 TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
@@ -197,7 +200,7 @@ TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
   EXPECT_EQ(first->mode, Mode::kLatest);
   EXPECT_EQ(first->scene_bodies, 2);
   EXPECT_GE(first->uptime, 0.0);
-  EXPECT_LT(first->uptime, kPatience);
+  EXPECT_LT(first->uptime, kWaitTimeout);
   service.child().send_signal(SIGHUP);
   const auto reloaded = hear_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
   ASSERT_TRUE(reloaded);
@@ -247,7 +250,7 @@ TEST(Buoyancyd, FailsWhereItsReportCannotBeWritten) {
   ChildCommand command =
       command_of({BUOYANCYD, "--scene", directory.write("scene.toml", kBoxScene), "--check"});
   command.standard_output = "/dev/full";
-  expect_refusal(run_to_end(command, kPatience), 1, "standard output");
+  expect_refusal(run_to_end(command, kWaitTimeout), 1, "standard output");
 }
 
 TEST(Buoyancyd, TellsItsVersion) {

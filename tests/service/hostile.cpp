@@ -32,6 +32,7 @@
 #include "tests/exchange/malformed_messages.h"
 #include "tests/service/memory_of.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -324,7 +325,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
   holds &= flat;
   if (names > 0) holds &= forgets_names(socket, asker, service, names);
   service.child().send_signal(SIGTERM);
-  if (service.child().wait(kPatience) != 0)
+  if (service.child().wait(kWaitTimeout) != 0)
     throw std::runtime_error("buoyancyd did not end well: " + service.log());
   return holds;
 }

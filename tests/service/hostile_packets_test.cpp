@@ -7,6 +7,7 @@
 #include "tests/service/memory_of.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -43,7 +44,7 @@ TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestio
   ASSERT_TRUE(status);
   EXPECT_EQ(rejected(status->counters), expected);
   EXPECT_EQ(status->counters.answered, seq);
-  EXPECT_TRUE(service.child().wait_for_text("messages rejected", kPatience)) << service.log();
+  EXPECT_TRUE(service.child().wait_for_text("messages rejected", kWaitTimeout)) << service.log();
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, HostilePackets, testing::Values("lockstep", "latest"),
@@ -100,7 +101,7 @@ TEST(HostilePackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
   }
   EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
       << "the other belongs to no message";
-  EXPECT_TRUE(service.child().wait_for_text("fragments of incomplete", kPatience)) << service.log();
+  EXPECT_TRUE(service.child().wait_for_text("fragments of incomplete", kWaitTimeout)) << service.log();
 }
 
 TEST(HostilePackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
@@ -126,7 +127,7 @@ TEST(HostilePackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
     if (i % 100 == 99) expect_an_answer(socket, i, "a flood");
   }
   service.child().send_signal(SIGTERM);
-  EXPECT_EQ(service.child().wait(kPatience), 0);
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
   EXPECT_NE(log.find("messages rejected"), std::string::npos);
   EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100) << "one line a second at most";

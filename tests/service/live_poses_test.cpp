@@ -5,6 +5,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -19,7 +20,7 @@ RawBytes pose_at(double height, std::int64_t utime) {
 }
 
 bot_core::six_axis_force_torque_t hear_force(RawLcmSocket& socket, const std::string& channel) {
-  const std::optional<RawBytes> bytes = socket.receive(channel, kPatience);
+  const std::optional<RawBytes> bytes = socket.receive(channel, kWaitTimeout);
   if (!bytes) throw std::runtime_error("no answer on " + channel);
   bot_core::six_axis_force_torque_t message{};
   const auto size = static_cast<int>(bytes->size());

@@ -13,11 +13,11 @@
 #include "recording/event_log.h"
 #include "tests/child_process.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kPatience = 60.0;  // s
 constexpr int kEvents = 60;
 constexpr unsigned kLogs = 100;
 constexpr const char* kScene = "[[body]]\nid = 1\nshape = { type = \"rock\", frequency = 4 }\n";
@@ -112,7 +112,7 @@ class MutatedLogs : public testing::Test {
   FinishedProcess replay(const std::string& log) const {
     return run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene_, directory_.write("in.lcmlog", log),
                                   directory_.path("out.csv")}),
-                      kPatience);
+                      kWaitTimeout);
   }
 
   Answers answers() const {

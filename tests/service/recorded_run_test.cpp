@@ -6,6 +6,7 @@
 
 #include "tests/service/replaying.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -54,10 +55,10 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
   socket.send("THE_END", {1});
   while (events(recorded, "THE_END").empty()) ASSERT_FALSE(logger.wait(0.01));
   logger.send_signal(SIGINT);
-  ASSERT_TRUE(logger.wait(kPatience));
+  ASSERT_TRUE(logger.wait(kWaitTimeout));
 
   const FinishedProcess finished =
-      run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene, recorded, replayed}), kPatience);
+      run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene, recorded, replayed}), kWaitTimeout);
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
   const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");
   EXPECT_EQ(live.size(), 330U);

@@ -7,6 +7,7 @@
 #include "tests/geometry/mesh_files.h"
 #include "tests/service/held_file.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -34,13 +35,13 @@ double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kH
 void reload(RunningService& service, const std::string& scene, const std::string& until) {
   service.write("scene.toml", scene);
   service.child().send_signal(SIGHUP);
-  ASSERT_TRUE(service.child().wait_for_text(until, kPatience)) << service.log();
+  ASSERT_TRUE(service.child().wait_for_text(until, kWaitTimeout)) << service.log();
 }
 
 // A sanitizer's findings too are an exit code.
 void expect_a_clean_end(RunningService& service) {
   service.child().send_signal(SIGTERM);
-  EXPECT_EQ(service.child().wait(kPatience), 0) << service.log();
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();
 }
 
 std::size_t lines_with(const std::string& text, const std::string& log) {
@@ -107,7 +108,7 @@ TEST(Reload, LosesNoAnswerOfASteadyStream) {
     ASSERT_TRUE(std::abs(force - kForceBefore) < 1e-6 || std::abs(force - 0.5 * kForceBefore) < 1e-6)
         << force;
   }
-  EXPECT_TRUE(service.child().wait_for_text("reloaded:", kPatience)) << service.log();
+  EXPECT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
   EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
     return status.counters.answered == kQuestions && status.counters.repeated == 0 &&
            status.counters.sessions == 1;
@@ -135,7 +136,7 @@ TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAga
     service.child().send_signal(SIGHUP);
     EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   }
-  ASSERT_TRUE(service.child().wait_for_text("one more follows", kPatience)) << service.log();
+  ASSERT_TRUE(service.child().wait_for_text("one more follows", kWaitTimeout)) << service.log();
   EXPECT_EQ(service.log().find("reloaded:"), std::string::npos) << service.log();
   mesh.let_go();
   double force = kForceBefore;
@@ -150,7 +151,7 @@ TEST(Reload, LetsTheServiceEndWhileASceneLoads) {
   HeldFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
   service.child().send_signal(SIGHUP);
-  ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kPatience)) << service.log();
+  ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kWaitTimeout)) << service.log();
   expect_a_clean_end(service);
   EXPECT_NE(service.log().find("ended by SIGTERM"), std::string::npos) << service.log();
 }

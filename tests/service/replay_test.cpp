@@ -12,6 +12,7 @@
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "tests/service/replaying.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -280,7 +281,7 @@ TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
     ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
   }
   child.send_signal(SIGTERM);
-  EXPECT_EQ(child.wait(kPatience), 1);
+  EXPECT_EQ(child.wait(kWaitTimeout), 1);
   EXPECT_NE(child.standard_error().find("ended by SIGTERM"), std::string::npos) << child.standard_error();
   const std::string csv = contents_of(path("out.csv"));
   EXPECT_EQ(csv.back(), '\n');

@@ -12,8 +12,8 @@
 #include "recording/event_log.h"
 #include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
-#include "tests/service/patience.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 
@@ -24,7 +24,7 @@ class Replay : public testing::Test {
     return command_of(std::move(arguments));
   }
   FinishedProcess run(std::vector<std::string> arguments) const {
-    return run_to_end(command(std::move(arguments)), kPatience);
+    return run_to_end(command(std::move(arguments)), kWaitTimeout);
   }
   FinishedProcess replay(const std::string& input, const std::string& output,
                          const std::vector<std::string>& options = {}) const {

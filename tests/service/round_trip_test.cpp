@@ -9,6 +9,7 @@
 
 #include "tests/service/raw_lcm.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -111,7 +112,7 @@ TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAn
   states.bodies[2].body_id = 5;  // unknown
   ask(socket, states);
   EXPECT_EQ(hear(socket).bodies.size(), 3U);
-  const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kPatience);
+  const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
   ASSERT_TRUE(bytes);
   const RawHydrostatics heard = decode_hydrostatics(*bytes);
   EXPECT_EQ(heard.utime, 77);
@@ -154,14 +155,14 @@ TEST(RoundTripOfHydrostatics, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsk
   RawStates asking = one_body(1, 1, 0.3);
   asking.bodies[0].body_id = 2;
   ask(socket, asking);
-  const auto first = socket.receive("H", kPatience);
+  const auto first = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(first);
   ask(socket, asking);
-  EXPECT_EQ(socket.receive("H", kPatience), first);
+  EXPECT_EQ(socket.receive("H", kWaitTimeout), first);
   ask(socket, one_body(1, 2, 0.3));
   asking.seq = 3;
   ask(socket, asking);
-  const auto next = socket.receive("H", kPatience);
+  const auto next = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(next);
   EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "nothing of question 2";
 }
@@ -178,7 +179,7 @@ TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
   }
   EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
     const LatencyPercentiles& latency = status.latency;
-    const bool measured = 0.0 < latency.p50 && latency.p50 <= latency.p99 && latency.max < kPatience;
+    const bool measured = 0.0 < latency.p50 && latency.p50 <= latency.p99 && latency.max < kWaitTimeout;
     return status.counters.answered == 1 && status.counters.repeated == 3 && status.counters.questions == 4 &&
            measured;
   }));
@@ -227,7 +228,7 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
     before = hear_bytes(socket);
     status_before = hear_status(socket, [](const ServiceStatus&) { return true; });
     service.child().send_signal(SIGKILL);
-    EXPECT_EQ(service.child().wait(kPatience), 128 + SIGKILL);
+    EXPECT_EQ(service.child().wait(kWaitTimeout), 128 + SIGKILL);
   }
   ask(socket, one_body(1, 6, 0.3));  // nobody hears it
   const RunningService service;
@@ -329,10 +330,10 @@ TEST(Channels, CanBeNamedAndAreTakenLiterally) {
   socket.send("BUOYANCY_STATES", encode_states(one_body(1, 1, 0.0)));
   socket.send("axb", encode_states(one_body(1, 2, 0.0)));
   socket.send("a.b", encode_states(one_body(1, 3, 0.0)));
-  const auto bytes = socket.receive("w(1|2)", kPatience);
+  const auto bytes = socket.receive("w(1|2)", kWaitTimeout);
   ASSERT_TRUE(bytes);
   EXPECT_EQ(decode_wrenches(*bytes).seq, 3);
-  EXPECT_TRUE(socket.receive("s", kPatience));
+  EXPECT_TRUE(socket.receive("s", kWaitTimeout));
 }
 
 }  // namespace

@@ -13,9 +13,9 @@
 #include "messages/status.h"
 #include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
-#include "tests/service/patience.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 
@@ -46,7 +46,7 @@ class RunningService {
   explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene,
                           std::vector<std::string> environment = {})
       : child_(command(std::move(options), directory_.write("scene.toml", scene), std::move(environment))) {
-    if (!child_.wait_for_text("ready:", kPatience)) {
+    if (!child_.wait_for_text("ready:", kWaitTimeout)) {
       throw std::runtime_error("buoyancyd did not get ready: " + child_.standard_error());
     }
   }
@@ -95,7 +95,7 @@ inline void ask(RawLcmSocket& socket, const RawStates& states) {
   socket.send("BUOYANCY_STATES", encode_states(states));
 }
 
-inline std::optional<RawBytes> hear_bytes(RawLcmSocket& socket, double seconds = kPatience) {
+inline std::optional<RawBytes> hear_bytes(RawLcmSocket& socket, double seconds = kWaitTimeout) {
   return socket.receive("BUOYANCY_WRENCHES", seconds);
 }
 
@@ -106,12 +106,12 @@ inline RawWrenches hear(RawLcmSocket& socket) {
   return decode_wrenches(*bytes);
 }
 
-// The first status that satisfies `wanted`; nullopt: none within kPatience.
+// The first status that satisfies `wanted`; nullopt: none within kWaitTimeout.
 template <typename Wanted>
 std::optional<ServiceStatus> hear_status(RawLcmSocket& socket, Wanted&& wanted) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (std::chrono::steady_clock::now() < limit) {
-    const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_STATUS", kPatience);
+    const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_STATUS", kWaitTimeout);
     if (!bytes) return std::nullopt;
     ServiceStatus status;
     if (!decode(*bytes, status) && wanted(status)) return status;

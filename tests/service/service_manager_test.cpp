@@ -12,6 +12,7 @@
 
 #include "tests/service/held_file.h"
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -37,12 +38,12 @@ class NotifySocket {
     return std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   }
 
-  // Those up to the one that begins with `text`; it is the last, or missing after kPatience.
+  // Those up to the one that begins with `text`; it is the last, or missing after kWaitTimeout.
   std::vector<std::string> receive_until(const std::string& text) {
     std::vector<std::string> heard;
-    const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
     while (std::chrono::steady_clock::now() < limit) {
-      const std::optional<std::string> next = receive(kPatience);
+      const std::optional<std::string> next = receive(kWaitTimeout);
       if (!next) break;
       heard.push_back(*next);
       if (next->starts_with(text)) break;
@@ -121,7 +122,7 @@ TEST_F(ServiceManaged, HearsThatItStopsBeforeItEnds) {
   ASSERT_TRUE(manager_.hears("READY=1"));
   service.child().send_signal(SIGTERM);
   EXPECT_TRUE(manager_.hears("STOPPING=1"));
-  EXPECT_EQ(service.child().wait(kPatience), 0);
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }
 
 TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
@@ -166,7 +167,7 @@ TEST(WithoutAServiceManager, TheServiceAnswersThoughTheSocketIsGone) {
   }
   const RunningService service({}, kBoxScene, {"NOTIFY_SOCKET=" + gone, "WATCHDOG_USEC=100000"});
   RawLcmSocket socket;
-  for (int beat = 0; beat < 3; ++beat) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kPatience));
+  for (int beat = 0; beat < 3; ++beat) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
   ask(socket, one_body(1, 1, 0.0));
   EXPECT_EQ(hear(socket).seq, 1);
 }

@@ -12,6 +12,8 @@
 #include <httplib.h>
 #include <openssl/evp.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
 
@@ -70,7 +72,7 @@ ChildCommand chromedriver(const ScratchDirectory& directory) {
 
 // The port that a program says it listens on.
 int port_of(ChildProcess& program, const std::string& name, const std::regex& announcement) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   std::optional<int> exit_code;
   std::string said;
   while (!exit_code && std::chrono::steady_clock::now() < deadline) {
@@ -135,12 +137,12 @@ Browser::Browser(const Screen& screen)
   client_->set_keep_alive(true);
   client_->set_tcp_nodelay(true);
   client_->set_read_timeout(std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(
-      2.0 * kPatience)));  // chromedriver says what it waits for, so it goes first
+      2.0 * kWaitTimeout)));  // chromedriver says what it waits for, so it goes first
 
   const json wanted = {
       {"goog:chromeOptions", {{"debuggerAddress", "127.0.0.1:" + std::to_string(browser_port)}}},
       {"goog:loggingPrefs", {{"browser", "ALL"}}},
-      {"timeouts", {{"pageLoad", kPatience * 1e3}, {"script", kPatience * 1e3}}}};
+      {"timeouts", {{"pageLoad", kWaitTimeout * 1e3}, {"script", kWaitTimeout * 1e3}}}};
   const json session = command("/session", {{"capabilities", {{"alwaysMatch", wanted}}}});
   session_ = "/session/" + session.at("sessionId").get<std::string>();
   resize(screen);
@@ -149,7 +151,7 @@ Browser::Browser(const Screen& screen)
 Browser::~Browser() {
   // In peace, so that nothing writes into the scratch directory any more while it is removed.
   chromium_.send_signal(SIGTERM);
-  chromium_.wait(kPatience);
+  chromium_.wait(kWaitTimeout);
 }
 
 void Browser::resize(const Screen& screen) {

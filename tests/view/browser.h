@@ -6,7 +6,7 @@
 // no network beyond loopback and no right; one pixel of the page is one of the picture, colours are sRGB.
 //
 // Starting takes a second or two of an idle machine: one browser for all tests of a program, see page_test.h.
-// Whatever goes wrong throws std::runtime_error that says what; nothing waits longer than kPatience. One
+// Whatever goes wrong throws std::runtime_error that says what; nothing waits longer than kWaitTimeout. One
 // thread at a time.
 #pragma once
 
@@ -19,8 +19,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/child_process.h"
-#include "tests/service/patience.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/picture.h"
 
 namespace httplib {
@@ -64,7 +64,7 @@ class Browser {
 
   // Returns the expression's value as soon as JavaScript takes it for true. An expression that throws is not
   // true yet. What it throws after `seconds` holds the last value, and the console's errors.
-  nlohmann::json wait_until(const std::string& expression, double seconds = kPatience);
+  nlohmann::json wait_until(const std::string& expression, double seconds = kWaitTimeout);
 
   // What the console got at level "error" since the page was opened or since the last call: console.error,
   // uncaught exceptions and rejections, whatever could not be loaded. Of a server Chromium also wants

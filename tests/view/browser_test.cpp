@@ -16,8 +16,8 @@
 #include <httplib.h>
 
 #include "tests/child_process.h"
-#include "tests/service/patience.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 
 namespace buoyancy {
@@ -282,7 +282,7 @@ int processes_that_name(const std::string& path, const std::string& option = {})
 
 template <typename Condition>
 bool comes_true(Condition&& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (!condition()) {
     if (std::chrono::steady_clock::now() >= deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -302,7 +302,7 @@ TEST(BrowserProcesses, LeaveNothingBehind) {
   const ScratchDirectory directory;
   ChildProcess test(this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory));
   EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path(""), "--type=renderer") > 0; }));
-  EXPECT_EQ(test.wait(kPatience), 0) << test.standard_output();
+  EXPECT_EQ(test.wait(kWaitTimeout), 0) << test.standard_output();
   EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path("")) == 0; }));
   EXPECT_TRUE(std::filesystem::is_empty(directory.path("")));
 }
@@ -312,7 +312,7 @@ TEST(BrowserProcesses, EndWithATestThatIsKilled) {
   ChildProcess test(this_program({"--gtest_filter=BrowserTest.DrawsText", "--gtest_repeat=-1"}, directory));
   EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path(""), "--type=renderer") > 0; }));
   test.send_signal(SIGKILL);
-  EXPECT_EQ(test.wait(kPatience), 128 + SIGKILL);
+  EXPECT_EQ(test.wait(kWaitTimeout), 128 + SIGKILL);
   EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path("")) == 0; }));
 }
 
@@ -320,7 +320,7 @@ TEST(BrowserProcesses, FailWithTheNamesOfTheirPackagesWhereTheyAreMissing) {
   const ScratchDirectory directory;
   ChildCommand without = this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory);
   without.environment.emplace_back("PATH=" + directory.path(""));
-  const FinishedProcess finished = run_to_end(without, kPatience);
+  const FinishedProcess finished = run_to_end(without, kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_THAT(finished.standard_output, HasSubstr("Install Debian's packages chromium and chromium-driver"));
   EXPECT_THAT(finished.standard_output, testing::Not(HasSubstr("SKIPPED")));

@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tests/service/memory_of.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/malformed_requests.h"
 #include "tests/view/running_view.h"
 
@@ -34,7 +35,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 bool streams(const RunningView& view) {
-  return EventReader(view.port()).next(kPatience).has_value();
+  return EventReader(view.port()).next(kWaitTimeout).has_value();
 }
 
 // A page and a new stream's first snapshot, at the first try.
@@ -42,7 +43,7 @@ bool serves(const RunningView& view) {
   const auto start = Clock::now();
   HttpPeer peer(view.port());
   peer.send(get_request("/"));
-  return peer.receive_all(kPatience).starts_with("HTTP/1.1 200 ") && streams(view) &&
+  return peer.receive_all(kWaitTimeout).starts_with("HTTP/1.1 200 ") && streams(view) &&
          seconds_since(start) < kAtOnce;
 }
 
@@ -68,7 +69,7 @@ int run(int requests, int connections) {
       HttpPeer peer(view.port());
       peer.send(malformed.next());
       peer.end_sending();
-      peer.receive_all(kPatience);
+      peer.receive_all(kWaitTimeout);
       while (page.next(0.0)) {  // who does not read is dropped
       }
     }
@@ -95,7 +96,7 @@ int run(int requests, int connections) {
   std::list<HttpPeer> unread;
   for (int i = 0; i < 2 * kStreams; ++i) {  // those that were closed above go with the next snapshot
     unread.emplace_back(view.port(), kSmallBuffer).send(get_request("/events"));
-    if (!page.next(kPatience)) return complain("a page that reads is dropped for others that do not");
+    if (!page.next(kWaitTimeout)) return complain("a page that reads is dropped for others that do not");
   }
   const auto filled = Clock::now();
   while (!streams(view) && seconds_since(filled) < kUntilDropped) {
@@ -106,7 +107,8 @@ int run(int requests, int connections) {
   if (!streams(view)) return complain("streams that are not read keep their places");
   std::printf("%d streams that are not read: a new one is served after %.1f s\n", kStreams,
               seconds_since(filled));
-  if (!page.next(kPatience)) return complain("the page that was connected before gets no snapshots any more");
+  if (!page.next(kWaitTimeout))
+    return complain("the page that was connected before gets no snapshots any more");
 
   const std::int64_t grown = resident_kb(view.child().pid()) - before;
   std::printf("memory: %" PRId64 " kB, %+" PRId64 " kB\n", before + grown, grown);

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/service/patience.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/http_peer.h"
 #include "tests/view/malformed_requests.h"
 
@@ -35,7 +35,7 @@ const PageLimits kLimits;
 
 class ServedPage : public testing::Test {
  protected:
-  ServedPage() : ServedPage(PageLimits{.head_patience = kPatience, .write_patience = kPatience}) {}
+  ServedPage() : ServedPage(PageLimits{.head_patience = kWaitTimeout, .write_patience = kWaitTimeout}) {}
   explicit ServedPage(const PageLimits& limits, const std::string& address = "127.0.0.1") {
     auto started = PageServer::start(
         address, 0,
@@ -50,7 +50,7 @@ class ServedPage : public testing::Test {
     HttpPeer peer(port_);
     peer.send(request);
     peer.end_sending();
-    return peer.receive_all(kPatience);
+    return peer.receive_all(kWaitTimeout);
   }
   std::string status_of(const std::string& request) const { return status_line(response_to(request)); }
 
@@ -142,7 +142,7 @@ TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
   for (HttpPeer* peer : {&first, &second}) {
     std::string text;
     while (text.find("data: {\"n\":1}\n\n") == std::string::npos) {
-      const std::optional<std::string> part = peer->receive(kPatience);
+      const std::optional<std::string> part = peer->receive(kWaitTimeout);
       ASSERT_TRUE(part && !part->empty()) << text;
       text += *part;
     }
@@ -152,7 +152,7 @@ TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
   hub_.publish("[2]", R"({"n":2})");
   std::string more;
   while (more.find("data: {\"n\":2}\n\n") == std::string::npos) {
-    const std::optional<std::string> part = first.receive(kPatience);
+    const std::optional<std::string> part = first.receive(kWaitTimeout);
     ASSERT_TRUE(part && !part->empty());
     more += *part;
   }
@@ -188,7 +188,7 @@ TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
   }
   HttpPeer other(port_);
   other.send(get_request("/"));
-  EXPECT_TRUE(other.receive_all(kPatience).starts_with("HTTP/1.1 "));
+  EXPECT_TRUE(other.receive_all(kWaitTimeout).starts_with("HTTP/1.1 "));
 }
 
 TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadLongBeforeTheKernelHasNoRoomForMore) {
@@ -208,7 +208,7 @@ TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadLongBeforeTheKernelHasNoRoomF
 // Where the server has patience with a reader, but not for as long as nothing happens.
 class QuietPage : public ServedPage {
  protected:
-  QuietPage() : ServedPage(PageLimits{.head_patience = kPatience, .write_patience = 1.0}) {}
+  QuietPage() : ServedPage(PageLimits{.head_patience = kWaitTimeout, .write_patience = 1.0}) {}
 };
 
 TEST_F(QuietPage, KeepsAListenerThatReadsAlthoughNothingIsPublishedForLong) {
@@ -216,7 +216,7 @@ TEST_F(QuietPage, KeepsAListenerThatReadsAlthoughNothingIsPublishedForLong) {
   wait_for_listeners(1);
   for (int i = 0; i < 3; ++i) {
     hub_.publish("[]", "{}");
-    ASSERT_TRUE(reader.next(kPatience));
+    ASSERT_TRUE(reader.next(kWaitTimeout));
     std::this_thread::sleep_for(std::chrono::milliseconds(1'200));
   }
   EXPECT_EQ(hub_.listeners(), 1);
@@ -229,7 +229,7 @@ TEST_F(ServedPage, StreamsLargeSnapshotsAsFastAsTheyAreMade) {
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 300; ++i) {
     hub_.publish("[]", large);
-    ASSERT_EQ(reader.next(kPatience), large);
+    ASSERT_EQ(reader.next(kWaitTimeout), large);
   }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "30 a second";
 }
@@ -257,8 +257,8 @@ TEST_F(ServedPage, ServesPagesAndStreamsWhileMoreConnectionsAreHeldThanItHasRoom
   EventReader after(port_);
   wait_for_listeners(2);
   hub_.publish("[]", "{}");
-  EXPECT_TRUE(before.next(kPatience)) << "a stream gives way to nobody";
-  EXPECT_TRUE(after.next(kPatience));
+  EXPECT_TRUE(before.next(kWaitTimeout)) << "a stream gives way to nobody";
+  EXPECT_TRUE(after.next(kWaitTimeout));
   EXPECT_TRUE(is_closed(held.front())) << "it has waited longest";
   EXPECT_FALSE(is_closed(held.back()));
   EXPECT_GE(std::ranges::count_if(held, [](HttpPeer& peer) { return !is_closed(peer); }),
@@ -290,13 +290,13 @@ TEST_F(ServedPage, RefusesAHeadThatHasNoEnd) {
   const std::string header = "X-Filler: " + std::string(1'000, 'x') + "\r\n";
   for (int i = 0; i < 100 && peer.send(header); ++i) {
   }
-  EXPECT_EQ(status_line(peer.receive_all(kPatience)), "HTTP/1.1 431 Request Header Fields Too Large");
+  EXPECT_EQ(status_line(peer.receive_all(kWaitTimeout)), "HTTP/1.1 431 Request Header Fields Too Large");
 }
 
 TEST_F(ImpatientPage, DoesNotWaitForAHeadThatNeverComes) {
   HttpPeer peer(port_);
   peer.send("GET / HT");
-  EXPECT_EQ(status_line(peer.receive_all(kPatience)), "HTTP/1.1 408 Request Timeout");
+  EXPECT_EQ(status_line(peer.receive_all(kWaitTimeout)), "HTTP/1.1 408 Request Timeout");
 }
 
 TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
@@ -321,7 +321,7 @@ TEST_F(ServedPage, EndsWithStreamsOpenAndRequestsHalfSent) {
   HttpPeer half(port_);
   half.send("GET /");
   server_.reset();
-  EXPECT_NE(stream.receive_all(kPatience).find("HTTP/1.1 200 OK"), std::string::npos);
+  EXPECT_NE(stream.receive_all(kWaitTimeout).find("HTTP/1.1 200 OK"), std::string::npos);
   EXPECT_THROW(HttpPeer{port_}, std::runtime_error);
 }
 

@@ -14,6 +14,7 @@
 #include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/scratch_directory.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 
 namespace buoyancy {
@@ -30,7 +31,7 @@ linear_damping = 8000
 FinishedProcess report(const std::vector<std::string>& arguments) {
   std::vector<std::string> command{BUOYANCY_REPORT};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_to_end(command_of(std::move(command)), kPatience);
+  return run_to_end(command_of(std::move(command)), kWaitTimeout);
 }
 
 class TheReport : public PageTest {
@@ -40,7 +41,7 @@ class TheReport : public PageTest {
     const std::string scene = directory_->write("box.toml", kBobbingBox);
     const FinishedProcess simulated = run_to_end(
         command_of({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "5", "--csv", csv()}),
-        kPatience);
+        kWaitTimeout);
     made_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
   }
   static void TearDownTestSuite() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/http_peer.h"
 
 namespace buoyancy {
@@ -19,7 +20,7 @@ class RunningView {
   explicit RunningView(const std::string& scene, std::vector<std::string> options = {},
                        std::uint16_t port = 0)
       : child_(command(directory_.write("scene.toml", scene), std::move(options), port)) {
-    if (!child_.wait_for_text("ready: ", kPatience)) {
+    if (!child_.wait_for_text("ready: ", kWaitTimeout)) {
       throw std::runtime_error("buoyancy-view did not get ready: " + child_.standard_error());
     }
     port_ = port_said(child_.standard_output());

@@ -9,6 +9,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/timeouts.h"
 #include "tests/view/running_view.h"
 
 namespace buoyancy {
@@ -24,13 +25,13 @@ ChildCommand client(const std::string& scene, std::vector<std::string> options) 
   return command_of(std::move(options));
 }
 
-// The first snapshot that satisfies `wanted`. Throws: none within kPatience.
+// The first snapshot that satisfies `wanted`. Throws: none within kWaitTimeout.
 template <typename Wanted>
 json snapshot_where(EventReader& events, Wanted&& wanted) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPatience);
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   json snapshot;
   while (std::chrono::steady_clock::now() < limit) {
-    const std::optional<std::string> text = events.next(kPatience);
+    const std::optional<std::string> text = events.next(kWaitTimeout);
     if (!text) break;
     snapshot = json::parse(*text);
     if (wanted(snapshot)) return snapshot;
@@ -44,7 +45,7 @@ TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
   RunningService service({}, kScene);
   // Body 1 has no [body.client]; the client asks about body 2.
   const FinishedProcess run =
-      run_to_end(client(service.path("scene.toml"), {"--duration", "0.5"}), kPatience);
+      run_to_end(client(service.path("scene.toml"), {"--duration", "0.5"}), kWaitTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   RawLcmSocket socket;
   ask(socket, one_body(7, 1, 0.0));
@@ -175,10 +176,10 @@ TEST(View, EndsBySignalWhilePagesAreConnected) {
   for (const int signal : {SIGINT, SIGTERM}) {
     RunningView view(kScene);
     EventReader events(view.port());
-    ASSERT_TRUE(events.next(kPatience));
+    ASSERT_TRUE(events.next(kWaitTimeout));
     view.child().send_signal(signal);
-    EXPECT_EQ(view.child().wait(kPatience), 0);
-    while (events.next(kPatience)) {
+    EXPECT_EQ(view.child().wait(kWaitTimeout), 0);
+    while (events.next(kWaitTimeout)) {
     }
     EXPECT_EQ(view.child().standard_error(), "");
   }
@@ -189,7 +190,7 @@ TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
   const std::string scene = directory.write("scene.toml", kScene);
   const auto ended = [&](std::vector<std::string> options) {
     options.insert(options.begin(), BUOYANCY_VIEW);
-    return run_to_end(command_of(std::move(options)), kPatience);
+    return run_to_end(command_of(std::move(options)), kWaitTimeout);
   };
   for (const std::vector<std::string>& options : {std::vector<std::string>{},
                                                   {"--scene", scene, "--port", "65536"},
