@@ -15,6 +15,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 namespace {
 
@@ -22,7 +24,7 @@ ImportDeadline in(std::chrono::milliseconds delay) {
   return ImportDeadline::clock::now() + delay;
 }
 const auto kSoon = std::chrono::milliseconds(50);
-const auto kLate = std::chrono::seconds(60);
+const auto kLate = std::chrono::milliseconds(to_milliseconds(kWaitTimeout));
 
 class ImportPipe : public testing::Test {
  protected:
