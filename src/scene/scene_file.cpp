@@ -7,8 +7,9 @@
 #include <sstream>
 #include <utility>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
+#include "geometry/wording.h"
 #include "scene/nearest_word.h"
 #include "scene/shape_table.h"
 #include "scene/toml_table.h"
@@ -45,6 +46,39 @@ void read_limits(TomlTable table, ImportLimits& limits) {
   table.finish();
 }
 
+// A share of the largest principal moment: numbers that are rounded to three digits put that of a thin plate,
+// which is the sum of the other two, so far above it.
+constexpr double kInertiaRounding = 0.01;
+
+// Every principal moment of a rigid body is above 0 and at most the sum of the other two, about whatever
+// point.
+void check_inertia(TomlTable& table, const Mat3& inertia_B) {
+  const double scale = inertia_B.cwiseAbs().maxCoeff();
+  Vec3 principal = Vec3::Zero();  // ascending
+  if (scale > 0.0) {
+    principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_B / scale, Eigen::EigenvaluesOnly).eigenvalues();
+  }
+  const std::string here = " (here they are " + vector_text(scale * principal, 4) + " kg m^2)";
+  const std::string other_order = "another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz)";
+  const std::string remedy =
+      "Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] about the centre of mass, or leave inertia "
+      "out: it is then "
+      "a closed mesh's own";
+  if (!(principal[0] > 0.0)) {
+    table.fail_at(
+        "inertia", "a positive definite matrix: principal moments above 0" + here,
+        "a moment is not above 0, a product of inertia is too large for its moments, or " + other_order,
+        remedy);
+  } else if (principal[2] > principal[0] + principal[1] + kInertiaRounding * principal[2]) {
+    table.fail_at(
+        "inertia", "principal moments of which none is above the sum of the other two, as of any body" + here,
+        "a number in another unit, " + other_order +
+            ", a product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too much "
+            "taken off to move it from another point to the centre of mass",
+        remedy);
+  }
+}
+
 void read_inertia(TomlTable& table, ClientSpec& client) {
   constexpr std::array<std::size_t, 2> kCounts{3, 6};
   std::vector<double> numbers = table.numbers("inertia", kCounts, "kg m^2");
@@ -54,13 +88,8 @@ void read_inertia(TomlTable& table, ClientSpec& client) {
   inertia_B << numbers[0], numbers[3], numbers[4],  //
       numbers[3], numbers[1], numbers[5],           //
       numbers[4], numbers[5], numbers[2];
-  if (Eigen::LLT<Mat3>(inertia_B).info() == Eigen::Success) {
-    client.inertia_B = inertia_B;
-  } else {
-    table.fail_at("inertia",
-                  "a positive definite matrix, given as [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz after them",
-                  "a product of inertia is too large for its moments, or a moment is not above 0");
-  }
+  check_inertia(table, inertia_B);
+  client.inertia_B = inertia_B;
 }
 
 void read_client(TomlTable table, ClientSpec& client) {

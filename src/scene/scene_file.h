@@ -28,7 +28,7 @@ struct ClientSpec {
   std::optional<double> mass;            // kg, > 0
   std::optional<double> density;         // kg/m^3, > 0: mass = density * enclosed volume
   std::optional<Vec3> center_of_mass_B;  // m; default: the volume's centroid
-  std::optional<Mat3> inertia_B;         // kg m^2 about the centre of mass, symmetric positive definite;
+  std::optional<Mat3> inertia_B;         // kg m^2 about the centre of mass, as a rigid body can have it;
                                          // default: the enclosed volume's, scaled to the mass. In the file:
                                          // [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz]
   Vec3 position = Vec3::Zero();          // m, W: of B's origin at the start

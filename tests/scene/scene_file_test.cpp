@@ -257,6 +257,8 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
       {crate_and("[body.client]\ninertia = [1, 1]\n"), "expected an array of 3 or 6 finite numbers (kg m^2)"},
       {crate_and("[body.client]\ninertia = [1, 1, 0]\n"), "expected a positive definite matrix"},
       {crate_and("[body.client]\ninertia = [1, 1, 1, 2, 0, 0]\n"), "expected a positive definite matrix"},
+      {crate_and("[body.client]\ninertia = [0, 0, 0]\n"), "expected a positive definite matrix"},
+      {crate_and("[body.client]\ninertia = [2, 0, 0, 2, 0, 3]\n"), "URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz"},
       {crate_and("[body.client]\nlinear_damping = -1\n"), "linear_damping = -1"},
       {crate_and("[body.client]\nlinear_damping_quadratic = -1\n"), "linear_damping_quadratic = -1"},
       {crate_and("[body.client]\nangular_damping = -1\n"), "angular_damping = -1"},
@@ -267,6 +269,38 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
   for (const auto& [text, told] : wrong) {
     const std::string message = refusal_of(text);
     EXPECT_NE(message.find(told), std::string::npos) << message << "\nshould say: " << told;
+  }
+}
+
+TEST(SceneFile, RefusesAnInertiaThatNoBodyHas) {
+  const auto refusal = [](const std::string& inertia) {
+    return refusal_of(crate_and("[body.client]\ninertia = " + inertia + "\n"));
+  };
+  EXPECT_EQ(
+      refusal("[1, 1, 4]"),
+      "pool.toml:5: body 7, [body.client]: inertia = [1, 1, 4]; expected principal moments of which none is "
+      "above the sum of the other two, as of any body (here they are 1, 1, 4 kg m^2). Likely cause: a number "
+      "in "
+      "another unit, another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz), a product of "
+      "inertia "
+      "of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too much taken off to move it from "
+      "another "
+      "point to the centre of mass. Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] about the centre "
+      "of "
+      "mass, or leave inertia out: it is then a closed mesh's own.");
+  for (const char* inertia : {"[4, 1, 1]", "[1, 4, 1]", "[8.0, 230.0, 245.0]", "[1e300, 1e300, 4e300]",
+                              "[1e-300, 1e-300, 4e-300]", "[2, 2, 2, 1.5, 0, 0]", "[1, 1, 2.03]"}) {
+    EXPECT_NE(refusal(inertia).find("the sum of the other two"), std::string::npos) << inertia;
+  }
+}
+
+TEST(SceneFile, TakesTheInertiaOfThinPlatesAndRods) {
+  for (const char* inertia :
+       {"[1, 1, 2]", "[0.0833, 0.0833, 0.1667]", "[0.333, 0.333, 0.667]", "[1e-9, 1, 1]", "[0.1, 0.2, 0.3]",
+        "[1.5, 1.5, 1, 0.5, 0, 0]", "[1e300, 1e300, 2e300]", "[5e-324, 5e-324, 5e-324]"}) {
+    const Expected<SceneDescription> scene =
+        parsed(crate_and("[body.client]\ninertia = " + std::string(inertia) + "\n"));
+    EXPECT_TRUE(scene) << scene.error().message();
   }
 }
 
