@@ -1,5 +1,6 @@
 #include "geometry/assimp_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -316,6 +317,22 @@ Error no_triangles(std::int64_t points_and_lines) {
           "Export the surface as polygons"};
 }
 
+// Does assimp complain that there is no mesh, rather than that it cannot read one?
+bool says_empty(const std::string& complaint) {
+  constexpr std::array kOfEmptyFiles{"too small",         "contains no vertices", "There are no facets",
+                                     "no valid vertices", "came out empty",       "mNumMeshes is 0",
+                                     "No scene"};
+  return std::ranges::any_of(
+      kOfEmptyFiles, [&complaint](const char* words) { return complaint.find(words) != std::string::npos; });
+}
+
+Error no_mesh(MeshFormat format, const std::string& complaint) {
+  return {"", "no mesh in it (" + complaint + ")",
+          "a " + std::string(name_of(format)) + " file of triangles or polygons",
+          "an export of nothing, a header alone, or content of another format",
+          "Export the surface as polygons"};
+}
+
 }  // namespace
 
 Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshFormat format,
@@ -338,7 +355,7 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
     }
     const std::string complaint = importer.GetErrorString();
     if (complaint.find("contains no faces") != std::string::npos) return failure(no_triangles(0));
-    return failure(unreadable(format, complaint));
+    return failure(says_empty(complaint) ? no_mesh(format, complaint) : unreadable(format, complaint));
   }
   // The OFF importer logs a face it drops, a vertex it makes up or an index it bends, and calls it a success.
   if (format == MeshFormat::kOff && logging.errors().count > 0) {

@@ -13,6 +13,7 @@
 
 #include "geometry/import_process.h"
 #include "geometry/mesh_format.h"
+#include "geometry/ply_header.h"
 
 namespace buoyancy {
 namespace {
@@ -35,16 +36,45 @@ std::string_view name_of(fs::file_type type) {
   }
 }
 
-// A PLY header whose end is missing makes the importer search for it until its time is up: such files are
-// found out here. Looks as far as any real header reaches.
-bool has_end_of_ply_header(std::ifstream& file) {
-  constexpr std::streamoff kMostHeaderBytes = 1'000'000;
+// What the importer takes for another fault, or searches for until its time is up.
+std::optional<Error> fault_of_ply_header(std::ifstream& file) {
+  const std::optional<PlyHeader> header = read_ply_header(file);
+  if (!header) {
+    return Error{"", "a PLY header without its 'end_header' line", "a complete PLY file",
+                 "the file is cut short or damaged", "Open it in a mesh editor and export it anew"};
+  }
+  if (const std::uint64_t strips = header->count_of("tristrips"); strips > 0) {
+    return Error{"", "a PLY file of triangle strips (element tristrips " + std::to_string(strips) + ")",
+                 "polygons (element face), since strips are not read",
+                 "a mesh of a scanner or an archive that stores strips to save space",
+                 "Open it in MeshLab and export it as PLY or STL, which turns the strips into triangles"};
+  }
+  const std::string announced = "(element vertex " + std::to_string(header->count_of("vertex")) +
+                                ", element face " + std::to_string(header->count_of("face")) + ")";
+  if (header->count_of("face") == 0) {
+    return Error{"", "no triangles: a PLY header that announces no faces " + announced,
+                 "a mesh of triangles or polygons", "a point cloud, curves, or an export of nothing",
+                 "Export the surface as polygons"};
+  }
+  if (!header->data_follows) {
+    return Error{"", "only a PLY header " + announced + " and nothing after it", "a complete PLY file",
+                 "an export or download that did not finish", "Export or fetch it anew"};
+  }
+  return std::nullopt;
+}
+
+// "white space" or "zero bytes" where the file holds nothing else.
+std::optional<std::string_view> only_content(std::ifstream& file) {
   file.clear();
   file.seekg(0);
-  for (std::string line; file.tellg() < kMostHeaderBytes && std::getline(file, line);) {
-    if (line.rfind("end_header", 0) == 0) return true;
+  const bool zeros = file.peek() == 0;
+  const std::string_view blank = zeros ? std::string_view("\0", 1) : std::string_view(" \t\r\n\v\f");
+  for (std::string part(65'536, ' ');
+       file.read(part.data(), static_cast<std::streamsize>(part.size())) || file.gcount() > 0;) {
+    const std::string_view bytes(part.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.find_first_not_of(blank) != std::string_view::npos) return std::nullopt;
   }
-  return false;
+  return zeros ? "zero bytes" : "white space";
 }
 
 struct AcceptedFile {
@@ -102,11 +132,13 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
                     "its permissions, or the medium it is on", "Make it readable to this user"});
   }
   first_bytes.resize(static_cast<std::size_t>(file.gcount()));
+  if (const auto only = only_content(file)) {
+    return failure({"", "nothing but " + std::string(*only) + " (" + std::to_string(bytes) + " bytes)",
+                    mesh_file, "an export or download that did not finish", "Export or fetch it anew"});
+  }
   const std::optional<ContentGuess> content = guess_content(first_bytes);
-  if (content && content->extension == ".ply" && *format == MeshFormat::kPly &&
-      !has_end_of_ply_header(file)) {
-    return failure({"", "a PLY header without its 'end_header' line", "a complete PLY file",
-                    "the file is cut short or damaged", "Open it in a mesh editor and export it anew"});
+  if (content && content->extension == ".ply" && *format == MeshFormat::kPly) {
+    if (std::optional<Error> fault = fault_of_ply_header(file)) return failure(*std::move(fault));
   }
   return AcceptedFile{*format, content};
 }

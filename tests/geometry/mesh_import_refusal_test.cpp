@@ -158,6 +158,59 @@ TEST_F(MeshImportRefusal, FindsAPlyHeaderWithoutItsEndAtOnce) {
   EXPECT_TRUE(contains(refusal(directory_.write("endless.ply", content)), "without its 'end_header' line"));
 }
 
+TEST_F(MeshImportRefusal, SaysThatAPlyFileIsOfTriangleStrips) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  const std::string data = "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n6 0 1 2 3 0 1\n";
+  const std::string message = refusal(directory_.write("strips.ply", header + strips + data));
+  EXPECT_TRUE(contains(message, "a PLY file of triangle strips (element tristrips 1); expected polygons"));
+  EXPECT_TRUE(contains(message, "Open it in MeshLab and export it as PLY or STL"));
+  const std::string both =
+      header + "element face 0\nproperty list uchar int vertex_indices\n" + strips + data;
+  EXPECT_TRUE(contains(refusal(directory_.write("both.ply", both)), "triangle strips"));
+  std::string windows;
+  for (const char c : header + strips + data) windows += c == '\n' ? "\r\n" : std::string(1, c);
+  EXPECT_TRUE(contains(refusal(directory_.write("windows.ply", windows)), "(element tristrips 1)"));
+}
+
+TEST_F(MeshImportRefusal, SaysThatAFileIsEmptyAndNotThatItIsDamaged) {
+  for (const std::string extension :
+       {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds"}) {
+    SCOPED_TRACE(extension);
+    const auto refusal_of = [&](const std::string& content) {
+      const std::string message = refusal(directory_.write("empty" + extension, content));
+      EXPECT_FALSE(contains(message, "damaged"));
+      return message;
+    };
+    EXPECT_TRUE(contains(refusal_of(""), "the file is empty (0 bytes)"));
+    EXPECT_TRUE(contains(refusal_of(" \r\n\t\n"), "nothing but white space (5 bytes)"));
+    EXPECT_TRUE(contains(refusal_of(std::string(100'000, '\0')), "nothing but zero bytes (100000 bytes)"));
+  }
+}
+
+TEST_F(MeshImportRefusal, SaysThatAFileHasAHeaderAlone) {
+  const std::string ply = tetrahedron::ply_header("ascii") + "end_header\n";
+  EXPECT_TRUE(contains(refusal(directory_.write("header.ply", ply)),
+                       "only a PLY header (element vertex 4, element face 4) and nothing after it"));
+  const std::string nothing = tetrahedron::ply_header("ascii", "0", "0") + "end_header\n";
+  EXPECT_TRUE(
+      contains(refusal(directory_.write("nothing.ply", nothing)),
+               "no triangles: a PLY header that announces no faces (element vertex 0, element face 0)"));
+  for (const auto& [name, content] : std::vector<NamedContent>{
+           {"ascii.stl", "solid nothing\nendsolid nothing\n"},
+           {"binary.stl", std::string(80, ' ') + std::string(4, '\0')},
+           {"header.off", "OFF\n"},
+           {"counts.off", "OFF\n0 0 0\n"},
+           {"header.obj", "# an export of nothing\n"},
+           {"header.dae", R"(<?xml version="1.0"?><COLLADA version="1.4.1"></COLLADA>)"},
+           {"header.gltf", R"({"asset":{"version":"2.0"}})"}}) {
+    const std::string message = refusal(directory_.write(name, content));
+    EXPECT_TRUE(contains(message, "no mesh in it (")) << name;
+    EXPECT_FALSE(contains(message, "damaged")) << name;
+  }
+}
+
 TEST_F(MeshImportRefusal, GivesAMeshOrOneClearErrorForEveryTruncation) {
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   std::vector<NamedContent> files = tetrahedron_files();
