@@ -3,6 +3,11 @@
 // The child's standard output and error go into memory files, so that a child never blocks on a full pipe and
 // what it wrote can be read while it runs and after it died. The destructor kills and reaps a child that
 // still runs; the kernel kills it if the thread that started it dies first. Linux only. One thread at a time.
+//
+// A program that starts others, such as a browser, is run with_descendants: between the test and the program
+// there is then a supervisor, a process that inherits every descendant that loses its parent, whatever
+// session or group it moved to. When the program ends or the test dies, even by SIGKILL, the supervisor kills
+// all descendants, and it ends when none is left: so wait() returns, and the destructor too.
 #pragma once
 
 #include <optional>
@@ -20,6 +25,7 @@ struct ChildCommand {
   std::string standard_input = "/dev/null";
   std::string standard_output;  // a path such as "/dev/full"; empty: captured
   std::string directory;        // to run in; empty: the test's own
+  bool with_descendants = false;
 };
 
 inline ChildCommand command_of(std::vector<std::string> arguments) {
@@ -36,7 +42,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();
 
-  pid_t pid() const { return pid_; }
+  pid_t pid() const { return pid_; }   // with descendants: the supervisor's
   void send_signal(int signal) const;  // nothing if it has been waited for
 
   // The exit code, or 128 + the signal that ended it; nullopt: still running after `seconds`.
@@ -54,6 +60,7 @@ class ChildProcess {
   int process_fd_ = -1;  // readable when the child has ended
   int output_fd_ = -1;
   int error_fd_ = -1;
+  int supervisor_fd_ = -1;  // takes a byte per signal; -1 without a supervisor
   std::optional<int> exit_code_;
 };
 

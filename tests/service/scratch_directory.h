@@ -1,6 +1,10 @@
-// A directory that is there for one test and gone after it.
+// A directory that is there for one test and gone after it. A directory that cannot be removed ends the
+// program with SIGABRT, since this serves programs without GoogleTest too: a process that still writes into
+// it was left behind.
 #pragma once
 
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +12,10 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 
@@ -21,8 +29,17 @@ class ScratchDirectory {
   ScratchDirectory(const ScratchDirectory&) = delete;
   ScratchDirectory& operator=(const ScratchDirectory&) = delete;
   ~ScratchDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+    std::error_code error;
+    // A file that appears while the directory is emptied makes the removal fail.
+    while (std::filesystem::remove_all(path_, error), error) {
+      if (std::chrono::steady_clock::now() >= deadline) {
+        std::fprintf(stderr, "scratch directory %s cannot be removed: %s\n", path_.c_str(),
+                     error.message().c_str());
+        std::abort();
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
   }
 
   std::string path(const std::string& name) const { return (path_ / name).string(); }

@@ -27,6 +27,7 @@ using nlohmann::json;
 ChildCommand with_scratch_home(std::vector<std::string> arguments, const ScratchDirectory& directory) {
   std::filesystem::create_directories(directory.path("tmp"));
   ChildCommand whole = command_of(std::move(arguments));
+  whole.with_descendants = true;
   whole.environment = {
       "HOME=" + directory.path("home"),           "XDG_CONFIG_HOME=" + directory.path("home"),
       "XDG_CACHE_HOME=" + directory.path("home"), "TMPDIR=" + directory.path("tmp"),
@@ -149,7 +150,8 @@ Browser::Browser(const Screen& screen)
 }
 
 Browser::~Browser() {
-  // In peace, so that nothing writes into the scratch directory any more while it is removed.
+  // Chromium ends in order where it can; what it started and what does not end is killed by its supervisor.
+  // The members' destructors wait for that, so nothing writes into the scratch directory while it is removed.
   chromium_.send_signal(SIGTERM);
   chromium_.wait(kWaitTimeout);
 }

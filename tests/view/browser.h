@@ -40,7 +40,7 @@ inline constexpr Screen kPhone{390, 844, true};
 
 class Browser {
  public:
-  // Its processes end with this object, and the kernel ends them if the test dies before.
+  // All its processes have ended when the destructor returns; if the test is killed, they end soon after it.
   explicit Browser(const Screen& screen = kDesktop);
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;

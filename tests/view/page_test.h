@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,9 @@ class PageTest : public testing::Test {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     const std::string path =
         std::string(BUOYANCY_PICTURES) + "/" + test.test_suite_name() + "." + test.name() + ".png";
-    browser_->screenshot().save(path);
+    // The next test gets a browser of its own: this one may be what failed.
+    const std::unique_ptr<Browser> last = std::move(browser_);
+    last->screenshot().save(path);
     std::cout << "What was on the screen: " << path << '\n';
   }
 
