@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wet_tree_sum.h"
@@ -26,6 +27,7 @@
 #include "tests/fuzz/fuzz_law.h"
 #include "tests/fuzz/fuzz_mesh.h"
 #include "tests/fuzz/wrench_truth.h"
+#include "tests/geometry/sample_meshes.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {

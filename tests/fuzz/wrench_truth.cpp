@@ -3,7 +3,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/exact_oracle-inl.h"
 
 namespace buoyancy {
 namespace {

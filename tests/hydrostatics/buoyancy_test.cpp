@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/immersion.h"
 #include "tests/allocation_count.h"
 #include "tests/hydrostatics/exact_oracle.h"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"

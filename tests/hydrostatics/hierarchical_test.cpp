@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/exact.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/wet_tree_sum.h"

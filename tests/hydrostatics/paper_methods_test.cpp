@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "tests/hydrostatics/ball.h"
 #include "tests/hydrostatics/random_poses.h"

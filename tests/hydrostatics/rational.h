@@ -1,12 +1,78 @@
 // Rational numbers for the exact oracle: nothing is ever rounded.
+//
+// A thin class over GMP, whose functions are compiled once: the headers of a general library of numbers would
+// be most of what a test source costs to compile.
 #pragma once
 
-#include <boost/multiprecision/eigen.hpp>
-#include <boost/multiprecision/gmp.hpp>
+#include <compare>
+#include <iosfwd>
+#include <utility>
+
+#include <Eigen/Core>
+#include <gmp.h>
 
 namespace buoyancy {
 
-using Rational =
-    boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+class Rational {
+ public:
+  Rational();
+  // Every finite double and every int is a rational number, so that expressions may mix them.
+  Rational(double number);  // NOLINT(google-explicit-constructor)
+  Rational(int number);     // NOLINT(google-explicit-constructor)
+  Rational(int numerator, int denominator);
+  Rational(const Rational& other);
+  Rational(Rational&& other) noexcept : value_(other.value_) { other.value_._mp_den._mp_d = nullptr; }
+  Rational& operator=(const Rational& other) { return *this = Rational(other); }
+  Rational& operator=(Rational&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~Rational();
+
+  // T: double; rounded towards zero.
+  template <typename T>
+  T convert_to() const;
+
+  int sign() const;  // -1, 0 or 1
+
+  Rational& operator+=(const Rational& b);
+  Rational& operator-=(const Rational& b);
+  Rational& operator*=(const Rational& b);
+  Rational& operator/=(const Rational& b);
+  friend Rational operator-(const Rational& a);
+  friend Rational operator+(const Rational& a, const Rational& b);
+  friend Rational operator-(const Rational& a, const Rational& b);
+  friend Rational operator*(const Rational& a, const Rational& b);
+  friend Rational operator/(const Rational& a, const Rational& b);
+  friend Rational abs(const Rational& a);
+  friend bool operator==(const Rational& a, const Rational& b);
+  friend std::strong_ordering operator<=>(const Rational& a, const Rational& b);
+  friend std::ostream& operator<<(std::ostream& out, const Rational& a);
+
+ private:
+  __mpq_struct value_;  // without a denominator after it has been moved from
+};
+
+template <>
+double Rational::convert_to<double>() const;
 
 }  // namespace buoyancy
+
+// The names are Eigen's.
+// NOLINTBEGIN(readability-identifier-naming)
+template <>
+struct Eigen::NumTraits<buoyancy::Rational> : Eigen::GenericNumTraits<double> {
+  using Real = buoyancy::Rational;
+  using NonInteger = buoyancy::Rational;
+  using Nested = buoyancy::Rational;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 10,
+    AddCost = 100,
+    MulCost = 100
+  };
+};
+// NOLINTEND(readability-identifier-naming)

@@ -2,6 +2,7 @@
 // buoyancy() answers.
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/hydrostatics/random_poses.h"

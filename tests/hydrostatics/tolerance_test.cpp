@@ -7,10 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hierarchical.h"
 #include "hydrostatics/undecided_node.h"
 #include "hydrostatics/wet_tree_sum.h"
+#include "tests/geometry/sample_meshes.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
 #include "hydrostatics/floating_moments.h"
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "tests/hydrostatics/exact_oracle.h"

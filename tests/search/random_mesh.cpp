@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
 

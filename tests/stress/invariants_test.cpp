@@ -11,6 +11,7 @@
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wet_moments.h"
 #include "tests/hydrostatics/stiffness_by_dual_numbers.h"
+#include "tests/hydrostatics/wet_moments_by_hand.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 

@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
+#include "tests/hydrostatics/test_meshes.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"

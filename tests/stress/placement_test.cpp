@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "geometry/number_text.h"
+#include "geometry/shapes.h"
 #include "hydrostatics/hydrostatics.h"
+#include "hydrostatics/wet_tree_sum.h"
+#include "tests/hydrostatics/test_meshes.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"

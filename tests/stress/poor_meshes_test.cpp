@@ -10,7 +10,10 @@
 
 #include "geometry/number_text.h"
 #include "geometry/rounding_area.h"
+#include "geometry/shapes.h"
 #include "tests/geometry/mesh_files.h"
+#include "tests/geometry/sample_meshes.h"
+#include "tests/hydrostatics/test_meshes.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "exchange/exchange.h"
+#include "geometry/shapes.h"
 #include "messages/vectors.h"
 #include "tests/exchange/box_scene.h"
 #include "tests/stress/exact_truth.h"

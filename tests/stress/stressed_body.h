@@ -2,16 +2,12 @@
 // exact.
 #pragma once
 
+#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "hydrostatics/buoyancy.h"
-#include "hydrostatics/wet_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
 
@@ -19,15 +15,7 @@ namespace buoyancy {
 inline const Water kStressWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
 
 // x_B -> q x_B: coordinates of all their digits.
-inline TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q) {
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3 vertex_B = q * mesh.vertex(static_cast<std::int32_t>(v));
-    mesh.x[v] = vertex_B.x();
-    mesh.y[v] = vertex_B.y();
-    mesh.z[v] = vertex_B.z();
-  }
-  return mesh;
-}
+TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q);
 
 struct StressedBody {
   std::string name;
@@ -35,11 +23,7 @@ struct StressedBody {
   HydrostaticMesh mesh;
   BoundingBox box;
 
-  StressedBody(std::string called, TriangleMesh from)
-      : name(std::move(called)),
-        source(std::move(from)),
-        mesh(make_hydrostatic_mesh({source, {}})),
-        box(bounding_box(source)) {}
+  StressedBody(std::string called, TriangleMesh from);
 
   double volume_gate() const { return mesh.volume_gate(); }  // G_V
   double torque_gate(const Vec3& reference_B) const {        // G_tau
@@ -49,72 +33,25 @@ struct StressedBody {
 
 // Closed, small enough for rational arithmetic: plain, hollow, knotted, thin, in pieces, tiny, huge, far from
 // its origin.
-inline const std::vector<StressedBody>& stressed_bodies() {
-  static const std::vector<StressedBody> bodies = [] {
-    const TriangleMesh rock =
-        make_shape(RockShape{.radius = 1.0, .frequency = 4, .roughness = 0.4, .seed = 7});
-    std::vector<StressedBody> made;
-    made.reserve(11);
-    made.emplace_back("box", make_shape(BoxShape{}));
-    made.emplace_back("box of many faces", make_shape(BoxShape{.size = {1, 2, 3}, .segments = {3, 4, 5}}));
-    made.emplace_back("rock", rock);
-    made.emplace_back("torus knot", make_shape(TorusKnotShape{.tubular = 40, .radial = 5}));
-    made.emplace_back("box with a cavity",
-                      joined(make_shape(BoxShape{.size = {2, 2, 2}, .segments = {3, 3, 3}}),
-                             inside_out(make_shape(SphereShape{.radius = 0.8, .segments = 6}))));
-    made.emplace_back("two boxes apart",
-                      joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 1})));
-    made.emplace_back("plate 1 : 1000", make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {6, 6, 1}}));
-    made.emplace_back("needle 1 : 8192", make_shape(BoxShape{.size = {8192, 1, 1}, .segments = {40, 1, 1}}));
-    made.emplace_back("rock of 1e-6 m", moved_and_scaled(rock, Vec3::Zero(), 1e-6));
-    made.emplace_back("rock of 1e6 m", moved_and_scaled(rock, Vec3::Zero(), 1e6));
-    made.emplace_back("rock 2 km from its origin", moved_and_scaled(rock, {1200, -1600, 200}));
-    return made;
-  }();
-  return bodies;
-}
+const std::vector<StressedBody>& stressed_bodies();
 
 // A random or an adversarial pose, by turns; every fourth time `water` gets an up direction that is no axis.
-inline Pose stressed_pose(RandomPoses& random, const StressedBody& body, int turn, Water& water) {
-  if (turn % 4 == 3) water.up_W = random.direction();
-  return turn % 2 == 0 ? random.crossing(body.box, water) : random.adversarial(body.source, water);
-}
+Pose stressed_pose(RandomPoses& random, const StressedBody& body, int turn, Water& water);
 
 // Somewhere in or near the body, so that torques are about a point that is none of its own.
-inline Vec3 reference_near(RandomPoses& random, const StressedBody& body) {
-  return body.box.center() + 0.5 * body.mesh.diagonal * random.direction();
-}
+Vec3 reference_near(RandomPoses& random, const StressedBody& body);
 
 // visit(name, solver) for every method that claims to be exact, `hierarchical` on every instruction set of
 // this processor.
-template <typename Visit>
-void visit_exact_solvers(const HydrostaticMesh& mesh, const Visit& visit) {
-  for (const Method method : {Method::kExact, Method::kExactSurface}) {
-    visit(std::string(name(method)), Solver(mesh, method));
-  }
-  for (const std::string& target : simd_targets()) {
-    EXPECT_TRUE(force_simd_target(target));
-    visit("hierarchical on " + target, Solver(mesh, Method::kHierarchical));
-  }
-  force_simd_target("");
-}
+void visit_exact_solvers(const HydrostaticMesh& mesh,
+                         const std::function<void(const std::string&, const Solver&)>& visit);
 
 // By how much an exact method's gates are wider at this pose. The paper's two sum up a submerged body instead
 // of taking its constants, and the terms of that sum are as large as A_s times the depth: in the catalogue 1
 // + depth/L. On thin plates, whose V_T is next to nothing against that, they are measured to need the 8 (a
 // plate of 1 : 1e8 in 10 x 10 squares: 4.3).
-inline double depth_factor(const Solver& solver, const Pose& pose, const Water& water) {
-  if (solver.method() == Method::kHierarchical) return 1.0;
-  const HydrostaticMesh& mesh = solver.mesh();
-  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  if (immersion(mesh, plane) != Immersion::kWet) return 1.0;
-  return 1.0 + 8.0 * (plane.h_c + 0.5 * mesh.diagonal) / mesh.diagonal;
-}
+double depth_factor(const Solver& solver, const Pose& pose, const Water& water);
 
-inline bool same_bits(const BuoyancyAnswer& a, const BuoyancyAnswer& b) {
-  return a.status == b.status && a.force_W == b.force_W && a.torque_W == b.torque_W && a.volume == b.volume &&
-         a.center_of_buoyancy_W == b.center_of_buoyancy_W && a.force_error_bound == b.force_error_bound &&
-         a.torque_error_bound == b.torque_error_bound;
-}
+bool same_bits(const BuoyancyAnswer& a, const BuoyancyAnswer& b);
 
 }  // namespace buoyancy

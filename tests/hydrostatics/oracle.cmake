@@ -1,0 +1,16 @@
+# buoyancy_oracle: what the solvers are compared with (the exact oracle and its number types), and the poses and meshes
+# that the comparisons share; of tests and benchmarks. Its functions are compiled here once, since instantiating them in
+# every source that uses them was a third of the time to build the tests. The comparison itself uses no solver.
+find_library(GMP_LIBRARY gmp REQUIRED)
+
+add_library(
+  buoyancy_oracle STATIC
+  ${CMAKE_CURRENT_LIST_DIR}/ball.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/exact_oracle.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/random_poses.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/rational.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/stiffness_by_dual_numbers.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/test_meshes.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/wet_moments_by_hand.cpp)
+target_include_directories(buoyancy_oracle PUBLIC ${PROJECT_SOURCE_DIR})
+target_link_libraries(buoyancy_oracle PUBLIC buoyancy_hydrostatics ${GMP_LIBRARY} PRIVATE buoyancy_options)
