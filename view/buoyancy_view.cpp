@@ -28,6 +28,7 @@ struct Arguments {
   std::string address = "127.0.0.1";
   int port = 8667;
   std::string three = kThreeJs;
+  std::string scheduling = "idle";
   WatchedChannels channels;
   PoseOptions poses;
 };
@@ -45,6 +46,12 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
       ->option_text("ADDRESS [127.0.0.1]");
   app.add_option("--three", arguments.three, "three.js, which draws the bodies: a three.min.js")
       ->option_text("FILE [" + std::string(kThreeJs) + "]");
+  app.add_option(
+         "--scheduling", arguments.scheduling,
+         "When to run. idle: only while a processor would otherwise be idle. normal: as other programs, "
+         "for a machine that is never idle")
+      ->check(CLI::IsMember({"idle", "normal"}))
+      ->option_text("POLICY [idle]");
   app.add_option("--states-channel", arguments.channels.states, "Channel of the questions")
       ->capture_default_str();
   app.add_option("--wrenches-channel", arguments.channels.wrenches, "Channel of the answers")
@@ -87,7 +94,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   Expected<std::vector<ServedText>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
   if (!page) return report(app, page.error(), kFailed);
   TerminationSignals termination;  // before any thread is started, which must not get them
-  give_way_to_others();
+  if (arguments.scheduling == "idle") give_way_to_others();
   SnapshotHub hub;
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, hub);
   if (!view) return report(app, view.error(), kFailed);

@@ -1,4 +1,5 @@
-// buoyancy-view as a process of its own.
+// buoyancy-view as a process of its own, scheduled as any other: on a machine that is never idle the default
+// policy shows nothing.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +34,8 @@ class RunningView {
  private:
   static ChildCommand command(const std::string& scene, std::vector<std::string> options,
                               std::uint16_t port) {
-    options.insert(options.begin(), {BUOYANCY_VIEW, "--scene", scene, "--port", std::to_string(port)});
+    options.insert(options.begin(), {BUOYANCY_VIEW, "--scene", scene, "--port", std::to_string(port),
+                                     "--scheduling", "normal"});
     return command_of(std::move(options));
   }
 
