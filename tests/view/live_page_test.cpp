@@ -14,16 +14,17 @@
 namespace buoyancy {
 namespace {
 
-// A box that bobs for as long as anybody looks, and one that nobody asks about.
+// A box of half the default density of water, 1025 kg/m^3, that floats in equilibrium, so that its picture is
+// the same at every step of a run, and one that the client does not know.
 const std::string kScene = R"(
 [[body]]
 id = 1
-name = "bobbing box"
+name = "floating box"
 shape = { type = "box", size = [1, 1, 1] }
 outputs = ["wrench", "hydrostatics"]
 [body.client]
-density = 500
-position = [0, 0, 0.2]
+density = 512.5
+position = [0, 0, 0]
 [[body]]
 id = 2
 name = "second box"
@@ -67,6 +68,10 @@ TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
   browser().wait_until("document.querySelector('#strip').textContent.includes('lockstep')");
   browser().wait_until("document.querySelectorAll('#plots path').length >= 4");
   EXPECT_GT(browser().run("return buoyancyView.last.bodies[0].f[2];").get<double>(), 0.0);
+  browser().press(" ");
+  EXPECT_NEAR(browser().run("return buoyancyView.scene.bodies.get(1).group.position.z;").get<double>(), 0.0,
+              1e-6)
+      << "half under water";
   const Picture picture = browser().screenshot();
   const Region canvas = browser().region_of("#canvas");
   const auto amber = [](const Colour& colour) {
@@ -153,11 +158,14 @@ TEST_F(LivePage, NamesEveryStatusAsTheMessagesDo) {
 }
 
 TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {
+  // The kernel gives no connection this port, so it is free when the view comes back.
+  constexpr std::uint16_t kPort = 8667;
+  view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, kPort);
+  browser().open(view_->url());
   browser().wait_until("window.buoyancyView && buoyancyView.snapshots > 3");
-  const std::uint16_t port = view_->port();
   view_.reset();
   browser().wait_until("buoyancyView.state === 'connecting'");
-  view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, port);
+  view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, kPort);
   browser().wait_until("buoyancyView.connections >= 2 && buoyancyView.state === 'answering'");
   wait_for_news();
 }

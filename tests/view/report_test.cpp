@@ -184,8 +184,13 @@ TEST_F(TheReport, IsPlayedByTheKeyboard) {
   EXPECT_NEAR(time(), 0.05, 1e-9);
   browser().press("+");
   EXPECT_EQ(browser().run("return buoyancy_report.state().speed"), 2);
+  // Slowest, so that the run does not end before anybody has looked: it takes 50 s.
+  for (int i = 0; i < 4; ++i) browser().press("-");
+  EXPECT_EQ(browser().run("return buoyancy_report.state().speed"), 0.1);
+  const double before = time();
   browser().press(" ");
-  browser().wait_until("buoyancy_report.state().time > 1 && buoyancy_report.state().playing");
+  browser().wait_until("buoyancy_report.state().playing && buoyancy_report.state().time > " +
+                       std::to_string(before + 0.01));
   browser().press(" ");
   EXPECT_EQ(browser().run("return buoyancy_report.state().playing"), false);
   const double azimuth = browser().run("return buoyancy_report.scene.azimuth").get<double>();
