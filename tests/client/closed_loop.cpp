@@ -1,18 +1,18 @@
 #include "tests/client/closed_loop.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
-
-// Far beyond what any run takes, also under sanitizers: a run that hangs fails.
 
 ChildCommand command(const char* program, const std::string& scene, const Options& options) {
   ChildCommand command;
@@ -74,6 +74,38 @@ nlohmann::json simulate(const std::string& scene, const Options& options) {
     EXPECT_EQ(summary["warnings"], nlohmann::json::array());
   }
   return summary;
+}
+
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code not_there_yet;
+  const std::uintmax_t size = std::filesystem::file_size(path, not_there_yet);
+  return not_there_yet ? 0 : size;
+}
+
+bool grows_to(const std::filesystem::path& path, std::uintmax_t bytes, ChildProcess& program) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kRunTimeout);
+  while (size_of(path) < bytes) {
+    if (program.wait(0.001) || std::chrono::steady_clock::now() >= limit) return false;
+  }
+  return true;
+}
+
+nlohmann::json interrupt(ChildProcess& client) {
+  client.send_signal(SIGINT);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1) << client.standard_error();
+  nlohmann::json summary = nlohmann::json::parse(client.standard_output(), nullptr, false);
+  EXPECT_TRUE(summary.is_object()) << client.standard_error();
+  if (!summary.is_object()) return nullptr;
+  EXPECT_EQ(summary["interrupted"], true);
+  return summary;
+}
+
+std::string embedded_csv(const TemporaryDirectory& directory, const std::string& scene, std::int64_t steps,
+                         const std::string& step) {
+  const std::string csv = directory.path("embedded.csv");
+  const double duration = static_cast<double>(steps) * std::stod(step);
+  simulate(scene, {"--embedded", "--duration", std::to_string(duration), "--step", step, "--csv", csv});
+  return read_file(csv);
 }
 
 nlohmann::json body(const nlohmann::json& summary, int id) {

@@ -2,6 +2,7 @@
 // and buoyancy-client as processes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -34,6 +35,11 @@ class TemporaryDirectory {
 };
 
 std::string read_file(const std::filesystem::path& path);
+std::uintmax_t size_of(const std::filesystem::path& path);  // 0 where there is no such file yet
+
+// Waits until the file that the program writes has so many bytes; false where the program ends before, or
+// does not get so far.
+bool grows_to(const std::filesystem::path& path, std::uintmax_t bytes, ChildProcess& program);
 
 using Options = std::vector<std::string>;
 
@@ -45,6 +51,14 @@ ChildCommand service_command(const std::string& scene, const Options& options);
 nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options);
 // The same where the test expects no warnings.
 nlohmann::json simulate(const std::string& scene, const Options& options);
+
+// Ends a run of buoyancy-client --json, which the test expects to go on until then; its table, or null after
+// a failure.
+nlohmann::json interrupt(ChildProcess& client);
+
+// What a run of so many steps, in one process and without a network, writes into its CSV.
+std::string embedded_csv(const TemporaryDirectory& directory, const std::string& scene, std::int64_t steps,
+                         const std::string& step);
 
 // The run's table: the body with this id.
 nlohmann::json body(const nlohmann::json& summary, int id);

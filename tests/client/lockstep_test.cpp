@@ -1,14 +1,15 @@
 // Lock-step and free running over UDP multicast, on a good network and on bad ones, each test in a network
 // namespace of its own: what the network does may cost time, and in lock-step nothing else.
-#include <filesystem>
-#include <thread>
+#include <chrono>
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <signal.h>
 
 #include "tests/client/closed_loop.h"
 #include "tests/client/lossy_relay.h"
 #include "tests/support/timeouts.h"
+#include "transport/lcm_connection.h"
 
 namespace buoyancy {
 namespace {
@@ -44,27 +45,20 @@ class Lockstep : public testing::Test {
     return read_file(csv);
   }
 
-  // Waits until the program has written this much of its CSV, or ended.
-  static void wait_for_rows(const std::string& csv, std::uintmax_t bytes, ChildProcess& client) {
-    const auto written = [&] { return std::filesystem::exists(csv) ? std::filesystem::file_size(csv) : 0; };
-    while (written() < bytes && !client.wait(0.001)) {
-    }
-  }
-
   TemporaryDirectory directory_;
   std::string scene_ = directory_.write("scene.toml", kScene);
   nlohmann::json summary_;
 };
 
 TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLosesOneInTwenty) {
-  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "6"});
-  ASSERT_GT(embedded.size(), 6000U * 300U);
+  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "4"});
+  ASSERT_GT(embedded.size(), 4000U * 300U);
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
-  EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "6"}) == embedded);
+  EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "4"}) == embedded);
 
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
-  const Options impatient = {"-l", kClientUrl, "--duration", "6", "--timeout", "0.005", "--retries", "10000"};
+  const Options impatient = {"-l", kClientUrl, "--duration", "4", "--timeout", "0.005", "--retries", "10000"};
   EXPECT_TRUE(csv_of_run("lossy.csv", impatient) == embedded);
   EXPECT_GT(relay.lost_questions(), 50);
   EXPECT_GT(relay.lost_answers(), 50);
@@ -73,17 +67,19 @@ TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLos
 }
 
 TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
-  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "20"});
   auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("udp.csv");
-  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--duration", "20", "--step", "0.002",
-                                              "--csv", csv, "--timeout", "0.05", "--retries", "10000"}));
-  wait_for_rows(csv, 500'000, client);
-  EXPECT_EQ(client.wait(0.0), std::nullopt) << "the run was over before the service could be killed";
+  // Without an end: however late this test gets the processor, the service dies in the middle of the run.
+  ChildProcess client(
+      client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--step", "0.002", "--csv", csv,
+                              "--timeout", "0.05", "--retries", "10000", "--json"}));
+  ASSERT_TRUE(grows_to(csv, 200'000, client)) << client.standard_error();
   service.reset();
   service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
-  EXPECT_EQ(client.wait(kRunTimeout), 0) << client.standard_error();
-  EXPECT_TRUE(read_file(csv) == embedded);
+  ASSERT_TRUE(grows_to(csv, size_of(csv) + 200'000, client)) << client.standard_error();
+  const nlohmann::json summary = interrupt(client);
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_TRUE(read_file(csv) == embedded_csv(directory_, scene_, summary["steps"], "0.002"));
 }
 
 TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
@@ -116,17 +112,25 @@ TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
   const std::string csv = directory_.path("interrupted.csv");
   ChildProcess client(
       client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--csv", csv, "--json"}));
-  wait_for_rows(csv, 100'000, client);
-  client.send_signal(SIGINT);
-  EXPECT_EQ(client.wait(kWaitTimeout), 1);
-  const nlohmann::json summary = nlohmann::json::parse(client.standard_output());
-  EXPECT_EQ(summary["interrupted"], true);
+  ASSERT_TRUE(grows_to(csv, 100'000, client)) << client.standard_error();
+  const nlohmann::json summary = interrupt(client);
+  ASSERT_TRUE(summary.is_object());
   EXPECT_EQ(csv_column(read_file(csv), "energy").size(), 2 * (std::size_t{summary["steps"]} + 1));
 }
 
 TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
-  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1000"}));
-  EXPECT_EQ(client.wait(0.5), std::nullopt);
+  Expected<LcmConnection> bus = LcmConnection::open(kServiceUrl);
+  ASSERT_TRUE(bus) << bus.error().message();
+  bool requested = false;
+  ASSERT_TRUE(
+      bus->subscribe(std::string(kStatesChannel), [&](Bytes, std::string_view) { requested = true; }));
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1e6"}));
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (!requested && std::chrono::steady_clock::now() < limit) {
+    pollfd waiting{bus->fileno(), POLLIN, 0};
+    if (::poll(&waiting, 1, to_milliseconds(kWaitTimeout)) == 1) bus->handle_one();
+  }
+  ASSERT_TRUE(requested) << client.standard_error();
   client.send_signal(SIGTERM);
   EXPECT_EQ(client.wait(kWaitTimeout), 1);
 }
@@ -139,15 +143,15 @@ TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
   // Answers take eight intervals or more.
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
   const nlohmann::json summary =
-      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "200", "--duration", "2"});
+      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "200", "--duration", "1"});
   ASSERT_TRUE(summary.is_object());
   EXPECT_EQ(summary["step"], 0.005);
-  EXPECT_EQ(summary["steps"], 400);
-  EXPECT_EQ(summary["questions"], 401);
-  EXPECT_GE(summary["late"], 300);
+  EXPECT_EQ(summary["steps"], 200);
+  EXPECT_EQ(summary["questions"], 201);
+  EXPECT_GE(summary["late"], 150);
   EXPECT_GE(summary["late_by_at_most"], 8);
   EXPECT_GE(summary["round_trip"]["p50"], 0.04);
-  EXPECT_GE(summary["wall_time"], 1.9);
+  EXPECT_GE(summary["wall_time"], 0.9);
   // The crate swings at 5 rad/s or more: a radian's fifth and more per delay.
   ASSERT_FALSE(summary["warnings"].empty());
   EXPECT_NE(std::string(summary["warnings"][0]).find("delay of the answers"), std::string::npos)
@@ -160,10 +164,10 @@ TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
   // Warnings would be of the machine's load, not of this.
   const nlohmann::json summary =
-      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "2"});
+      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "1"});
   ASSERT_TRUE(summary.is_object());
-  EXPECT_EQ(summary["steps"], 1000);
-  EXPECT_GE(summary["lost"], 100);
+  EXPECT_EQ(summary["steps"], 500);
+  EXPECT_GE(summary["lost"], 50);
   EXPECT_GE(summary["late"], summary["lost"]);
 }
 
@@ -171,9 +175,9 @@ TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const std::string csv = directory_.path("free.csv");
-  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1000",
-                                              "--timeout", "0.1", "--retries", "4", "--csv", csv}));
-  wait_for_rows(csv, 20'000, client);
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1e6",
+                                              "--timeout", "0.5", "--retries", "1", "--csv", csv}));
+  ASSERT_TRUE(grows_to(csv, 20'000, client)) << client.standard_error();
   service.send_signal(SIGKILL);
   EXPECT_EQ(client.wait(kWaitTimeout), 1);
   EXPECT_NE(client.standard_error().find("no answer for"), std::string::npos) << client.standard_error();
