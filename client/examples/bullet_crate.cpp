@@ -1,7 +1,7 @@
 // Bullet moves a crate, buoyancyd tells it how the water pushes.
 //
 //   buoyancyd --scene scenes/box.toml &
-//   bullet_crate [LCM URL]
+//   bullet_crate [LCM URL [STEP [RETRIES]]]
 //
 // Bullet calculates with 64 bits here (package libbullet-dev, pkg-config bullet-float64): with 32 a body 1 km
 // from the origin would know its height to 0.1 mm only.
@@ -40,11 +40,11 @@ class World {
             .angular_velocity = {}};
   }
 
-  void step_with(const buoyancy::BodyWrench& water) {
+  void step_with(const buoyancy::BodyWrench& water, double step) {
     body_.applyCentralForce(as_bullet(water.force) - crate::kLinearDamping * body_.getLinearVelocity());
     body_.applyTorque(as_bullet(water.torque) - crate::kAngularDamping * body_.getAngularVelocity());
     // 0 sub-steps: exactly this step. With sub-steps Bullet would move the body several times on one wrench.
-    dynamics_.stepSimulation(crate::kStep, 0);
+    dynamics_.stepSimulation(step, 0);
   }
 
   double height() const { return body_.getWorldTransform().getOrigin().z(); }
@@ -74,5 +74,5 @@ class World {
 
 int main(int argc, char** argv) {
   World world;
-  return crate::float_crate(world, argc > 1 ? argv[1] : "");
+  return crate::float_crate(world, crate::Arguments(argc, argv));
 }

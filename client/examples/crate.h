@@ -21,35 +21,50 @@ inline constexpr double kLinearDamping = 500.0;                        // N/(m/s
 inline constexpr double kAngularDamping = 40.0;                        // N m/(rad/s)
 inline constexpr std::array<double, 3> kStart{0.0, 0.0, 0.75};         // m
 inline constexpr std::array<double, 4> kTurned{0.98, 0.15, 0.1, 0.0};  // (w, x, y, z), not normalised
-inline constexpr double kStep = 1e-3;                                  // s
-inline constexpr std::int64_t kSteps = 20'000;
+inline constexpr double kSimulatedTime = 20.0;                         // s
+
+// The command line: [LCM URL [STEP [RETRIES]]].
+struct Arguments {
+  Arguments(int argc, char** argv) {
+    if (argc > 1) lcm_url = argv[1];
+    if (argc > 2) step = std::stod(argv[2]);
+    if (argc > 3) retries = std::stoll(argv[3]);
+  }
+  std::string lcm_url;  // "" for what LCM's own tools would take
+  double step = 1e-3;   // s
+  // At 0.1 s each: a minute, in which a service that is started together with us loads its scene.
+  std::int64_t retries = 600;
+};
 
 // Where the crate came to rest and how fast it got there. tilt_cosine: z of the crate's own z axis.
 inline void report(const buoyancy::AskerStatistics& asked, double height, double tilt_cosine,
                    std::chrono::steady_clock::duration took) {
   const double seconds = std::chrono::duration<double>(took).count();
   std::printf("height %.6f m, tilt %.6f rad after %.3g s of simulated time\n", height,
-              std::acos(std::fmin(tilt_cosine, 1.0)), kStep * static_cast<double>(kSteps));
+              std::acos(std::fmin(tilt_cosine, 1.0)), kSimulatedTime);
   std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld questions sent again\n",
-              static_cast<double>(kSteps) / seconds, 1e6 * asked.round_trip.percentiles().p50,
+              static_cast<double>(asked.questions) / seconds, 1e6 * asked.round_trip.percentiles().p50,
               1e6 * asked.round_trip.percentiles().p99, static_cast<long long>(asked.retries));
 }
 
-// All that a simulator does. World is an engine with a crate in it: state(), step_with(wrench), height(),
-// tilt_cosine(). lcm_url: "" for what LCM's own tools would take. Returns main's exit code.
+// All that a simulator does. World is an engine with a crate in it: state(), step_with(wrench, step),
+// height(), tilt_cosine(). Returns main's exit code.
 template <typename World>
-int float_crate(World& world, const std::string& lcm_url) {
+int float_crate(World& world, const Arguments& arguments) {
+  const double step_size = arguments.step;
+  const std::int64_t steps = std::llround(kSimulatedTime / step_size);
   buoyancy::ClientOptions options;
-  options.link.lcm_url = lcm_url;
+  options.link.lcm_url = arguments.lcm_url;
+  options.patience.retries = arguments.retries;
   buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open(options);
   if (!client) {
     std::fprintf(stderr, "%s\n", client.error().message().c_str());
     return 1;
   }
   const auto start = std::chrono::steady_clock::now();
-  for (std::int64_t step = 0; step < kSteps; ++step) {
+  for (std::int64_t step = 0; step < steps; ++step) {
     // Of simulated time, from the step's number: the same run asks the same.
-    const std::int64_t utime = std::llround(1e6 * kStep * static_cast<double>(step));
+    const std::int64_t utime = std::llround(1e6 * step_size * static_cast<double>(step));
     // Once per step, at the step's own pose: the engines then integrate semi-implicitly, which keeps energy
     // bounded.
     const std::array states{world.state()};
@@ -62,7 +77,7 @@ int float_crate(World& world, const std::string& lcm_url) {
       std::fprintf(stderr, "body %d is answered with status %s\n", wrong->body_id, name(wrong->status));
       return 1;
     }
-    world.step_with((*answer)->bodies[0]);
+    world.step_with((*answer)->bodies[0], step_size);
   }
   report(client->statistics(), world.height(), world.tilt_cosine(), std::chrono::steady_clock::now() - start);
   return 0;

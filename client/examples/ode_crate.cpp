@@ -2,7 +2,7 @@
 // only what reads a pose and applies a wrench is different.
 //
 //   buoyancyd --scene scenes/box.toml &
-//   ode_crate [LCM URL]
+//   ode_crate [LCM URL [STEP [RETRIES]]]
 #include <ode/ode.h>
 
 #include "client/examples/crate.h"
@@ -45,7 +45,7 @@ class World {
             .angular_velocity = {}};
   }
 
-  void step_with(const buoyancy::BodyWrench& water) {
+  void step_with(const buoyancy::BodyWrench& water, double step) {
     const dReal* v = dBodyGetLinearVel(body_);
     const dReal* w = dBodyGetAngularVel(body_);
     dBodyAddForce(body_, water.force[0] - crate::kLinearDamping * v[0],
@@ -54,7 +54,7 @@ class World {
     dBodyAddTorque(body_, water.torque[0] - crate::kAngularDamping * w[0],
                    water.torque[1] - crate::kAngularDamping * w[1],
                    water.torque[2] - crate::kAngularDamping * w[2]);
-    dWorldStep(world_, crate::kStep);
+    dWorldStep(world_, step);
   }
 
   double height() const { return dBodyGetPosition(body_)[2]; }
@@ -69,5 +69,5 @@ class World {
 
 int main(int argc, char** argv) {
   World world;
-  return crate::float_crate(world, argc > 1 ? argv[1] : "");
+  return crate::float_crate(world, crate::Arguments(argc, argv));
 }

@@ -2,6 +2,7 @@
 // multicast in a network namespace of each test's own.
 #include "asking/asker.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/asking/peer.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -26,7 +28,7 @@ AnswerLink open_link() {
   return value_or_die(AnswerLink::open({}));
 }
 
-constexpr Patience kPatient{0.5, 40};
+const Patience kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
 
 TEST(LockstepAsker, TakesOnlyTheAnswerToItsOwnQuestion) {
   const Peer peer([](const Question& question) {

@@ -3,16 +3,18 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/asking/peer.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr Patience kPatient{0.5, 40};
+const Patience kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
 
 Client open_client(ClientOptions options = {}) {
   options.patience = kPatient;

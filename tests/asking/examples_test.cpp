@@ -1,6 +1,7 @@
 // client/examples beside the real buoyancyd, over UDP: the crate of scenes/box.toml comes to rest level, at
 // the height that Archimedes gives, in engines that are not ours; and Python gets the force that a closed
 // form gives.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -8,17 +9,19 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/closed_loop.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
 const std::string kSources = BUOYANCY_SOURCE_DIR;
-constexpr double kSeconds = 250.0;  // at most, on a busy machine under a sanitizer
+// Of 20 s of the crate's motion, so that its rest takes 4,000 round trips.
+constexpr const char* kStep = "0.005";  // s
 
 class Service {
  public:
   Service() : child_(service_command(kSources + "/scenes/box.toml", {})) {
-    EXPECT_TRUE(child_.wait_for_text("ready:", kSeconds)) << child_.standard_error();
+    EXPECT_TRUE(child_.wait_for_text("ready:", kWaitTimeout)) << child_.standard_error();
   }
 
  private:
@@ -33,7 +36,7 @@ constexpr const char* kNoPython = "python3 was not there when this was configure
 
 void comes_to_rest_level(const std::string& program) {
   const Service service;
-  const FinishedProcess run = run_to_end(command_of({program}), kSeconds);
+  const FinishedProcess run = run_to_end(command_of({program, "", kStep}), kRunTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   double height = NAN;
   double tilt = NAN;
@@ -55,7 +58,7 @@ TEST(Examples, OdesCrateComesToRestLevelInTheWater) {
 
 TEST(Examples, SayWhatIsWrongWhereNothingAnswers) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
-  const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://"}), kSeconds);
+  const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://", kStep, "3"}), kRunTimeout);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.standard_error.find("no buoyancyd is running"), std::string::npos) << run.standard_error;
 }
@@ -67,7 +70,7 @@ TEST(Examples, PythonGetsTheForceOfAHalfSubmergedBox) {
   for (const auto& entry : std::filesystem::directory_iterator(kSources + "/lcmtypes")) {
     if (entry.path().extension() == ".lcm") generate.push_back(entry.path());
   }
-  const FinishedProcess generated = run_to_end(command_of(generate), kSeconds);
+  const FinishedProcess generated = run_to_end(command_of(generate), kRunTimeout);
   ASSERT_EQ(generated.exit_code, 0) << generated.standard_error;
 
   const Service service;
@@ -75,7 +78,7 @@ TEST(Examples, PythonGetsTheForceOfAHalfSubmergedBox) {
     ChildCommand ask =
         command_of({PYTHON, kSources + "/client/examples/round_trip.py", "--height", std::to_string(height)});
     ask.environment = {"PYTHONPATH=" + directory.path(""), "PYTHONDONTWRITEBYTECODE=1"};
-    const FinishedProcess asked = run_to_end(ask, kSeconds);
+    const FinishedProcess asked = run_to_end(ask, kRunTimeout);
     ASSERT_EQ(asked.exit_code, 0) << asked.standard_error;
     int status = -1;
     std::array<double, 3> force{};

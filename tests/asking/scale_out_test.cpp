@@ -9,12 +9,12 @@
 
 #include "asking/client.h"
 #include "tests/client/closed_loop.h"
+#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kReady = 60.0;  // s
-constexpr int kSteps = 200;
+constexpr int kSteps = 100;
 
 std::string body_of_scene(int id) {
   constexpr std::array kShapes{R"({ type = "rock", frequency = 6 })", R"({ type = "torus_knot" })",
@@ -53,10 +53,11 @@ class Share {
             directory.write(name + ".toml", scene_of(ids)),
             {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
              "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
-    if (!service_.wait_for_text("ready", kReady)) throw std::runtime_error(service_.standard_error());
+    if (!service_.wait_for_text("ready", kWaitTimeout)) throw std::runtime_error(service_.standard_error());
     ClientOptions options;
     options.link.states_channel = name + "_STATES";
     options.link.wrenches_channel = name + "_WRENCHES";
+    options.patience.retries = 10'000;  // as long as the test may take
     Expected<Client> client = Client::open(options);
     if (!client) throw std::runtime_error(client.error().message());
     client_.emplace(std::move(*client));
