@@ -1,4 +1,5 @@
 // buoyancy-report: a run as one HTML page.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 
@@ -12,6 +13,7 @@
 #include "recording/record_file.h"
 #include "scene/scene.h"
 #include "terminal/progress_bar.h"
+#include "view/body_list.h"
 #include "view/page_text.h"
 #include "view/report_page.h"
 #include "view/run_file.h"
@@ -27,6 +29,7 @@ struct ReportArguments {
   std::filesystem::path three = kThreeJs;
   RunFileOptions file;
   PoseOptions poses;
+  std::string bodies;
 };
 
 void declare_options(CLI::App& app, ReportArguments& arguments) {
@@ -47,6 +50,10 @@ void declare_options(CLI::App& app, ReportArguments& arguments) {
   app.add_option("--status-channel", arguments.file.status_channel, "Channel of the status in an LCM log")
       ->capture_default_str();
   declare_options(app, arguments.poses);
+  app.add_option(
+      "--bodies", arguments.bodies,
+      "Ids of the bodies to show, such as 1-50,900, at most 1,000. Default: the first 1,000 that RUN\n"
+      "names. Of the others the page has one line each: rows, statuses, largest recorded force");
   app.add_option("--three", arguments.three,
                  "Another three.js than Debian's libjs-three, to go into the page");
   app.add_option("RUN", arguments.run, "A .csv or .lcmlog file")->required();
@@ -61,17 +68,23 @@ Expected<void> write_page(const std::filesystem::path& path, const std::string& 
   return file->flush();
 }
 
-std::string summary_of(const Scene& scene, const RecordedRun& run, const ReportArguments& arguments,
-                       std::size_t bytes) {
+std::string summary_of(const RecordedRun& run, const ReportArguments& arguments, std::size_t bytes) {
   std::int64_t recorded = 0;
   std::int64_t kept = 0;
+  std::int64_t others = 0;
   for (const BodyRun& body : run.bodies) {
+    if (!body.shown) {
+      others += body.recorded > 0 ? 1 : 0;
+      continue;
+    }
     recorded += body.recorded;
     kept += static_cast<std::int64_t>(body.rows.size());
   }
-  std::string text = arguments.output.string() + ": " + std::to_string(scene.bodies().size()) + " bodies, " +
+  const auto shown = std::ranges::count_if(run.bodies, &BodyRun::shown);
+  std::string text = arguments.output.string() + ": " + std::to_string(shown) + " bodies, " +
                      std::to_string(recorded) + " rows";
   if (kept < recorded) text += ", thinned to " + std::to_string(kept) + " with the extremes kept";
+  if (others > 0) text += "; " + std::to_string(others) + " more bodies only as a summary (see --bodies)";
   return text + "; " + std::to_string((bytes + 500'000) / 1'000'000) + " MB\n";
 }
 
@@ -98,6 +111,12 @@ int main(int argc, char** argv) {
   if (!poses) return refuse(poses.error(), kWrongInput);
   arguments.file.poses = *std::move(poses);
 
+  if (!arguments.bodies.empty()) {
+    Expected<std::vector<std::size_t>> bodies = body_list(arguments.bodies, *scene);
+    if (!bodies) return refuse(bodies.error(), kWrongInput);
+    arguments.file.bodies = *std::move(bodies);
+  }
+
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message
   ProgressBar progress("rows");
@@ -115,12 +134,14 @@ int main(int argc, char** argv) {
     print_error(app, std::string("ended by ") + ended_by + "; the page shows what was read until then");
   }
 
-  const std::string page = report_page(
-      report_data(*scene, *run, {.file = arguments.run.filename().string(), .version = BUOYANCY_VERSION}),
-      *three);
+  const std::string page = report_page(report_data(*scene, *run,
+                                                   {.file = arguments.run.filename().string(),
+                                                    .version = BUOYANCY_VERSION,
+                                                    .selected = !arguments.file.bodies.empty()}),
+                                       *three);
   if (const Expected<void> written = write_page(arguments.output, page); !written) {
     return refuse(written.error(), kFailed);
   }
-  if (!print_output(app, summary_of(*scene, *run, arguments, page.size()))) return kFailed;
+  if (!print_output(app, summary_of(*run, arguments, page.size()))) return kFailed;
   return run->troubles.empty() && ended_by == nullptr ? kDone : kFailed;
 }

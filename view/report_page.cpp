@@ -117,6 +117,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
   Json data{{"file", options.file},
             {"version", options.version},
             {"columns", kColumnNames},
+            {"selected", options.selected},
             {"sessions", run.sessions},
             {"computed", run.computed},
             {"unknown_bodies", run.unknown_bodies},
@@ -128,13 +129,18 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
     const BodyRun& of_body = run.bodies[i];
-    Json shown{{"id", body.id},
-               {"recorded", of_body.recorded},
-               {"rows", of_body.rows.size()},
-               {"data", rows_text(of_body.rows)},
-               {"skipped", skipping_of(body, of_body, scene.water())}};
-    if (body.hydrostatics) shown["metacenters"] = metacenters_text(body, of_body, scene.water());
-    data["bodies"].push_back(std::move(shown));
+    Json described{{"id", body.id},
+                   {"recorded", of_body.recorded},
+                   {"statuses", of_body.statuses},
+                   {"largest_force", of_body.largest_force},  // null: not known
+                   {"shown", of_body.shown},
+                   {"rows", of_body.rows.size()}};
+    if (of_body.shown) {
+      described["data"] = rows_text(of_body.rows);
+      described["skipped"] = skipping_of(body, of_body, scene.water());
+      if (body.hydrostatics) described["metacenters"] = metacenters_text(body, of_body, scene.water());
+    }
+    data["bodies"].push_back(std::move(described));
   }
   return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -11,6 +11,7 @@ namespace buoyancy {
 struct ReportOptions {
   std::string file;  // the run's, as shown
   std::string version;
+  bool selected = false;  // somebody chose the bodies that are shown
 };
 
 // The data that the page's script reads (view/page/report.js). Of bodies that ask for hydrostatics the

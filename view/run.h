@@ -1,4 +1,5 @@
-// A run as a page shows it: of each body its rows in time, and what was found on the way.
+// A run as a page shows it: of every body a summary, of those that are shown the rows in time, and what was
+// found on the way.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "messages/question.h"
 #include "messages/status.h"
 
 namespace buoyancy {
@@ -72,16 +74,23 @@ struct SkippedRows {
 };
 
 struct BodyRun {
-  std::vector<Row> rows;      // in order of time; what is left of `recorded`
   std::int64_t recorded = 0;  // rows of the file
+  // Of these, by BodyStatus, the last for statuses of a later version; fewer than `recorded` where neither
+  // the file says the status nor anything was computed.
+  std::array<std::int64_t, kBodyStatusCount + 1> statuses{};
+  double largest_force = kNotKnown;  // N, of the rows that are OK
+  // Of the bodies that are shown, alone:
+  bool shown = false;
+  std::vector<Row> rows;  // in order of time; what is left of `recorded`
   SkippedRows skipped;
 };
 
 struct RecordedRun {
-  std::vector<BodyRun> bodies;        // as Scene::bodies()
-  std::int64_t unknown_bodies = 0;    // rows about bodies that the scene has not
-  std::int64_t sessions = 0;          // of questions; one after the other on the axis of time
-  std::int64_t computed = 0;          // rows whose file has no answer, computed from the scene instead
+  std::vector<BodyRun> bodies;      // as Scene::bodies()
+  std::int64_t unknown_bodies = 0;  // rows about bodies that the scene has not
+  std::int64_t sessions = 0;        // of questions; one after the other on the axis of time
+  std::int64_t computed =
+      0;  // rows of shown bodies whose file has no answer, computed from the scene instead
   std::vector<std::string> troubles;  // what could not be read: the first of them
   std::int64_t more_troubles = 0;
   std::optional<ServiceStatus> status;  // the last that was recorded

@@ -68,26 +68,61 @@ BodyWrench computed_wrench(const Body& body, const Water& water, const AskedPose
   return wrench_of(body.id, outcome);
 }
 
+void count_row(BodyRun& body, BodyStatus status, double force) {
+  ++body.recorded;
+  const auto value = static_cast<std::size_t>(static_cast<std::uint32_t>(status));
+  ++body.statuses[std::min<std::size_t>(value, kBodyStatusCount)];
+  if (status == BodyStatus::kOk && !(force <= body.largest_force) && std::isfinite(force))
+    body.largest_force = force;
+}
+
+// Of a body that is not shown: what the file and the pose say, nothing computed.
+void summarize(BodyRun& body, const RecordedState& recorded, const AskedPose& asked) {
+  if (recorded.wrench) {
+    count_row(body, recorded.wrench->status, as_vec3(recorded.wrench->force).norm());
+  } else if (asked.status != BodyStatus::kOk) {
+    count_row(body, asked.status, 0.0);
+  } else if (recorded.force_torque) {
+    count_row(body, BodyStatus::kOk, as_vec3(recorded.force_torque->force).norm());
+  } else {
+    ++body.recorded;
+  }
+}
+
 }  // namespace
 
-RunCollector::RunCollector(const Scene& scene, std::size_t most_rows) : scene_(scene) {
-  const std::size_t shown = std::min(scene.bodies().size(), kMostBodies);
+RunCollector::RunCollector(const Scene& scene, std::size_t most_rows,
+                           const std::vector<std::size_t>& selected)
+    : scene_(scene) {
+  const std::size_t most = selected.empty() ? std::min(scene.bodies().size(), kMostBodies) : selected.size();
+  most_rows_of_body_ = std::min(most_rows / most, kMostRowsOfBody);
   run_.bodies.resize(scene.bodies().size());
-  for (std::size_t i = 0; i < shown; ++i) {
-    const Body& body = scene.bodies()[i];
-    Collected& collected = bodies_.emplace_back(std::min(most_rows / shown, kMostRowsOfBody));
-    collected.mesh_up = mesh_up_of(body);
-    if (!body.client.given) continue;
-    if (Expected<RigidBody> rigid = make_rigid_body(body, scene.water())) collected.rigid = *std::move(rigid);
+  bodies_.resize(scene.bodies().size());
+  room_ = most;
+  for (const std::size_t index : selected) show(index);
+}
+
+RunCollector::Collected* RunCollector::show(std::size_t index) {
+  if (bodies_[index] != nullptr || room_ == 0) return bodies_[index].get();
+  --room_;
+  const Body& body = scene_.bodies()[index];
+  bodies_[index] = std::make_unique<Collected>(most_rows_of_body_);
+  bodies_[index]->mesh_up = mesh_up_of(body);
+  run_.bodies[index].shown = true;
+  if (body.client.given) {
+    if (Expected<RigidBody> rigid = make_rigid_body(body, scene_.water()))
+      bodies_[index]->rigid = *std::move(rigid);
   }
+  return bodies_[index].get();
 }
 
 std::int64_t RunCollector::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
   const std::optional<std::size_t> index = scene_.index_of(body_id);
   if (!index) return 0;
   if (sessions_.size() < kSessionsCounted) sessions_.insert(session_id);
-  if (*index >= bodies_.size()) return 0;
-  Collected& body = bodies_[*index];
+  Collected* const collected = show(*index);
+  if (collected == nullptr) return 0;
+  Collected& body = *collected;
   if (!first_utime_) first_utime_ = utime;
 
   const std::int64_t behind = wrapped_sum(body.last_time, body.last_step);
@@ -145,10 +180,14 @@ void RunCollector::add(const RecordedState& recorded) {
     ++run_.unknown_bodies;
     return;
   }
-  if (*index >= bodies_.size()) return;
   const Body& body = scene_.bodies()[*index];
-  Collected& collected = bodies_[*index];
   const AskedPose asked = asked_pose(recorded.state, recorded.lead_time);
+  Collected* const shown = show(*index);
+  if (shown == nullptr) {
+    summarize(run_.bodies[*index], recorded, asked);
+    return;
+  }
+  Collected& collected = *shown;
   classify(collected, body, asked);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
   BodyWrench wrench = recorded.wrench ? *recorded.wrench : computed_wrench(body, scene_.water(), asked);
@@ -156,6 +195,8 @@ void RunCollector::add(const RecordedState& recorded) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;
   }
+
+  count_row(run_.bodies[*index], wrench.status, as_vec3(wrench.force).norm());
 
   Row row;
   row[kTime] = 1e-6 * static_cast<double>(recorded.time);
@@ -192,9 +233,12 @@ void RunCollector::add_trouble(std::string trouble) {
 
 RecordedRun RunCollector::take() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    run_.bodies[i] = {bodies_[i].rows.rows(), bodies_[i].rows.added(), bodies_[i].skipped};
+    if (bodies_[i] == nullptr) continue;
+    BodyRun& body = run_.bodies[i];
+    body.rows = bodies_[i]->rows.rows();
+    body.skipped = bodies_[i]->skipped;
     // A question that waited in vain comes late.
-    std::ranges::stable_sort(run_.bodies[i].rows, {}, [](const Row& row) { return row[kTime]; });
+    std::ranges::stable_sort(body.rows, {}, [](const Row& row) { return row[kTime]; });
   }
   run_.sessions = static_cast<std::int64_t>(sessions_.size());
   return std::move(run_);

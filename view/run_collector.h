@@ -1,9 +1,12 @@
 // Rows of a recorded run, put together from states and wrenches as a file has them: what the file lacks is
-// computed from the scene, time gets one axis, and each body's rows are thinned.
+// computed from the scene, time gets one axis, and each body's rows are thinned. That is done for the bodies
+// that are shown; of the others the rows are counted and the recorded forces compared, which costs next to
+// nothing.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -19,7 +22,7 @@
 
 namespace buoyancy {
 
-inline constexpr std::size_t kMostBodies = 1'000;  // the scene's first; of more a page shows no rows
+inline constexpr std::size_t kMostBodies = 1'000;  // that one page shows
 
 // What a file says of one body at one instant.
 struct RecordedState {
@@ -36,8 +39,9 @@ struct RecordedState {
 
 class RunCollector {
  public:
-  // scene must outlive this. most_rows: of all bodies together, roughly.
-  RunCollector(const Scene& scene, std::size_t most_rows);
+  // scene must outlive this. most_rows: of all bodies together, roughly. selected: the bodies to show, as
+  // indices into scene.bodies(), at most kMostBodies; empty: the first kMostBodies that the run names.
+  RunCollector(const Scene& scene, std::size_t most_rows, const std::vector<std::size_t>& selected = {});
 
   // Where on the run's axis a state of this body stands, us. To be asked once about each, in the order in
   // which they came; 0 of a body that is not shown. The axis begins with the run's first state. A clock that
@@ -72,11 +76,14 @@ class RunCollector {
     std::int64_t last_step = 0;
   };
 
+  Collected* show(std::size_t index);  // nullptr: the body is not shown, there is no room for it
   void classify(Collected& collected, const Body& body, const AskedPose& asked) const;
 
   const Scene& scene_;
-  std::vector<Collected> bodies_;              // of the scene's first kMostBodies
-  std::unordered_set<std::int64_t> sessions_;  // up to a bound
+  std::size_t most_rows_of_body_;
+  std::size_t room_ = 0;                            // for further bodies, where none are selected
+  std::vector<std::unique_ptr<Collected>> bodies_;  // as Scene::bodies(); nullptr: not shown (yet)
+  std::unordered_set<std::int64_t> sessions_;       // up to a bound
   std::optional<std::int64_t> first_utime_;
   std::int64_t latest_ = 0;  // us, on the axis: of all bodies
   std::int64_t number_ = 0;

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "exchange/pose_questions.h"
 #include "geometry/error.h"
@@ -27,14 +28,15 @@ struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string status_channel{kStatusChannel};
-  PoseChannels poses;  // of a log
+  PoseChannels poses;               // of a log
+  std::vector<std::size_t> bodies;  // to show (RunCollector); empty: the first that the run names
   // Called now and then: bytes read, bytes in all, rows. False: stop reading, what was read is the run.
   std::function<bool(std::int64_t, std::int64_t, std::int64_t)> progress;
 };
 
 // By the extension: .csv or .lcmlog. Memory does not grow with the file. Errors: another extension, not
 // readable, a first line that is no such header, a .csv where options name pose channels, not one row about a
-// body of the scene.
+// body of the scene, or about those that options name.
 Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
                                const RunFileOptions& options);
 

@@ -392,6 +392,44 @@ shape = { type = "box", size = [0.5, 0.5, 0.5] }
       << "the ship is seen, as near as the small body was";
 }
 
+TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
+  const ScratchDirectory directory;
+  std::string text = kTestWater;
+  for (const char* id : {"1", "2", "3", "5", "6"}) {
+    text += std::string("[[body]]\nid = ") + id + "\nshape = { type = \"box\", size = [2, 3, 4] }\n";
+  }
+  const std::string run = directory.write("run.csv", kAnsweredHeader +
+                                                         "0,1,0,0,0,1,0,0,0,0,0,0,700,0,0,0,1,0,0,-5,0\n"
+                                                         "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,0,0\n"
+                                                         "0,3,0,0,0,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
+                                                         "0,5,0,0,0,1,0,0,0,0,0,0,9,0,0,0,1,0,0,0,0\n");
+  const FinishedProcess made = report(
+      {"--scene", directory.write("five.toml", text), "--bodies", "1,5", run, directory.path("run.html")});
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  EXPECT_NE(made.standard_output.find("2 bodies, 2 rows; 2 more bodies only as a summary (see --bodies)"),
+            std::string::npos)
+      << made.standard_output;
+  browser().open_file(directory.path("run.html"));
+  browser().wait_until("window.buoyancy_report !== undefined");
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+  EXPECT_EQ(browser().run("return document.getElementById('subtitle').textContent"), "2 of 4 bodies, 0 s");
+  const nlohmann::json notices = browser().run(
+      "return Array.from(document.querySelectorAll('#notices p')).map((line) => line.textContent)");
+  EXPECT_EQ(notices,
+            nlohmann::json(
+                {"Picture, plots and what was skipped are of 2 bodies: those that --bodies chose. Of 2 more "
+                 "the table \"The bodies\" says rows, statuses and the largest recorded force. To see others "
+                 "write a page with --bodies, such as --bodies 2-3.",
+                 "1 body of the scene has no rows in run.csv."}));
+  const nlohmann::json table = browser().run(R"(
+    const table = Array.from(document.querySelectorAll('#tables table')).find((one) => one.caption.textContent.startsWith('All bodies'));
+    return Array.from(table.tBodies[0].rows).map((row) => Array.from(row.cells).map((cell) => cell.textContent).join('|'));)");
+  EXPECT_EQ(table, nlohmann::json({"1|body 1|1|OK 1|700|yes", "2|body 2|1|OK 1|625|no",
+                                   "3|body 3|1|OPEN_EDGE_WET 1|–|no", "5|body 5|1|OK 1|9|yes",
+                                   "6|body 6|0|–|–|no"}));
+  EXPECT_EQ(browser().run("return Array.from(buoyancy_report.scene.bodies.keys())"), nlohmann::json({1, 5}));
+}
+
 TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
   const ScratchDirectory directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
@@ -402,6 +440,7 @@ TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
   EXPECT_NE(no_scene.standard_error.find("--scene is required"), std::string::npos)
       << no_scene.standard_error;
   EXPECT_EQ(report({"--scene", scene, run, run}).exit_code, 2) << "RUN would be overwritten";
+  EXPECT_EQ(report({"--scene", scene, "--bodies", "2", run, directory.path("page.html")}).exit_code, 2);
   EXPECT_EQ(report({"--scene", scene, directory.path("no.csv"), directory.path("page.html")}).exit_code, 2);
 }
 

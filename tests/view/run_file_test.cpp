@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "exchange/exchange.h"
 #include "recording/event_log.h"
@@ -15,6 +16,8 @@
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/scratch_directory.h"
+#include "view/body_list.h"
+#include "view/report_page.h"
 
 namespace buoyancy {
 namespace {
@@ -345,6 +348,120 @@ TEST_F(ARunFile, ThatIsCsvHasNoChannels) {
   const auto refused = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message().find("CSV has no channels"), std::string::npos);
+}
+
+// Two bodies more than a page shows, with the ids 1 to 1,002.
+class ARunOfManyBodies : public testing::Test {
+ protected:
+  static constexpr int kBodies = 1'002;
+
+  static std::string many_bodies() {
+    std::string text = kTestWater;
+    for (int id = 1; id <= kBodies; ++id) {
+      text += "[[body]]\nid = " + std::to_string(id) + "\nshape = { type = \"box\", size = [2, 3, 4] }\n";
+    }
+    return text;
+  }
+  // Of each body one row, the last body first.
+  static std::string rows(const std::string& header, const std::string& row) {
+    std::string text = header;
+    for (int id = kBodies; id > 0; --id) text += "0," + std::to_string(id) + row;
+    return text;
+  }
+  static std::string poses() { return rows("utime,body_id,px,py,pz,qw,qx,qy,qz\n", ",0,0,0,1,0,0,0\n"); }
+
+  Expected<RecordedRun> read(const std::string& text) const {
+    return read_run(directory_.write("run.csv", text), scene_, 1'000, options_);
+  }
+
+  ScratchDirectory directory_;
+  RunFileOptions options_;
+  Scene scene_ = scene_of(many_bodies());
+};
+
+TEST_F(ARunOfManyBodies, ShowsThoseThatItNamesFirstAndCountsTheOthers) {
+  const RecordedRun run = read(poses()).value();
+  EXPECT_EQ(run.computed, 1'000) << "nothing is computed of a body that is not shown";
+  for (std::size_t i = 0; i < kBodies; ++i) {
+    ASSERT_EQ(run.bodies[i].recorded, 1) << i;
+    ASSERT_EQ(run.bodies[i].shown, i > 1) << i;
+    ASSERT_EQ(run.bodies[i].rows.size(), i > 1 ? 1U : 0U) << i;
+  }
+  EXPECT_EQ(run.bodies[2].statuses[0], 1);
+  EXPECT_NEAR(run.bodies[2].largest_force, 12.0 * kDensity * kGravity, 1e-6);
+  EXPECT_EQ(run.bodies[1].statuses[0], 0) << "its status is not known";
+  EXPECT_TRUE(std::isnan(run.bodies[1].largest_force));
+}
+
+TEST_F(ARunOfManyBodies, TellsOfEveryBodyWhatWasRecorded) {
+  const std::string header = "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz\n";
+  const RecordedRun run = read(rows(header, ",0,0,0,1,0,0,0,0,3,0,4,0,0,0,1,0,0,0\n") +
+                               "1000,1,0,0,0,1,0,0,0,0,0,0,2,0,0,0,1,0,0,0\n"
+                               "2000,1,0,0,0,1,0,0,0,6,0,0,9,0,0,0,1,0,0,0\n"
+                               "3000,1,0,0,0,1,0,0,0,-7,0,0,0,0,0,0,1,0,0,0\n"
+                               "4000,1,0,0,0,1,0,0,0,0,0,0,nan,0,0,0,1,0,0,0\n")
+                              .value();
+  const BodyRun& body = run.bodies[0];
+  EXPECT_FALSE(body.shown);
+  EXPECT_EQ(body.recorded, 5);
+  EXPECT_EQ(body.statuses, (decltype(body.statuses){3, 0, 0, 0, 0, 0, 1, 0, 1}));
+  EXPECT_EQ(body.largest_force, 5.0) << "of the rows that are OK";
+  EXPECT_EQ(run.bodies.back().largest_force, 5.0);
+}
+
+TEST_F(ARunOfManyBodies, ShowsTheBodiesThatAreChosen) {
+  options_.bodies = body_list("1-2,900", scene_).value();
+  EXPECT_EQ(options_.bodies, (std::vector<std::size_t>{0, 1, 899}));
+  const RecordedRun run = read(poses()).value();
+  for (std::size_t i = 0; i < kBodies; ++i) {
+    ASSERT_EQ(run.bodies[i].shown, i < 2 || i == 899) << i;
+    ASSERT_EQ(run.bodies[i].recorded, 1) << i;
+  }
+  EXPECT_EQ(run.computed, 3);
+}
+
+TEST_F(ARunOfManyBodies, IsRefusedWhereItHasNoRowsOfThoseThatAreChosen) {
+  options_.bodies = body_list("1-10", scene_).value();
+  const auto refused = read("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n0,88,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(
+      refused.error().message().find("It has rows about 2 bodies of the scene, the first with the id 77"),
+      std::string::npos)
+      << refused.error().message();
+}
+
+TEST_F(ARunOfManyBodies, IsToldOfInThePagesData) {
+  const RecordedRun run = read(poses()).value();
+  const auto data = nlohmann::json::parse(report_data(scene_, run, {.file = "run.csv", .version = "1"}));
+  ASSERT_EQ(data["bodies"].size(), 1'002U);
+  const nlohmann::json& other = data["bodies"][1];
+  EXPECT_EQ(other["id"], 2);
+  EXPECT_EQ(other["shown"], false);
+  EXPECT_EQ(other["recorded"], 1);
+  EXPECT_EQ(other["largest_force"], nullptr);
+  EXPECT_FALSE(other.contains("data"));
+  EXPECT_EQ(data["bodies"][2]["shown"], true);
+  EXPECT_EQ(data["selected"], false);
+}
+
+TEST_F(ARunOfManyBodies, TakesListsOfIdsAndRanges) {
+  EXPECT_EQ(body_list("900,3,3-5,1002-2000", scene_).value(),
+            (std::vector<std::size_t>{2, 3, 4, 899, 1'001}));
+  EXPECT_EQ(body_list("-5-1", scene_).value(), std::vector<std::size_t>{0});
+  for (const auto& [list, told] : std::vector<std::pair<std::string, std::string>>{
+           {"1, 2", "--bodies 1, 2: ' 2'; expected ids and ranges of ids, such as 1-50,900."},
+           {"", "''; expected ids"},
+           {"1,", "''; expected ids"},
+           {"5-1", "'5-1'; expected ids"},
+           {"1-", "'1-'; expected ids"},
+           {"1:5", "'1:5'; expected ids"},
+           {"99999999999", "'99999999999'; expected ids"},
+           {"1,2000", "no body has the id 2000; expected ids of test scene"},
+           {"1-1002", "1002 bodies; expected at most 1000"}}) {
+    const auto refused = body_list(list, scene_);
+    ASSERT_FALSE(refused) << list;
+    EXPECT_NE(refused.error().message().find(told), std::string::npos) << refused.error().message();
+  }
 }
 
 }  // namespace

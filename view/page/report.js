@@ -5,20 +5,21 @@
   const element = (id) => document.getElementById(id);
   const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 10, 50];
 
-  // Of each body its columns by name, as arrays over its rows.
+  const descriptions = new Map(data.model.bodies.map((body) => [body.id, body]));
+  // Of each body that is shown its columns by name, as arrays over its rows.
   const bodies = data.bodies.filter((body) => body.rows > 0).map((body) => {
     const all = numbers_of(body.data, Float64Array);
     const columns = {};
     data.columns.forEach((name, i) => { columns[name] = all.subarray(i * body.rows, (i + 1) * body.rows); });
     const metacentres = body.metacenters === undefined ? null : numbers_of(body.metacenters, Float32Array);
-    const description = data.model.bodies.find((one) => one.id === body.id);
+    const description = descriptions.get(body.id);
     return { ...body, columns, metacentres, description };
   });
   const start = Math.min(...bodies.map((body) => body.columns.time[0]));
   const end = Math.max(...bodies.map((body) => body.columns.time[body.rows - 1]));
   let time = start, speed = 1, playing = false, chosen = bodies[0];
 
-  const scene = make_water_scene(element('canvas'), data.model);
+  const scene = make_water_scene(element('canvas'), { ...data.model, bodies: bodies.map((body) => body.description) });
 
   const place_names = ['px', 'py', 'pz'], turn_names = ['qw', 'qx', 'qy', 'qz'];
   const at_row = (body, names, row) => names.map((name) => body.columns[name][row]);
@@ -150,7 +151,7 @@
   fill_legend(element('legend'), data.model.bodies.some((body) => body.center_of_mass !== null), bodies.some((body) => body.metacentres));
   element('title').textContent = `${data.model.scene}: ${data.file}`;
   document.title = `buoyancy: ${data.file}`;
-  element('subtitle').textContent = `${plural(bodies.length, 'body', 'bodies')}, ${number_text(end - start)} s`;
+  element('subtitle').textContent = `${shown_text(data, bodies)}, ${number_text(end - start)} s`;
   for (const notice of report_notices(data, bodies)) {
     const line = document.createElement('p');
     line.className = 'notice';

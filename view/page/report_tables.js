@@ -1,6 +1,19 @@
 'use strict';
 // The report's text beside picture and plots: what was recorded, what the scene and its meshes are, what was skipped.
 
+// "3 bodies", "3 of 8 bodies".
+function shown_text(data, bodies) {
+  const recorded = data.bodies.filter((body) => body.recorded > 0).length;
+  return recorded > bodies.length ? `${bodies.length.toLocaleString('en')} of ${plural(recorded, 'body', 'bodies')}` : plural(recorded, 'body', 'bodies');
+}
+
+// Ids that --bodies takes: the first of these bodies, as far as they follow one another.
+function id_range(bodies) {
+  let last = 0;
+  while (last + 1 < Math.min(bodies.length, 1000) && bodies[last + 1].id === bodies[last].id + 1) ++last;
+  return last === 0 ? String(bodies[0].id) : `${bodies[0].id}-${bodies[last].id}`;
+}
+
 // What the reader has to know before believing the plots.
 function report_notices(data, bodies) {
   const notices = [];
@@ -10,8 +23,14 @@ function report_notices(data, bodies) {
     notices.push(`Thinned: ${plural(kept, 'row', 'rows')} of ${recorded.toLocaleString('en')} are in this page. Every row is as it was ` +
       'recorded, and the least and largest heave, roll, pitch, force, torque, energy and round trip of every stretch of time are among them.');
   }
-  const without = bodies.filter((body) => body.recorded > 0 && body.rows === 0).length + (data.model.bodies.length - bodies.length);
-  if (without > 0) notices.push(`${plural(without, 'body has', 'bodies have')} no rows here.`);
+  const others = data.bodies.filter((body) => !body.shown && body.recorded > 0);
+  if (others.length > 0) {
+    const why = data.selected ? 'those that --bodies chose' : 'the first that the run names, as many as fit into a page';
+    notices.push(`Picture, plots and what was skipped are of ${plural(bodies.length, 'body', 'bodies')}: ${why}. Of ${plural(others.length, 'more', 'more')} ` +
+      `the table "The bodies" says rows, statuses and the largest recorded force. To see others write a page with --bodies, such as --bodies ${id_range(others)}.`);
+  }
+  const absent = data.bodies.filter((body) => body.recorded === 0).length;
+  if (absent > 0) notices.push(`${plural(absent, 'body', 'bodies')} of the scene ${absent === 1 ? 'has' : 'have'} no rows in ${data.file}.`);
   if (data.computed > 0) {
     notices.push(`${plural(data.computed, 'row has', 'rows have')} no recorded answer: force and torque were computed from the scene.`);
   }
@@ -28,12 +47,12 @@ function report_notices(data, bodies) {
   return notices;
 }
 
-function skipped_table(data) {
+function skipped_table(bodies) {
   const rows = [];
   let saved = 0, spent = 0;
-  for (const body of data.bodies) {
+  for (const body of bodies) {
     const { unchanged, dry, wet, crossing, refused, bounds_ns: bounds, query_ns: query } = body.skipped;
-    const name = (data.model.bodies.find((one) => one.id === body.id) || {}).name;
+    const name = body.description.name;
     const total = unchanged + dry + wet + crossing + refused;
     const add = (what, count, cost) => {
       if (count === 0) return;
@@ -70,6 +89,20 @@ function status_table(bodies) {
   return table_of(caption, ['body', 'status', 'rows', 'share'], rows);
 }
 
+// Of every body of the scene.
+function bodies_table(data) {
+  const descriptions = new Map(data.model.bodies.map((body) => [body.id, body]));
+  const statuses_text = (body) => {
+    const known = body.statuses.reduce((sum, count) => sum + count, 0);
+    const parts = body.statuses.map((count, status) => [status < statuses.length ? statuses[status][0] : 'of a later version', count]);
+    return [...parts, ['no answer recorded', body.recorded - known]].filter(([, count]) => count > 0)
+      .map(([name, count]) => `${name} ${count.toLocaleString('en')}`).join(', ') || '–';
+  };
+  const rows = data.bodies.map((body) => [String(body.id), descriptions.get(body.id).name, body.recorded, statuses_text(body), body.largest_force, body.shown && body.rows > 0 ? 'yes' : 'no']);
+  const caption = 'All bodies of the scene. Of a body that is not shown in picture and plots nothing was computed that its rows do not say';
+  return table_of(caption, ['id', 'name', 'rows', 'rows by status', 'largest force, N', 'shown'], rows);
+}
+
 function report_tables(data, bodies) {
   const { water, bodies: described, meshes, simd_target: target } = data.model;
   const section = (title, ...content) => {
@@ -77,7 +110,8 @@ function report_tables(data, bodies) {
     heading.textContent = title;
     document.getElementById('tables').append(heading, ...content);
   };
-  section('What was skipped', ...[skipped_table(data), status_table(bodies)].filter((table) => table !== null));
+  section('The bodies', bodies_table(data));
+  section('What was skipped', ...[skipped_table(bodies), status_table(bodies)].filter((table) => table !== null));
   if (data.status) {
     const status = data.status;
     section('The service\'s own account', table_of('The last status in the log, totals since its start', ['what', 'value'], [
