@@ -90,8 +90,9 @@ TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
   ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
   command.environment = environment();
-  const ChildProcess child(command);
-  EXPECT_EQ(manager_.receive(0.5), std::nullopt);
+  ChildProcess child(command);
+  while (!scene.awaited()) ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
+  EXPECT_EQ(manager_.receive(0.1), std::nullopt);
   scene.let_go();
   EXPECT_TRUE(manager_.hears("READY=1"));
 }
@@ -131,7 +132,7 @@ TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
   service.stop();
   while (manager_.receive(0.0)) {  // what was sent before
   }
-  EXPECT_EQ(manager_.receive(1.0), std::nullopt);
+  EXPECT_EQ(manager_.receive(0.5), std::nullopt) << "ten beats";
   service.child().send_signal(SIGCONT);
   EXPECT_TRUE(manager_.hears("WATCHDOG=1"));
 }
