@@ -5,8 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
+#include "geometry/rotation_between.h"
 #include "hydrostatics/hydrostatics.h"
 
 namespace buoyancy {
@@ -36,20 +37,62 @@ class TreeOf {
   const HydrostaticMesh* mesh_;
 };
 
+// Of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically. Eigen's solver of fixed size
+// takes seconds to compile.
+double largest_eigenvalue(Mat6 matrix) {
+  constexpr int kMaxSweeps = 30;
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    bool diagonal = true;
+    for (int p = 0; p < 5; ++p) {
+      for (int q = p + 1; q < 6; ++q) {
+        const double off = matrix(p, q);
+        const double scale = std::abs(matrix(p, p)) + std::abs(matrix(q, q));
+        if (std::abs(off) <= std::numeric_limits<double>::epsilon() * 0x1p-4 * scale) continue;
+        diagonal = false;
+        const double theta = (matrix(q, q) - matrix(p, p)) / (2.0 * off);
+        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
+        const double c = 1.0 / std::hypot(t, 1.0);
+        const double s = t * c;
+        for (int k = 0; k < 6; ++k) {
+          const double k_p = matrix(k, p);
+          const double k_q = matrix(k, q);
+          matrix(k, p) = c * k_p - s * k_q;
+          matrix(k, q) = s * k_p + c * k_q;
+        }
+        for (int k = 0; k < 6; ++k) {
+          const double p_k = matrix(p, k);
+          const double q_k = matrix(q, k);
+          matrix(p, k) = c * p_k - s * q_k;
+          matrix(q, k) = s * p_k + c * q_k;
+        }
+        matrix(p, q) = matrix(q, p) = 0.0;
+      }
+    }
+    if (diagonal) break;
+  }
+  return matrix.diagonal().maxCoeff();
+}
+
 double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid, const RigidBodyState& state,
                     const Water& water) {
   const std::optional<Hydrostatics> found =
       hydrostatics(mesh, pose_of(rigid, state), water, rigid.center_of_mass_B, std::nullopt);
   if (!found) return 0.0;
   const Mat3 axes_W = state.q_WB.toRotationMatrix() * rigid.principal_axes_B;
-  Mat6 scale = Mat6::Zero();  // M^-1/2
-  scale.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / std::sqrt(rigid.mass));
-  scale.bottomRightCorner<3, 3>() =
+  // M^-1/2 K M^-1/2, with M^-1/2 = diag(by_mass, by_inertia): block by block, since products of 6 x 6
+  // matrices are expensive to compile.
+  const double by_mass = 1.0 / std::sqrt(rigid.mass);
+  const Mat3 by_inertia =
       axes_W * rigid.principal_inertia.cwiseSqrt().cwiseInverse().asDiagonal() * axes_W.transpose();
-  const Mat6 scaled = scale * (0.5 * (found->stiffness + found->stiffness.transpose())) * scale;
+  const Mat6& K = found->stiffness;
+  Mat6 scaled;
+  scaled.topLeftCorner<3, 3>() = by_mass * by_mass * K.topLeftCorner<3, 3>();
+  scaled.topRightCorner<3, 3>() = by_mass * K.topRightCorner<3, 3>() * by_inertia;
+  scaled.bottomLeftCorner<3, 3>() = by_mass * by_inertia * K.bottomLeftCorner<3, 3>();
+  scaled.bottomRightCorner<3, 3>() = by_inertia * K.bottomRightCorner<3, 3>() * by_inertia;
+  scaled = (0.5 * (scaled + scaled.transpose())).eval();
   if (!scaled.allFinite()) return 0.0;
-  const Eigen::SelfAdjointEigenSolver<Mat6> eigen(scaled, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(eigen.eigenvalues()[5], 0.0));
+  return std::sqrt(std::max(largest_eigenvalue(scaled), 0.0));
 }
 
 // Up as seen from the body: along the principal axes and between each two and three of them, both ways. What
@@ -130,7 +173,7 @@ FastestMotion fastest_motion(const Body& body, const RigidBody& rigid, const Rig
   const Extent present = sweep(state.q_WB);
   consider(state, -(height + present.lowest));
   for (const Vec3& up_B : directions_B(rigid)) {
-    sweep(Eigen::Quaterniond::FromTwoVectors(up_B, water.up_W));
+    sweep(rotation_between(up_B, water.up_W));
   }
   return fastest;
 }

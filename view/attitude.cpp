@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/rotation_between.h"
+
 namespace buoyancy {
 namespace {
 
@@ -24,8 +26,8 @@ Eigen::Quaterniond upright(MeshUp mesh_up) {
 
 Attitude attitude(const Pose& pose, const Water& water, MeshUp mesh_up) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
-  const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(water.up_W, Vec3::UnitZ()) *
-                               pose.q_WB.normalized() * upright(mesh_up).conjugate();
+  const Eigen::Quaterniond q =
+      rotation_between(water.up_W, Vec3::UnitZ()) * pose.q_WB.normalized() * upright(mesh_up).conjugate();
   return {.heave = water.up_W.dot(pose.p_WB) - water.level,
           .roll = kDegrees * std::atan2(2.0 * (q.w() * q.x() + q.y() * q.z()),
                                         1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())),

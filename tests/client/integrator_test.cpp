@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/rotation_between.h"
+
 namespace buoyancy {
 namespace {
 
@@ -164,7 +166,7 @@ TEST(Integrators, FollowTheirClosedFormsOnAHarmonicOscillator) {
   const double phi = std::acos(1.0 - 0.5 * wh * wh);
   for (const Integrator integrator : kBoth) {
     RigidBodyState state;
-    state.q_WB = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitX(), Vec3::UnitZ());
+    state.q_WB = rotation_between(Vec3::UnitX(), Vec3::UnitZ());
     state.center_W = {0, 0, 0.5};
     const double first =
         integrator == Integrator::kVelocityVerlet ? 0.5 * (1.0 - 0.5 * wh * wh) : 0.5 * (1.0 - wh * wh);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "geometry/rotation_between.h"
+
 namespace buoyancy {
 
 double RandomPoses::uniform(double low, double high) {
@@ -50,8 +52,7 @@ Pose RandomPoses::adversarial(const TriangleMesh& mesh, const Water& water) {
   if (pick(3) == 0) through = 0.5 * (through + mesh.vertex(face[1]));
   if (pick(4) == 0) {  // the face itself lies on the water
     const Vec3 normal = (mesh.vertex(face[1]) - through).cross(mesh.vertex(face[2]) - through);
-    if (normal.norm() > 0)
-      pose.q_WB = Eigen::Quaterniond::FromTwoVectors(normal, pick(2) ? water.up_W : Vec3(-water.up_W));
+    if (normal.norm() > 0) pose.q_WB = rotation_between(normal, pick(2) ? water.up_W : Vec3(-water.up_W));
   }
   double height = water.level - water.up_W.dot(pose.q_WB * through);
   for (std::size_t ulps = pick(9); ulps > 0; --ulps) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/rotation_between.h"
+
 namespace buoyancy {
 namespace {
 
@@ -41,7 +43,7 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
     case 2: {  // a face lies on the water, or nearly so
       const Vec3 normal = normal_of(mesh, face).normalized();
       if (!(normal.norm() > 0.5)) return random.rotation();
-      Eigen::Quaterniond flat = Eigen::Quaterniond::FromTwoVectors(normal, sign(random) * up_W);
+      Eigen::Quaterniond flat = rotation_between(normal, sign(random) * up_W);
       if (random.pick(2) == 0) return flat;
       const double tilt = power_of_ten(random, -17.0, -6.0);
       return flat * Eigen::Quaterniond(1.0, tilt, 0.0, tilt);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/rotation_between.h"
+
 namespace buoyancy {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(TheAttitude, IsTheSameInAWorldWhoseUpIsAnotherAxis) {
   Water water;
   water.up_W = Vec3::UnitY();
   water.level = -1.0;
-  const Eigen::Quaterniond z_to_y = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY());
+  const Eigen::Quaterniond z_to_y = rotation_between(Vec3::UnitZ(), Vec3::UnitY());
   const Eigen::Quaterniond q = turned(-15.0, Vec3::UnitY()) * turned(25.0, Vec3::UnitX());
   expect_attitude(attitude({.p_WB = {0.0, 3.0, 0.0}, .q_WB = z_to_y * q}, water, MeshUp::kZ), 4.0, 25.0,
                   -15.0);
