@@ -2,6 +2,8 @@
 #include <csignal>
 
 #include <CLI/App.hpp>
+#include <poll.h>
+#include <unistd.h>
 
 #include "command_line/command_line.h"
 #include "command_line/termination_signals.h"
@@ -18,6 +20,13 @@ using namespace buoyancy;
 constexpr int kTroublesShown = 20;
 // The same in every replay: so are the bytes. "pose" in ASCII, which no asker draws by any likelihood.
 constexpr std::int64_t kFirstPoseSession = 0x706f736500000000;
+
+// Of a program that a signal has ended nobody expects that it waits for a reader.
+bool standard_output_has_room() {
+  constexpr int kTimeoutMs = 1'000;
+  pollfd writable{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&writable, 1, kTimeoutMs) != 0;
+}
 
 int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
   TerminationSignals signals;
@@ -37,6 +46,7 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTa
                                 }};
   const Expected<ReplaySummary> summary = replay(task, signals, listener);
   progress.clear();
+  signals.unblock();  // what follows may wait for a reader of the summary
   if (!summary) {
     print_error(app, summary.error());
     return kFailed;
@@ -54,6 +64,7 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   }
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
+  if (*summary->ended_by != '\0' && !standard_output_has_room()) return kFailed;
   if (!print_output(app, text)) return kFailed;
   const bool agrees = task.comparison == nullptr || task.comparison->agrees();
   return summary->complete() && agrees ? kDone : kFailed;

@@ -51,16 +51,19 @@ bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& damages) {
   return true;
 }
 
-// Reads as many batches as there are, until the input ends or a signal comes: then `more` becomes false.
-void read(const ReplayTask& task, TerminationSignals& signals, Round& round, ReplaySummary& summary,
-          bool& more) {
+enum class Reading { kOn, kAtEnd, kStopped };
+
+// Reads as many batches as there are, until the input ends or a signal comes. The signal stays pending, for
+// the thread that writes to see it too.
+void read(const ReplayTask& task, const TerminationSignals& signals, Round& round, ReplaySummary& summary,
+          Reading& reading) {
   round.filled = 0;
-  while (more && round.filled < round.batches.size()) {
+  while (reading == Reading::kOn && round.filled < round.batches.size()) {
     if (signals.pending()) {
-      summary.ended_by = signals.take();
-      more = false;
+      reading = Reading::kStopped;
     } else {
-      more = fill(task, round.batches[round.filled++], summary.damages);
+      const bool more = fill(task, round.batches[round.filled++], summary.damages);
+      if (!more) reading = Reading::kAtEnd;
     }
   }
 }
@@ -108,8 +111,9 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
     return sum;
   };
 
-  bool more = true;
-  read(task, signals, rounds[0], summary, more);
+  task.output.give_up_after(signals.fileno());
+  Reading reading = Reading::kOn;
+  read(task, signals, rounds[0], summary, reading);
   Expected<void> written;
   std::size_t number = 0;
   for (; rounds[number % 3].filled > 0; ++number) {
@@ -119,7 +123,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
     tell(before, listener);
     workers.run(now.filled + 2, 1, [&](std::size_t i) {
       if (i == 0) {
-        read(task, signals, next, summary, more);
+        read(task, signals, next, summary, reading);
       } else if (i == 1) {
         written = write(task, before);
       } else {
@@ -133,6 +137,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   tell(last, listener);
   if (written = write(task, last); !written) return tl::unexpected(written.error());
   if (Expected<void> flushed = task.output.flush(); !flushed) return tl::unexpected(flushed.error());
+  if (reading == Reading::kStopped) summary.ended_by = signals.take();
   if (task.comparison != nullptr) task.comparison->finish();
   const ReplaySummary sum = total();
   summary.counters = sum.counters;

@@ -48,7 +48,7 @@ struct ReplayTask {
 };
 
 // Ends at the end of the input or, between two questions, after a signal. Memory: jobs times a bounded number
-// of questions. Errors: the output cannot be written.
+// of questions. Errors: the output cannot be written; it is a pipe that nobody reads, after a signal.
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
                                const ReplayListener& listener);
 

@@ -1,6 +1,7 @@
 #include "service/replay_options.h"
 
 #include <algorithm>
+#include <map>
 #include <system_error>
 
 #include <CLI/Config.hpp>
@@ -87,6 +88,13 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
       ->needs(mesh)
       ->check(CLI::Range(0.0, 1.0))
       ->option_text("0..1 [0]");
+  app.add_option(
+         "--open", options.open,
+         "With --mesh: dry_boundary accepts a mesh with holes and answers it while their edges are dry")
+      ->needs(mesh)
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
+      ->option_text("refuse|dry_boundary [refuse]");
   app.add_option("--states-channel", options.states_channel, "Channel of the questions in an LCM log")
       ->capture_default_str();
   app.add_option("--wrenches-channel", options.wrenches_channel, "Channel of the answers in an LCM log")
@@ -145,7 +153,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
     if (!method) {
       return failure({"--method", "'" + options.method + "'", "one of: " + method_names(), "", ""});
     }
-    plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance);
+    plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance, options.open);
   }
   return plan;
 }

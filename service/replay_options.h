@@ -23,6 +23,7 @@ struct ReplayOptions {
   std::filesystem::path mesh;   // or this, then with
   std::string method;           // empty: the default of a scene's body
   double tolerance = 0.0;
+  OpenPolicy open = OpenPolicy::kRefuse;
   std::filesystem::path input;
   std::filesystem::path output;
   std::string states_channel{kStatesChannel};

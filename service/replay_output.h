@@ -56,7 +56,10 @@ class ReplayOutput {
   // Creates or empties the file. Errors: as of RecordFile.
   static Expected<ReplayOutput> create(const std::filesystem::path& path, FileFormat format);
 
-  // Numbers a log's events. Errors: disk full.
+  // As RecordFile has it.
+  void give_up_after(int signal) { file_.give_up_after(signal); }
+
+  // Numbers a log's events. Errors: disk full, given up.
   Expected<void> write(OutputRecords& records);
   Expected<void> flush() { return file_.flush(); }
 

@@ -8,11 +8,10 @@
 namespace buoyancy {
 
 BlockedSignals::BlockedSignals(std::initializer_list<int> signals) {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : signals) sigaddset(&set, signal);
-  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  descriptor_ = FileDescriptor(::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
+  sigemptyset(&set_);
+  for (const int signal : signals) sigaddset(&set_, signal);
+  ::pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+  descriptor_ = FileDescriptor(::signalfd(-1, &set_, SFD_NONBLOCK | SFD_CLOEXEC));
 }
 
 bool BlockedSignals::pending() const {
@@ -24,6 +23,12 @@ std::optional<int> BlockedSignals::take() {
   signalfd_siginfo info{};
   if (::read(fileno(), &info, sizeof info) != static_cast<ssize_t>(sizeof info)) return std::nullopt;
   return static_cast<int>(info.ssi_signo);
+}
+
+void BlockedSignals::unblock() {
+  while (take()) {
+  }
+  ::pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
 }
 
 }  // namespace buoyancy

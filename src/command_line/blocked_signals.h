@@ -1,6 +1,7 @@
 // Signals as something to wait for, instead of something that strikes in the middle of a message.
 #pragma once
 
+#include <csignal>
 #include <initializer_list>
 #include <optional>
 
@@ -18,7 +19,11 @@ class BlockedSignals {
   bool pending() const;                               // has one come?
   std::optional<int> take();  // its number; nullopt: none has come. The same one several times comes once
 
+  // Drops those that have come; from here on they do again in this thread what they did before.
+  void unblock();
+
  private:
+  sigset_t set_{};
   FileDescriptor descriptor_;
 };
 

@@ -13,7 +13,8 @@ class TerminationSignals {
 
   int fileno() const { return signals_.fileno(); }  // readable once a signal has come
   bool pending() const { return signals_.pending(); }
-  const char* take();  // its name; nullptr: none has come
+  const char* take();                     // its name; nullptr: none has come
+  void unblock() { signals_.unblock(); }  // as BlockedSignals: they end the program at once again
 
  private:
   BlockedSignals signals_;

@@ -98,16 +98,15 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
   if (only_open) {
     cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
     remedy =
-        "Close the holes in a mesh editor, or set open = \"dry_boundary\" for this body if its holes stay "
-        "above the "
-        "water";
+        "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\" for "
+        "this body in the scene file (with buoyancy-replay --mesh: --open dry_boundary)";
   } else {
     cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"
                                        : "inner walls, or faces of the wrong winding";
     remedy = "In a mesh editor remove doubled and inner faces, make the winding consistent";
     remedy += topology.boundary.empty() ? "" : ", and close the holes";
     remedy += "; or replace the mesh by a closed hull around it";
-    if (open == OpenPolicy::kDryBoundary) remedy += ". open = \"dry_boundary\" accepts holes, nothing else";
+    if (open == OpenPolicy::kDryBoundary) remedy += ". dry_boundary accepts holes, nothing else";
   }
   return Error{report.name, found, "a closed surface: each edge used as often one way as the other", cause,
                remedy};

@@ -136,9 +136,9 @@ void read_method(TomlTable& table, Method& method) {
 }
 
 void read_open_policy(TomlTable& table, OpenPolicy& open) {
-  constexpr std::array<std::string_view, 2> kNames{"refuse", "dry_boundary"};
-  constexpr std::array kPolicies{OpenPolicy::kRefuse, OpenPolicy::kDryBoundary};
-  if (const auto chosen = table.choice("open", kNames)) open = kPolicies[*chosen];
+  std::array<std::string_view, kOpenPolicyNames.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kOpenPolicyNames[i].first;
+  if (const auto chosen = table.choice("open", names)) open = kOpenPolicyNames[*chosen].second;
 }
 
 // Wrenches are what every question is answered with, so that only hydrostatics are kept.
@@ -311,13 +311,15 @@ Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
   return parse_scene(text.str(), name, path.parent_path());
 }
 
-SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance) {
+SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,
+                                   OpenPolicy open) {
   BodyDescription body;
   body.id = 1;
   body.name = mesh.filename().string();
   body.source = MeshFile{mesh};
   body.method = method;
   body.tolerance = tolerance;
+  body.open = open;
 
   SceneDescription scene;
   scene.name = mesh.string();

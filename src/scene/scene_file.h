@@ -4,11 +4,13 @@
 // its range where it stands. Nothing is loaded here: see Scene.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -59,6 +61,11 @@ struct BodyDescription {
   std::string where;  // "scene.toml:12", for errors; empty where there is no scene file
 };
 
+// As the scene file's `open` and buoyancy-replay's --open name them.
+inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPolicyNames{
+    std::pair{std::string_view("refuse"), OpenPolicy::kRefuse},
+    std::pair{std::string_view("dry_boundary"), OpenPolicy::kDryBoundary}};
+
 struct SceneDescription {
   std::string name;  // the file as named, or what stands for it
   Water water;
@@ -76,6 +83,7 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
 
 // One body, id 1, scale 1, reference point the mesh's origin, level 0, up +z, density 1025, gravity 9.80665:
 // what `buoyancy-replay --mesh` asks for.
-SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance);
+SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,
+                                   OpenPolicy open);
 
 }  // namespace buoyancy

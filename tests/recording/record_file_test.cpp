@@ -1,11 +1,19 @@
 #include "recording/record_file.h"
 
+#include <array>
+#include <chrono>
 #include <csignal>
+#include <future>
 #include <string>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/eventfd.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "geometry/file_descriptor.h"
 #include "tests/service/scratch_directory.h"
 
 namespace buoyancy {
@@ -67,6 +75,67 @@ TEST(RecordFile, EndsAtARecordsEndWhereTheDiskIsFull) {
     EXPECT_NE(written.error().message().find("could not be written"), std::string::npos);
     EXPECT_EQ(contents_of(directory.path("x")).size(), limit / 10 * 10);
   }
+}
+
+// A named pipe whose reader reads when it is told to.
+class UnreadPipe {
+ public:
+  UnreadPipe() : path_(directory_.path("pipe")) {
+    EXPECT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+    reader_ = FileDescriptor(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  }
+  const std::string& path() const { return path_; }
+  std::string read_all() const {
+    std::string all;
+    std::array<char, 65'536> part{};
+    for (ssize_t got = 0; (got = ::read(reader_.value(), part.data(), part.size())) > 0;) {
+      all.append(part.data(), static_cast<std::size_t>(got));
+    }
+    return all;
+  }
+
+ private:
+  ScratchDirectory directory_;
+  std::string path_;
+  FileDescriptor reader_;
+};
+
+TEST(RecordFile, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
+  const UnreadPipe pipe;
+  auto file = RecordFile::create(pipe.path());
+  ASSERT_TRUE(file);
+  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  file->give_up_after(signal.value());
+  const std::string record = "0123456789\n";
+  for (int i = 0; i < 50'000; ++i) ASSERT_TRUE(file->append(bytes_of(record)));
+  const Expected<void> flushed = file->flush();
+  ASSERT_FALSE(flushed);
+  EXPECT_NE(flushed.error().message().find("nobody has read from it"), std::string::npos)
+      << flushed.error().message();
+  const std::string written = pipe.read_all();
+  EXPECT_GT(written.size(), 10'000U);
+  EXPECT_EQ(written.size() % record.size(), 0U) << "the pipe ends within a record";
+}
+
+TEST(RecordFile, WritesAllToAPipeThatIsReadAfterASignal) {
+  const UnreadPipe pipe;
+  auto file = RecordFile::create(pipe.path());
+  ASSERT_TRUE(file);
+  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  file->give_up_after(signal.value());
+  std::string expected;
+  for (const std::size_t size : {10U, 4'000U, 4'096U, 5'000U, 300'000U, 1U, 4'097U}) {
+    const std::string record(size, static_cast<char>('a' + size % 26));
+    ASSERT_TRUE(file->append(bytes_of(record)));
+    expected += record;
+  }
+  std::future<bool> flushed = std::async(std::launch::async, [&file] { return file->flush().has_value(); });
+  std::string written;
+  while (flushed.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready)
+    written += pipe.read_all();
+  EXPECT_TRUE(flushed.get());
+  written += pipe.read_all();
+  EXPECT_TRUE(written == expected) << written.size();
 }
 
 TEST(RecordFile, SaysWhatIsWrongWithTheDisk) {

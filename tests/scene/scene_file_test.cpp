@@ -341,7 +341,8 @@ TEST(SceneFile, IsNamedWhereItCannotBeRead) {
 }
 
 TEST(SingleMeshScenes, HoldOneBodyInTheStandardSea) {
-  const SceneDescription scene = single_mesh_scene("models/duck.dae", Method::kExactSurface, 0.25);
+  const SceneDescription scene =
+      single_mesh_scene("models/duck.dae", Method::kExactSurface, 0.25, OpenPolicy::kDryBoundary);
   EXPECT_EQ(scene.water.level, 0.0);
   EXPECT_EQ(scene.water.density, 1025.0);
   ASSERT_EQ(scene.bodies.size(), 1U);
@@ -350,6 +351,7 @@ TEST(SingleMeshScenes, HoldOneBodyInTheStandardSea) {
   EXPECT_EQ(std::get<MeshFile>(scene.bodies[0].source).path, std::filesystem::path("models/duck.dae"));
   EXPECT_EQ(scene.bodies[0].method, Method::kExactSurface);
   EXPECT_EQ(scene.bodies[0].tolerance, 0.25);
+  EXPECT_EQ(scene.bodies[0].open, OpenPolicy::kDryBoundary);
 }
 
 // A terminal obeys them: what a file holds must not reach it through a message.

@@ -212,7 +212,8 @@ TEST(Scene, RefusesMeshesBeyondItsLimits) {
 TEST(Scene, NamesOnlyTheMeshWhereThereIsNoSceneFile) {
   const TemporaryDirectory directory;
   const std::filesystem::path mesh = directory.path() / "missing.obj";
-  const std::string message = refusal(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0)));
+  const std::string message =
+      refusal(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0, OpenPolicy::kRefuse)));
   EXPECT_EQ(message.rfind(mesh.string() + ": ", 0), 0U) << message;
 }
 

@@ -6,9 +6,14 @@
 #include <sstream>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "geometry/file_descriptor.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "tests/service/replaying.h"
@@ -229,6 +234,8 @@ TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
       {"--scene", scene_, "--tolerance", "0.1", in, out},
       {"--mesh", cube, "--method", "slow", in, out},
       {"--mesh", cube, "--tolerance", "2", in, out},
+      {"--mesh", cube, "--open", "wet", in, out},
+      {"--scene", scene_, "--open", "dry_boundary", in, out},
       {"--mesh", path("gone.obj"), in, out},
       {"--mesh", in, in, out},
       {"--scene", path("gone.toml"), in, out},
@@ -289,6 +296,56 @@ TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
   EXPECT_GT(answers.size(), 1U);
   EXPECT_LT(answers.size(), 200'001U);
   EXPECT_EQ(answers.back().size(), 15U);
+}
+
+TEST_F(Replay, EndsByASignalWhereNobodyReadsItsPipe) {
+  std::string poses = kPoseHeader;
+  for (int i = 0; i < 20'000; ++i) poses += pose_row(i, 1e-4 * i);
+  write("in.csv", poses);
+  for (const auto& [signal, name] : {std::pair{SIGTERM, "SIGTERM"}, std::pair{SIGINT, "SIGINT"}}) {
+    const std::string pipe = path(std::string(name) + ".csv");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const FileDescriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    ChildProcess child(command({"--scene", scene_, path("in.csv"), pipe}));
+    const auto waiting = [&reader] {
+      int bytes = 0;
+      ::ioctl(reader.value(), FIONREAD, &bytes);
+      return bytes;
+    };
+    for (int before = 0, now = -1; now < 60'000 || now != before; now = waiting()) {
+      before = now;
+      ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
+    }
+    child.send_signal(signal);
+    EXPECT_EQ(child.wait(kWaitTimeout), 1);
+    EXPECT_NE(child.standard_error().find("nobody has read from it"), std::string::npos)
+        << child.standard_error();
+    std::string csv(static_cast<std::size_t>(waiting()), ' ');
+    ASSERT_EQ(::read(reader.value(), csv.data(), csv.size()), static_cast<ssize_t>(csv.size()));
+    EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U);
+    EXPECT_EQ(csv.back(), '\n') << csv.substr(csv.rfind('\n'));
+  }
+}
+
+TEST_F(Replay, AnswersAnOpenMeshWhileItsBoundaryIsDryOnRequest) {
+  const std::string lid = "f 5 6 7 8\n";
+  std::string cup = kCube;
+  cup.erase(cup.find(lid), lid.size());
+  const std::string mesh = write("cup.obj", cup);
+  write("in.csv", kPoseHeader + pose_row(0, 0.25) + pose_row(1, -0.75));
+  const std::vector<std::string> arguments{"--mesh", mesh, path("in.csv"), path("out.csv")};
+  const FinishedProcess refused = run(arguments);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.standard_error.find("--open dry_boundary"), std::string::npos) << refused.standard_error;
+  std::vector<std::string> accepting = arguments;
+  accepting.insert(accepting.end(), {"--open", "dry_boundary"});
+  const FinishedProcess accepted = run(accepting);
+  ASSERT_EQ(accepted.exit_code, 0) << accepted.standard_error;
+  const std::vector<Row> answers = rows(contents_of(path("out.csv")));
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[1][2], "0");
+  EXPECT_NEAR(std::stod(answers[1][9]), 0.25, 1e-12);
+  EXPECT_EQ(answers[2][2], "6") << "OPEN_EDGE_WET";
 }
 
 TEST_F(Replay, TellsItsVersion) {
