@@ -41,6 +41,7 @@ struct Arguments {
   LinkOptions link;
   Patience patience;
   bool embedded = false;
+  bool no_spin = false;
   double duration = 10.0;  // s
   std::optional<double> step;
   std::optional<double> rate;  // Hz
@@ -116,6 +117,11 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--wrenches-channel", arguments.link.wrenches_channel, "Channel of the answers")
       ->capture_default_str();
+  app.add_flag(
+         "--no-spin", arguments.no_spin,
+         "Sleep as soon as no answer is there, instead of looking for it for up to 50 us while they come "
+         "quickly: takes less of the processor, and longer for each step")
+      ->excludes(embedded);
   app.add_option("--session", arguments.session, "Session id (default: drawn anew by every run)");
   app.add_flag("--json", arguments.json, "Print the table at the end as JSON");
 }
@@ -151,6 +157,7 @@ Expected<Asker> make_asker(const Arguments& arguments, const Scene& scene) {
 
 int simulate(Arguments arguments) {
   arguments.link.stop = &stop_requested;
+  arguments.link.spin = !arguments.no_spin;
   SimulationOptions options;
   options.step = arguments.step.value_or(arguments.rate ? 1.0 / *arguments.rate : options.step);
   options.integrator = *integrator_from_name(arguments.integrator);

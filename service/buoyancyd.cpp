@@ -22,7 +22,8 @@ using namespace buoyancy;
 int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseChannels poses,
           BlockedSignals& reload) {
   TerminationSignals termination;  // before the connection, whose thread must not get them
-  Expected<LcmConnection> connection = LcmConnection::open(options.lcm_url);
+  Expected<LcmConnection> connection =
+      LcmConnection::open(options.lcm_url, {.receive_own = false, .spin = !options.no_spin});
   if (!connection) {
     print_error(app, connection.error());
     return kFailed;

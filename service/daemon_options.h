@@ -19,6 +19,7 @@ struct DaemonOptions {
   ChannelNames channels;
   PoseOptions poses;
   unsigned threads = 0;            // for the bodies of one question; 0: as many as the processor runs at once
+  bool no_spin = false;            // sleep at once where no message waits
   std::string log_level = "info";  // as spdlog names them
   bool check = false;              // print the scene's report and end
   bool json = false;               // with check

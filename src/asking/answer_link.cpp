@@ -36,7 +36,8 @@ AnswerLink::AnswerLink(LinkOptions options, LcmConnection connection)
       connection_(std::move(connection)) {}
 
 Expected<AnswerLink> AnswerLink::open(const LinkOptions& options) {
-  Expected<LcmConnection> connection = LcmConnection::open(options.lcm_url);
+  Expected<LcmConnection> connection =
+      LcmConnection::open(options.lcm_url, {.receive_own = false, .spin = options.spin});
   if (!connection) return failure(connection.error());
   AnswerLink link(options, std::move(*connection));
   const Expected<void> subscribed = link.connection_.subscribe(

@@ -30,6 +30,7 @@ struct LinkOptions {
   std::string lcm_url;  // "": as LCM's own tools choose
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
+  bool spin = true;  // look for an answer for a moment before going to sleep: quicker, for processor time
   const std::atomic<bool>* stop = nullptr;  // not null: waiting ends soon after it became true
 };
 

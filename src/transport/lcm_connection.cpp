@@ -1,10 +1,12 @@
 #include "transport/lcm_connection.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <optional>
+#include <random>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -21,7 +23,8 @@ namespace buoyancy {
 namespace {
 
 constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
-constexpr std::size_t kLongestChannel = 63;  // LCM's own limit
+constexpr std::size_t kLongestChannel = 63;                // LCM's own limit
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's own, for messages that mean nothing
 
 // Looked at by one handle_one(), so that a flood on other channels cannot hold up whoever calls it.
 constexpr int kMostForeignPackets = 1'000;
@@ -45,6 +48,17 @@ struct Subscription {
   std::string channel;
   std::int64_t* received_utime;
 };
+
+// Has the receiver leave out what lcm sends. liblcm does not say which port it sends from, so that a message
+// with bytes that nobody else draws has to come back first. Where it does not come, all is received.
+void leave_out_own(lcm_t* lcm, UdpmReceiver& receiver) {
+  constexpr std::chrono::milliseconds kTimeout{200};
+  std::random_device device;
+  std::array<std::uint8_t, 16> drawn{};
+  std::ranges::generate(drawn, [&device] { return static_cast<std::uint8_t>(device()); });
+  if (lcm_publish(lcm, kSelfTestChannel, drawn.data(), static_cast<unsigned>(drawn.size())) != 0) return;
+  if (const auto own = receiver.find_sender(drawn, kTimeout)) receiver.empty_packets_of(*own);
+}
 
 // Of memq://.
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
@@ -96,14 +110,15 @@ Expected<void> check_different_channels(const std::vector<std::string>& channels
 }
 
 struct LcmConnection::Impl {
-  Impl(lcm_t* connection, std::optional<UdpmReceiver> its_receiver)
-      : lcm(connection), receiver(std::move(its_receiver)) {}
+  Impl(lcm_t* connection, std::optional<UdpmReceiver> its_receiver, bool spins)
+      : lcm(connection), receiver(std::move(its_receiver)), spin(spins) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() { lcm_destroy(lcm); }
 
   lcm_t* lcm;                            // sends, and is all of memq://
   std::optional<UdpmReceiver> receiver;  // not with memq://
+  bool spin;
   QuickWait quick_wait;
   std::int64_t asleep_since = 0;  // us since 1970: when a wait found nothing that has not ended. 0: none
   std::int64_t received_utime = 0;
@@ -123,7 +138,7 @@ LcmConnection::LcmConnection(LcmConnection&&) noexcept = default;
 LcmConnection& LcmConnection::operator=(LcmConnection&&) noexcept = default;
 LcmConnection::~LcmConnection() = default;
 
-Expected<LcmConnection> LcmConnection::open(const std::string& url) {
+Expected<LcmConnection> LcmConnection::open(const std::string& url, const ConnectionOptions& options) {
   std::string shown = effective_lcm_url(url);
   std::optional<UdpmReceiver> receiver;
   if (!is_memq(shown)) {
@@ -140,7 +155,8 @@ Expected<LcmConnection> LcmConnection::open(const std::string& url) {
     return failure({"LCM URL '" + shown + "'", "LCM could not open it", "a working LCM connection",
                     "what LCM itself printed above", ""});
   }
-  return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver)), shown);
+  if (receiver && !options.receive_own) leave_out_own(lcm, *receiver);
+  return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver), options.spin), shown);
 }
 
 Expected<void> LcmConnection::subscribe(const std::string& channel, Handler handler) {
@@ -203,7 +219,7 @@ bool LcmConnection::handle_one() {
 bool LcmConnection::handle_one_soon(std::chrono::nanoseconds most) {
   using Clock = std::chrono::steady_clock;
   if (handle_one()) return true;
-  if (!impl_->receiver || impl_->asleep_since != 0) return false;
+  if (!impl_->spin || !impl_->receiver || impl_->asleep_since != 0) return false;
   const QuickWait::Duration longest = std::min(most, impl_->quick_wait.begin());
   if (longest > QuickWait::Duration::zero()) {
     const Clock::time_point start = Clock::now();

@@ -36,6 +36,15 @@ Expected<void> check_different_channels(const std::vector<std::string>& channels
 // us since 1970, by the clock that messages are stamped with.
 std::int64_t utime_now();
 
+struct ConnectionOptions {
+  // Over UDP: are this connection's own messages received on the channels that it subscribes to? Without,
+  // they take next to no room in its receive buffer, which those of others then have for themselves. Other
+  // connections, of this process too, receive them in any case.
+  bool receive_own = true;
+  // May handle_one_soon() look for a message for a moment, which costs processor time?
+  bool spin = true;
+};
+
 class LcmConnection {
  public:
   // Called for every message: bytes are valid during the call only. Must not throw.
@@ -45,7 +54,7 @@ class LcmConnection {
   // network). LCM's other providers are refused: the death of a tcpq server aborts its clients. Asks the
   // kernel for a receive buffer of 4 MB where the URL does not say. Errors: not such a URL, no multicast
   // route (at once) or one that brings nothing back (after 2 s).
-  static Expected<LcmConnection> open(const std::string& url);
+  static Expected<LcmConnection> open(const std::string& url, const ConnectionOptions& options = {});
 
   LcmConnection(LcmConnection&&) noexcept;
   LcmConnection& operator=(LcmConnection&&) noexcept;
@@ -59,8 +68,8 @@ class LcmConnection {
 
   int fileno() const;  // for poll(): readable when something waits, though perhaps of other channels
   bool handle_one();   // dispatches one message that has come; false: none was there
-  // The same, but looks for it for a moment (QuickWait), up to `most`, where that pays: for whoever goes to
-  // sleep where it says false.
+  // The same, but looks for it for a moment (QuickWait), up to `most`, where that pays and the options allow
+  // it: for whoever goes to sleep where it says false.
   bool handle_one_soon(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
 
   // us since 1970: when the message came in that was handled last; what lies between is the time that it

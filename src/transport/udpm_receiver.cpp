@@ -1,5 +1,6 @@
 #include "transport/udpm_receiver.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -8,7 +9,9 @@
 #include <utility>
 
 #include <arpa/inet.h>
+#include <linux/filter.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <time.h>
 
@@ -82,40 +85,83 @@ Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
   return *number;
 }
 
+std::optional<UdpmReceiver::Packet> UdpmReceiver::read_packet() {
+  sockaddr_in sender{};
+  iovec data{packet_.data(), packet_.size()};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))>
+      control{};
+  msghdr packet{};
+  packet.msg_name = &sender;
+  packet.msg_namelen = sizeof sender;
+  packet.msg_iov = &data;
+  packet.msg_iovlen = 1;
+  packet.msg_control = control.data();
+  packet.msg_controllen = control.size();
+  const ssize_t size = ::recvmsg(socket_.value(), &packet, MSG_DONTWAIT);
+  if (size < 0) return std::nullopt;
+  timespec arrived{};
+  for (cmsghdr* one = CMSG_FIRSTHDR(&packet); one != nullptr; one = CMSG_NXTHDR(&packet, one)) {
+    if (one->cmsg_level != SOL_SOCKET) continue;
+    if (one->cmsg_type == SCM_TIMESTAMPNS) arrived = data_of<timespec>(one);
+    if (one->cmsg_type == SO_RXQ_OVFL) {
+      const auto drops = data_of<std::uint32_t>(one);
+      packets_dropped_ += drops - std::exchange(kernel_drops_, drops);
+    }
+  }
+  return Packet{{packet_.data(), static_cast<std::size_t>(size)},
+                {sender.sin_addr.s_addr, sender.sin_port},
+                std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000};
+}
+
 std::optional<UdpmReceiver::Message> UdpmReceiver::take(int most_packets) {
   for (int i = 0; i < most_packets; ++i) {
-    sockaddr_in sender{};
-    iovec data{packet_.data(), packet_.size()};
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))>
-        control{};
-    msghdr packet{};
-    packet.msg_name = &sender;
-    packet.msg_namelen = sizeof sender;
-    packet.msg_iov = &data;
-    packet.msg_iovlen = 1;
-    packet.msg_control = control.data();
-    packet.msg_controllen = control.size();
-    const ssize_t size = ::recvmsg(socket_.value(), &packet, MSG_DONTWAIT);
-    if (size < 0) {
+    const std::optional<Packet> packet = read_packet();
+    if (!packet) {
       if (errno == EINTR) continue;
       return std::nullopt;
     }
-    timespec arrived{};
-    for (cmsghdr* one = CMSG_FIRSTHDR(&packet); one != nullptr; one = CMSG_NXTHDR(&packet, one)) {
-      if (one->cmsg_level != SOL_SOCKET) continue;
-      if (one->cmsg_type == SCM_TIMESTAMPNS) arrived = data_of<timespec>(one);
-      if (one->cmsg_type == SO_RXQ_OVFL) {
-        const auto drops = data_of<std::uint32_t>(one);
-        packets_dropped_ += drops - std::exchange(kernel_drops_, drops);
-      }
-    }
-    const std::uint64_t from = std::uint64_t{sender.sin_addr.s_addr} << 16U | sender.sin_port;
-    if (const auto message = packets_.take({packet_.data(), static_cast<std::size_t>(size)}, from)) {
-      return Message{message->channel, message->payload,
-                     std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000};
+    const std::uint64_t from = std::uint64_t{packet->sender.address} << 16U | packet->sender.port;
+    if (const auto message = packets_.take(packet->bytes, from)) {
+      return Message{message->channel, message->payload, packet->arrived};
     }
   }
   return std::nullopt;
+}
+
+std::optional<UdpmReceiver::Sender> UdpmReceiver::find_sender(Bytes ending,
+                                                              std::chrono::milliseconds timeout) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point deadline = Clock::now() + timeout;
+  for (Clock::time_point now = Clock::now(); now < deadline; now = Clock::now()) {
+    const std::optional<Packet> packet = read_packet();
+    if (packet && packet->bytes.size() >= ending.size() &&
+        std::ranges::equal(packet->bytes.last(ending.size()), ending)) {
+      return packet->sender;
+    }
+    if (packet) continue;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - now);
+    pollfd readable{socket_.value(), POLLIN, 0};
+    ::poll(&readable, 1, static_cast<int>(left.count()));
+  }
+  return std::nullopt;
+}
+
+bool UdpmReceiver::empty_packets_of(const Sender& sender) {
+  // Classic BPF sees a datagram from its UDP header on, and the IP header at kIpHeader. What it returns is
+  // the number of bytes to keep, of which the kernel makes the header's 8 at least.
+  constexpr std::uint32_t kIpHeader = static_cast<std::uint32_t>(SKF_NET_OFF);
+  constexpr std::uint32_t kSourceAddress = kIpHeader + 12;
+  constexpr std::uint32_t kSourcePort = 0;
+  constexpr std::uint32_t kHeaderAlone = 1;
+  constexpr std::uint32_t kWholePacket = 0xffffffff;
+  std::array<sock_filter, 6> program{{BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
+                                      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohs(sender.port), 0, 3),
+                                      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kSourceAddress),
+                                      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohl(sender.address), 0, 1),
+                                      BPF_STMT(BPF_RET | BPF_K, kHeaderAlone),
+                                      BPF_STMT(BPF_RET | BPF_K, kWholePacket)}};
+  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+  return set(socket_, SOL_SOCKET, SO_ATTACH_FILTER, filter);
 }
 
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 // kernel's buffer here, and are lost, and counted, where that is full.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -50,11 +51,34 @@ class UdpmReceiver {
   // The next message of our channels among at most `most_packets` that wait. nullopt: there is none.
   std::optional<Message> take(int most_packets);
 
+  // Whose packets: both numbers in network byte order.
+  struct Sender {
+    std::uint32_t address = 0;
+    std::uint16_t port = 0;
+  };
+
+  // Takes what waits, whatever it is, up to the first packet that ends with these bytes: who sent it.
+  // nullopt: none came in time.
+  std::optional<Sender> find_sender(Bytes ending, std::chrono::milliseconds timeout);
+
+  // From now on the packets of this sender wait without their contents and become no messages. They are not
+  // dropped, because the kernel counts what a filter drops among the packets that it had no room for. False:
+  // the kernel takes no filter, and all is as before.
+  bool empty_packets_of(const Sender& sender);
+
   int fileno() const { return socket_.value(); }  // readable when a packet waits, of any channel
   ReceiveLosses losses() const { return {packets_dropped_, packets_.fragments_dropped()}; }
 
  private:
+  struct Packet {
+    Bytes bytes;  // valid until the next read_packet()
+    Sender sender;
+    std::int64_t arrived = 0;  // us since 1970
+  };
+
   explicit UdpmReceiver(FileDescriptor socket);
+  // nullopt: none waits, or a signal came in between (errno EINTR). Counts what the kernel dropped.
+  std::optional<Packet> read_packet();
 
   FileDescriptor socket_;
   LcmPackets packets_;

@@ -102,6 +102,34 @@ TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
 
+// One answer is several times as large as the buffer.
+TEST(RoundTripOfHydrostatics, DropsNothingBecauseOfTheServicesOwnPackets) {
+  const RunningService service({"-l", "udpm://239.255.76.67:7667?recv_buf_size=106496"},
+                               kHydrostaticBoxScene);
+  RawLcmSocket socket;
+  RawStates states = one_body(9, 1, 0.5);
+  states.bodies[0].body_id = 2;
+  states.bodies.resize(600, states.bodies[0]);
+  ask(socket, states);
+  const auto hydrostatics = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
+  ASSERT_TRUE(hydrostatics);
+  EXPECT_GT(hydrostatics->size(), 250'000U);
+  ask(socket, one_body(9, 2, 0.5));
+  const auto status =
+      hear_status(socket, [](const ServiceStatus& now) { return now.counters.questions == 2; });
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->packets_dropped, 0);
+}
+
+TEST(RoundTripOfOneBody, IsAnsweredByAServiceThatDoesNotSpin) {
+  const RunningService service({"--no-spin"});
+  RawLcmSocket socket;
+  for (std::int64_t seq = 1; seq <= 300; ++seq) {
+    ask(socket, one_body(3, seq, 0.001 * static_cast<double>(seq)));
+    ASSERT_EQ(hear(socket).seq, seq);
+  }
+}
+
 TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAndStiffnessOfABox) {
   const RunningService service({}, kHydrostaticBoxScene);
   RawLcmSocket socket;

@@ -20,6 +20,7 @@
 
 #include "tests/allocation_count.h"
 #include "tests/support/timeouts.h"
+#include "transport/quick_wait.h"
 #include "transport/udpm_receiver.h"
 
 namespace buoyancy {
@@ -50,8 +51,8 @@ class NetworkWithoutRoutes {
   bool entered_ = false;
 };
 
-LcmConnection open_or_die(const std::string& url = "") {
-  Expected<LcmConnection> connection = LcmConnection::open(url);
+LcmConnection open_or_die(const std::string& url = "", const ConnectionOptions& options = {}) {
+  Expected<LcmConnection> connection = LcmConnection::open(url, options);
   if (!connection) {
     ADD_FAILURE() << connection.error().message();
     std::abort();
@@ -187,6 +188,48 @@ TEST(LcmConnection, FindsAMessageThatComesSoonWithoutSleeping) {
   ASSERT_TRUE(becomes_readable(receiver.fileno()));
   EXPECT_TRUE(receiver.handle_one_soon());
   EXPECT_EQ(received, 1);
+}
+
+TEST(LcmConnection, SleepsAtOnceWhereItMustNotSpin) {
+  const auto looks_for = [](LcmConnection connection) {
+    EXPECT_TRUE(connection.subscribe("A", [](Bytes, std::string_view) {}));
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_FALSE(connection.handle_one_soon());
+    return std::chrono::steady_clock::now() - start;
+  };
+  EXPECT_GE(looks_for(open_or_die()), QuickWait::kTrial);
+  const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  bool slept_at_once = false;
+  while (!slept_at_once && std::chrono::steady_clock::now() < give_up_at) {
+    slept_at_once = looks_for(open_or_die("", {.spin = false})) < QuickWait::kTrial;
+  }
+  EXPECT_TRUE(slept_at_once);
+}
+
+TEST(LcmConnection, LosesNothingToItsOwnMessages) {
+  const char* const small_buffer = "udpm://239.255.76.67:7667?recv_buf_size=106496";
+  LcmConnection connection = open_or_die(small_buffer, {.receive_own = false});
+  LcmConnection other = open_or_die();
+  int of_own = 0;
+  std::size_t of_other = 0;
+  ASSERT_TRUE(connection.subscribe("OWN", [&](Bytes, std::string_view) { ++of_own; }));
+  ASSERT_TRUE(
+      connection.subscribe("OTHER", [&](Bytes bytes, std::string_view) { of_other += bytes.size(); }));
+  bool other_received = false;
+  ASSERT_TRUE(other.subscribe("OWN", [&](Bytes, std::string_view) { other_received = true; }));
+
+  const auto own = pattern(3'000'000);
+  ASSERT_TRUE(connection.publish("OWN", {own.data(), 1}));
+  ASSERT_TRUE(connection.publish("OWN", own));
+  const auto foreign = pattern(30'000);
+  ASSERT_TRUE(other.publish("OTHER", foreign));
+  while (of_other == 0 && wait_and_handle(connection)) {
+  }
+  EXPECT_EQ(of_other, foreign.size()) << "there was room for it";
+  EXPECT_EQ(of_own, 0);
+  EXPECT_EQ(connection.losses().packets, 0);
+  EXPECT_TRUE(wait_and_handle(other));
+  EXPECT_TRUE(other_received);
 }
 
 TEST(LcmConnection, CountsWhatTheKernelHadNoRoomFor) {
