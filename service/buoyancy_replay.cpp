@@ -96,7 +96,8 @@ int main(int argc, char** argv) {
   if (!input) return refuse(input.error(), kWrongInput);
   std::optional<Comparison> comparison;
   if (!options.earlier.empty()) {
-    Expected<Comparison> opened = Comparison::open(options.earlier, options.wrenches_channel);
+    Expected<Comparison> opened =
+        Comparison::open(options.earlier, options.wrenches_channel, options.hydrostatics_channel, *scene);
     if (!opened) return refuse(opened.error(), kWrongInput);
     comparison = *std::move(opened);
   }

@@ -74,6 +74,7 @@ Expected<void> write(const ReplayTask& task, Round& round) {
     if (Expected<void> written = task.output.write(batch.records()); !written) return written;
     if (task.comparison != nullptr) {
       batch.each_answer([&task](Bytes answer) { task.comparison->take(answer); });
+      batch.each_hydrostatics([&task](Bytes message) { task.comparison->take_hydrostatics(message); });
     }
   }
   return {};

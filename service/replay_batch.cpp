@@ -13,7 +13,7 @@ void ReplayBatch::clear() {
   records_.clear();
   troubles_.clear();
   answers_.clear();
-  answer_ends_.clear();
+  hydrostatics_.clear();
 }
 
 ReplayBatch::Item& ReplayBatch::add(Kind kind, std::int64_t timestamp, Bytes message) {
@@ -74,8 +74,10 @@ void ReplayBatch::answer_question(const Item& item) {
   }
   records_.add_answer(item.timestamp, answer, exchange_.hydrostatics(), item.channel);
   if (keep_answers_) {
-    answers_.insert(answers_.end(), answer.begin(), answer.end());
-    answer_ends_.push_back(answers_.size());
+    answers_.add(answer);
+    if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
+      hydrostatics_.add(hydrostatics);
+    }
   }
 }
 

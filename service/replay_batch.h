@@ -39,11 +39,12 @@ class ReplayBatch {
   // Calls see(bytes of a body_wrenches_t) for every answer in order, where answers were to be kept.
   template <typename See>
   void each_answer(See&& see) const {
-    std::size_t start = 0;
-    for (const std::size_t end : answer_ends_) {
-      see(Bytes(answers_).subspan(start, end - start));
-      start = end;
-    }
+    answers_.each(see);
+  }
+  // The same of the bodies_hydrostatics_t that went with them.
+  template <typename See>
+  void each_hydrostatics(See&& see) const {
+    hydrostatics_.each(see);
   }
   const Counters& counters() const { return exchange_.counters(); }  // of all that this was ever filled with
   std::int64_t copied() const { return copied_; }                    // likewise
@@ -63,6 +64,30 @@ class ReplayBatch {
     std::string text;          // of a copy: its channel; of trouble: what it is
   };
 
+  class Messages {
+   public:
+    void clear() {
+      bytes_.clear();
+      ends_.clear();
+    }
+    void add(Bytes message) {
+      bytes_.insert(bytes_.end(), message.begin(), message.end());
+      ends_.push_back(bytes_.size());
+    }
+    template <typename See>
+    void each(See& see) const {
+      std::size_t start = 0;
+      for (const std::size_t end : ends_) {
+        see(Bytes(bytes_).subspan(start, end - start));
+        start = end;
+      }
+    }
+
+   private:
+    std::vector<std::uint8_t> bytes_;
+    std::vector<std::size_t> ends_;  // in bytes_
+  };
+
   Item& add(Kind kind, std::int64_t timestamp, Bytes message);
   Bytes message_of(const Item& item) const { return Bytes(bytes_).subspan(item.start, item.size); }
   void answer_question(const Item& item);
@@ -75,8 +100,8 @@ class ReplayBatch {
   std::vector<std::uint8_t> bytes_;
   OutputRecords records_;
   std::vector<std::string> troubles_;
-  std::vector<std::uint8_t> answers_;
-  std::vector<std::size_t> answer_ends_;  // in answers_
+  Messages answers_;
+  Messages hydrostatics_;
 };
 
 }  // namespace buoyancy

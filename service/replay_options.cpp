@@ -113,8 +113,8 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
       ->option_text("REGEX");
   app.add_option(
          "--compare", options.earlier,
-         "An earlier OUTPUT, an LCM log: prints the largest differences by body, and fails where they "
-         "exceed the error bounds of both answers")
+         "An earlier OUTPUT, an LCM log: prints the largest differences by body, hydrostatics included, and "
+         "fails where they exceed the error bounds of both answers")
       ->option_text("LCMLOG");
   app.add_option("--jobs", options.jobs,
                  "Threads; 0: as many as the processor runs at once. OUTPUT does not depend on it")

@@ -17,13 +17,21 @@ double per_second(std::int64_t count, double seconds) {
 }
 
 std::string comparison_text(const Comparison& comparison) {
-  std::string text = fmt::format("{:>8}{:>12}{:>14}{:>14}{:>14}{:>18}{:>18}{:>16}{:>18}\n", "body", "answers",
-                                 "force, N", "torque, N m", "volume, m^3", "force/bounds", "torque/bounds",
-                                 "status changed", "worst at, us");
+  std::string text =
+      fmt::format("{:>8}{:>12}{:>14}{:>14}{:>14}{:>14}{:>18}{:>18}{:>18}{:>16}{:>18}\n", "body", "answers",
+                  "force, N", "torque, N m", "volume, m^3", "centre, m", "force/bounds", "torque/bounds",
+                  "centre/bounds", "status changed", "worst at, us");
   for (const auto& [id, body] : comparison.bodies()) {
-    text += fmt::format("{:>8}{:>12}{:>14.3g}{:>14.3g}{:>14.3g}{:>18.3g}{:>18.3g}{:>16}{:>18}\n", id,
-                        body.answers, body.force, body.torque, body.volume, body.force_in_bounds,
-                        body.torque_in_bounds, body.status_changes, body.worst_utime);
+    text += fmt::format(
+        "{:>8}{:>12}{:>14.3g}{:>14.3g}{:>14.3g}{:>14.3g}{:>18.3g}{:>18.3g}{:>18.3g}{:>16}{:>18}\n", id,
+        body.answers, body.force, body.torque, body.volume, body.center, body.force_in_bounds,
+        body.torque_in_bounds, body.center_in_bounds, body.status_changes, body.worst_utime);
+  }
+  for (const auto& [id, body] : comparison.bodies()) {
+    if (body.hydrostatics == 0) continue;
+    text += fmt::format("{:>8} hydrostatics: {} compared, largest difference over tolerance {:.3g}{}{}\n", id,
+                        body.hydrostatics, body.hydrostatics_in_bounds, body.worst_field.empty() ? "" : ", ",
+                        body.worst_field);
   }
   const auto line = [&text](const char* what, std::int64_t count) {
     if (count > 0) text += fmt::format("{:>12} {}\n", count, what);
@@ -31,9 +39,9 @@ std::string comparison_text(const Comparison& comparison) {
   line("answers have no counterpart in the earlier log", comparison.only_now());
   line("answers of the earlier log have no counterpart now", comparison.only_earlier());
   line("places of the earlier log could not be read", comparison.unreadable());
-  text += comparison.agrees()
-              ? "Force, torque and status of every answer agree with the earlier one within their bounds.\n"
-              : "The answers do NOT agree with the earlier ones within their bounds.\n";
+  text += comparison.agrees() ? "Force, torque, centre and status of every answer agree with the earlier one "
+                                "within their bounds.\n"
+                              : "The answers do NOT agree with the earlier ones within their bounds.\n";
   return text;
 }
 
@@ -46,9 +54,14 @@ nlohmann::ordered_json comparison_json(const Comparison& comparison) {
                       {"force", body.force},
                       {"torque", body.torque},
                       {"volume", body.volume},
+                      {"center", body.center},
                       {"force_in_bounds", body.force_in_bounds},
                       {"torque_in_bounds", body.torque_in_bounds},
-                      {"worst_utime", body.worst_utime}});
+                      {"center_in_bounds", body.center_in_bounds},
+                      {"worst_utime", body.worst_utime},
+                      {"hydrostatics", body.hydrostatics},
+                      {"hydrostatics_in_bounds", body.hydrostatics_in_bounds},
+                      {"hydrostatics_worst_field", body.worst_field}});
   }
   return {{"agrees", comparison.agrees()},
           {"only_now", comparison.only_now()},

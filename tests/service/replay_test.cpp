@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <functional>
+#include <initializer_list>
 #include <sstream>
 #include <thread>
 
@@ -134,6 +136,70 @@ TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
   ASSERT_EQ(replay(path("in.lcmlog"), path("not_asked.csv")).exit_code, 0);
   EXPECT_EQ(contents_of(path("asked.csv")), contents_of(path("not_asked.csv")));
   EXPECT_EQ(replay_asking(path("x.lcmlog"), {"--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2);
+}
+
+// Partly, fully and not submerged.
+TEST_F(Replay, ComparesCentresAndHydrostatics) {
+  const std::string asking =
+      write("asking.toml",
+            kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n" + "[body.client]\nmass = 9e3\n");
+  std::string log;
+  for (const double height : {0.3, -9.0, 9.0}) log += event("BUOYANCY_STATES", 1, question(1, height));
+  write("in.lcmlog", log);
+  ASSERT_EQ(run({"--scene", asking, path("in.lcmlog"), path("earlier.lcmlog")}).exit_code, 0);
+  const auto compared = [&](const std::string& scene, const std::string& earlier, int exit_code) {
+    const FinishedProcess finished =
+        run({"--scene", scene, path("in.lcmlog"), "/dev/null", "--compare", path(earlier), "--json"});
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
+    return nlohmann::json::parse(finished.standard_output)["compared"];
+  };
+  const auto same = compared(asking, "earlier.lcmlog", 0)["bodies"][0];
+  EXPECT_EQ(same["hydrostatics"], 3);
+  EXPECT_EQ(same["hydrostatics_in_bounds"], 0.0);
+  EXPECT_EQ(same["center_in_bounds"], 0.0);
+  EXPECT_EQ(compared(scene_, "earlier.lcmlog", 1)["only_earlier"], 3) << "the hydrostatics";
+
+  // The first message of `channel`, of the partly submerged body, after `change`.
+  const auto changed = [&](const std::string& channel, auto message, const auto& change) {
+    std::string all;
+    bool first = true;
+    for (LoggedEvent& one : events_of(path("earlier.lcmlog"))) {
+      if (one.channel == channel && std::exchange(first, false)) {
+        EXPECT_FALSE(decode(one.bytes, message));
+        change(message.bodies.at(0));
+        encode(message, one.bytes);
+      }
+      all += event(one.channel, one.timestamp, one.bytes);
+    }
+    write("changed.lcmlog", all);
+    return compared(asking, "changed.lcmlog", 1)["bodies"][0];
+  };
+  for (const double shift : {1e-9, std::nan("")}) {
+    const auto moved = changed("BUOYANCY_WRENCHES", Answer{},
+                               [&](BodyWrench& wrench) { wrench.center_of_buoyancy[2] += shift; });
+    if (!std::isnan(shift)) {
+      EXPECT_NEAR(moved["center"], shift, 1e-3 * shift);
+      EXPECT_GT(moved["center_in_bounds"], 1.0);
+    }
+    using Change = std::pair<const char*, std::function<void(BodyHydrostatics&)>>;
+    for (const auto& [field, change] : std::initializer_list<Change>{
+             {"submerged_volume", [&](BodyHydrostatics& body) { body.submerged_volume += shift; }},
+             {"center_of_buoyancy", [&](BodyHydrostatics& body) { body.center_of_buoyancy[1] += shift; }},
+             {"wetted_area", [&](BodyHydrostatics& body) { body.wetted_area += shift; }},
+             {"waterplane_area", [&](BodyHydrostatics& body) { body.waterplane_area += shift; }},
+             {"waterplane_centroid", [&](BodyHydrostatics& body) { body.waterplane_centroid[0] += shift; }},
+             {"waterplane_second_moments",
+              [&](BodyHydrostatics& body) { body.waterplane_second_moments[1] += shift; }},
+             {"waterplane_axes", [&](BodyHydrostatics& body) { body.waterplane_axes[1][2] += shift; }},
+             {"metacentric_radii", [&](BodyHydrostatics& body) { body.metacentric_radii[0] += shift; }},
+             {"metacenters", [&](BodyHydrostatics& body) { body.metacenters[0][2] += shift; }},
+             {"metacentric_heights", [&](BodyHydrostatics& body) { body.metacentric_heights[1] += shift; }},
+             {"stiffness", [&](BodyHydrostatics& body) { body.stiffness[4][4] += 1e4 * shift; }}}) {
+      const auto differing = changed("BUOYANCY_HYDROSTATICS", BodiesHydrostatics{}, change);
+      EXPECT_EQ(differing["hydrostatics_worst_field"], field) << differing;
+      EXPECT_EQ(differing["center_in_bounds"], 0.0);
+    }
+  }
 }
 
 TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
