@@ -16,6 +16,7 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
+#include "hydrostatics/triangle_clip.h"
 #include "tests/hydrostatics/ball.h"
 #include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/rational.h"
