@@ -17,10 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "benchmark_meshes.h"
 #include "coherent_poses.h"
+#include "command_line/tool_command_line.h"
 #include "pose_sweep.h"
 #include "report.h"
 #include "time_queries.h"
@@ -122,19 +121,15 @@ Expected<Measurements> measure_all(Extent extent) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Time beside error of every method, in two regimes");
+  ToolCommandLine command_line("Time beside error of every method, in two regimes");
   bool quick = false;
   bool smoke = false;
   std::string csv_path;
-  CLI::Option* const quick_flag = app.add_flag("--quick", quick, "fewer meshes and sweeps: under a minute");
-  app.add_flag("--smoke", smoke, "two small meshes, 8 poses, one sweep: says nothing about time")
-      ->excludes(quick_flag);
-  app.add_option("--csv", csv_path, "write a row per measurement to this file");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? EXIT_SUCCESS : 2;
-  }
+  command_line.add_flag("--quick", quick, "fewer meshes and sweeps: under a minute");
+  command_line.add_flag("--smoke", smoke, "two small meshes, 8 poses, one sweep: says nothing about time",
+                        "--quick");
+  command_line.add_option("--csv", csv_path, "write a row per measurement to this file");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
 
   // Opened first: nobody wants to hear after minutes that the file cannot be written.
   std::FILE* csv = nullptr;

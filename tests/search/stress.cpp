@@ -9,10 +9,7 @@
 #include <cstdio>
 #include <thread>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-
+#include "command_line/tool_command_line.h"
 #include "terminal/progress_bar.h"
 #include "tests/search/search_record.h"
 #include "tests/search/shrink.h"
@@ -48,23 +45,18 @@ void print_failure(std::uint64_t seed, const FailedCase& failure) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Searches for a question whose answer breaks a law.", "stress");
+  buoyancy::ToolCommandLine command_line("Searches for a question whose answer breaks a law.", "stress");
   std::int64_t cases = 20'000;
   std::uint64_t seed = 1;
   std::filesystem::path record = "build/stress";
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool table = false;
-  app.add_option("--cases", cases, "Go on until so many cases of the seed are done")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", seed, "What the cases are drawn from");
-  app.add_option("--record", record, "Directory of what was found so far");
-  app.add_option("--jobs", jobs, "Threads")->check(CLI::Range(1U, 1024U));
-  app.add_flag("--table", table, "Print the largest figures of all seeds, as Markdown");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongInput;
-  }
+  command_line.add_positive("--cases", cases, "Go on until so many cases of the seed are done");
+  command_line.add_option("--seed", seed, "What the cases are drawn from");
+  command_line.add_option("--record", record, "Directory of what was found so far");
+  command_line.add_number("--jobs", jobs, 1U, 1024U, "Threads");
+  command_line.add_flag("--table", table, "Print the largest figures of all seeds, as Markdown");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   const auto stop = [](int) { stop_requested = 1; };
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);

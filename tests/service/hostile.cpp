@@ -25,9 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "asking/client.h"
+#include "command_line/tool_command_line.h"
 #include "terminal/progress_bar.h"
 #include "tests/exchange/malformed_messages.h"
 #include "tests/service/memory_of.h"
@@ -334,20 +333,15 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  CLI::App app("Packets that are no questions, at a real buoyancyd", "hostile");
+  buoyancy::ToolCommandLine command_line("Packets that are no questions, at a real buoyancyd", "hostile");
   std::int64_t packets = 3'000'000;
   std::uint64_t seed = 1;
   std::int64_t names = 1'000'000;
-  app.add_option("--packets", packets, "How many")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40U));
-  app.add_option("--seed", seed, "Of the random numbers");
-  app.add_option("--channel-names", names, "Then so many channels of different names")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40U));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  command_line.add_number("--packets", packets, std::int64_t{1}, std::int64_t{1} << 40U, "How many");
+  command_line.add_option("--seed", seed, "Of the random numbers");
+  command_line.add_number("--channel-names", names, std::int64_t{0}, std::int64_t{1} << 40U,
+                          "Then so many channels of different names");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   try {
     return buoyancy::run(packets, seed, names) ? 0 : 1;
   } catch (const std::exception& failed) {

@@ -21,10 +21,10 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include "asking/client.h"
+#include "command_line/tool_command_line.h"
 #include "tests/service/memory_of.h"
 #include "tests/service/running_service.h"
 
@@ -133,19 +133,15 @@ bool run(std::int64_t questions, Record& record) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  CLI::App app("Lock-step questions to a real buoyancyd", "soak");
+  buoyancy::ToolCommandLine command_line("Lock-step questions to a real buoyancyd", "soak");
   std::int64_t questions = 1'000'000;
   std::string record = "build/soak";
   bool resume = false;
-  app.add_option("--questions", questions, "Until so many are done")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40U));
-  app.add_option("--record", record, "Directory that keeps how many are done");
-  app.add_flag("--resume", resume, "Go on where the last run stopped");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  command_line.add_number("--questions", questions, std::int64_t{1}, std::int64_t{1} << 40U,
+                          "Until so many are done");
+  command_line.add_option("--record", record, "Directory that keeps how many are done");
+  command_line.add_flag("--resume", resume, "Go on where the last run stopped");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   std::signal(SIGINT, buoyancy::request_stop);
   std::signal(SIGTERM, buoyancy::request_stop);
   try {

@@ -12,8 +12,7 @@
 #include <string>
 #include <thread>
 
-#include <CLI/CLI.hpp>
-
+#include "command_line/tool_command_line.h"
 #include "tests/service/memory_of.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/malformed_requests.h"
@@ -116,20 +115,12 @@ int run(int requests, int connections) {
 }
 
 int hostile_main(int argc, char** argv) {
-  CLI::App app("Throws what is no request at buoyancy-view", "hostile_view");
+  buoyancy::ToolCommandLine command_line("Throws what is no request at buoyancy-view", "hostile_view");
   int requests = 10'000;
   int connections = 100;
-  app.add_option("--requests", requests, "Malformed requests")
-      ->check(CLI::Range(1, 100'000'000))
-      ->capture_default_str();
-  app.add_option("--connections", connections, "Connections held at a time")
-      ->check(CLI::Range(1, 900))
-      ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  command_line.add_number("--requests", requests, 1, 100'000'000, "Malformed requests", true);
+  command_line.add_number("--connections", connections, 1, 900, "Connections held at a time", true);
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run(requests, connections);
 }
 
