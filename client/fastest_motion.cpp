@@ -37,8 +37,8 @@ class TreeOf {
   const HydrostaticMesh* mesh_;
 };
 
-// Of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically. Eigen's solver of fixed size
-// takes seconds to compile.
+// Of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically. Eigen's solver of fixed
+// size takes seconds to compile.
 double largest_eigenvalue(Mat6 matrix) {
   constexpr int kMaxSweeps = 30;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
