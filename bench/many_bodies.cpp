@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "exchange/exchange.h"
+#include "engine/request_handler.h"
 #include "median.h"
 
 namespace buoyancy {

@@ -14,7 +14,7 @@
 
 #include <sched.h>
 
-#include "exchange/exchange.h"
+#include "engine/request_handler.h"
 #include "quick_option.h"
 #include "service_process.h"
 #include "transport/lcm_connection.h"

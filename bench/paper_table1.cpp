@@ -12,8 +12,8 @@
 
 #include "benchmark_meshes.h"
 #include "hydrostatics/buoyancy.h"
+#include "memory_read_baseline.h"
 #include "pose_sweep.h"
-#include "read_mesh.h"
 #include "tests/hydrostatics/exact_oracle.h"
 #include "unit_water.h"
 

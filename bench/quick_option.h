@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "command_line/tool_command_line.h"
+#include "cli/tool_command_line.h"
 
 namespace buoyancy {
 

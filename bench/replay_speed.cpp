@@ -20,9 +20,9 @@
 #include <lcm/lcm-cpp.hpp>
 #include <sys/resource.h>
 
-#include "give_up.h"
+#include "fail.h"
 #include "median.h"
-#include "service/replay.h"
+#include "service/replay/replay.h"
 
 namespace buoyancy {
 namespace {

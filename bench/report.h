@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "measured_row.h"
+#include "measurement.h"
 
 namespace buoyancy {
 

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "asking/client.h"
-#include "exchange/exchange.h"
+#include "client/client.h"
+#include "engine/request_handler.h"
 #include "markdown_table.h"
 #include "median.h"
 #include "quick_option.h"

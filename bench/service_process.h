@@ -9,10 +9,10 @@
 
 #include <sched.h>
 
-#include "give_up.h"
+#include "fail.h"
 #include "scene/scene.h"
-#include "tests/child_process.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 

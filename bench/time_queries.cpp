@@ -4,9 +4,9 @@
 #include <chrono>
 #include <limits>
 
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "median.h"
-#include "read_mesh.h"
+#include "memory_read_baseline.h"
 #include "unit_water.h"
 
 namespace buoyancy {

@@ -11,7 +11,7 @@
 #include <array>
 #include <vector>
 
-#include "measured_row.h"
+#include "measurement.h"
 
 namespace buoyancy {
 

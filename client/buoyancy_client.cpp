@@ -14,13 +14,13 @@
 #include <CLI/CLI.hpp>
 #include <signal.h>
 
-#include "asking/client.h"
-#include "client/run_csv.h"
-#include "client/run_summary.h"
-#include "client/run_warnings.h"
-#include "client/simulation.h"
-#include "command_line/command_line.h"
-#include "terminal/progress_bar.h"
+#include "cli/command_line.h"
+#include "cli/progress_bar.h"
+#include "client/client.h"
+#include "simulation/run_csv_writer.h"
+#include "simulation/run_summary.h"
+#include "simulation/run_warnings.h"
+#include "simulation/simulation.h"
 
 namespace buoyancy {
 namespace {

@@ -5,13 +5,13 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "command_line/command_line.h"
-#include "command_line/termination_signals.h"
+#include "cli/command_line.h"
+#include "cli/progress_bar.h"
+#include "cli/termination_signals.h"
 #include "scene/scene.h"
-#include "service/replay.h"
-#include "service/replay_options.h"
-#include "service/replay_summary.h"
-#include "terminal/progress_bar.h"
+#include "service/replay/replay.h"
+#include "service/replay/replay_options.h"
+#include "service/replay/replay_summary.h"
 
 namespace {
 

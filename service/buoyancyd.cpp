@@ -6,14 +6,14 @@
 
 #include <CLI/App.hpp>
 
-#include "command_line/blocked_signals.h"
-#include "command_line/command_line.h"
-#include "command_line/termination_signals.h"
+#include "cli/command_line.h"
+#include "cli/signal_fd.h"
+#include "cli/termination_signals.h"
 #include "scene/scene.h"
 #include "scene/scene_report.h"
-#include "service/daemon.h"
-#include "service/daemon_options.h"
-#include "service/log_output.h"
+#include "service/daemon/daemon.h"
+#include "service/daemon/daemon_options.h"
+#include "service/daemon/logging.h"
 
 namespace {
 

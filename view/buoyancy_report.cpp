@@ -7,16 +7,16 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "command_line/command_line.h"
-#include "command_line/pose_options.h"
-#include "command_line/termination_signals.h"
-#include "recording/record_file.h"
+#include "cli/command_line.h"
+#include "cli/pose_options.h"
+#include "cli/progress_bar.h"
+#include "cli/termination_signals.h"
+#include "recording/record_writer.h"
 #include "scene/scene.h"
-#include "terminal/progress_bar.h"
-#include "view/body_list.h"
-#include "view/page_text.h"
-#include "view/report_page.h"
-#include "view/run_file.h"
+#include "view/common/page_assets.h"
+#include "view/report/body_list.h"
+#include "view/report/report_page.h"
+#include "view/report/run_file.h"
 
 namespace {
 

@@ -9,15 +9,15 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "command_line/command_line.h"
-#include "command_line/pose_options.h"
-#include "command_line/termination_signals.h"
+#include "cli/command_line.h"
+#include "cli/pose_options.h"
+#include "cli/termination_signals.h"
 #include "scene/scene.h"
 #include "transport/lcm_connection.h"
-#include "view/live_page.h"
-#include "view/live_view.h"
-#include "view/page_server.h"
-#include "view/page_text.h"
+#include "view/common/page_assets.h"
+#include "view/live/live_page.h"
+#include "view/live/live_view.h"
+#include "view/live/page_server.h"
 
 namespace buoyancy {
 namespace {

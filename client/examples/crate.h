@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <string>
 
-#include "asking/client.h"
+#include "client/client.h"
 
 namespace crate {
 

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/mesh_format.h"
 #include "geometry/mesh_import.h"
 

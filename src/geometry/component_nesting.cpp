@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/box_tree.h"
+#include "geometry/aabb_tree.h"
 #include "geometry/exact_predicates.h"
 
 namespace buoyancy {

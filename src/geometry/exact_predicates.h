@@ -7,7 +7,7 @@
 // Discrete & Computational Geometry 18 (1997).
 #pragma once
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <variant>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/mesh_import.h"
 
 namespace buoyancy {

@@ -25,9 +25,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/number_text.h"
 #include "geometry/assimp_reader.h"
 #include "geometry/import_pipe.h"
-#include "geometry/number_text.h"
 
 namespace buoyancy {
 namespace {

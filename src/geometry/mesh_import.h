@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/triangle_mesh.h"
 
 namespace buoyancy {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "geometry/wording.h"
+#include "base/format.h"
 
 namespace buoyancy {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "geometry/exact_predicates.h"
+#include "geometry/mesh_checks.h"
 #include "geometry/mesh_orientation.h"
-#include "geometry/mesh_refusal.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/pairwise_sum.h"
 #include "geometry/self_intersection.h"

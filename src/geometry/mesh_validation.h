@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/mesh_report.h"
 
 namespace buoyancy {

@@ -19,9 +19,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/vec3.h"
 #include "geometry/surface_moments.h"
 #include "geometry/triangle_mesh.h"
-#include "geometry/vec3.h"
 
 namespace buoyancy {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/box_tree.h"
+#include "geometry/aabb_tree.h"
 #include "geometry/exact_predicates.h"
 
 namespace buoyancy {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "geometry/number_text.h"
+#include "base/number_text.h"
 #include "geometry/shape_generators.h"
 
 namespace buoyancy {

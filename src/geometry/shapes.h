@@ -9,7 +9,7 @@
 #include <string_view>
 #include <variant>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/triangle_mesh.h"
 
 namespace buoyancy {

@@ -13,7 +13,7 @@
 
 #include <array>
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

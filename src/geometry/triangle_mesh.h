@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

@@ -2,7 +2,7 @@
 // mesh's centre c, before density, gravity and the world frame come in.
 #pragma once
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

@@ -1,7 +1,7 @@
 #include "hydrostatics/exact.h"
 
 #include "hydrostatics/volume_elements.h"
-#include "hydrostatics/wet_surface.h"
+#include "hydrostatics/wetted_surface.h"
 
 namespace buoyancy {
 

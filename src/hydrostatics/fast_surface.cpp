@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hydrostatics/pressure_elements.h"
-#include "hydrostatics/wet_surface.h"
+#include "hydrostatics/wetted_surface.h"
 
 namespace buoyancy {
 namespace {

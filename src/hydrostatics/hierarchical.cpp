@@ -6,7 +6,7 @@
 
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/volume_elements.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 
 namespace buoyancy {
 namespace {

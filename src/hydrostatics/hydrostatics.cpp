@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "hydrostatics/floating_moments.h"
+#include "hydrostatics/displacement_moments.h"
 #include "hydrostatics/immersion.h"
-#include "hydrostatics/wet_moments.h"
+#include "hydrostatics/wetted_moments.h"
 
 namespace buoyancy {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "hydrostatics/volume_elements.h"
-#include "hydrostatics/wet_surface.h"
+#include "hydrostatics/wetted_surface.h"
 
 namespace buoyancy {
 namespace {

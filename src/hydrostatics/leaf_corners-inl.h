@@ -10,7 +10,7 @@
 
 #include <hwy/highway.h>
 
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

@@ -10,8 +10,8 @@
 
 #include <hwy/highway.h>
 
-#include "hydrostatics/undecided_node.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/pruned_node.h"
+#include "hydrostatics/wetted_tree_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

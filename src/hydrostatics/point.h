@@ -4,7 +4,7 @@
 // to 2 times faster with these (docs/measurements.md). Elsewhere the project uses Vec3.
 #pragma once
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

@@ -15,7 +15,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 #include "hydrostatics/point.h"
 
 namespace buoyancy {

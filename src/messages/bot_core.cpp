@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "messages/layout.h"
+#include "messages/wire_layout.h"
 
 namespace buoyancy {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "messages/question.h"
+#include "messages/request.h"
 
 namespace buoyancy {
 

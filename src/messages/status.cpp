@@ -4,7 +4,7 @@
 
 #include <buoyancy/service_status_t.hpp>
 
-#include "messages/layout.h"
+#include "messages/wire_layout.h"
 
 namespace buoyancy {
 namespace {

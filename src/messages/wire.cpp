@@ -8,7 +8,7 @@
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 
-#include "messages/layout.h"
+#include "messages/wire_layout.h"
 
 namespace buoyancy {
 namespace {

@@ -11,7 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "messages/hydrostatics.h"
-#include "messages/question.h"
+#include "messages/request.h"
 
 namespace buoyancy {
 

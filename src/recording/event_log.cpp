@@ -4,7 +4,7 @@
 #include <array>
 
 #include "messages/bot_core.h"
-#include "messages/layout.h"
+#include "messages/wire_layout.h"
 
 namespace buoyancy {
 namespace {

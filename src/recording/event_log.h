@@ -15,10 +15,10 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "messages/wire.h"
-#include "recording/input_item.h"
-#include "recording/input_window.h"
+#include "recording/file_window.h"
+#include "recording/log_item.h"
 
 namespace buoyancy {
 

@@ -14,10 +14,10 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/error.h"
-#include "messages/question.h"
-#include "recording/input_item.h"
-#include "recording/input_window.h"
+#include "base/error.h"
+#include "messages/request.h"
+#include "recording/file_window.h"
+#include "recording/log_item.h"
 
 namespace buoyancy {
 

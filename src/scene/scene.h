@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_report.h"
 #include "hydrostatics/solver.h"

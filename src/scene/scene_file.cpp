@@ -9,9 +9,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "geometry/wording.h"
-#include "scene/nearest_word.h"
-#include "scene/shape_table.h"
+#include "base/format.h"
+#include "base/spelling_suggestion.h"
+#include "scene/shape_toml.h"
 #include "scene/toml_table.h"
 
 namespace buoyancy {

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
 #include "geometry/shapes.h"

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 
 namespace buoyancy {
 namespace {

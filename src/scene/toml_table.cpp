@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
-#include "geometry/number_text.h"
-#include "scene/nearest_word.h"
+#include "base/number_text.h"
+#include "base/spelling_suggestion.h"
 
 namespace buoyancy {
 namespace {

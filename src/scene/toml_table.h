@@ -16,8 +16,8 @@
 
 #include <toml++/toml.h>
 
-#include "geometry/error.h"
-#include "geometry/vec3.h"
+#include "base/error.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

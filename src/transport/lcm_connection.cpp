@@ -15,8 +15,8 @@
 #include <poll.h>
 #include <sched.h>
 
+#include "transport/adaptive_spin.h"
 #include "transport/multicast_probe.h"
-#include "transport/quick_wait.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy {

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "messages/wire.h"
 #include "transport/udpm_receiver.h"
 

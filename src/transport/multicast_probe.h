@@ -5,7 +5,7 @@
 // message on LCM_SELF_TEST that stays on this machine (ttl 0), and waits until it comes back.
 #pragma once
 
-#include "geometry/error.h"
+#include "base/error.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy {

@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "geometry/error.h"
-#include "geometry/file_descriptor.h"
+#include "base/error.h"
+#include "base/unique_fd.h"
 #include "messages/wire.h"
-#include "transport/lcm_packets.h"
+#include "transport/lcm_reassembler.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "geometry/error.h"
+#include "base/error.h"
 
 namespace buoyancy {
 

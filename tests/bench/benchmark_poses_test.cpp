@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/benchmark_meshes.h"
-#include "bench/coherent_poses.h"
 #include "bench/pose_sweep.h"
+#include "bench/trajectory_poses.h"
 #include "bench/unit_water.h"
 #include "hydrostatics/buoyancy.h"
 

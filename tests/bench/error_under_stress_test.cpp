@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/solver.h"
-#include "tests/child_process.h"
+#include "tests/support/child_process.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "recording/state_csv.h"
-#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_check.h"
 
 namespace buoyancy {
 namespace {

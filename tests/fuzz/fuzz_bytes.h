@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-#include "geometry/vec3.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 

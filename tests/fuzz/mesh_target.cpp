@@ -16,7 +16,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/fuzz/fuzz_bytes.h"
-#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_check.h"
 #include "tests/fuzz/fuzz_mesh.h"
 
 namespace buoyancy {

@@ -13,13 +13,13 @@
 #include <string_view>
 #include <vector>
 
-#include "exchange/exchange.h"
-#include "exchange/pose_questions.h"
+#include "engine/pose_request_adapter.h"
+#include "engine/request_handler.h"
 #include "messages/status.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
 #include "tests/fuzz/fuzz_bytes.h"
-#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_check.h"
 
 namespace buoyancy {
 namespace {

@@ -12,7 +12,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "scene/scene.h"
 #include "scene/scene_report.h"
-#include "tests/fuzz/fuzz_law.h"
+#include "tests/fuzz/fuzz_check.h"
 
 namespace buoyancy {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "hydrostatics/exact.h"
 #include "hydrostatics/hierarchical.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
 
 namespace buoyancy {

@@ -7,11 +7,11 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/immersion.h"
-#include "tests/allocation_count.h"
 #include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/support/allocation_count.h"
 
 namespace buoyancy {
 namespace {

@@ -15,7 +15,7 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/exact.h"
 #include "hydrostatics/solver.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/agreement.h"
 #include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"

@@ -6,7 +6,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/stiffness_by_dual_numbers.h"
+#include "tests/hydrostatics/stiffness_autodiff.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {

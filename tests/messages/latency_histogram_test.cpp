@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/allocation_count.h"
+#include "tests/support/allocation_count.h"
 
 namespace buoyancy {
 namespace {

@@ -8,7 +8,7 @@
 #include <rapidcheck.h>
 
 #include "messages/hydrostatics.h"
-#include "messages/question.h"
+#include "messages/request.h"
 #include "messages/status.h"
 
 namespace buoyancy {

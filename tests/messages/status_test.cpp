@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "messages/layout.h"
-#include "tests/allocation_count.h"
+#include "messages/wire_layout.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
+#include "tests/support/allocation_count.h"
 
 namespace buoyancy {
 namespace {

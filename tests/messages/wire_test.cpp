@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/allocation_count.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
+#include "tests/support/allocation_count.h"
 
 namespace buoyancy {
 namespace {

@@ -9,7 +9,7 @@
 #include <lcm/eventlog.h>
 
 #include "messages/wire.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 namespace {

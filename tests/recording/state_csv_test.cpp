@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/service/scratch_directory.h"
+#include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 namespace {

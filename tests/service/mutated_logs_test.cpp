@@ -11,8 +11,8 @@
 
 #include "messages/wire.h"
 #include "recording/event_log.h"
-#include "tests/child_process.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

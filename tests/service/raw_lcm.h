@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/file_descriptor.h"
+#include "base/unique_fd.h"
 
 namespace buoyancy {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/service/replaying.h"
+#include "tests/service/replay_fixture.h"
 #include "tests/service/running_service.h"
 #include "tests/support/timeouts.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/geometry/mesh_files.h"
-#include "tests/service/held_file.h"
+#include "tests/service/leased_file.h"
 #include "tests/service/running_service.h"
 #include "tests/support/timeouts.h"
 

@@ -9,7 +9,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
-#include "tests/service/replaying.h"
+#include "tests/service/replay_fixture.h"
 
 namespace buoyancy {
 namespace {

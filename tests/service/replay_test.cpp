@@ -15,10 +15,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "geometry/file_descriptor.h"
+#include "base/unique_fd.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
-#include "tests/service/replaying.h"
+#include "tests/service/replay_fixture.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

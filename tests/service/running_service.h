@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "messages/status.h"
-#include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/raw_lcm.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

@@ -23,10 +23,10 @@
 
 #include <unistd.h>
 
-#include "asking/client.h"
-#include "command_line/tool_command_line.h"
-#include "tests/service/memory_of.h"
+#include "cli/tool_command_line.h"
+#include "client/client.h"
 #include "tests/service/running_service.h"
+#include "tests/support/process_memory.h"
 
 namespace buoyancy {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/number_text.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "base/number_text.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/hydrostatics.h"
-#include "hydrostatics/wet_moments.h"
-#include "tests/hydrostatics/stiffness_by_dual_numbers.h"
-#include "tests/hydrostatics/wet_moments_by_hand.h"
+#include "hydrostatics/wetted_moments.h"
+#include "tests/hydrostatics/stiffness_autodiff.h"
+#include "tests/hydrostatics/wetted_moments_reference.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 

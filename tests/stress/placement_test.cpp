@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/number_text.h"
+#include "base/number_text.h"
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatics.h"
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/test_meshes.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/number_text.h"
+#include "base/number_text.h"
 #include "geometry/rounding_area.h"
 #include "geometry/shapes.h"
 #include "tests/geometry/mesh_files.h"

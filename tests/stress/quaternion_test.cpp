@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "exchange/exchange.h"
+#include "engine/request_handler.h"
 #include "geometry/shapes.h"
-#include "messages/vectors.h"
-#include "tests/exchange/box_scene.h"
+#include "messages/conversions.h"
+#include "tests/engine/box_scene.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hydrostatics/wet_tree_sum.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {

@@ -18,9 +18,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "tests/allocation_count.h"
+#include "tests/support/allocation_count.h"
 #include "tests/support/timeouts.h"
-#include "transport/quick_wait.h"
+#include "transport/adaptive_spin.h"
 #include "transport/udpm_receiver.h"
 
 namespace buoyancy {

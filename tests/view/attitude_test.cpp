@@ -1,4 +1,4 @@
-#include "view/attitude.h"
+#include "view/report/attitude.h"
 
 #include <numbers>
 

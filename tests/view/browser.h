@@ -18,10 +18,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/child_process.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
-#include "tests/view/picture.h"
+#include "tests/view/image.h"
 
 namespace httplib {
 class Client;

@@ -17,8 +17,8 @@
 #include <httplib.h>
 #include <sys/stat.h>
 
-#include "tests/child_process.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 

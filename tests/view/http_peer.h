@@ -15,7 +15,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include "geometry/file_descriptor.h"
+#include "base/unique_fd.h"
 
 namespace buoyancy {
 

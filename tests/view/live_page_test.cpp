@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "messages/question.h"
+#include "messages/request.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/view/page_test.h"

@@ -1,4 +1,4 @@
-#include "view/page_server.h"
+#include "view/live/page_server.h"
 
 #include <algorithm>
 #include <chrono>

@@ -11,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/child_process.h"
 #include "tests/service/one_box_scene.h"
-#include "tests/service/scratch_directory.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 

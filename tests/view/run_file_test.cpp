@@ -1,4 +1,4 @@
-#include "view/run_file.h"
+#include "view/report/run_file.h"
 
 #include <cmath>
 #include <limits>
@@ -9,15 +9,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "exchange/exchange.h"
+#include "engine/request_handler.h"
 #include "recording/event_log.h"
-#include "tests/exchange/box_scene.h"
+#include "tests/engine/box_scene.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
-#include "tests/service/scratch_directory.h"
-#include "view/body_list.h"
-#include "view/report_page.h"
+#include "tests/support/temp_dir.h"
+#include "view/report/body_list.h"
+#include "view/report/report_page.h"
 
 namespace buoyancy {
 namespace {

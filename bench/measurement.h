@@ -1,0 +1,46 @@
+// What was measured: a row per mesh, method, tolerance, instruction set and regime, and their CSV.
+//
+//   mesh,triangles,method,tolerance,target,regime,median_ns,force_error,torque_error,bound
+//
+// method      one of the six, or `read`: the time to read vertices and indices once
+// tolerance   of the solver; 0: exact, or a method that knows no tolerance
+// target      the instruction set of `hierarchical`; -: a method without SIMD of its own
+// regime      independent: 100 poses from almost dry to almost submerged with random rotations;
+//             coherent: 100 steps of a floating body's trajectory
+// median_ns   of the whole query, over the poses
+// *_error     the largest over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
+//             V_T L; nan for `read`
+// bound       the largest force error bound that the answers came with, over rho g V_T; nan for
+//             `read`
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "reference_results.h"
+
+namespace buoyancy {
+
+inline constexpr const char* kReadRow = "read";
+inline constexpr const char* kNoTarget = "-";
+
+struct MeasuredRow {
+  std::string mesh;
+  std::size_t triangles = 0;
+  std::string method;
+  double tolerance = 0.0;
+  std::string target = kNoTarget;
+  std::string regime;
+  double median_ns = 0.0;
+  SolverErrors errors;
+};
+
+void write_csv(std::FILE* file, const std::vector<MeasuredRow>& rows);
+
+// The row that answers to all of it; nullptr: not measured. target "": the first, which is the best.
+const MeasuredRow* find_row(const std::vector<MeasuredRow>& rows, const std::string& mesh,
+                            std::size_t triangles, const std::string& method, double tolerance,
+                            const std::string& target, const std::string& regime);
+
+}  // namespace buoyancy

@@ -1,0 +1,73 @@
+#include "trajectory_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hydrostatics/buoyancy.h"
+#include "unit_water.h"
+
+namespace buoyancy {
+namespace {
+
+// The pose whose centroid is at centroid_W.
+Pose pose_about_centroid(const HydrostaticMesh& mesh, const Eigen::Quaterniond& q_WB,
+                         const Vec3& centroid_W) {
+  return {centroid_W - q_WB * (mesh.center_B + mesh.centroid), q_WB};
+}
+
+// The attitude's pose in which half of the body is under water.
+Pose half_submerged(const Solver& solver, const Eigen::Quaterniond& q_WB) {
+  const HydrostaticMesh& mesh = solver.mesh();
+  double below =
+      -mesh.diagonal;  // the centroid's height: there the body is wholly wet, at `above` wholly dry
+  double above = mesh.diagonal;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (below + above);
+    const Pose pose = pose_about_centroid(mesh, q_WB, {0, 0, middle});
+    const bool too_deep = buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume > 0.5 * mesh.volume;
+    (too_deep ? below : above) = middle;
+  }
+  return pose_about_centroid(mesh, q_WB, {0, 0, below});
+}
+
+}  // namespace
+
+Pose floating_pose(const Solver& solver) {
+  const HydrostaticMesh& mesh = solver.mesh();
+  const Vec3 centroid_B = mesh.center_B + mesh.centroid;
+  const auto torque = [&](const Pose& at) { return buoyancy(solver, at, kUnitWater, centroid_B).torque_W; };
+  // How far to turn for a torque. At first for a metacentric height of L/5, then for the stiffness that the
+  // last turn met (Barzilai and Borwein).
+  double angle_per_torque = 5.0 / (mesh.volume * mesh.diagonal);
+  Pose pose = half_submerged(solver, Eigen::Quaterniond::Identity());
+  Vec3 torque_W = torque(pose);
+  for (int i = 0; i < 200 && torque_W.norm() > 1e-9 * mesh.volume * mesh.diagonal; ++i) {
+    const double angle = std::min(angle_per_torque * torque_W.norm(), 0.3);
+    const Vec3 turn_W = angle * torque_W.normalized();
+    const Eigen::AngleAxisd turn(angle, torque_W.normalized());
+    pose = half_submerged(solver, (turn * pose.q_WB).normalized());
+    const Vec3 before_W = torque_W;
+    torque_W = torque(pose);
+    const double yielded = turn_W.dot(before_W - torque_W);
+    if (yielded > 0.0) angle_per_torque = angle * angle / yielded;
+  }
+  return pose;
+}
+
+std::vector<Pose> coherent_poses(const HydrostaticMesh& mesh, const Pose& floating, int count) {
+  const double phase_step = 2.0 * std::numbers::pi / count;
+  const double amplitude = kCoherentStep / (2.0 * std::sin(0.5 * phase_step));  // of L, and rad
+  const Vec3 rest_W = floating.p_WB + floating.q_WB * (mesh.center_B + mesh.centroid);
+  std::vector<Pose> poses;
+  for (int i = 0; i < count; ++i) {
+    const double phase = phase_step * i;
+    const Vec3 circle_W = Vec3(std::cos(phase), 0.0, std::sin(phase));
+    const Eigen::AngleAxisd tilt(amplitude, Vec3(std::cos(phase), std::sin(phase), 0.0));
+    poses.push_back(pose_about_centroid(mesh, (tilt * floating.q_WB).normalized(),
+                                        rest_W + amplitude * mesh.diagonal * circle_W));
+  }
+  return poses;
+}
+
+}  // namespace buoyancy

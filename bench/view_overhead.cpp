@@ -1,0 +1,201 @@
+// What the live view costs the service that it looks at: round trips of an asker that asks a thousand times a
+// second about a hundred bodies, with and without a view that a page is connected to, in turns, over UDP.
+// Markdown on standard output.
+//
+//   view_overhead [--quick]
+//
+// To be run in a network namespace with a multicast route (scripts/measure_view). Exit codes: 0 measured; 1 a
+// wrong answer or no network; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
+// times depend on the machine and on what else it does.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <time.h>
+#include <unistd.h>
+
+#include "client/client.h"
+#include "markdown_table.h"
+#include "median.h"
+#include "quick_option.h"
+#include "service_process.h"
+#include "tests/view/http_peer.h"
+
+namespace buoyancy {
+namespace {
+
+using Times = std::vector<double>;  // us
+
+constexpr int kBodies = 100;
+constexpr double kRate = 1000.0;  // Hz
+constexpr double kMostChange = 0.05;
+constexpr double kLeastUpdates = 20.0;  // Hz
+
+// A box of 1,200 triangles.
+const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
+
+// s of processor time that a process has used, all its threads.
+double processor_time(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string field;
+  std::getline(file, field, ')');  // the name may hold spaces
+  for (int skipped = 0; skipped < 11; ++skipped) file >> field;
+  double user = 0.0;
+  double system = 0.0;
+  file >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+// A view with a page connected to it, which takes every snapshot.
+class WatchedView {
+ public:
+  explicit WatchedView(const std::string& scene)
+      : process_({BUOYANCY_VIEW, "--scene", directory_.write("scene.toml", scene), "-l",
+                  url_of_port(kServicePort), "--port", "0"}),
+        reader_(port_said(process_.child().standard_output())),
+        thread_([this] {
+          while (!ended_) {
+            if (reader_.next(0.5)) ++snapshots_;
+          }
+        }) {}
+  WatchedView(const WatchedView&) = delete;
+  WatchedView& operator=(const WatchedView&) = delete;
+  ~WatchedView() {
+    ended_ = true;
+    thread_.join();
+  }
+  std::int64_t snapshots() const { return snapshots_; }
+  double processor_time() { return buoyancy::processor_time(process_.child().pid()); }
+
+ private:
+  ScratchDirectory directory_;
+  ReadyProcess process_;
+  EventReader reader_;
+  std::atomic<std::int64_t> snapshots_{0};
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+class PacedAsker {
+ public:
+  PacedAsker() : client_(open()) {}
+
+  // Round trips of questions asked at kRate.
+  Times ask(std::size_t questions) {
+    Times times;
+    times.reserve(questions);
+    auto due = Clock::now();
+    for (std::size_t i = 0; i < questions; ++i) {
+      std::this_thread::sleep_until(due);
+      move();
+      const auto start = Clock::now();
+      const auto answer = client_.ask(++step_, states_);
+      times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+      if (!answer) give_up(answer.error().message());
+      if ((*answer)->bodies.back().force[2] <= 0.0) give_up("a body in the water is not borne");
+      due = std::max(due + std::chrono::microseconds(static_cast<int>(1e6 / kRate)), Clock::now());
+    }
+    return times;
+  }
+
+ private:
+  static Client open() {
+    ClientOptions options;
+    options.link.lcm_url = url_of_port(kServicePort);
+    return value_or_exit(Client::open(options));
+  }
+
+  // Every body crosses the water and turns, so that none is answered from memory.
+  void move() {
+    for (int i = 0; i < kBodies; ++i) {
+      const double angle = 0.1 * i + 1e-3 * static_cast<double>(step_);
+      states_[static_cast<std::size_t>(i)] = {.body_id = i + 1,
+                                              .position = {3.0 * i, 0.0, 0.2 * std::sin(angle)},
+                                              .quaternion_wxyz = {std::cos(angle), 0.0, std::sin(angle), 0.0},
+                                              .linear_velocity = {},
+                                              .angular_velocity = {}};
+    }
+  }
+
+  Client client_;
+  std::vector<BodyState> states_{kBodies};
+  std::int64_t step_ = 0;
+};
+
+void run(bool quick) {
+  constexpr std::size_t kQuestions = 1'000;  // a second: what else the machine does is the same for both
+  constexpr std::size_t kWarmUp = 300;
+  const std::size_t rounds = quick ? 20 : 100;
+  const std::string scene = bodies_of(kBodies, kCrate);
+  const ServiceProcess service(scene);
+  PacedAsker asker;
+  asker.ask(kQuestions);
+  Times without_p50, with_p50, without_p99, with_p99, changes, updates, processor;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    const auto with = [&] {
+      WatchedView view(scene);
+      asker.ask(kWarmUp);  // until the view is past its start
+      const std::int64_t snapshots = view.snapshots();
+      const double used = view.processor_time();
+      const auto start = Clock::now();
+      const Times times = asker.ask(kQuestions);
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      updates.push_back(static_cast<double>(view.snapshots() - snapshots) / seconds);
+      processor.push_back(100.0 * (view.processor_time() - used) / seconds);
+      with_p50.push_back(percentile(times, 0.5));
+      with_p99.push_back(percentile(times, 0.99));
+    };
+    const auto without = [&] {
+      asker.ask(kWarmUp);
+      const Times times = asker.ask(kQuestions);
+      without_p50.push_back(percentile(times, 0.5));
+      without_p99.push_back(percentile(times, 0.99));
+    };
+    if (round % 2 == 0) {
+      without();
+      with();
+    } else {
+      with();
+      without();
+    }
+    changes.push_back(with_p50.back() / without_p50.back() - 1.0);
+  }
+  const double change = median(changes);
+  std::printf(
+      "### What a live view costs\n\n"
+      "%d bodies of 1,200 triangles that cross the water, asked about %.0f times a second in lock-step, with "
+      "and "
+      "without a\n`buoyancy-view` that a reader of its events is connected to, in turns: medians of %zu "
+      "rounds of %zu "
+      "questions each.\n\n",
+      kBodies, kRate, rounds, kQuestions);
+  MarkdownTable table({"", "without", "with", "change", "must", ""});
+  table.add({"round trip, p50, us", text("%.1f", median(without_p50)), text("%.1f", median(with_p50)),
+             text("%+.1f %%", 100.0 * change), "below 5 %", met(change < kMostChange)});
+  table.add({"round trip, p99, us", text("%.1f", median(without_p99)), text("%.1f", median(with_p99)),
+             text("%+.1f %%", 100.0 * (median(with_p99) / median(without_p99) - 1.0)), "", ""});
+  const double mean_updates =
+      std::accumulate(updates.begin(), updates.end(), 0.0) / static_cast<double>(updates.size());
+  table.add({"snapshots a second, mean", "", text("%.1f", mean_updates), "", "20 or more",
+             met(mean_updates >= kLeastUpdates)});
+  table.add({"snapshots a second, the fewest of a round", "",
+             text("%.1f", *std::min_element(updates.begin(), updates.end())), "", "", ""});
+  table.add({"processor time of the view, % of one", "", text("%.1f", median(processor)), "", "", ""});
+  table.print(stdout, 1);
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  return buoyancy::run_with_quick_option(argc, argv, "What a live view costs the service that it looks at",
+                                         "Fewer questions and rounds", buoyancy::run);
+}

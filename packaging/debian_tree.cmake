@@ -1,0 +1,64 @@
+# CPack runs this when the files of every package lie below CPACK_TEMPORARY_DIRECTORY/<component> and before it packs
+# them: what debhelper would do to them.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result ERROR_VARIABLE error)
+  if(result)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}: ${error}")
+  endif()
+endfunction()
+
+set(packaging "${CPACK_BUOYANCY_SOURCE_DIR}/packaging")
+set(programs "${CPACK_TEMPORARY_DIRECTORY}/programs")
+
+file(MAKE_DIRECTORY "${programs}/etc/buoyancy")
+file(COPY "${packaging}/scene.toml" DESTINATION "${programs}/etc/buoyancy")
+# Below the prefix in an installation by hand, in the root in a package.
+if(EXISTS "${programs}/usr/lib/systemd")
+  file(MAKE_DIRECTORY "${programs}/lib")
+  file(RENAME "${programs}/usr/lib/systemd" "${programs}/lib/systemd")
+endif()
+file(GLOB units "${programs}/lib/systemd/system/*.service")
+foreach(unit IN LISTS units)
+  file(STRINGS "${unit}" commands REGEX "^Exec[A-Za-z]*=")
+  foreach(command IN LISTS commands)
+    if(command MATCHES "^[^=]*=[-@:+!]*\"?(/[^\" ]*buoyancy[^\" ]*)" AND NOT EXISTS "${programs}${CMAKE_MATCH_1}")
+      message(FATAL_ERROR "${unit}: ${command}: the package has no ${CMAKE_MATCH_1}. Was the unit written for another "
+                          "prefix than CPACK_INSTALL_PREFIX?")
+    endif()
+  endforeach()
+endforeach()
+
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  set(root "${CPACK_TEMPORARY_DIRECTORY}/${component}")
+  string(TOUPPER ${component} upper)
+  set(package ${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+
+  set(doc "${root}/usr/share/doc/${package}")
+  file(MAKE_DIRECTORY "${doc}")
+  file(COPY "${packaging}/copyright" DESTINATION "${doc}")
+  configure_file("${packaging}/changelog" "${doc}/changelog.Debian" COPYONLY)
+  configure_file("${CPACK_BUOYANCY_SOURCE_DIR}/CHANGELOG.md" "${doc}/changelog" COPYONLY)
+  file(GLOB_RECURSE pages "${root}/usr/share/man/*")
+  run(gzip -9n "${doc}/changelog.Debian" "${doc}/changelog" ${pages})
+
+  # Sent to whoever has the package, not uploaded to Debian: there is no bug that asked for it.
+  file(WRITE "${root}/usr/share/lintian/overrides/${package}"
+       "# Not uploaded to Debian, so that no bug asked for it.\n${package}: initial-upload-closes-no-bugs *\n")
+
+  file(GLOB binaries "${root}/usr/bin/*")
+  foreach(binary IN LISTS binaries)
+    file(READ "${binary}" magic LIMIT 4 HEX)
+    if(magic STREQUAL "7f454c46")  # ELF; the rest are scripts
+      run(strip --remove-section=.comment --remove-section=.note "${binary}")
+    endif()
+  endforeach()
+  file(GLOB_RECURSE archives "${root}/usr/lib/*.a")
+  if(archives)
+    run(strip --strip-debug --remove-section=.comment --remove-section=.note --enable-deterministic-archives
+        ${archives})
+  endif()
+  run(find "${root}" -type f -not -path "*/usr/bin/*" -exec chmod 644 {} +)
+  run(find "${root}" -type d -empty -delete)
+  run(find "${root}" -type d -exec chmod 755 {} +)
+endforeach()

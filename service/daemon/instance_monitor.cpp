@@ -1,0 +1,20 @@
+#include "service/daemon/instance_monitor.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace buoyancy {
+
+void OtherInstances::hear(Bytes message) {
+  if (known_.size() == kMost || decode(message, status_)) return;
+  const std::int64_t id = status_.instance_id;
+  if (id == own_ || std::ranges::find(known_, id) != known_.end()) return;
+  known_.push_back(id);
+  new_.push_back(id);
+}
+
+std::vector<std::int64_t> OtherInstances::take_new() {
+  return std::exchange(new_, {});
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,56 @@
+#include "service/daemon/logging.h"
+
+#include <memory>
+#include <string_view>
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/journal.h"
+
+namespace buoyancy {
+namespace {
+
+// The level as one of syslog's.
+class JournalPriority : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
+              spdlog::memory_buf_t& line) override {
+    const std::string_view priority = name(message.level);
+    line.append(priority.data(), priority.data() + priority.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JournalPriority>();
+  }
+
+ private:
+  static std::string_view name(spdlog::level::level_enum level) {
+    switch (level) {
+      case spdlog::level::trace:
+      case spdlog::level::debug:
+        return "<7>";
+      case spdlog::level::info:
+        return "<6>";
+      case spdlog::level::warn:
+        return "<4>";
+      case spdlog::level::err:
+        return "<3>";
+      default:
+        return "<2>";
+    }
+  }
+};
+
+}  // namespace
+
+void start_logging(const std::string& program, const std::string& level) {
+  spdlog::set_default_logger(spdlog::stderr_color_st(program));
+  spdlog::set_level(spdlog::level::from_str(level));
+  if (!standard_error_is_the_journal()) return;
+  auto lines = std::make_unique<spdlog::pattern_formatter>();
+  lines->add_flag<JournalPriority>('*').set_pattern("%*%v");
+  spdlog::set_formatter(std::move(lines));
+}
+
+}  // namespace buoyancy

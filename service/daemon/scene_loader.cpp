@@ -1,0 +1,90 @@
+#include "service/daemon/scene_loader.h"
+
+#include <new>
+#include <utility>
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+namespace buoyancy {
+namespace {
+
+SceneLoader::Loaded load(const std::filesystem::path& path) {
+  try {
+    Expected<Scene> scene = Scene::load(path);
+    if (!scene) return tl::unexpected(std::move(scene.error()));
+    return std::make_unique<const Scene>(std::move(*scene));
+  } catch (const std::bad_alloc&) {
+    return failure({path.string(), "memory ran out while it was loaded",
+                    "room for two scenes at a time: the old one answers until the new one is there", "",
+                    "Start the service again with the new scene, or give it more memory"});
+  }
+}
+
+}  // namespace
+
+SceneLoader::SceneLoader(std::filesystem::path path)
+    : path_(std::move(path)), ended_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), thread_([this] { run(); }) {}
+
+SceneLoader::~SceneLoader() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  work_.notify_one();
+  thread_.join();
+}
+
+void SceneLoader::request() {
+  {
+    const std::lock_guard lock(mutex_);
+    requested_ = true;
+  }
+  work_.notify_one();
+}
+
+bool SceneLoader::busy() const {
+  const std::lock_guard lock(mutex_);
+  return requested_ || loading_;
+}
+
+std::optional<SceneLoader::Loaded> SceneLoader::take() {
+  const std::lock_guard lock(mutex_);
+  ::eventfd_t ends = 0;
+  ::eventfd_read(ended_.value(), &ends);
+  return std::exchange(loaded_, std::nullopt);
+}
+
+void SceneLoader::discard(std::unique_ptr<const Scene> scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    discarded_.swap(scene);
+  }
+  work_.notify_one();
+}
+
+void SceneLoader::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_.wait(lock, [this] { return requested_ || stop_ || discarded_ != nullptr; });
+    if (std::unique_ptr<const Scene> scene = std::move(discarded_)) {
+      lock.unlock();
+      scene.reset();
+      lock.lock();
+    }
+    if (stop_) return;
+    if (!std::exchange(requested_, false)) continue;
+    loading_ = true;
+    lock.unlock();
+    std::optional<Loaded> loaded(load(path_));
+    lock.lock();
+    loading_ = false;
+    loaded_.swap(loaded);
+    ::eventfd_write(ended_.value(), 1);
+    lock.unlock();
+    loaded.reset();  // what nobody took
+    lock.lock();
+  }
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,64 @@
+#include "service/daemon/systemd_notifier.h"
+
+#include <cstdint>
+
+#ifdef BUOYANCY_WITH_SYSTEMD
+#include <ctime>
+
+#include <systemd/sd-daemon.h>
+#endif
+
+namespace buoyancy {
+namespace {
+
+#ifdef BUOYANCY_WITH_SYSTEMD
+void notify(const std::string& state) {
+  ::sd_notify(0, state.c_str());
+}
+
+// Of CLOCK_MONOTONIC, by which systemd tells this reload from an earlier one.
+std::string monotonic_microseconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::to_string(std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1'000);
+}
+#else
+void notify(const std::string& /*state*/) {}
+std::string monotonic_microseconds() {
+  return {};
+}
+#endif
+
+}  // namespace
+
+void ServiceManager::ready() {
+  notify("READY=1");
+}
+
+void ServiceManager::reloading() {
+  notify("RELOADING=1\nMONOTONIC_USEC=" + monotonic_microseconds());
+}
+
+void ServiceManager::stopping() {
+  notify("STOPPING=1");
+}
+
+void ServiceManager::status(const std::string& line) {
+  if (line == told_) return;
+  notify("STATUS=" + line);
+  told_ = line;
+}
+
+std::optional<std::chrono::microseconds> ServiceManager::watchdog_interval() {
+#ifdef BUOYANCY_WITH_SYSTEMD
+  std::uint64_t microseconds = 0;
+  if (::sd_watchdog_enabled(0, &microseconds) > 0) return std::chrono::microseconds(microseconds / 2);
+#endif
+  return std::nullopt;
+}
+
+void ServiceManager::watchdog_beat() {
+  notify("WATCHDOG=1");
+}
+
+}  // namespace buoyancy

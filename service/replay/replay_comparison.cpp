@@ -1,0 +1,278 @@
+#include "service/replay/replay_comparison.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace buoyancy {
+namespace {
+
+bool same(const QuestionKey& a, const QuestionKey& b) {
+  return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A number is infinitely far from what is none.
+double distance(double a, double b) {
+  const double difference = std::abs(a - b);
+  return std::isfinite(difference) ? difference : kInfinity;
+}
+
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  const double length = std::hypot(distance(a[0], b[0]), distance(a[1], b[1]), distance(a[2], b[2]));
+  // libstdc++'s hypot() of three numbers is NaN where one of them is infinite.
+  return std::isnan(length) ? kInfinity : length;
+}
+
+// 0 / 0 is 0: both are exact and the same. A bound that is no number bounds nothing.
+double in_bounds(double difference, double bounds) {
+  if (!std::isfinite(bounds)) return kInfinity;
+  if (difference == 0.0) return 0.0;
+  return bounds > 0.0 ? difference / bounds : kInfinity;
+}
+
+// m. The centre is M/V with |dM| <= lever dV, and no farther from the reference point than the lever, which
+// is torque bound / force bound; so its error is at most 2 lever dV / V. kAnyCenter where V may be nothing
+// but error.
+constexpr double kAnyCenter = 1e300;
+double center_bound(const BodyWrench& wrench) {
+  const double force = std::hypot(wrench.force[0], wrench.force[1], wrench.force[2]);
+  if (!(force > wrench.force_error_bound)) return kAnyCenter;
+  return 2.0 * wrench.torque_error_bound / force;
+}
+
+void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utime,
+             BodyDifferences& differences) {
+  ++differences.answers;
+  if (now.status != earlier.status) ++differences.status_changes;
+  const double force = distance(now.force, earlier.force);
+  const double torque = distance(now.torque, earlier.torque);
+  const double force_in_bounds = in_bounds(force, now.force_error_bound + earlier.force_error_bound);
+  const double torque_in_bounds = in_bounds(torque, now.torque_error_bound + earlier.torque_error_bound);
+  const double center = distance(now.center_of_buoyancy, earlier.center_of_buoyancy);
+  const double center_in_bounds = in_bounds(center, center_bound(now) + center_bound(earlier));
+  if (std::max({force_in_bounds, torque_in_bounds, center_in_bounds}) >
+      std::max({differences.force_in_bounds, differences.torque_in_bounds, differences.center_in_bounds})) {
+    differences.worst_utime = utime;
+  }
+  differences.center = std::max(differences.center, center);
+  differences.center_in_bounds = std::max(differences.center_in_bounds, center_in_bounds);
+  differences.force = std::max(differences.force, force);
+  differences.torque = std::max(differences.torque, torque);
+  differences.volume = std::max(differences.volume, distance(now.submerged_volume, earlier.submerged_volume));
+  differences.force_in_bounds = std::max(differences.force_in_bounds, force_in_bounds);
+  differences.torque_in_bounds = std::max(differences.torque_in_bounds, torque_in_bounds);
+}
+
+constexpr double kRounding = 128.0 * std::numeric_limits<double>::epsilon();  // of two results
+
+// The largest of a body's hydrostatics over their tolerances.
+class FieldDifferences {
+ public:
+  // The sizes may be numbers or vectors.
+  template <typename Value>
+  void add(std::string_view field, const Value& now, const Value& earlier, double tolerance) {
+    note(field, distance(now, earlier), tolerance + kRounding * std::max(size(now), size(earlier)));
+  }
+  // NaN in both is no difference: the field is undefined of such a pose.
+  template <typename Value>
+  void add_if_defined(std::string_view field, const Value& now, const Value& earlier, double tolerance) {
+    if (!undefined(now) || !undefined(earlier)) add(field, now, earlier, tolerance);
+  }
+  // Of axes, which have no sign.
+  void add_axis(std::string_view field, const std::array<double, 3>& now,
+                const std::array<double, 3>& earlier, double tolerance) {
+    if (undefined(now) && undefined(earlier)) return;
+    const std::array<double, 3> turned{-earlier[0], -earlier[1], -earlier[2]};
+    note(field, std::min(distance(now, earlier), distance(now, turned)), tolerance);
+  }
+
+  void add_to(BodyDifferences& differences) const {
+    ++differences.hydrostatics;
+    if (worst_ <= differences.hydrostatics_in_bounds) return;
+    differences.hydrostatics_in_bounds = worst_;
+    differences.worst_field = field_;
+  }
+
+ private:
+  static double size(double value) { return std::abs(value); }
+  static double size(const std::array<double, 3>& value) { return std::hypot(value[0], value[1], value[2]); }
+  static bool undefined(double value) { return std::isnan(value); }
+  static bool undefined(const std::array<double, 3>& value) {
+    return std::ranges::all_of(value, [](double number) { return std::isnan(number); });
+  }
+
+  void note(std::string_view field, double difference, double tolerance) {
+    const double relative = in_bounds(difference, tolerance);
+    if (relative <= worst_) return;
+    worst_ = relative;
+    field_ = field;
+  }
+
+  double worst_ = 0.0;
+  std::string_view field_;
+};
+
+// Two results, each off by the rounding of sums over the body's surface: of its area, and of that times as
+// many lengths as the field has beyond an area. docs/replay.md lists the tolerances.
+void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const Body& body,
+             const Water& water, BodyDifferences& differences) {
+  const HydrostaticMesh& mesh = body.solver.mesh();
+  const double length = mesh.diagonal;
+  const double area = kRounding * mesh.area;
+  const double second_moment = 4.0 * area * length * length;
+  const double volume = 2.0 * mesh.volume_gate() + area * length;
+  const double point = kRounding * mesh.largest_lever(Vec3::Zero());
+  const double smaller_volume = std::min(now.submerged_volume, earlier.submerged_volume);
+  const double smaller_plane = std::min(now.waterplane_area, earlier.waterplane_area);
+  const double center = 2.0 * volume * length / smaller_volume + point;
+
+  FieldDifferences fields;
+  fields.add("submerged_volume", now.submerged_volume, earlier.submerged_volume, volume);
+  fields.add_if_defined("center_of_buoyancy", now.center_of_buoyancy, earlier.center_of_buoyancy, center);
+  fields.add("wetted_area", now.wetted_area, earlier.wetted_area, area);
+  fields.add("waterplane_area", now.waterplane_area, earlier.waterplane_area, area);
+  fields.add_if_defined("waterplane_centroid", now.waterplane_centroid, earlier.waterplane_centroid,
+                        2.0 * area * length / smaller_plane + point);
+  const double gap = std::min(now.waterplane_second_moments[1] - now.waterplane_second_moments[0],
+                              earlier.waterplane_second_moments[1] - earlier.waterplane_second_moments[0]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    fields.add("waterplane_second_moments", now.waterplane_second_moments[i],
+               earlier.waterplane_second_moments[i], second_moment);
+    // Axes of a waterplane that is as long one way as the other may lie anywhere.
+    if (!(2.0 * second_moment >= gap)) {
+      fields.add_axis("waterplane_axes", now.waterplane_axes[i], earlier.waterplane_axes[i],
+                      2.0 * second_moment / gap + kRounding);
+    } else if (!std::ranges::equal(now.waterplane_axes[i], earlier.waterplane_axes[i],
+                                   [](double a, double b) { return std::isnan(a) == std::isnan(b); })) {
+      fields.add("waterplane_axes", now.waterplane_axes[i], earlier.waterplane_axes[i], 0.0);
+    }
+    const double radius =
+        (second_moment + std::max(now.metacentric_radii[i], earlier.metacentric_radii[i]) * volume) /
+        smaller_volume;
+    fields.add_if_defined("metacentric_radii", now.metacentric_radii[i], earlier.metacentric_radii[i],
+                          radius);
+    fields.add_if_defined("metacenters", now.metacenters[i], earlier.metacenters[i], center + radius);
+    fields.add_if_defined("metacentric_heights", now.metacentric_heights[i], earlier.metacentric_heights[i],
+                          center + radius);
+  }
+  const double lever = mesh.largest_lever(body.reference_B) + length;
+  const double weight = water.density * water.gravity;  // N/m^3
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      double tolerance = weight * area;
+      if ((row < 3) != (column < 3)) tolerance *= 2.0 * lever;
+      if (row >= 3 && column >= 3) tolerance = weight * (4.0 * area * lever + 2.0 * volume) * lever;
+      fields.add("stiffness", now.stiffness[row][column], earlier.stiffness[row][column], tolerance);
+    }
+  }
+  fields.add_to(differences);
+}
+
+const Body* body_of(const Scene& scene, std::int32_t id) {
+  const auto found = std::ranges::find(scene.bodies(), id, &Body::id);
+  return found == scene.bodies().end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Expected<Comparison> Comparison::open(const std::filesystem::path& earlier,
+                                      const std::string& wrenches_channel,
+                                      const std::string& hydrostatics_channel, const Scene& scene) {
+  Expected<EventLogReader> answers = EventLogReader::open(earlier, only_channel(wrenches_channel));
+  if (!answers) return tl::unexpected(answers.error());
+  Expected<EventLogReader> hydrostatics = EventLogReader::open(earlier, only_channel(hydrostatics_channel));
+  if (!hydrostatics) return tl::unexpected(hydrostatics.error());
+  return Comparison(std::move(*answers), std::move(*hydrostatics), scene);
+}
+
+template <typename Message>
+bool Comparison::Channel<Message>::read_one() {
+  while (true) {
+    const InputItem item = earlier.next();
+    if (std::holds_alternative<EndOfInput>(item)) return false;
+    const auto* event = std::get_if<RecordedEvent>(&item);
+    if (event == nullptr) {
+      ++damages;
+      continue;
+    }
+    if (!decode(event->bytes, ahead.emplace_back())) return true;
+    ahead.pop_back();
+    ++unreadable;
+  }
+}
+
+template <typename Message>
+std::optional<Message> Comparison::Channel<Message>::find() {
+  for (std::size_t i = 0; i < kReach; ++i) {
+    if (i == ahead.size() && !read_one()) break;
+    if (!same(ahead[i].key, now.key)) continue;
+    std::optional<Message> found = std::move(ahead[i]);
+    only_earlier += static_cast<std::int64_t>(i);
+    ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    return found;
+  }
+  ++only_now;
+  return std::nullopt;
+}
+
+template <typename Message>
+void Comparison::Channel<Message>::finish() {
+  only_earlier += static_cast<std::int64_t>(ahead.size());
+  for (ahead.clear(); read_one(); ahead.clear()) ++only_earlier;
+}
+
+// Calls compare_body for each body that both have in the same place.
+template <typename Message, typename CompareBody>
+void Comparison::take(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body) {
+  [[maybe_unused]] const auto rejected = decode(bytes, channel.now);
+  assert(!rejected);  // we encoded it
+  const std::optional<Message> earlier = channel.find();
+  if (!earlier) return;
+  const auto& now = channel.now.bodies;
+  const std::size_t both = std::min(now.size(), earlier->bodies.size());
+  bool same_bodies = now.size() == earlier->bodies.size();
+  for (std::size_t i = 0; i < both; ++i) {
+    if (now[i].body_id == earlier->bodies[i].body_id) {
+      compare_body(now[i], earlier->bodies[i], bodies_[now[i].body_id]);
+    } else {
+      same_bodies = false;
+    }
+  }
+  if (same_bodies) return;
+  ++channel.only_now;
+  ++channel.only_earlier;
+}
+
+void Comparison::take(Bytes answer) {
+  take(answers_, answer,
+       [this](const BodyWrench& now, const BodyWrench& earlier, BodyDifferences& differences) {
+         compare(now, earlier, answers_.now.key.utime, differences);
+       });
+}
+
+void Comparison::take_hydrostatics(Bytes hydrostatics) {
+  take(hydrostatics_, hydrostatics,
+       [this](const BodyHydrostatics& now, const BodyHydrostatics& earlier, BodyDifferences& differences) {
+         const Body* const body = body_of(*scene_, now.body_id);
+         if (now.status != earlier.status) {
+           ++differences.status_changes;
+         } else if (now.status == BodyStatus::kOk && body != nullptr) {
+           compare(now, earlier, *body, scene_->water(), differences);
+         }
+       });
+}
+
+void Comparison::finish() {
+  answers_.finish();
+  hydrostatics_.finish();
+}
+
+bool Comparison::agrees() const {
+  return only_now() == 0 && only_earlier() == 0 && unreadable() == 0 &&
+         std::ranges::all_of(bodies_, [](const auto& body) { return body.second.within_bounds(); });
+}
+
+}  // namespace buoyancy

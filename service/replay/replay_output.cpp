@@ -1,0 +1,77 @@
+#include "service/replay/replay_output.h"
+
+#include <cassert>
+#include <span>
+
+#include "engine/pose_request_adapter.h"
+#include "recording/event_log.h"
+#include "service/replay/wrench_csv.h"
+
+namespace buoyancy {
+namespace {
+
+Bytes bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+void OutputRecords::clear() {
+  bytes_.clear();
+  ends_.clear();
+}
+
+void OutputRecords::append(Bytes record) {
+  bytes_.insert(bytes_.end(), record.begin(), record.end());
+  ends_.push_back(bytes_.size());
+}
+
+void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
+  encode_event(0, timestamp, channel, bytes, event_);
+  append(event_);
+}
+
+void OutputRecords::add_answer(std::int64_t timestamp, Bytes answer, Bytes hydrostatics,
+                               std::string_view force_torque_channel) {
+  if (layout_.format == FileFormat::kLcmLog) {
+    if (force_torque_channel.empty()) {
+      add_event(timestamp, layout_.wrenches_channel, answer);
+    } else {
+      force_torque_of(answer, answer_, message_);
+      add_event(timestamp, force_torque_channel, message_);
+    }
+    if (!hydrostatics.empty()) add_event(timestamp, layout_.hydrostatics_channel, hydrostatics);
+    return;
+  }
+  [[maybe_unused]] const auto rejected = decode(answer, answer_);
+  assert(!rejected);  // we encoded it
+  for (const BodyWrench& wrench : answer_.bodies) {
+    format_wrench_row(answer_.key.utime, wrench, row_);
+    append(bytes_of(row_));
+  }
+}
+
+Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format) {
+  Expected<RecordFile> file = RecordFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  if (format == FileFormat::kCsv) {
+    if (const Expected<void> written = file->append(bytes_of(kWrenchCsvHeader)); !written) {
+      return tl::unexpected(written.error());
+    }
+  }
+  return ReplayOutput(std::move(*file), format);
+}
+
+Expected<void> ReplayOutput::write(OutputRecords& records) {
+  const std::span<std::uint8_t> bytes(records.bytes_);
+  std::size_t start = 0;
+  for (const std::size_t end : records.ends_) {
+    const std::span<std::uint8_t> record = bytes.subspan(start, end - start);
+    if (format_ == FileFormat::kLcmLog) renumber_event(events_++, record);
+    if (Expected<void> written = file_.append(record); !written) return written;
+    start = end;
+  }
+  return {};
+}
+
+}  // namespace buoyancy

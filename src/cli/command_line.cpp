@@ -1,0 +1,58 @@
+#include "cli/command_line.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <system_error>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "cli/journal.h"
+
+namespace buoyancy {
+
+std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& parse_error) {
+    if (parse_error.get_exit_code() == 0) {  // --help, --version
+      app.exit(parse_error, std::cout, std::cerr);
+      return kDone;
+    }
+    print_error(app, std::string(parse_error.what()) + "; see " + app.get_name() + " --help");
+    return kWrongInput;
+  }
+}
+
+Expected<void> check_output_is_its_own(const std::filesystem::path& output,
+                                       std::initializer_list<std::filesystem::path> read) {
+  for (const std::filesystem::path& file : read) {
+    std::error_code no_such_file;
+    if (std::filesystem::equivalent(file, output, no_such_file)) {
+      return failure({output.string(), "the same file as " + file.string(), "an output of its own",
+                      "it would overwrite what is read", ""});
+    }
+  }
+  return {};
+}
+
+void print_error(const CLI::App& app, const std::string& message) {
+  const char* priority = standard_error_is_the_journal() ? "<3>" : "";
+  std::fprintf(stderr, "%s%s: %s\n", priority, app.get_name().c_str(), message.c_str());
+}
+
+void print_error(const CLI::App& app, const Error& error) {
+  print_error(app, error.message());
+}
+
+bool print_output(const CLI::App& app, const std::string& text) {
+  errno = 0;
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return true;
+  print_error(app, "standard output: " + std::generic_category().message(errno));
+  return false;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,63 @@
+#include "engine/tbb_arena.h"
+
+#ifdef BUOYANCY_WITH_TBB
+#include <optional>
+#include <thread>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace buoyancy {
+
+#ifdef BUOYANCY_WITH_TBB
+
+struct Arena::Threads {
+  tbb::task_arena arena;
+  // Where more are asked for than the processor runs at once, TBB would say so on standard error.
+  std::optional<tbb::global_control> more_allowed;
+};
+
+Arena::Arena(unsigned threads)
+    : of_tbb_(new Threads{
+          tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)), {}}) {
+  if (threads > std::thread::hardware_concurrency()) {
+    of_tbb_->more_allowed.emplace(tbb::global_control::max_allowed_parallelism, threads);
+  }
+}
+
+unsigned Arena::threads() const {
+  return static_cast<unsigned>(of_tbb_->arena.max_concurrency());
+}
+
+void Arena::run(std::size_t count, std::size_t grain, Task task, void* context) {
+  of_tbb_->arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain),
+        [&](const tbb::blocked_range<std::size_t>& range) { task(context, range.begin(), range.end()); });
+  });
+}
+
+#else
+
+struct Arena::Threads {};
+
+Arena::Arena(unsigned /*threads*/) {}
+
+unsigned Arena::threads() const {
+  return 1;
+}
+
+void Arena::run(std::size_t count, std::size_t /*grain*/, Task task, void* context) {
+  task(context, 0, count);
+}
+
+#endif
+
+Arena::Arena(Arena&&) noexcept = default;
+Arena& Arena::operator=(Arena&&) noexcept = default;
+Arena::~Arena() = default;
+
+}  // namespace buoyancy

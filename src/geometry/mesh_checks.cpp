@@ -1,0 +1,133 @@
+#include "geometry/mesh_checks.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/format.h"
+#include "geometry/rounding_area.h"
+
+namespace buoyancy {
+namespace {
+
+// Digits that a person needs to find a place in a mesh editor.
+constexpr int kDigits = 6;
+
+std::string number(double value) {
+  return number_text(value, kDigits);
+}
+
+std::string point(const Vec3& point_B) {
+  std::string text = "(";
+  text += vector_text(point_B, kDigits);
+  return text + ")";
+}
+
+std::string edges_of_kind(const TriangleMesh& mesh, const std::vector<Edge>& edges, const std::string& kind) {
+  return counted(static_cast<std::int64_t>(edges.size()), kind + " edge", kind + " edges") + " (one from " +
+         point(mesh.vertex(edges.front()[0])) + " to " + point(mesh.vertex(edges.front()[1])) + ")";
+}
+
+std::string holes_of(const MeshReport& report) {
+  const HoleReport& largest = report.holes.front();
+  return counted(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
+         counted(static_cast<std::int64_t>(report.holes.size()), "hole", "holes") + " (" +
+         (report.holes.size() == 1 ? "" : "the largest of " + std::to_string(largest.edges) + " edges, ") +
+         "between " + point(largest.box.min_B) + " and " + point(largest.box.max_B) + ")";
+}
+
+}  // namespace
+
+std::optional<Error> refuse_non_finite(const TriangleMesh& mesh, const std::string& name) {
+  for (const Triangle& face : mesh.triangles) {
+    for (const std::int32_t v : face) {
+      if (mesh.vertex(v).allFinite()) continue;
+      return Error{name, "vertex " + std::to_string(v) + " (counted from 0) is " + point(mesh.vertex(v)),
+                   "finite coordinates in metres", "the file is damaged, or the program that wrote it failed",
+                   "Export the mesh again"};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> refuse_size(const MeshReport& report) {
+  if (report.triangles == 0) {
+    const std::string dropped =
+        report.dropped_faces == 0
+            ? "has no triangles"
+            : "has no triangles: " + counted(report.dropped_faces, "face", "faces") + " named a vertex twice";
+    return Error{report.name, dropped, "at least four triangles that enclose a volume",
+                 "the file holds only points, lines or faces of no extent", "Export the mesh's surface"};
+  }
+  if (!std::isfinite(report.diagonal) || !std::isfinite(report.area) || !std::isfinite(report.volume)) {
+    return Error{report.name,
+                 "reaches from " + point(report.box.min_B) + " to " + point(report.box.max_B) +
+                     " m, too large to compute with",
+                 "a body whose volume in m^3 is a finite number", "wrong units, or a damaged file",
+                 "Scale the mesh to metres"};
+  }
+  const bool area_vanishes = report.area == 0.0 && report.degenerate_faces < report.triangles;
+  if (report.diagonal == 0.0 || area_vanishes) {
+    return Error{report.name,
+                 "reaches from " + point(report.box.min_B) + " to " + point(report.box.max_B) +
+                     (report.diagonal == 0.0 ? " m, which squared is 0" : " m; its area squared is 0"),
+                 "a body that has an extent", "a scale of 0, or a size too small to represent",
+                 "Scale the mesh to metres"};
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& topology,
+                                  const MeshReport& report, OpenPolicy open) {
+  const bool only_open = topology.non_manifold.empty() && topology.misoriented.empty();
+  if (topology.counts.all_matched() || (only_open && open == OpenPolicy::kDryBoundary)) return std::nullopt;
+
+  std::string found = "has ";
+  const auto add = [&found](const std::string& fault) { found += (found == "has " ? "" : "; ") + fault; };
+  if (!topology.boundary.empty()) add(holes_of(report));
+  if (!topology.non_manifold.empty()) {
+    add(edges_of_kind(mesh, topology.non_manifold, "non-manifold") + ", shared by three or more faces");
+  }
+  if (!topology.misoriented.empty()) {
+    add(edges_of_kind(mesh, topology.misoriented, "misoriented") + " between faces of opposite winding");
+  }
+  if (report.duplicate_faces > 0) add(counted(report.duplicate_faces, "duplicate face", "duplicate faces"));
+
+  std::string cause;
+  std::string remedy;
+  if (only_open) {
+    cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
+    remedy =
+        "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\" for "
+        "this body in the scene file (with buoyancy-replay --mesh: --open dry_boundary)";
+  } else {
+    cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"
+                                       : "inner walls, or faces of the wrong winding";
+    remedy = "In a mesh editor remove doubled and inner faces, make the winding consistent";
+    remedy += topology.boundary.empty() ? "" : ", and close the holes";
+    remedy += "; or replace the mesh by a closed hull around it";
+    if (open == OpenPolicy::kDryBoundary) remedy += ". dry_boundary accepts holes, nothing else";
+  }
+  return Error{report.name, found, "a closed surface: each edge used as often one way as the other", cause,
+               remedy};
+}
+
+std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
+  const double rounding_error = std::numeric_limits<double>::epsilon() *
+                                (64.0 * std::abs(volume) + report.diagonal * rounding_area(mesh));
+  if (volume > rounding_error) return std::nullopt;
+  if (volume < -rounding_error) {
+    return Error{report.name, "encloses " + number(volume) + " m^3",
+                 "cavities that take away less than the parts around them hold",
+                 "cavities that overlap each other, or parts that overlap themselves",
+                 "Join what overlaps into one surface (a boolean union)"};
+  }
+  return Error{report.name,
+               "encloses " + number(volume) + " m^3, which is not above the rounding error of " +
+                   number(rounding_error) + " m^3",
+               "a body that encloses a volume",
+               "a flat sheet, or parts of opposite winding that cancel each other",
+               "Give the sheet a thickness, or turn the parts so that every outside faces outward"};
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,93 @@
+// The read-out: from the surface moments of the wet surface to the integrals over the displaced volume and
+// over the waterplane, and from these to the hydrostatic stiffness. For any number type: double where we run,
+// dual numbers and rationals in the tests.
+//
+// With S, N, P the moments about a point o at height z_o over the water, k up, y = x - o, and the sums
+// (Nk)_j = N_jk k_k (docs/mathematics.md, "Read-out"):
+//   V = k . Nk + z_o k . S,   U_j = k_i k_k P_ijk + z_o (Nk)_j,   H = 1/2 (k_i k_j k_k P_ijk + 2 z_o k . Nk +
+//   z_o^2 k . S), M = U - k H,   A = -k . S,   a = V k - Nk,   J = k M^T + M k^T - P_ijk k_k.
+// No cap is needed: wet surface and waterplane close, so what the cap would add follows from what is there.
+#pragma once
+
+#include "base/vec3.h"
+#include "geometry/surface_moments.h"
+
+namespace buoyancy {
+
+// About a point o, in any frame's axes; y = x - o.
+template <typename T>
+struct FloatingMoments {
+  T volume = T(0);                                        // m^3: V
+  Vec3T<T> moment = Vec3T<T>::Constant(T(0));             // m^4: M, integral of y over the displaced volume
+  T waterplane_area = T(0);                               // m^2: A
+  Vec3T<T> waterplane_moment = Vec3T<T>::Constant(T(0));  // m^3: a, integral of y over the waterplane
+  Mat3T<T> waterplane_second_moments = Mat3T<T>::Constant(T(0));  // m^4: J, integral of y y^T likewise
+
+  // About o + t.
+  FloatingMoments moved(const Vec3T<T>& t) const {
+    FloatingMoments result = *this;
+    result.moment -= volume * t;
+    result.waterplane_moment -= waterplane_area * t;
+    result.waterplane_second_moments -= t * waterplane_moment.transpose();
+    result.waterplane_second_moments -= result.waterplane_moment * t.transpose();
+    return result;
+  }
+
+  // In the axes that R leads to.
+  FloatingMoments rotated(const Mat3T<T>& R) const {
+    return {volume, R * moment, waterplane_area, R * waterplane_moment,
+            R * waterplane_second_moments * R.transpose()};
+  }
+};
+
+// wet: of the wet surface, about o; height: of o over the water; up: unit.
+template <typename T>
+FloatingMoments<T> read_out(const SurfaceMoments<T>& wet, const T& height, const Vec3T<T>& up) {
+  const Vec3T<T>& k = up;
+  const T k_S = k.dot(wet.S);
+  const Vec3T<T> N_k = wet.N * k;
+  const T k_N_k = k.dot(N_k);
+  Mat3T<T> P_k = Mat3T<T>::Constant(T(0));  // P_ijk k_k
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      for (int l = 0; l < 3; ++l) P_k(i, j) += wet.second(i, j, l) * k(l);
+    }
+  }
+  const Vec3T<T> k_P_k = P_k * k;
+  const T twice_H = k.dot(k_P_k) + height * (T(2) * k_N_k + height * k_S);
+
+  FloatingMoments<T> result;
+  result.volume = k_N_k + height * k_S;
+  result.moment = k_P_k + height * N_k - (twice_H / T(2)) * k;
+  result.waterplane_area = -k_S;
+  result.waterplane_moment = result.volume * k - N_k;
+  result.waterplane_second_moments = k * result.moment.transpose() + result.moment * k.transpose() - P_k;
+  return result;
+}
+
+template <typename T>
+Mat3T<T> cross_matrix(const Vec3T<T>& v) {  // times x: v x x
+  Mat3T<T> matrix;
+  matrix << T(0), -v(2), v(1), v(2), T(0), -v(0), -v(1), v(0), T(0);
+  return matrix;
+}
+
+// -d(F, tau)/d(p, theta) / (rho g) of buoyancy alone, rows (F, tau), columns (p, theta): p moves the body,
+// theta turns it about o and the frame's axes, tau is about o, and o goes with the body. With b = a x k
+//   [[A k k^T, k b^T], [b k^T, [k] J [k]^T - [k] [M]]].
+// Not symmetric where the centre of buoyancy does not lie over or under o, since turning about k then turns
+// tau along.
+template <typename T>
+Eigen::Matrix<T, 6, 6> stiffness(const FloatingMoments<T>& about_o, const Vec3T<T>& up) {
+  const Vec3T<T> b = about_o.waterplane_moment.cross(up);
+  const Mat3T<T> k = cross_matrix(up);
+  Eigen::Matrix<T, 6, 6> result;
+  result.template block<3, 3>(0, 0) = about_o.waterplane_area * (up * up.transpose());
+  result.template block<3, 3>(0, 3) = up * b.transpose();
+  result.template block<3, 3>(3, 0) = b * up.transpose();
+  result.template block<3, 3>(3, 3) =
+      k * about_o.waterplane_second_moments * k.transpose() - k * cross_matrix(about_o.moment);
+  return result;
+}
+
+}  // namespace buoyancy

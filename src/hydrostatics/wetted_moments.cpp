@@ -1,0 +1,140 @@
+#include "hydrostatics/wetted_moments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "geometry/pairwise_sum.h"
+#include "hydrostatics/double_double.h"
+#include "hydrostatics/triangle_clip.h"
+
+namespace buoyancy {
+namespace {
+
+struct Patch {
+  SurfaceMoments<double> moments;
+  double area = 0.0;
+
+  Patch& operator+=(const Patch& other) {
+    moments += other.moments;
+    area += other.area;
+    return *this;
+  }
+};
+
+class WetSurfaceWalk {
+ public:
+  WetSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
+    constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+    margin_ = 16.0 * kEpsilon * (3.0 * static_cast<double>(tree.reach) + std::abs(plane.h_c));
+    visit(tree.nodes[0]);
+  }
+
+  WetMoments result() const {
+    const Patch nodes = wet_nodes_.total();
+    WetMoments wet{nodes.moments, Vec3::Zero(), -plane_.h_c, nodes.area};
+    if (point_) {
+      const Patch patch = clipped_.total();
+      wet.moments = nodes.moments.moved(*point_);
+      wet.moments += patch.moments;
+      wet.point = *point_;
+      wet.height = height_;
+      wet.area += patch.area;
+    }
+    return wet;
+  }
+
+ private:
+  void visit(const TreeNode& node) {
+    for (std::uint32_t i = 0; i < node.children; ++i) {
+      const Vec3 center(node.center_x[i], node.center_y[i], node.center_z[i]);
+      const Vec3 half(node.half_x[i], node.half_y[i], node.half_z[i]);
+      const double height = plane_.height(center);
+      const double reach = plane_.up_B.cwiseAbs().dot(half) + margin_;
+      if (height - reach > 0.0) continue;
+      const std::uint32_t child = node.child[i];
+      if (height + reach < 0.0) {
+        add_wet_node(node.first_moments + i);
+      } else if ((child & TreeNode::kLeafBit) == 0) {
+        visit(tree_.nodes[child]);
+      } else {
+        visit(tree_.leaves[child - TreeNode::kLeafBit]);
+      }
+    }
+  }
+
+  // Of a leaf's centre, rounded once.
+  double exact_height(const Vec3& center) const {
+    DoubleDouble sum{-plane_.h_c, -plane_.h_c_rest};
+    for (int i = 0; i < 3; ++i) sum = sum + DoubleDouble{plane_.up_B[i], plane_.up_B_rest[i]} * center[i];
+    return sum.hi;
+  }
+
+  void visit(const TreeLeaf& leaf) {
+    const Vec3 center(leaf.center[0], leaf.center[1], leaf.center[2]);
+    const double center_height = exact_height(center);
+    std::array<double, kLeafVertices> heights;
+    std::size_t wet = 0;
+    std::size_t first_wet = leaf.vertices;
+    for (std::size_t i = 0; i < leaf.vertices; ++i) {
+      heights[i] = center_height + plane_.up_B.dot(leaf.vertex(i));
+      if (!(heights[i] < 0.0)) continue;
+      ++wet;
+      first_wet = std::min(first_wet, i);
+    }
+    if (wet == 0) return;
+    if (wet == leaf.vertices) {
+      add_wet_node(leaf.moments);
+      return;
+    }
+    if (!point_) {
+      point_ = center + leaf.vertex(first_wet);
+      height_ = center_height + plane_.up_B.dot(*point_ - center);
+    }
+
+    const Vec3 from_point = center - *point_;
+    const auto corner = [&](std::uint8_t i) {
+      return Corner<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
+    };
+    for (std::size_t t = 0; t < leaf.triangles; ++t) {
+      const Corner<double> a = corner(leaf.a[t]);
+      const Corner<double> b = corner(leaf.b[t]);
+      const Corner<double> c = corner(leaf.c[t]);
+      const int wet_corners =
+          static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
+      if (wet_corners == 3) add(a, b, c);
+      if (wet_corners == 1 || wet_corners == 2) {
+        visit_wet_part(a, b, c, [this](const auto& p, const auto& q, const auto& r) { add(p, q, r); });
+      }
+    }
+  }
+
+  void add_wet_node(std::uint32_t index) {
+    const NodeMoments& node = tree_.moments[index];
+    wet_nodes_.add({node.moments(), node.area()});
+  }
+
+  void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c) {
+    Patch patch{moments_of_triangle<double>(a.y.vec3(), b.y.vec3(), c.y.vec3()), 0.0};
+    patch.area = patch.moments.S.norm();
+    clipped_.add(patch);
+  }
+
+  const MomentTree& tree_;
+  const WaterPlane& plane_;
+  double margin_ = 0.0;           // m: more than what rounding can move a bound's height
+  PairwiseSum<Patch> wet_nodes_;  // about c
+  PairwiseSum<Patch> clipped_;    // about point_
+  std::optional<Vec3> point_;     // the first wet vertex of a leaf that is not wholly wet; from c
+  double height_ = 0.0;           // of point_
+};
+
+}  // namespace
+
+WetMoments wet_moments(const MomentTree& tree, const WaterPlane& plane) {
+  return WetSurfaceWalk(tree, plane).result();
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,321 @@
+#include "hydrostatics/wetted_tree_sum.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "hydrostatics/pruned_node.h"
+
+// The twin without SIMD is Highway's scalar target with every compiler, and not, with some, its emulation of
+// two lanes.
+#define HWY_BROKEN_EMU128 1
+
+// This file is compiled once per instruction set; the name is how it includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "hydrostatics/wetted_tree_sum.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "hydrostatics/leaf_kernels-inl.h"
+#include "hydrostatics/node_kernels-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// As far as a descent reads it.
+HWY_INLINE void prefetch_node(const TreeNode& node, std::size_t bytes) {
+  const auto* const line = reinterpret_cast<const unsigned char*>(&node);
+  for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(line + byte);
+}
+
+// What both descents share. Found nodes and leaves are queued and used when a queue is full: memory is then
+// fetched for many at once.
+class Descent {
+ public:
+  HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum)
+      : tree_(tree),
+        query_(query),
+        sum_(sum),
+        bounds_(make_bounds_query(tree, query)),
+        node_sums_(query.axes[0]) {}
+
+  // Of up to eight children the water crosses those in the mask: queues the leaves, writes the others to
+  // `inner` and returns how many those are.
+  HWY_INLINE std::size_t add_crossing(const std::uint32_t* children, std::uint32_t mask,
+                                      std::uint32_t* inner) {
+    const std::uint32_t leaves = mask & leaf_bits(children);
+    leaves_ += append(children, leaves, leaf_queue_.data() + leaves_);
+    return append(children, mask & ~leaves, inner);
+  }
+
+  // Looks into a node exactly.
+  HWY_INLINE std::size_t look_into(const TreeNode& node, std::uint32_t* inner) {
+    const ChildMasks masks = test_children(node, bounds_);
+    add_wet(node, masks.wet);
+    const std::size_t count = add_crossing(node.child.data(), masks.crossing, inner);
+    visited();
+    return count;
+  }
+
+  // Appends the children that the water may cross to `open`.
+  HWY_INLINE void look_into(const TreeNode& node, UndecidedNodes& open) {
+    UndecidedChildren children;
+    const ChildMasks masks = test_children(node, bounds_, query_.axes[0], children);
+    add_wet(node, masks.wet);
+    append_undecided(node, masks.crossing, children, open);
+    visited();
+  }
+
+  // After every eight children that were added.
+  HWY_INLINE void make_room() {
+    if (leaves_ >= kQueue || wets_ >= kQueue) drain();
+  }
+
+  // Not inlined: once per query for all but the largest waterlines.
+  HWY_NOINLINE void drain() {
+    sum_.leaves_clipped += static_cast<std::int64_t>(leaves_);
+    sum_.nodes_added += static_cast<std::int64_t>(wets_);
+    for (std::size_t i = 0; i < wets_; ++i) node_sums_.prefetch(tree_.moments[wet_queue_[i]]);
+    for (std::size_t i = 0; i < std::min(kAhead, leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
+    for (std::size_t first = 0; first < leaves_; first += LeafBatch::kRoom) {
+      const std::size_t end = std::min(leaves_, first + LeafBatch::kRoom);
+      batch_.clear();
+      for (std::size_t i = first; i < end; ++i) {
+        if (i + kAhead < leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
+        const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
+        queue_wet(leaf, batch_.add(leaf, query_));
+      }
+      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
+      leaf_sums_.add(batch_, query_.axes);
+      if (wets_ >= kQueue) add_queued();
+    }
+    add_queued();
+    leaves_ = 0;
+  }
+
+  // error: m^3, of all of them.
+  HWY_INLINE void add_undecided(const UndecidedNodes& nodes, double error, UndecidedSums& sums) {
+    sums.add(tree_.moments, nodes, node_sums_);
+    sum_.undecided.error += error;
+    sum_.nodes_undecided += static_cast<std::int64_t>(nodes.size);
+  }
+
+  HWY_INLINE void finish() {
+    drain();
+    leaf_sums_.finish(sum_);
+    node_sums_.finish(sum_.nodes);
+  }
+
+ private:
+  static constexpr std::size_t kQueue = 256;
+  static constexpr std::size_t kAhead = 8;  // leaves
+
+  HWY_INLINE void add_wet(const TreeNode& node, std::uint32_t mask) {
+    wets_ += append_places(mask, node.first_moments, wet_queue_.data() + wets_);
+  }
+
+  HWY_INLINE void visited() {
+    sum_.nodes_visited += 1;
+    make_room();
+  }
+
+  HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
+    const auto* const line =
+        reinterpret_cast<const unsigned char*>(&tree_.leaves[leaf & ~TreeNode::kLeafBit]);
+    for (std::size_t byte = 0; byte < sizeof(TreeLeaf); byte += 64) __builtin_prefetch(line + byte);
+  }
+
+  HWY_INLINE void queue_wet(const TreeLeaf& leaf, bool wet) {
+    wet_queue_[wets_] = leaf.moments;
+    wets_ += static_cast<std::size_t>(wet);
+  }
+
+  HWY_INLINE void add_queued() {
+    node_sums_.add(tree_.moments, wet_queue_.data(), wets_);
+    wets_ = 0;
+  }
+
+  const MomentTree& tree_;
+  const TreeQuery& query_;
+  WetTreeSum& sum_;
+  BoundsQuery bounds_;
+  LeafBatch batch_;
+  LeafSums leaf_sums_;
+  AxisSums node_sums_;
+  std::size_t leaves_ = 0, wets_ = 0;
+  std::array<std::uint32_t, kQueue + kTreeWidth> leaf_queue_;
+  std::array<std::uint32_t, kQueue + 2 * LeafBatch::kRoom + kTreeWidth> wet_queue_;
+};
+
+// Every node that the water crosses is looked into, the deepest first, some at a time: none of them waits for
+// what the others lead to. Begins with kTreeWidth nodes at most.
+HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nodes, std::size_t count,
+                                Descent& descent) {
+  constexpr std::size_t kTogether = 8;
+  // Nodes of a level are only found when none deeper are left: a level holds kTogether kTreeWidth at most.
+  constexpr std::size_t kLevels = 16;
+  constexpr std::size_t kRead = offsetof(TreeNode, projected_area);
+  std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
+  std::array<std::uint32_t, kTogether> together;
+  std::copy_n(nodes, count, stack.data());
+  std::size_t depth = count;
+  while (depth > 0) {
+    count = std::min(depth, kTogether);
+    depth -= count;
+    for (std::size_t n = 0; n < count; ++n) {
+      together[n] = stack[depth + n];
+      prefetch_node(tree.nodes[together[n]], kRead);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      depth += descent.look_into(tree.nodes[together[n]], stack.data() + depth);
+      assert(depth + kTreeWidth <= stack.size());
+    }
+  }
+}
+
+void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum) {
+  Descent descent(tree, query, sum);
+  const std::uint32_t root = 0;
+  descend_exactly(tree, &root, 1, descent);
+  descent.finish();
+}
+
+// Keeps the open nodes whose error is within the limit: the leaves among the others are queued, the rest is
+// appended to `inner`. What is kept, m^3.
+HWY_INLINE double keep_within(float limit, UndecidedNodes& open, std::uint32_t* inner, std::size_t& inners,
+                              Descent& descent) {
+  const Reals d;
+  const hn::Rebind<float, Reals> narrow;
+  const std::size_t nodes = open.size;
+  auto kept = hn::Zero(d);
+  open.size = 0;
+  for (std::size_t first = 0; first < nodes; first += kTreeWidth) {
+    std::uint32_t within = 0;
+    for (std::size_t i = 0; i < kTreeWidth; i += hn::Lanes(d)) {
+      const auto error = hn::LoadU(narrow, open.error.data() + first + i);
+      const auto fits = hn::Le(error, hn::Set(narrow, limit));
+      within |= mask_bits(narrow, fits) << i;
+      kept = hn::Add(kept, hn::PromoteTo(d, hn::IfThenElseZero(fits, error)));
+    }
+    const std::uint32_t present = first_bits(nodes - first);
+    inners += descent.add_crossing(open.child.data() + first, present & ~within, inner + inners);
+    descent.make_room();
+    keep_undecided(open, first, present & within);
+  }
+  return hn::GetLane(hn::SumOfLanes(d, kept));
+}
+
+// Level by level: as soon as all that is undecided fits into what is left of the budget, it stays so. Until
+// then some nodes do (limit_to_errors), and the others are looked into. What can stay undecided is only asked
+// where there is hope: from a level to the next all errors together fall about eightfold.
+void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists, WetTreeSum& sum) {
+  constexpr double kFall = 8.0;
+  constexpr double kHopeless = 6.0;  // times what is left: too few would stay undecided
+  Descent descent(tree, query, sum);
+  UndecidedNodes& open = lists.open;
+  std::uint32_t* inner = lists.inner.data();
+  std::uint32_t* next_inner = lists.next_inner.data();
+  std::size_t to_look_into = 0;
+  const TreeNode& root = tree.nodes[0];
+  open.size = 0;
+  descent.look_into(root, open);
+  double left = query.budget;
+  ErrorSurvey survey = survey_errors(open, left);
+  // Errors go with the square of the size of the nodes, and so with one over their number.
+  const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.leaves.size());
+  if (survey.all * per_leaf > kHopeless * left) {
+    to_look_into = descent.add_crossing(open.child.data(), first_bits(open.size), inner);
+    descend_exactly(tree, inner, to_look_into, descent);
+    descent.finish();
+    return;
+  }
+
+  UndecidedSums undecided(query);
+  double error = 0.0;  // m^3: of all that did not stay undecided, or what may be expected
+  for (;;) {
+    double kept = survey.all;
+    if (kept > left) {
+      const float limit = limit_to_errors(survey, open.size, left);
+      kept = keep_within(limit, open, next_inner, to_look_into, descent);
+      error += survey.all - kept;
+    }
+    left -= kept;
+    descent.add_undecided(open, kept, undecided);
+    if (to_look_into == 0) break;
+
+    std::swap(inner, next_inner);
+    const std::size_t count = std::exchange(to_look_into, 0);
+    const bool may_fit = error <= kFall * kHopeless * left;
+    error = may_fit ? 0.0 : error / kFall;
+    open.size = 0;
+    for (std::size_t i = 0; i < count; ++i) prefetch_node(tree.nodes[inner[i]], sizeof(TreeNode));
+    for (std::size_t i = 0; i < count; ++i) {
+      const TreeNode& node = tree.nodes[inner[i]];
+      if (may_fit) {
+        descent.look_into(node, open);
+      } else {
+        to_look_into += descent.look_into(node, next_inner + to_look_into);
+      }
+    }
+    survey = survey_errors(open, left);
+  }
+  undecided.finish(sum.undecided);
+  descent.finish();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace buoyancy {
+
+HWY_EXPORT(sum_exactly);
+HWY_EXPORT(sum_within_budget);
+
+WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query) {
+  WetTreeSum sum;
+  if (query.budget > 0.0) {
+    thread_local BudgetLists lists;
+    lists.make_room(tree);
+    HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, lists, sum);
+  } else {
+    HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, sum);
+  }
+  return sum;
+}
+
+std::vector<std::string> simd_targets() {
+  std::vector<std::string> names;
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets())
+    names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+std::string simd_target() {
+  const int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(supported & -supported);
+}
+
+bool force_simd_target(std::string_view name) {
+  hwy::SetSupportedTargetsForTest(0);
+  bool known = name.empty();
+  if (!known) {
+    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      if (name == hwy::TargetName(target)) {
+        hwy::SetSupportedTargetsForTest(target);
+        known = true;
+        break;
+      }
+    }
+  }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return known;
+}
+
+}  // namespace buoyancy
+#endif  // HWY_ONCE

@@ -1,0 +1,27 @@
+// Vectors as messages have them: checked, and turned into those that we compute with, and back.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "base/vec3.h"
+
+namespace buoyancy {
+
+// Without a branch for each: infinity less itself is no number.
+template <std::size_t kSize>
+bool all_finite(const std::array<double, kSize>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value - value;
+  return sum == 0.0;
+}
+
+inline Vec3 as_vec3(const std::array<double, 3>& values) {
+  return {values[0], values[1], values[2]};
+}
+
+inline std::array<double, 3> as_array(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+}  // namespace buoyancy

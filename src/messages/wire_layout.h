@@ -1,0 +1,193 @@
+// The byte layout of every message, said once: the fields in the order of the .lcm files. Encoding, decoding
+// and measuring are the same visit with another visitor. LCM's law: a fingerprint of 8 bytes, then the fields
+// without padding, big-endian; a string is its length with the final NUL as int32, then the characters and
+// the NUL.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "messages/hydrostatics.h"
+#include "messages/request.h"
+#include "messages/status.h"
+
+namespace buoyancy {
+
+template <typename T, typename Plain>
+concept MaybeConst = std::same_as<std::remove_const_t<T>, Plain>;
+
+template <MaybeConst<QuestionKey> Key, typename Visitor>
+void visit_fields(Key& key, Visitor& visitor) {
+  visitor(key.utime, key.session_id, key.seq);
+}
+
+template <MaybeConst<BodyState> State, typename Visitor>
+void visit_fields(State& state, Visitor& visitor) {
+  visitor(state.body_id, state.position, state.quaternion_wxyz, state.linear_velocity,
+          state.angular_velocity);
+}
+
+template <MaybeConst<BodyWrench> Wrench, typename Visitor>
+void visit_fields(Wrench& wrench, Visitor& visitor) {
+  visitor(wrench.body_id, wrench.status, wrench.force, wrench.torque, wrench.submerged_volume,
+          wrench.center_of_buoyancy, wrench.force_error_bound, wrench.torque_error_bound);
+}
+
+template <MaybeConst<BodyHydrostatics> Body, typename Visitor>
+void visit_fields(Body& body, Visitor& visitor) {
+  visitor(body.body_id, body.status, body.submerged_volume, body.center_of_buoyancy, body.wetted_area,
+          body.waterplane_area, body.waterplane_centroid, body.waterplane_second_moments,
+          body.waterplane_axes, body.metacentric_radii, body.metacenters, body.metacentric_heights,
+          body.stiffness);
+}
+
+// What stands before the number of bodies.
+template <MaybeConst<Question> Q, typename Visitor>
+void visit_head(Q& question, Visitor& visitor) {
+  visit_fields(question.key, visitor);
+  visitor(question.lead_time);
+}
+
+template <MaybeConst<Answer> A, typename Visitor>
+void visit_head(A& answer, Visitor& visitor) {
+  visit_fields(answer.key, visitor);
+}
+
+template <MaybeConst<BodiesHydrostatics> H, typename Visitor>
+void visit_head(H& hydrostatics, Visitor& visitor) {
+  visit_fields(hydrostatics.key, visitor);
+}
+
+// What stands before the strings, the strings, and what stands after them.
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_head(Status& status, Visitor& visitor) {
+  visitor(status.utime, status.instance_id);
+}
+
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_strings(Status& status, Visitor&& visitor) {
+  visitor(status.version);
+  visitor(status.scene);
+}
+
+// Each counter of one or several, the same one of all of them at a time.
+template <typename Visitor, MaybeConst<Counters>... C>
+void visit_counters(Visitor&& visitor, C&... c) {
+  visitor(c.questions...);
+  visitor(c.answered...);
+  visitor(c.repeated...);
+  visitor(c.changed_repeats...);
+  visitor(c.stale...);
+  visitor(c.overtaken...);
+  visitor(c.sessions...);
+  visitor(c.sessions_forgotten...);
+  visitor(c.rejected_truncated...);
+  visitor(c.rejected_fingerprint...);
+  visitor(c.rejected_count...);
+  visitor(c.rejected_length...);
+  visitor(c.bodies...);
+  visitor(c.quaternions_normalised...);
+  visitor(c.bodies_dry...);
+  visitor(c.bodies_wet...);
+  visitor(c.bodies_crossing...);
+  visitor(c.bodies_unchanged...);
+  visitor(c.hydrostatics...);
+  visitor(c.largest_dropped_force...);
+  visitor(c.largest_dropped_torque...);
+}
+
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_tail(Status& status, Visitor& visitor) {
+  visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
+  visitor(status.reloads, status.reloads_failed, status.not_sent);
+  visitor(status.packets_dropped, status.fragments_dropped);
+  visit_counters(visitor, status.counters);
+  visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
+  visitor(status.queue_wait);
+}
+
+// Adds up how many bytes the visited fields take.
+class LayoutSize {
+ public:
+  template <typename... Fields>
+  void operator()(const Fields&... fields) {
+    ((size_ += sizeof(fields)), ...);
+  }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+template <typename T>
+using UnsignedOf = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+
+inline std::uint64_t big_endian(std::uint64_t value) {
+  return std::endian::native == std::endian::big ? value : __builtin_bswap64(value);
+}
+inline std::uint32_t big_endian(std::uint32_t value) {
+  return std::endian::native == std::endian::big ? value : __builtin_bswap32(value);
+}
+
+// Reads the visited fields from bytes that were found long enough before.
+class BigEndianReader {
+ public:
+  explicit BigEndianReader(const std::uint8_t* bytes) : bytes_(bytes) {}
+
+  template <typename... Fields>
+  void operator()(Fields&... fields) {
+    (read(fields), ...);
+  }
+  const std::uint8_t* position() const { return bytes_; }
+  void skip(std::size_t size) { bytes_ += size; }
+
+ private:
+  template <typename T>
+  void read(T& field) {
+    UnsignedOf<T> value;
+    static_assert(sizeof(T) == sizeof(value));
+    std::memcpy(&value, bytes_, sizeof(value));
+    field = std::bit_cast<T>(big_endian(value));
+    bytes_ += sizeof(value);
+  }
+  template <typename T, std::size_t kSize>
+  void read(std::array<T, kSize>& fields) {
+    for (T& field : fields) read(field);
+  }
+
+  const std::uint8_t* bytes_;
+};
+
+// Writes the visited fields to where there is room for them.
+class BigEndianWriter {
+ public:
+  explicit BigEndianWriter(std::uint8_t* bytes) : bytes_(bytes) {}
+
+  template <typename... Fields>
+  void operator()(const Fields&... fields) {
+    (write(fields), ...);
+  }
+  std::uint8_t* position() const { return bytes_; }
+  void skip(std::size_t size) { bytes_ += size; }
+
+ private:
+  template <typename T>
+  void write(const T& field) {
+    const UnsignedOf<T> value = big_endian(std::bit_cast<UnsignedOf<T>>(field));
+    std::memcpy(bytes_, &value, sizeof(value));
+    bytes_ += sizeof(value);
+  }
+  template <typename T, std::size_t kSize>
+  void write(const std::array<T, kSize>& fields) {
+    for (const T& field : fields) write(field);
+  }
+
+  std::uint8_t* bytes_;
+};
+
+}  // namespace buoyancy

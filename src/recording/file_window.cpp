@@ -1,0 +1,62 @@
+#include "recording/file_window.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kReadAhead = 1'048'576;
+
+tl::unexpected<Error> unreadable(const std::filesystem::path& path, int error) {
+  return failure({path.string(), std::generic_category().message(error), "a readable file", "", ""});
+}
+
+}  // namespace
+
+Expected<InputWindow> InputWindow::open(const std::filesystem::path& path) {
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) return unreadable(path, errno);
+  struct stat status {};
+  if (::fstat(file.value(), &status) != 0) return unreadable(path, errno);
+  if (!S_ISREG(status.st_mode)) {
+    return failure({path.string(), S_ISDIR(status.st_mode) ? "is a directory" : "is not a regular file",
+                    "a regular file", "", ""});
+  }
+  return InputWindow(path, std::move(file), status.st_size);
+}
+
+InputWindow::InputWindow(std::filesystem::path path, FileDescriptor file, std::int64_t size)
+    : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+
+Bytes InputWindow::at(std::int64_t offset, std::size_t count) {
+  assert(offset >= 0);
+  if (offset >= size_) return {};
+  const auto left = static_cast<std::uint64_t>(size_ - offset);
+  count = static_cast<std::size_t>(std::min<std::uint64_t>(count, left));
+  const auto window_end = start_ + static_cast<std::int64_t>(window_.size());
+  if (offset < start_ || offset + static_cast<std::int64_t>(count) > window_end) {
+    start_ = offset;
+    window_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kReadAhead), left)));
+    std::size_t filled = 0;
+    while (filled < window_.size()) {
+      const ssize_t got = ::pread(file_.value(), window_.data() + filled, window_.size() - filled,
+                                  offset + static_cast<std::int64_t>(filled));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) {
+        read_error_ = unreadable(path_, got < 0 ? errno : ESTALE).value();
+        break;
+      }
+      filled += static_cast<std::size_t>(got);
+    }
+    window_.resize(filled);
+  }
+  return Bytes(window_).subspan(std::min(static_cast<std::size_t>(offset - start_), window_.size()));
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,47 @@
+// How a rigid body moves through one time step h. One wrench per step serves either integrator.
+//
+//   semi_implicit_euler  (symplectic Euler)   D(h/2) K(h) D(h/2) X(h)                        order 1
+//   velocity_verlet                           D(h/2) K(h/2) X(h), new load, K(h/2) D(h/2)    order 2
+//
+//   K(t), kick:  v += t F/m, L += t tau, with the pose fixed.
+//   X(t), drift: C += t v, and the rotation of a free body with L constant in W: a symmetric splitting of the
+//                kinetic energy into that of a ball, an exact rotation about L, and what two principal
+//                inertias differ from the third, exact rotations about their axes (after Dullweber,
+//                Leimkuhler and McLachlan, J. Chem. Phys. 107, 1997, and Fasso, J. Comput. Phys. 189, 2003).
+//                Exact for bodies with two equal principal inertias, order 2 for others.
+//   D(t), damping: dv/dt = -(c + d |v|) v / m: exact. dw_i/dt = -(c + d |w|) w_i / I_i in principal axes with
+//                the path that |w| runs through taken from the scalar law: exact for equal inertias, order 2
+//                for others. Every component only ever shrinks: no damping, however large, and no step can
+//                make it overshoot or blow up.
+//
+// K and X are maps of Hamilton's equations and the compositions without D are symplectic: over a step within
+// the stability limit (h times the highest frequency < 2) the energy of an undamped body oscillates by O(h)
+// or O(h^2) of itself and does not drift. L is conserved to rounding while no torque acts. The quaternion is
+// normalised each step.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "simulation/rigid_body.h"
+
+namespace buoyancy {
+
+enum class Integrator { kSemiImplicitEuler, kVelocityVerlet };
+
+std::string_view name(Integrator integrator);  // "velocity_verlet"
+std::optional<Integrator> integrator_from_name(std::string_view name);
+
+// From t to the pose at t + h, given the load at t. step: s, > 0.
+void begin_step(Integrator integrator, const RigidBody& body, const Load& load, double step,
+                RigidBodyState& state);
+// The velocities at t + h, given the load at the pose of t + h.
+void finish_step(Integrator integrator, const RigidBody& body, const Load& load, double step,
+                 RigidBodyState& state);
+
+// The drift's rotation alone, for a body on which no torque acts.
+void rotate_freely(const RigidBody& body, double time, RigidBodyState& state);
+// Damping alone.
+void damp(const RigidBody& body, double time, RigidBodyState& state);
+
+}  // namespace buoyancy

@@ -1,0 +1,122 @@
+#include "simulation/run_summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+namespace buoyancy {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+template <typename... Arguments>
+void append_line(std::string& text, const char* format, Arguments... arguments) {
+  std::array<char, 512> line{};
+  std::snprintf(line.data(), line.size(), format, arguments...);
+  text += line.data();
+  text += '\n';
+}
+
+double steps_per_second(const RunSummary& summary) {
+  return summary.wall_time > 0.0 ? static_cast<double>(summary.steps) / summary.wall_time : 0.0;
+}
+
+}  // namespace
+
+BodySummary summarize(const SimulatedBody& body, const Water& water) {
+  const HydrostaticMesh& mesh = body.body->prepared->mesh;
+  const WaterPlane plane = water_plane_in_body(pose_of(body.rigid, body.state), water, mesh.center_B);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : mesh.surface.triangles) {
+    for (const std::int32_t i : triangle) lowest = std::min(lowest, plane.height(mesh.vertex(i)));
+  }
+
+  BodySummary summary;
+  summary.id = body.body->id;
+  summary.name = body.body->name;
+  summary.mass = body.rigid.mass;
+  summary.draft = -lowest;
+  summary.heave = water.up_W.dot(body.state.center_W) - water.level;
+  const Vec3& up_B = plane.up_B;
+  summary.roll = std::atan2(up_B.y(), up_B.z());
+  summary.pitch = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
+  const EnergyRecord& energy = body.energy;
+  if (energy.greatest_kinetic > 0.0) {
+    summary.energy_drift = (energy.current - energy.initial) / energy.greatest_kinetic;
+    summary.energy_range = (energy.greatest - energy.least) / energy.greatest_kinetic;
+  }
+  return summary;
+}
+
+std::string to_text(const RunSummary& summary) {
+  std::string text;
+  append_line(text, "%5s  %-20s %12s %12s %12s %10s %10s %12s %12s", "body", "name", "mass kg", "draft m",
+              "heave m", "roll deg", "pitch deg", "energy drift", "energy range");
+  for (const BodySummary& body : summary.bodies) {
+    append_line(text, "%5d  %-20.60s %12.6g %12.6f %12.6f %10.4f %10.4f %12.2e %12.2e", body.id,
+                body.name.c_str(), body.mass, body.draft, body.heave, body.roll * kDegrees,
+                body.pitch * kDegrees, body.energy_drift, body.energy_range);
+  }
+  const LatencyPercentiles round_trip = summary.asker.round_trip.percentiles();
+  append_line(text, "steps       %lld of %lld (%.6g s simulated in %.3g s, %.0f steps/s)%s",
+              static_cast<long long>(summary.steps), static_cast<long long>(summary.steps_asked),
+              summary.time, summary.wall_time, steps_per_second(summary),
+              summary.interrupted ? ", interrupted" : "");
+  append_line(text, "round trip  p50 %.1f us, p99 %.1f us, p99.9 %.1f us, max %.1f us", 1e6 * round_trip.p50,
+              1e6 * round_trip.p99, 1e6 * round_trip.p999, 1e6 * round_trip.max);
+  append_line(text, "questions   %lld, retries %lld, lost %lld, late %lld (by at most %lld)",
+              static_cast<long long>(summary.asker.questions), static_cast<long long>(summary.asker.retries),
+              static_cast<long long>(summary.asker.lost), static_cast<long long>(summary.asker.late),
+              static_cast<long long>(summary.asker.latest));
+  for (const Error& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
+  return text;
+}
+
+std::string to_json(const RunSummary& summary) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (const BodySummary& body : summary.bodies) {
+    bodies.push_back({{"id", body.id},
+                      {"name", body.name},
+                      {"mass", body.mass},
+                      {"draft", body.draft},
+                      {"heave", body.heave},
+                      {"roll_deg", body.roll * kDegrees},
+                      {"pitch_deg", body.pitch * kDegrees},
+                      {"energy_drift", body.energy_drift},
+                      {"energy_range", body.energy_range}});
+  }
+  nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
+  for (const Error& warning : summary.warnings) warnings.push_back(warning.message());
+  const LatencyPercentiles round_trip = summary.asker.round_trip.percentiles();
+  const nlohmann::ordered_json json = {{"integrator", name(summary.options.integrator)},
+                                       {"step", summary.options.step},
+                                       {"lead_time", summary.options.lead_time},
+                                       {"late_steps", summary.options.late_steps},
+                                       {"session_id", summary.options.session_id},
+                                       {"steps", summary.steps},
+                                       {"steps_asked", summary.steps_asked},
+                                       {"interrupted", summary.interrupted},
+                                       {"time", summary.time},
+                                       {"wall_time", summary.wall_time},
+                                       {"bodies", bodies},
+                                       {"round_trip",
+                                        {{"p50", round_trip.p50},
+                                         {"p99", round_trip.p99},
+                                         {"p999", round_trip.p999},
+                                         {"max", round_trip.max}}},
+                                       {"questions", summary.asker.questions},
+                                       {"retries", summary.asker.retries},
+                                       {"lost", summary.asker.lost},
+                                       {"late", summary.asker.late},
+                                       {"late_by_at_most", summary.asker.latest},
+                                       {"warnings", warnings}};
+  // A name from the scene file that is no UTF-8 must not make dump() throw.
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,95 @@
+// The check before the timing, and what the report computes from rows.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bench/median.h"
+#include "bench/memory_read_baseline.h"
+#include "bench/pose_sweep.h"
+#include "bench/report.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::size_t kPoses = 12;
+
+PoseSet sweep_with_truth(const BenchmarkMesh& model) {
+  return with_true_answers("independent", sweep_of_poses(model.source, kPoses), model.source);
+}
+
+TEST(CheckedErrors, AreWithinTheBoundOfEveryExactMethod) {
+  const BenchmarkMesh model = rock(8);
+  const PoseSet set = sweep_with_truth(model);
+  for (const Method method : kAllMethods) {
+    const auto errors = checked_errors(model, Solver(model.mesh, method), set);
+    ASSERT_TRUE(errors) << errors.error().message();
+    if (is_exact(method)) {
+      EXPECT_LE(errors->force, errors->bound) << name(method);
+      EXPECT_LT(errors->bound, 1e-12) << name(method);
+    } else {
+      EXPECT_GT(errors->force, 1e-6) << name(method);
+      EXPECT_LE(errors->force, errors->bound) << name(method);
+    }
+  }
+}
+
+TEST(CheckedErrors, NameMeshMethodAndPoseOfAnAnswerThatBreaksItsBound) {
+  const BenchmarkMesh model = rock(8);
+  PoseSet set = sweep_with_truth(model);
+  set.truth[7].force_W.z() += 2e-13 * model.mesh.volume;
+  const auto force = checked_errors(model, Solver(model.mesh, Method::kExact), set);
+  ASSERT_FALSE(force);
+  EXPECT_NE(force.error().message().find("rock of 1280 triangles, exact, independent pose 7"),
+            std::string::npos)
+      << force.error().message();
+  EXPECT_NE(force.error().found.find("force is off by"), std::string::npos);
+
+  set = sweep_with_truth(model);
+  set.truth[3].torque_W.x() += 2e-13 * model.mesh.volume * model.mesh.diagonal;
+  const auto torque = checked_errors(model, Solver(model.mesh, Method::kHierarchical), set);
+  ASSERT_FALSE(torque);
+  EXPECT_NE(torque.error().message().find("hierarchical at tolerance 0 on "), std::string::npos)
+      << torque.error().message();
+  EXPECT_NE(torque.error().found.find("torque is off by"), std::string::npos);
+}
+
+TEST(ReadVerticesAndIndices, SeesEveryCoordinateAndEveryIndex) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 16; ++i) mesh.add_vertex({0, 0, 0});
+  mesh.triangles.assign(32, {0, 0, 0});
+  EXPECT_EQ(read_vertices_and_indices(mesh), 0U);
+  for (std::vector<double>* coordinate : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (double& value : *coordinate) {
+      value = 1.0;
+      EXPECT_NE(read_vertices_and_indices(mesh), 0U);
+      value = 0.0;
+    }
+  }
+  for (Triangle& triangle : mesh.triangles) {
+    for (std::int32_t& index : triangle) {
+      index = 1;
+      EXPECT_NE(read_vertices_and_indices(mesh), 0U);
+      index = 0;
+    }
+  }
+}
+
+TEST(Median, IsTheMiddleOrTheMeanOfTheTwoInTheMiddle) {
+  EXPECT_EQ(median({3.0}), 3.0);
+  EXPECT_EQ(median({9.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median({9.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
+TEST(FittedExponent, FindsThePowerLawThatTimesFollow) {
+  std::vector<MeasuredRow> rows(3);
+  std::vector<const MeasuredRow*> pointers;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].triangles = 1000 << (3 * i);
+    rows[i].median_ns = 7.0 * std::pow(static_cast<double>(rows[i].triangles), 0.6);
+    pointers.push_back(&rows[i]);
+  }
+  EXPECT_NEAR(fitted_exponent(pointers), 0.6, 1e-12);
+}
+
+}  // namespace
+}  // namespace buoyancy

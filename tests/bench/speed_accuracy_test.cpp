@@ -1,0 +1,97 @@
+// The benchmark program on two small meshes: its rows, not its times.
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "bench/time_queries.h"
+#include "hydrostatics/wetted_tree_sum.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+struct CsvRow {
+  std::string mesh, triangles, method, tolerance, target, regime;
+  double median_ns, force_error, torque_error, bound;
+};
+
+CsvRow parse(const std::string& line) {
+  std::istringstream fields(line);
+  const auto field = [&] {
+    std::string text;
+    std::getline(fields, text, ',');
+    return text;
+  };
+  CsvRow row;
+  for (std::string* text : {&row.mesh, &row.triangles, &row.method, &row.tolerance, &row.target, &row.regime})
+    *text = field();
+  for (double* number : {&row.median_ns, &row.force_error, &row.torque_error, &row.bound})
+    *number = std::stod(field());
+  EXPECT_TRUE(fields.eof()) << line;
+  return row;
+}
+
+TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
+  const ScratchDirectory directory;
+  const std::string csv = directory.path("rows.csv");
+  const FinishedProcess program =
+      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);
+  ASSERT_EQ(program.exit_code, 0) << program.standard_error;
+  EXPECT_NE(program.standard_output.find("### How many times faster than `exact`"), std::string::npos);
+
+  std::ifstream file(csv);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "mesh,triangles,method,tolerance,target,regime,median_ns,force_error,torque_error,bound");
+  std::map<std::string, int> rows_of_mesh;
+  std::set<std::string> combinations;
+  while (std::getline(file, line)) {
+    const CsvRow row = parse(line);
+    const std::string mesh_and_regime = row.mesh + "," + row.triangles + "," + row.regime;
+    ++rows_of_mesh[mesh_and_regime];
+    combinations.insert(mesh_and_regime + row.method + row.tolerance + row.target);
+    EXPECT_GE(row.median_ns, 0.0) << line;
+    if (row.method == "read") {
+      EXPECT_TRUE(std::isnan(row.bound)) << line;
+    } else {
+      EXPECT_LE(row.force_error, row.bound) << line;
+    }
+    EXPECT_EQ(row.target == kNoTarget, row.method != "hierarchical") << line;
+  }
+  // read, five methods, hierarchical at each tolerance, and on each instruction set but the best
+  const std::size_t expected = 1 + 5 + kMeasuredTolerances.size() + simd_targets().size() - 1;
+  std::set<std::string> meshes;
+  for (const auto& [mesh_and_regime, count] : rows_of_mesh) {
+    meshes.insert(mesh_and_regime);
+    EXPECT_EQ(static_cast<std::size_t>(count), expected) << mesh_and_regime;
+  }
+  EXPECT_EQ(meshes, (std::set<std::string>{"torus knot,1760,independent", "torus knot,1760,coherent",
+                                           "rock,320,independent", "rock,320,coherent",
+                                           "rock shuffled,320,independent", "rock shuffled,320,coherent"}));
+  EXPECT_EQ(combinations.size(), expected * meshes.size());
+}
+
+TEST(TimeAndError, SaysWhatItWasNotAbleToWrite) {
+  const FinishedProcess program = run_to_end(
+      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/no/such/directory/rows.csv"}, {}, "/dev/null", "", ""},
+      kRunTimeout);
+  EXPECT_EQ(program.exit_code, 1);
+  EXPECT_NE(program.standard_error.find("/no/such/directory/rows.csv"), std::string::npos);
+  const FinishedProcess full = run_to_end(
+      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""}, kRunTimeout);
+  EXPECT_EQ(full.exit_code, 1);
+}
+
+TEST(TimeAndError, RefusesArgumentsThatContradictEachOther) {
+  const FinishedProcess program =
+      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
+  EXPECT_EQ(program.exit_code, 2);
+}
+
+}  // namespace
+}  // namespace buoyancy

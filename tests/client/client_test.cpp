@@ -1,0 +1,127 @@
+// The library that other people's simulators link, against a service that the test plays itself.
+#include "client/client.h"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/client/fake_service.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+const Patience kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
+
+Client open_client(ClientOptions options = {}) {
+  options.patience = kPatient;
+  return value_or_die(Client::open(options));
+}
+
+std::array<BodyState, 2> two_states() {
+  std::array<BodyState, 2> states;
+  states[0] = {.body_id = 5,
+               .position = {1, 2, 3},
+               .quaternion_wxyz = {1, 0, 0, 0},
+               .linear_velocity = {4, 5, 6},
+               .angular_velocity = {7, 8, 9}};
+  states[1] = {.body_id = 6,
+               .position = {-1, -2, -3},
+               .quaternion_wxyz = {0, 1, 0, 0},
+               .linear_velocity = {},
+               .angular_velocity = {}};
+  return states;
+}
+
+TEST(Client, SendsTheStatesAsTheyAreAndCountsItsQuestions) {
+  std::vector<Question> heard;
+  {
+    const Peer peer([&](const Question& question) {
+      heard.push_back(question);
+      return Replies{bytes_of(answer_to(question, static_cast<double>(question.key.seq)))};
+    });
+    ClientOptions options;
+    options.session_id = 42;
+    Client client = open_client(options);
+    for (std::int64_t step = 0; step < 3; ++step) {
+      const Expected<const Answer*> answer = client.ask(1000 * step, two_states(), 0.25);
+      ASSERT_TRUE(answer) << answer.error().message();
+      EXPECT_EQ((*answer)->key.utime, 1000 * step);
+      EXPECT_EQ((*answer)->bodies.at(1).body_id, 6);
+      EXPECT_EQ((*answer)->bodies.at(1).force[2], static_cast<double>(step));
+    }
+    EXPECT_EQ(client.statistics().questions, 3);
+  }
+  std::int64_t expected_seq = 0;
+  for (const Question& question : heard) {
+    if (question.key.seq < expected_seq) continue;  // sent again on a busy machine
+    EXPECT_EQ(question.key.session_id, 42);
+    EXPECT_EQ(question.key.seq, expected_seq++);
+    EXPECT_EQ(question.lead_time, 0.25);
+    ASSERT_EQ(question.bodies.size(), 2U);
+    EXPECT_EQ(question.bodies[0].position, two_states()[0].position);
+    EXPECT_EQ(question.bodies[0].linear_velocity, two_states()[0].linear_velocity);
+    EXPECT_EQ(question.bodies[0].angular_velocity, two_states()[0].angular_velocity);
+    EXPECT_EQ(question.bodies[1].quaternion_wxyz, two_states()[1].quaternion_wxyz);
+  }
+  EXPECT_EQ(expected_seq, 3);
+}
+
+TEST(Client, DrawsASessionOfItsOwnSoThatTwoDoNotHearEachOther) {
+  std::atomic<std::int64_t> newest_session{-1};
+  const Peer peer([&](const Question& question) {
+    newest_session = question.key.session_id;
+    return Replies{bytes_of(answer_to(question, question.bodies[0].position[0]))};
+  });
+  std::array<Client, 2> clients{open_client(), open_client()};
+  std::array<std::int64_t, 2> sessions{};
+  for (std::size_t n = 0; n < clients.size(); ++n) {
+    std::array<BodyState, 2> states = two_states();
+    states[0].position[0] = static_cast<double>(n);
+    const Expected<const Answer*> answer = clients.at(n).ask(0, states);
+    ASSERT_TRUE(answer) << answer.error().message();
+    EXPECT_EQ((*answer)->bodies.at(0).force[2], static_cast<double>(n));
+    sessions.at(n) = newest_session;
+    EXPECT_GE(newest_session, 0);
+  }
+  EXPECT_NE(sessions[0], sessions[1]);
+}
+
+TEST(Client, TakesTheNewestAnswerThereIsWhereItHasAnIntervalToKeep) {
+  // The first question is answered and no other.
+  const Peer peer([](const Question& question) {
+    return question.key.seq == 0 ? Replies{bytes_of(answer_to(question, 7.0))} : Replies{};
+  });
+  ClientOptions options;
+  options.interval = 0.02;
+  Client client = open_client(options);
+  for (std::int64_t step = 0; step < 5; ++step) {
+    const Expected<const Answer*> answer = client.ask(step, two_states());
+    ASSERT_TRUE(answer) << answer.error().message();
+    EXPECT_EQ((*answer)->key.utime, 0);
+  }
+  EXPECT_EQ(client.statistics().late, 4);
+}
+
+TEST(Client, FindsTheFirstBodyThatIsNotAnswered) {
+  Answer answer;
+  answer.bodies.resize(3);
+  EXPECT_EQ(first_not_ok(answer), nullptr);
+  answer.bodies[1].status = BodyStatus::kUnknownBody;
+  answer.bodies[2].status = BodyStatus::kBadQuaternion;
+  EXPECT_EQ(first_not_ok(answer), &answer.bodies[1]);
+}
+
+TEST(Client, SaysWhatIsWrongWithAUrl) {
+  ClientOptions options;
+  options.link.lcm_url = "tcpq://localhost";
+  const Expected<Client> client = Client::open(options);
+  ASSERT_FALSE(client);
+  EXPECT_NE(client.error().message().find("tcpq://localhost"), std::string::npos) << client.error().message();
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,304 @@
+// buoyancy-client --embedded as a process: arguments, exit codes, files, table. Needs no network.
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/e2e/closed_loop.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+std::string crate(const std::string& world = "", const std::string& client = "density = 500\n") {
+  return world +
+         "[[body]]\nid = 1\nname = \"crate\"\nshape = { type = \"box\", size = [1, 1, 0.5] "
+         "}\n[body.client]\n" +
+         client;
+}
+
+class ClientProgram : public testing::Test {
+ protected:
+  FinishedProcess run(const Options& options) const {
+    return run_to_end(client_command(scene_, options), kRunTimeout);
+  }
+
+  TemporaryDirectory directory_;
+  std::string scene_ = directory_.write("crate.toml", crate());
+};
+
+TEST_F(ClientProgram, PrintsATableWithEveryFigure) {
+  const FinishedProcess finished = run({"--embedded", "--duration", "0.1"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
+  EXPECT_EQ(finished.standard_error, "") << "a progress bar belongs on terminals only";
+  for (const char* word : {"crate", "draft", "heave", "roll", "pitch", "energy drift", "100 of 100", "p50",
+                           "p99", "p99.9", "max", "retries 0", "lost 0", "late 0"}) {
+    EXPECT_NE(finished.standard_output.find(word), std::string::npos) << word << "\n"
+                                                                      << finished.standard_output;
+  }
+}
+
+TEST_F(ClientProgram, WritesARowPerBodyAndStepThatReadsBackExactly) {
+  const std::string csv = directory_.path("run.csv");
+  const nlohmann::json summary =
+      simulate(scene_, {"--embedded", "--duration", "0.01", "--step", "0.001", "--csv", csv});
+  const std::string text = read_file(csv);
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,"
+            "energy");
+  const std::vector<double> utime = csv_column(text, "utime");
+  ASSERT_EQ(utime.size(), 11U);
+  EXPECT_EQ(utime.front(), 0.0);
+  EXPECT_EQ(utime.back(), 10000.0);
+  EXPECT_EQ(csv_column(text, "pz").back(), double{body(summary, 1)["heave"]});
+}
+
+TEST_F(ClientProgram, ThinsTheCsvOnRequest) {
+  const std::string csv = directory_.path("run.csv");
+  simulate(scene_, {"--embedded", "--duration", "0.1", "--step", "0.001", "--csv", csv, "--csv-every", "25"});
+  EXPECT_EQ(csv_column(read_file(csv), "utime"), (std::vector<double>{0, 25000, 50000, 75000, 100000}));
+}
+
+TEST_F(ClientProgram, FloatsTheSameWhicheverWayIsUp) {
+  const std::string damped = "density = 300\nlinear_damping = 900\nangular_damping = 60\n";
+  const std::string up_x = directory_.write(
+      "up_x.toml", crate("[world]\nup = [1, 0, 0]\ngravity = 3.7\n[water]\nlevel = -4\n",
+                         damped + "position = [-4, 0, 0]\norientation = [0.7071067811865476, 0, "
+                                  "0.7071067811865475, 0]\n"));
+  const nlohmann::json summary = simulate(up_x, {"--embedded", "--duration", "20", "--step", "0.005"});
+  EXPECT_NEAR(body(summary, 1)["draft"], 0.5 * 300.0 / 1025.0, 1e-9);
+  EXPECT_NEAR(body(summary, 1)["roll_deg"], 0.0, 1e-6);
+  EXPECT_NEAR(body(summary, 1)["pitch_deg"], 0.0, 1e-6);
+}
+
+TEST_F(ClientProgram, TellsRollFromPitchAndTheirSigns) {
+  // Nothing moves: no gravity, no water.
+  const auto still = [&](const std::string& orientation) {
+    const std::string path = directory_.write(
+        "still.toml", crate("[world]\ngravity = 0\n", "density = 1\norientation = " + orientation + "\n"));
+    return body(simulate(path, {"--embedded", "--duration", "0.01"}), 1);
+  };
+  // 0.2 rad about x, then about y; then both after a yaw of 1 rad: Rz(1) Ry(0.2) Rx(0.3).
+  const double degrees = 180.0 / std::numbers::pi;
+  EXPECT_NEAR(still("[0.9950041652780258, 0.09983341664682815, 0, 0]")["roll_deg"], 0.2 * degrees, 1e-9);
+  EXPECT_NEAR(still("[0.9950041652780258, 0, 0.09983341664682815, 0]")["pitch_deg"], 0.2 * degrees, 1e-9);
+  const nlohmann::json turned =
+      still("[0.8705457396901702, 0.08316388076114686, 0.15791480976984434, 0.4585812871230074]");
+  EXPECT_NEAR(turned["roll_deg"], 0.3 * degrees, 1e-9);
+  EXPECT_NEAR(turned["pitch_deg"], 0.2 * degrees, 1e-9);
+}
+
+TEST_F(ClientProgram, MovesTheSameWhereverTorqueIsTakenAbout) {
+  const std::string tilted =
+      "density = 400\norientation = [0.9, 0.3, 0.2, 0.1]\ncenter_of_mass = [0.1, 0, 0.05]\n";
+  const std::string other = crate("", tilted);
+  const std::string moved = other.substr(0, other.find("[body.client]")) + "reference_point = [3, -2, 5]\n" +
+                            other.substr(other.find("[body.client]"));
+  const Options options = {"--embedded", "--duration", "1"};
+  const nlohmann::json at_origin = simulate(directory_.write("a.toml", other), options);
+  const nlohmann::json elsewhere = simulate(directory_.write("b.toml", moved), options);
+  for (const char* key : {"heave", "roll_deg", "pitch_deg"}) {
+    EXPECT_NEAR(body(at_origin, 1)[key], body(elsewhere, 1)[key], 1e-9) << key;
+  }
+}
+
+TEST_F(ClientProgram, KeepsTheEnergyOfATumblingUndampedBodyWithEitherIntegrator) {
+  const std::string path =
+      directory_.write("tumbling.toml",
+                       "[[body]]\nid = 1\nshape = { type = \"rock\", frequency = 3 }\n[body.client]\n"
+                       "density = 500\nposition = [0, 0, 0.3]\nangular_velocity = [0.3, 1, 0.5]\n");
+  const auto range = [&](const std::string& integrator, const std::string& step) -> double {
+    return body(
+        simulate(path, {"--embedded", "--duration", "50", "--step", step, "--integrator", integrator}),
+        1)["energy_range"];
+  };
+  const double verlet = range("velocity_verlet", "0.005");
+  const double euler = range("semi_implicit_euler", "0.005");
+  EXPECT_LT(verlet, 1e-3);
+  EXPECT_LT(euler, 1e-1);
+  // Orders 2 and 1 of the error in energy.
+  EXPECT_LT(range("velocity_verlet", "0.0025"), verlet / 3.0);
+  EXPECT_LT(range("semi_implicit_euler", "0.0025"), euler / 1.5);
+}
+
+TEST_F(ClientProgram, HasTheWrenchEvaluatedAheadByTheLeadTime) {
+  const std::string falling = directory_.write("falling.toml", crate("",
+                                                                     "density = 500\nposition = [0, 0, 0.1]\n"
+                                                                     "linear_velocity = [0, 0, -1]\n"));
+  const std::string csv = directory_.path("run.csv");
+  simulate(falling,
+           {"--embedded", "--duration", "0.02", "--step", "0.001", "--lead-time", "0.05", "--csv", csv});
+  const std::string text = read_file(csv);
+  const std::vector<double> heights = csv_column(text, "pz");
+  const std::vector<double> speeds = csv_column(text, "vz");
+  const std::vector<double> volumes = csv_column(text, "volume");
+  ASSERT_EQ(volumes.size(), 21U);
+  EXPECT_NEAR(volumes[0], 0.25 - (0.1 - 0.05), 1e-15);
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    // Not the velocity of the half step, which would be off by 1e-4.
+    EXPECT_NEAR(volumes[i], 0.25 - (heights[i] + 0.05 * speeds[i]), 1e-5);
+  }
+}
+
+TEST_F(ClientProgram, AFullDiskIsAnError) {
+  const FinishedProcess finished = run({"--embedded", "--csv", "/dev/full"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("/dev/full"), std::string::npos) << finished.standard_error;
+  ChildCommand command = client_command(scene_, {"--embedded", "--duration", "0.01"});
+  command.standard_output = "/dev/full";
+  EXPECT_EQ(run_to_end(command, kRunTimeout).exit_code, 1);
+}
+
+TEST_F(ClientProgram, ACsvThatCannotBeCreatedIsAnErrorBeforeTheRun) {
+  const std::string path = directory_.path("no_such_directory/run.csv");
+  const FinishedProcess finished = run({"--embedded", "--csv", path});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find(path), std::string::npos) << finished.standard_error;
+}
+
+TEST_F(ClientProgram, ACsvThatIsTheSceneItselfIsRefused) {
+  const std::string before = read_file(scene_);
+  EXPECT_EQ(run({"--embedded", "--csv", scene_}).exit_code, 2);
+  EXPECT_EQ(read_file(scene_), before);
+}
+
+TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
+  const std::string csv = directory_.path("run.csv");
+  // A tray without its lid, too heavy for its sides.
+  const std::string mesh = directory_.write(
+      "tray.off",
+      "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.2\n1 0 0.2\n1 1 0.2\n0 1 0.2\n"
+      "3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
+  const std::string path = directory_.write(
+      "tray.toml",
+      "[[body]]\nid = 1\nname = \"tray\"\nmesh = \"" + mesh +
+          "\"\nopen = \"dry_boundary\"\n[body.client]\nmass = 300\ncenter_of_mass = [0.5, 0.5, 0]\n"
+          "inertia = [50, 50, 50]\n");
+  const FinishedProcess finished =
+      run_to_end(client_command(path, {"--embedded", "--step", "0.01", "--csv", csv}), kRunTimeout);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_EQ(finished.standard_output, "");
+  EXPECT_NE(finished.standard_error.find("body 1 (tray)"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("OPEN_EDGE_WET"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(csv_column(read_file(csv), "status").back(), 0.0);
+}
+
+TEST_F(ClientProgram, AMotionThatLeavesTheRangeOfNumbersIsAnErrorAndNoRowHidesIt) {
+  const struct {
+    std::string client;
+    Options options;
+  } cases[] = {
+      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10"}},
+      {"linear_velocity = [1e200, 0, 0]\n", {}},
+      {"angular_velocity = [1e200, 1e200, 0]\n", {}},
+      {"position = [0, 0, -1e308]\ndensity = 1e-3\n", {"--step", "1e6", "--duration", "1e9"}},
+      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10", "--late", "2"}},
+  };
+  for (const auto& wrong : cases) {
+    const std::string csv = directory_.path("run.csv");
+    const std::string path = directory_.write("far.toml", crate("", wrong.client));
+    Options options = {"--embedded", "--csv", csv};
+    options.insert(options.end(), wrong.options.begin(), wrong.options.end());
+    const FinishedProcess finished = run_to_end(client_command(path, options), kRunTimeout);
+    EXPECT_EQ(finished.exit_code, 1) << wrong.client << finished.standard_output;
+    EXPECT_EQ(finished.standard_output, "");
+    EXPECT_NE(finished.standard_error.find("body 1 (crate) at"), std::string::npos)
+        << finished.standard_error;
+    EXPECT_NE(finished.standard_error.find("smaller --step"), std::string::npos) << finished.standard_error;
+    const std::string text = read_file(csv);
+    EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+    EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+  }
+}
+
+TEST_F(ClientProgram, WarnsOfAStepTooLargeBeforeTheRunAndOfTheEnergyAfterIt) {
+  // A plate of 2 kg: w = 70 rad/s.
+  const std::string plate = directory_.write(
+      "plate.toml",
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"plate\"\nshape = { type = \"box\", size "
+      "= [1, 1, 0.1] }\n[body.client]\ndensity = 20\nposition = [0, 0, 0.1]\n");
+  const nlohmann::json summary =
+      simulate_with_warnings(plate, {"--embedded", "--step", "0.05", "--duration", "20"});
+  ASSERT_EQ(summary["warnings"].size(), 2U) << summary["warnings"];
+  EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (plate): step x frequency"), std::string::npos);
+  EXPECT_NE(std::string(summary["warnings"][0]).find("Take --step 0.007"), std::string::npos)
+      << summary["warnings"][0];
+  EXPECT_NE(std::string(summary["warnings"][1]).find("mechanical energy rose"), std::string::npos);
+
+  const FinishedProcess table =
+      run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), kRunTimeout);
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): step"), std::string::npos)
+      << table.standard_output;
+  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): mechanical"), std::string::npos);
+  simulate(plate, {"--embedded", "--step", "0.007", "--duration", "20"});
+}
+
+TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForIt) {
+  const std::string bob = directory_.write(
+      "bob.toml",
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\nshape = { type = \"box\", size "
+      "= [1, 1, 0.4] }\n[body.client]\ndensity = 500\nposition = [0, 0, 0.05]\n");
+  // w = 7 rad/s: alpha = 0.007, then 0.14.
+  const Options minute = {"--embedded", "--duration", "60", "--step", "0.001"};
+  const auto with = [&](Options more) {
+    more.insert(more.end(), minute.begin(), minute.end());
+    return simulate_with_warnings(bob, more);
+  };
+  const nlohmann::json led = with({"--late", "1", "--lead-time", "0.001"});
+  EXPECT_EQ(led["late_steps"], 1);
+  EXPECT_EQ(led["warnings"].size(), 0U) << led["warnings"];
+  EXPECT_LT(double{body(led, 1)["energy_range"]}, 1e-3);
+  const nlohmann::json late = with({"--late", "1"});
+  ASSERT_EQ(late["warnings"].size(), 1U) << late["warnings"];
+  EXPECT_NE(std::string(late["warnings"][0]).find("energy rose"), std::string::npos);
+  const nlohmann::json too_late = with({"--late", "20", "--lead-time", "0.02"});
+  ASSERT_FALSE(too_late["warnings"].empty());
+  EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the answers"), std::string::npos);
+}
+
+TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
+  const std::string unknown_key = directory_.write("unknown.toml", crate("", "densty = 500\n"));
+  const std::string nobody =
+      directory_.write("nobody.toml", "[[body]]\nid = 1\nshape = { type = \"box\" }\n");
+  const struct {
+    std::string scene;
+    Options options;
+    std::string said;
+  } cases[] = {
+      {scene_, {"--step", "0", "--embedded"}, "--step"},
+      {scene_, {"--step", "nan", "--embedded"}, "--step"},
+      {scene_, {"--duration", "-1", "--embedded"}, "--duration"},
+      {scene_, {"--integrator", "euler", "--embedded"}, "--integrator"},
+      {scene_, {"--rate", "100", "--embedded"}, "--embedded"},
+      {scene_, {"--rate", "100", "--late", "1"}, "--late"},
+      {scene_, {"--late", "-1", "--embedded"}, "--late"},
+      {scene_, {"-l", "udpm://239.255.76.67:7667", "--embedded"}, "--embedded"},
+      {scene_, {"--no-such-option"}, "--no-such-option"},
+      {scene_, {"-l", "no url"}, "no url"},
+      {scene_, {"--states-channel", ""}, "channel"},
+      {scene_, {"--states-channel", "SAME", "--wrenches-channel", "SAME"}, "SAME"},
+      {scene_, {"--step", "1e-6", "--duration", "1e13", "--embedded"}, "--duration"},
+      {directory_.path("missing.toml"), {"--embedded"}, "missing.toml"},
+      {unknown_key, {"--embedded"}, "densty"},
+      {nobody, {"--embedded"}, "[body.client]"},
+  };
+  for (const auto& wrong : cases) {
+    const FinishedProcess finished = run_to_end(client_command(wrong.scene, wrong.options), kRunTimeout);
+    EXPECT_EQ(finished.exit_code, 2) << wrong.said;
+    EXPECT_NE(finished.standard_error.find(wrong.said), std::string::npos)
+        << wrong.said << ": " << finished.standard_error;
+  }
+}
+
+TEST_F(ClientProgram, TellsItsVersionAndHelp) {
+  ChildCommand command = client_command(scene_, {});
+  command.arguments = {command.arguments.front(), "--version"};
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).exit_code, 0);
+  command.arguments.back() = "--help";
+  const FinishedProcess help = run_to_end(command, kWaitTimeout);
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_NE(help.standard_output.find("--lead-time"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace buoyancy

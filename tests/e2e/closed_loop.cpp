@@ -1,0 +1,138 @@
+#include "tests/e2e/closed_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+ChildCommand command(const char* program, const std::string& scene, const Options& options) {
+  ChildCommand command;
+  command.arguments = {program, "--scene", scene};
+  command.arguments.insert(command.arguments.end(), options.begin(), options.end());
+  return command;
+}
+
+}  // namespace
+
+TemporaryDirectory::TemporaryDirectory() {
+  std::string name = (std::filesystem::temp_directory_path() / "buoyancy_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) std::abort();
+  path_ = name;
+}
+
+TemporaryDirectory::~TemporaryDirectory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string TemporaryDirectory::write(const std::string& name, const std::string& contents) const {
+  std::ofstream(path(name)) << contents;
+  return path(name);
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ostringstream contents;
+  contents << std::ifstream(path, std::ios::binary).rdbuf();
+  return contents.str();
+}
+
+ChildCommand client_command(const std::string& scene, const Options& options) {
+  return command(BUOYANCY_CLIENT, scene, options);
+}
+
+ChildCommand service_command(const std::string& scene, const Options& options) {
+  return command(BUOYANCYD, scene, options);
+}
+
+nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options) {
+  ChildCommand command = client_command(scene, options);
+  command.arguments.emplace_back("--json");
+  const FinishedProcess finished = run_to_end(command, kRunTimeout);
+  EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
+  if (finished.exit_code != 0) return nullptr;
+  nlohmann::json summary = nlohmann::json::parse(finished.standard_output);
+  std::string warnings;
+  for (const std::string warning : summary["warnings"]) {
+    warnings += "buoyancy-client: warning: " + warning + "\n";
+  }
+  EXPECT_EQ(finished.standard_error, warnings);
+  return summary;
+}
+
+nlohmann::json simulate(const std::string& scene, const Options& options) {
+  nlohmann::json summary = simulate_with_warnings(scene, options);
+  if (summary.is_object()) {
+    EXPECT_EQ(summary["warnings"], nlohmann::json::array());
+  }
+  return summary;
+}
+
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code not_there_yet;
+  const std::uintmax_t size = std::filesystem::file_size(path, not_there_yet);
+  return not_there_yet ? 0 : size;
+}
+
+bool grows_to(const std::filesystem::path& path, std::uintmax_t bytes, ChildProcess& program) {
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kRunTimeout);
+  while (size_of(path) < bytes) {
+    if (program.wait(0.001) || std::chrono::steady_clock::now() >= limit) return false;
+  }
+  return true;
+}
+
+nlohmann::json interrupt(ChildProcess& client) {
+  client.send_signal(SIGINT);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1) << client.standard_error();
+  nlohmann::json summary = nlohmann::json::parse(client.standard_output(), nullptr, false);
+  EXPECT_TRUE(summary.is_object()) << client.standard_error();
+  if (!summary.is_object()) return nullptr;
+  EXPECT_EQ(summary["interrupted"], true);
+  return summary;
+}
+
+std::string embedded_csv(const TemporaryDirectory& directory, const std::string& scene, std::int64_t steps,
+                         const std::string& step) {
+  const std::string csv = directory.path("embedded.csv");
+  const double duration = static_cast<double>(steps) * std::stod(step);
+  simulate(scene, {"--embedded", "--duration", std::to_string(duration), "--step", step, "--csv", csv});
+  return read_file(csv);
+}
+
+nlohmann::json body(const nlohmann::json& summary, int id) {
+  if (summary.is_object()) {
+    for (const nlohmann::json& candidate : summary["bodies"]) {
+      if (candidate["id"] == id) return candidate;
+    }
+  }
+  ADD_FAILURE() << "no body " << id << " in " << summary;
+  return {{"draft", NAN}, {"roll_deg", NAN}, {"energy_range", NAN}, {"energy_drift", NAN}};
+}
+
+std::vector<double> csv_column(const std::string& csv, const std::string& name) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const std::size_t at = ("," + line + ",").find("," + name + ",");
+  EXPECT_NE(at, std::string::npos) << name;
+  const auto column = std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(at), ',');
+  std::vector<double> values;
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    std::string field;
+    for (std::ptrdiff_t i = 0; i <= column; ++i) std::getline(fields, field, ',');
+    values.push_back(std::stod(field));
+  }
+  return values;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,173 @@
+// Floating bodies come to rest where hydrostatics says, and swing as it says: with buoyancyd and
+// buoyancy-client as two processes in lock-step over UDP multicast, each test in a network namespace of its
+// own. A run over the network takes as many steps as show that the loop is closed; what is a promise about
+// many steps is tested with --embedded, which gives the same bytes (lockstep_test.cpp) and depends on no
+// scheduler.
+#include "tests/e2e/closed_loop.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "scene/scene.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kGravity = kStandardGravity;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+nlohmann::json simulate_with_service(const std::string& scene, Options options) {
+  ChildProcess service(service_command(scene, {"-l", kServiceUrl}));
+  EXPECT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  options.insert(options.end(), {"-l", kServiceUrl, "--retries", "10000"});
+  return simulate(scene, options);
+}
+
+TEST(ClosedLoop, BoxCylinderAndSphereSettleAtTheirDrafts) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.write("drafts.toml", R"(
+[water]
+level = 0.7
+density = 1000
+[[body]]
+id = 1
+name = "box"
+shape = { type = "box", size = [1, 0.8, 0.5], segments = [2, 2, 2] }
+[body.client]
+density = 600
+position = [0, 0, 1.3]
+orientation = [0.98, 0.15, 0.1, 0]
+linear_damping = 2000
+angular_damping = 100
+[[body]]
+id = 2
+name = "cylinder"
+shape = { type = "cylinder", radius = 0.5, height = 0.5, segments = 32 }
+[body.client]
+density = 500
+position = [3, 0, 0.4]
+orientation = [0.98, 0, 0.1, 0]
+linear_damping = 2000
+angular_damping = 100
+[[body]]
+id = 3
+name = "sphere, heavy below"
+shape = { type = "sphere", radius = 0.5, segments = 24 }
+[body.client]
+density = 400
+center_of_mass = [0, 0, -0.2]
+position = [6, 0, 1]
+orientation = [0.98, 0.1, 0.1, 0]
+linear_damping = 1500
+linear_damping_quadratic = 200
+angular_damping = 100
+angular_damping_quadratic = 20
+)");
+  const nlohmann::json summary = simulate_with_service(path, {"--duration", "15", "--step", "0.01"});
+
+  EXPECT_NEAR(body(summary, 1)["draft"], 0.6 * 0.5, 1e-6 * std::sqrt(1 + 0.64 + 0.25));
+  EXPECT_NEAR(body(summary, 1)["roll_deg"], 0.0, 1e-4);
+  EXPECT_NEAR(body(summary, 1)["heave"], 0.25 - 0.3, 1e-6);
+  EXPECT_NEAR(body(summary, 2)["draft"], 0.5 * 0.5, 1e-6 * std::sqrt(1 + 1 + 0.25));
+
+  const Expected<Scene> scene = Scene::load(path);
+  ASSERT_TRUE(scene) << scene.error().message();
+  const Body& sphere = *scene->find(3);
+  const double displaced = 400.0 / 1000.0 * sphere.prepared->mass_properties.volume;
+  double deep = -0.5;
+  double high = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (deep + high);
+    const Pose pose{{0, 0, scene->water().level + middle}, Eigen::Quaterniond::Identity()};
+    const BuoyancyAnswer answer = buoyancy(sphere.solver, pose, scene->water(), Vec3::Zero());
+    (answer.volume > displaced ? deep : high) = middle;
+  }
+  EXPECT_NEAR(body(summary, 3)["draft"], 0.5 - deep, 1e-6 * std::sqrt(3.0));
+  EXPECT_NEAR(body(summary, 3)["pitch_deg"], 0.0, 1e-4);
+}
+
+// One bar of square section 1 x 1, its long axis along x, started with a roll of 0.3 rad.
+std::string bar(int id, double relative_density) {
+  return "[[body]]\nid = " + std::to_string(id) +
+         "\nshape = { type = \"box\", size = [3, 1, 1] }\n[body.client]\ndensity = " +
+         std::to_string(1000.0 * relative_density) + "\nposition = [0, " + std::to_string(5 * id) +
+         ", 0.3]\norientation = [0.98877107793604, 0.14943813247360, 0, 0]\n"
+         "linear_damping = 5000\nangular_damping = 250\n";
+}
+
+TEST(ClosedLoop, LongSquareBarSettlesAtItsAngleOfLoll) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.write("bars.toml", "[water]\ndensity = 1000\n" + bar(19, 0.19) +
+                                                            bar(22, 0.22) + bar(23, 0.23) + bar(24, 0.24));
+  const nlohmann::json summary = simulate(path, {"--embedded", "--duration", "40", "--step", "0.01"});
+  for (const int percent : {22, 23, 24}) {
+    const double s = 0.01 * percent;
+    const double angle = std::atan(std::sqrt(12.0 * s * (1.0 - s) - 2.0));
+    EXPECT_NEAR(double{body(summary, percent)["roll_deg"]} / kDegrees, angle, 1e-4) << percent;
+  }
+  EXPECT_NEAR(double{body(summary, 19)["roll_deg"]} / kDegrees, 0.0, 1e-4);
+}
+
+constexpr const char* kBob = R"(
+[water]
+density = 1000
+[[body]]
+id = 1
+shape = { type = "box", size = [1, 1, 0.4] }
+[body.client]
+density = 500
+position = [0, 0, 0.05]
+)";
+
+// From the first to the last upward crossing of the level.
+double mean_period(const std::vector<double>& heights, double step) {
+  double first = 0.0;
+  double last = 0.0;
+  int periods = -1;
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    if (heights[i - 1] < 0.0 && heights[i] >= 0.0) {
+      last = (static_cast<double>(i) - heights[i] / (heights[i] - heights[i - 1])) * step;
+      if (++periods == 0) first = last;
+    }
+  }
+  return (last - first) / periods;
+}
+
+// `run` simulates so many steps of 0.01 s with the options it is given.
+template <typename Run>
+void expect_the_period_and_the_energy_of_the_bob(std::int64_t steps, int csv_every, const Run& run) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.write("bob.toml", kBob);
+  const std::string csv = directory.path("bob.csv");
+  const double step = 0.01;
+  const nlohmann::json summary =
+      run(path, {"--duration", std::to_string(static_cast<double>(steps) * step), "--step",
+                 std::to_string(step), "--csv", csv, "--csv-every", std::to_string(csv_every)});
+  EXPECT_EQ(summary["steps"], steps);
+
+  // m = 200 kg, A_wp = 1 m^2. The period of velocity Verlet itself is shorter by (w h)^2 / 24 = 2e-4.
+  const double w = std::sqrt(1000.0 * kGravity * 1.0 / 200.0);
+  const double period = 2.0 * std::numbers::pi / w;
+  EXPECT_NEAR(mean_period(csv_column(read_file(csv), "pz"), csv_every * step), period, 1e-3 * period);
+  // The energy of Verlet swings by (w h)^2 / 4 of itself.
+  EXPECT_LT(double{body(summary, 1)["energy_range"]}, 2e-3);
+  EXPECT_LT(std::abs(double{body(summary, 1)["energy_drift"]}), 2e-3);
+}
+
+TEST(ClosedLoop, UndampedBoxBobsWithItsPeriodAndKeepsItsEnergy) {
+  expect_the_period_and_the_energy_of_the_bob(1000, 1, simulate_with_service);
+}
+
+TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergyOver100000Steps) {
+  expect_the_period_and_the_energy_of_the_bob(100'000, 10, [](const std::string& scene, Options options) {
+    options.emplace_back("--embedded");
+    return simulate(scene, options);
+  });
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,187 @@
+// Lock-step and free running over UDP multicast, on a good network and on bad ones, each test in a network
+// namespace of its own: what the network does may cost time, and in lock-step nothing else.
+#include <chrono>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+
+#include "tests/e2e/closed_loop.h"
+#include "tests/e2e/lossy_relay.h"
+#include "tests/support/timeouts.h"
+#include "transport/lcm_connection.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr const char* kScene = R"(
+[[body]]
+id = 7
+name = "rock"
+shape = { type = "rock", frequency = 4 }
+reference_point = [0.3, 0, 0.1]
+[body.client]
+density = 500
+position = [0, 0, 0.8]
+orientation = [0.9, 0.3, 0.2, 0.1]
+angular_velocity = [0.1, 2, 0]
+linear_damping_quadratic = 300
+[[body]]
+id = 8
+name = "crate"
+shape = { type = "box" }
+[body.client]
+density = 400
+position = [4, 0, 0.3]
+orientation = [0.9, 0.3, 0.2, 0.1]
+)";
+
+class Lockstep : public testing::Test {
+ protected:
+  std::string csv_of_run(const std::string& name, Options options) {
+    const std::string csv = directory_.path(name);
+    options.insert(options.end(), {"--step", "0.002", "--csv", csv});
+    summary_ = simulate(scene_, options);
+    return read_file(csv);
+  }
+
+  TemporaryDirectory directory_;
+  std::string scene_ = directory_.write("scene.toml", kScene);
+  nlohmann::json summary_;
+};
+
+TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLosesOneInTwenty) {
+  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "4"});
+  ASSERT_GT(embedded.size(), 4000U * 300U);
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "4"}) == embedded);
+
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
+  const Options impatient = {"-l", kClientUrl, "--duration", "4", "--timeout", "0.005", "--retries", "10000"};
+  EXPECT_TRUE(csv_of_run("lossy.csv", impatient) == embedded);
+  EXPECT_GT(relay.lost_questions(), 50);
+  EXPECT_GT(relay.lost_answers(), 50);
+  EXPECT_GE(summary_["retries"], relay.lost_questions() + relay.lost_answers());
+  EXPECT_EQ(summary_["lost"], 0);
+}
+
+TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
+  auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
+  const std::string csv = directory_.path("udp.csv");
+  // Without an end: however late this test gets the processor, the service dies in the middle of the run.
+  ChildProcess client(
+      client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--step", "0.002", "--csv", csv,
+                              "--timeout", "0.05", "--retries", "10000", "--json"}));
+  ASSERT_TRUE(grows_to(csv, 200'000, client)) << client.standard_error();
+  service.reset();
+  service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(grows_to(csv, size_of(csv) + 200'000, client)) << client.standard_error();
+  const nlohmann::json summary = interrupt(client);
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_TRUE(read_file(csv) == embedded_csv(directory_, scene_, summary["steps"], "0.002"));
+}
+
+TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
+  const FinishedProcess finished = run_to_end(
+      client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.01", "--retries", "3", "--states-channel",
+                              "SOME_STATES", "--wrenches-channel", "SOME_WRENCHES"}),
+      kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_EQ(finished.standard_output, "");
+  for (const char* word :
+       {"question 0", "no answer", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
+    EXPECT_NE(finished.standard_error.find(word), std::string::npos)
+        << word << ": " << finished.standard_error;
+  }
+}
+
+TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) {
+  const std::string other = directory_.write("other.toml", "[[body]]\nid = 7\nshape = { type = \"box\" }\n");
+  ChildProcess service(service_command(other, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("body 8 (crate)"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("UNKNOWN_BODY"), std::string::npos) << finished.standard_error;
+}
+
+TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const std::string csv = directory_.path("interrupted.csv");
+  ChildProcess client(
+      client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--csv", csv, "--json"}));
+  ASSERT_TRUE(grows_to(csv, 100'000, client)) << client.standard_error();
+  const nlohmann::json summary = interrupt(client);
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_EQ(csv_column(read_file(csv), "energy").size(), 2 * (std::size_t{summary["steps"]} + 1));
+}
+
+TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
+  Expected<LcmConnection> bus = LcmConnection::open(kServiceUrl);
+  ASSERT_TRUE(bus) << bus.error().message();
+  bool requested = false;
+  ASSERT_TRUE(
+      bus->subscribe(std::string(kStatesChannel), [&](Bytes, std::string_view) { requested = true; }));
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1e6"}));
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (!requested && std::chrono::steady_clock::now() < limit) {
+    pollfd waiting{bus->fileno(), POLLIN, 0};
+    if (::poll(&waiting, 1, to_milliseconds(kWaitTimeout)) == 1) bus->handle_one();
+  }
+  ASSERT_TRUE(requested) << client.standard_error();
+  client.send_signal(SIGTERM);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1);
+}
+
+using FreeRunning = Lockstep;
+
+TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  // Answers take eight intervals or more.
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
+  const nlohmann::json summary =
+      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "200", "--duration", "1"});
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_EQ(summary["step"], 0.005);
+  EXPECT_EQ(summary["steps"], 200);
+  EXPECT_EQ(summary["questions"], 201);
+  EXPECT_GE(summary["late"], 150);
+  EXPECT_GE(summary["late_by_at_most"], 8);
+  EXPECT_GE(summary["round_trip"]["p50"], 0.04);
+  EXPECT_GE(summary["wall_time"], 0.9);
+  // The crate swings at 5 rad/s or more: a radian's fifth and more per delay.
+  ASSERT_FALSE(summary["warnings"].empty());
+  EXPECT_NE(std::string(summary["warnings"][0]).find("delay of the answers"), std::string::npos)
+      << summary["warnings"];
+}
+
+TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
+  // Warnings would be of the machine's load, not of this.
+  const nlohmann::json summary =
+      simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "1"});
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_EQ(summary["steps"], 500);
+  EXPECT_GE(summary["lost"], 50);
+  EXPECT_GE(summary["late"], summary["lost"]);
+}
+
+TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
+  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
+  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const std::string csv = directory_.path("free.csv");
+  ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1e6",
+                                              "--timeout", "0.5", "--retries", "1", "--csv", csv}));
+  ASSERT_TRUE(grows_to(csv, 20'000, client)) << client.standard_error();
+  service.send_signal(SIGKILL);
+  EXPECT_EQ(client.wait(kWaitTimeout), 1);
+  EXPECT_NE(client.standard_error().find("no answer for"), std::string::npos) << client.standard_error();
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,118 @@
+// Several services, each with its share of the bodies, on one bus: every share has its own pair of channels
+// and, in the simulator, its own client. Together they say what one service with all the bodies says, bit for
+// bit.
+#include <array>
+#include <cmath>
+#include <future>
+
+#include <gtest/gtest.h>
+
+#include "client/client.h"
+#include "tests/e2e/closed_loop.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr int kSteps = 100;
+
+std::string body_of_scene(int id) {
+  constexpr std::array kShapes{R"({ type = "rock", frequency = 6 })", R"({ type = "torus_knot" })",
+                               R"({ type = "box", size = [1, 2, 0.5] })"};
+  return "[[body]]\nid = " + std::to_string(id) + "\nshape = " + kShapes[static_cast<std::size_t>(id) % 3] +
+         "\nreference_point = [0.1, 0, 0.2]\n";
+}
+
+std::string scene_of(std::initializer_list<int> ids) {
+  std::string scene;
+  for (const int id : ids) scene += body_of_scene(id);
+  return scene;
+}
+
+BodyState state_of(int id, int step) {
+  const double phase = id + 0.03 * step;
+  const double norm = std::sqrt(1.0 + 0.3 * 0.3);
+  BodyState state;
+  state.body_id = id;
+  state.position = {2.0 * id, std::cos(phase), 0.4 * std::sin(3.0 * phase)};
+  state.quaternion_wxyz = {std::cos(phase) / norm, std::sin(phase) / norm, 0.0, 0.3 / norm};
+  return state;
+}
+
+std::vector<BodyState> states_of(std::initializer_list<int> ids, int step) {
+  std::vector<BodyState> states;
+  for (const int id : ids) states.push_back(state_of(id, step));
+  return states;
+}
+
+// A service and its client, who alone are on their channels.
+class Share {
+ public:
+  Share(const TemporaryDirectory& directory, const std::string& name, std::initializer_list<int> ids)
+      : service_(service_command(
+            directory.write(name + ".toml", scene_of(ids)),
+            {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
+             "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
+    if (!service_.wait_for_text("ready", kWaitTimeout)) throw std::runtime_error(service_.standard_error());
+    ClientOptions options;
+    options.link.states_channel = name + "_STATES";
+    options.link.wrenches_channel = name + "_WRENCHES";
+    options.patience.retries = 10'000;  // as long as the test may take
+    Expected<Client> client = Client::open(options);
+    if (!client) throw std::runtime_error(client.error().message());
+    client_.emplace(std::move(*client));
+  }
+
+  std::vector<BodyWrench> ask(int step, const std::vector<BodyState>& states) {
+    const auto answer = client_->ask(step, states);
+    if (!answer) throw std::runtime_error(answer.error().message());
+    return (*answer)->bodies;
+  }
+
+  std::string log() const { return service_.standard_error(); }
+
+ private:
+  ChildProcess service_;
+  std::optional<Client> client_;
+};
+
+std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
+  std::vector<std::uint8_t> bytes;
+  encode(Answer{.key = {}, .bodies = wrenches}, bytes);
+  return bytes;
+}
+
+TEST(ScaleOut, TwoServicesWithHalfTheBodiesEachSayTogetherWhatOneSaysBitForBit) {
+  const TemporaryDirectory directory;
+  Share all(directory, "ALL", {1, 2, 3, 4, 5, 6});
+  Share odd(directory, "ODD", {1, 3, 5});
+  Share even(directory, "EVEN", {2, 4, 6});
+  for (int step = 0; step < kSteps; ++step) {
+    // Both at once: the step takes as long as the slower of the two.
+    auto of_odd = std::async(std::launch::async, [&] { return odd.ask(step, states_of({1, 3, 5}, step)); });
+    std::vector<BodyWrench> parts = even.ask(step, states_of({2, 4, 6}, step));
+    const std::vector<BodyWrench> others = of_odd.get();
+    parts.insert(parts.end(), others.begin(), others.end());
+    const std::vector<BodyWrench> whole = all.ask(step, states_of({2, 4, 6, 1, 3, 5}, step));
+    ASSERT_EQ(bytes_of(parts), bytes_of(whole)) << step;
+    for (const BodyWrench& wrench : whole) {
+      EXPECT_EQ(wrench.status, BodyStatus::kOk);
+      EXPECT_GT(wrench.force[2], 0.0) << "the body is in the water";
+    }
+  }
+  for (const Share* share : {&all, &odd, &even}) {
+    EXPECT_EQ(share->log().find("another buoyancyd"), std::string::npos) << share->log();
+  }
+}
+
+TEST(ScaleOut, AServiceAskedForABodyOfTheOthersSharesSaysThatItDoesNotKnowIt) {
+  const TemporaryDirectory directory;
+  Share odd(directory, "ODD", {1, 3, 5});
+  Share even(directory, "EVEN", {2, 4, 6});
+  const std::vector<BodyWrench> wrenches = odd.ask(0, states_of({1, 2}, 0));
+  EXPECT_EQ(wrenches[0].status, BodyStatus::kOk);
+  EXPECT_EQ(wrenches[1].status, BodyStatus::kUnknownBody);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,170 @@
+// Service and client on two machines, joined by a switch: real programs in network namespaces of their own,
+// ttl=1. What the way between them does costs time and changes no byte of a lock-step run.
+//
+// BUOYANCY_CUT_SECONDS: how long the cable is out; 1 s where it is not set (scripts/two_machines takes 30).
+#include "tests/e2e/two_machines.h"
+
+#include <chrono>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include "messages/wire.h"
+#include "tests/e2e/closed_loop.h"
+#include "tests/e2e/lossy_relay.h"
+#include "tests/support/timeouts.h"
+#include "transport/lcm_connection.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr const char* kStep = "0.001";
+constexpr std::int64_t kSteps = 1000;   // of a run that ends by itself
+constexpr const char* kDuration = "1";  // s: of the same
+constexpr const char* kScene = R"(
+[[body]]
+id = 1
+shape = { type = "rock", frequency = 4 }
+[body.client]
+density = 500
+position = [0, 0, 0.8]
+orientation = [0.9, 0.3, 0.2, 0.1]
+)";
+
+double cut_seconds() {
+  const char* const set =
+      std::getenv("BUOYANCY_CUT_SECONDS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return set != nullptr ? std::stod(set) : 1.0;
+}
+
+class TwoMachinesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    // Network namespaces are root's, and not every container's kernel lets even root make them.
+    if (machines_.trouble()) GTEST_SKIP() << "network: " << *machines_.trouble();
+  }
+
+  std::string embedded(std::int64_t steps) const { return embedded_csv(directory_, scene_, steps, kStep); }
+
+  ChildCommand service() const {
+    return machines_.on_the_services(service_command(scene_, {"-l", kTwoMachinesUrl}));
+  }
+
+  // Goes on until it is interrupted, so that a test finds it in the middle however late that is.
+  ChildCommand endless_run() const {
+    return client_command(scene_, {"-l", kTwoMachinesUrl, "--duration", "1e6", "--csv", csv_, "--timeout",
+                                   "0.05", "--retries", "1000000", "--json"});
+  }
+  // The client gets on from where it is.
+  testing::AssertionResult advances(ChildProcess& client) const {
+    if (grows_to(csv_, size_of(csv_) + 100'000, client)) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "the run does not go on: " << client.standard_error();
+  }
+  // Interrupts it. What it did until then must be what a run in one process does.
+  nlohmann::json ends_with_the_bytes_of_an_embedded_run(ChildProcess& client) const {
+    nlohmann::json summary = interrupt(client);
+    if (summary.is_object()) {
+      EXPECT_TRUE(read_file(csv_) == embedded(summary["steps"]));
+    }
+    return summary;
+  }
+
+  TwoMachines machines_;
+  TemporaryDirectory directory_;
+  std::string csv_ = directory_.path("run.csv");
+  std::string scene_ = directory_.write("scene.toml", kScene);
+};
+
+TEST_F(TwoMachinesTest, ARunAcrossThemGivesTheBytesOfARunInOneProcess) {
+  ChildProcess running(service());
+  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const std::string csv = directory_.path("across.csv");
+  simulate(scene_, {"-l", kTwoMachinesUrl, "--duration", kDuration, "--csv", csv, "--retries", "10000"});
+  EXPECT_TRUE(read_file(csv) == embedded(kSteps));
+}
+
+TEST_F(TwoMachinesTest, WithTtlZeroTheyDoNotHearEachOther) {
+  ChildProcess running(service());
+  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const FinishedProcess finished = run_to_end(
+      client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.05", "--retries", "3"}), kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_NE(finished.standard_error.find("no answer"), std::string::npos) << finished.standard_error;
+}
+
+TEST_F(TwoMachinesTest, LossDuplicationAndReorderingOnTheWayChangeNoByte) {
+  ChildProcess running(service());
+  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  RelayOptions options{kClientUrl, kTwoMachinesUrl, 0.05, 0.0, 7};
+  options.duplication = 0.1;
+  options.reordering = 0.1;
+  const LossyRelay relay(options);
+  const std::string csv = directory_.path("bad_way.csv");
+  const nlohmann::json summary = simulate(scene_, {"-l", kClientUrl, "--duration", kDuration, "--csv", csv,
+                                                   "--timeout", "0.005", "--retries", "10000"});
+  EXPECT_TRUE(read_file(csv) == embedded(kSteps));
+  EXPECT_GT(relay.lost_questions() + relay.lost_answers(), 50);
+  EXPECT_GT(relay.duplicated(), 100);
+  EXPECT_GT(relay.reordered(), 100);
+  EXPECT_EQ(summary["lost"], 0);
+}
+
+// Waits until the same request has come so often that the client is known to wait for an answer.
+bool repeats_its_request(LcmConnection& bus, int times) {
+  std::int64_t seq = -1;
+  int heard = 0;
+  bus.subscribe(std::string(kStatesChannel), [&](Bytes bytes, std::string_view) {
+    Question request;
+    if (decode(bytes, request)) return;
+    heard = request.key.seq == seq ? heard + 1 : 1;
+    seq = request.key.seq;
+  });
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (heard < times && std::chrono::steady_clock::now() < limit) {
+    pollfd waiting{bus.fileno(), POLLIN, 0};
+    if (::poll(&waiting, 1, to_milliseconds(kWaitTimeout)) == 1) bus.handle_one();
+  }
+  return heard >= times;
+}
+
+TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
+  ChildProcess running(service());
+  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  ChildProcess client(endless_run());
+  ASSERT_TRUE(advances(client));
+  machines_.pull_cable();
+  {
+    Expected<LcmConnection> bus = LcmConnection::open(kTwoMachinesUrl);
+    ASSERT_TRUE(bus) << bus.error().message();
+    ASSERT_TRUE(repeats_its_request(*bus, 4)) << "the cable was not out";
+  }
+  const auto at_the_cut = size_of(csv_);
+  ASSERT_EQ(client.wait(cut_seconds()), std::nullopt) << client.standard_error();
+  EXPECT_EQ(size_of(csv_), at_the_cut) << "the cable was not out";
+  machines_.plug_cable();
+  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
+  ASSERT_TRUE(advances(client));
+  const nlohmann::json summary = ends_with_the_bytes_of_an_embedded_run(client);
+  ASSERT_TRUE(summary.is_object());
+  EXPECT_GE(summary["round_trip"]["max"], cut_seconds());
+  EXPECT_GE(summary["retries"], 3);
+  EXPECT_EQ(summary["lost"], 0);
+}
+
+TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
+  ChildProcess running(service());
+  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  ChildProcess client(endless_run());
+  ASSERT_TRUE(advances(client));
+  machines_.take_interface_down();
+  // Ten timeouts in which no request can be sent. Nothing outside the client shows that it tries.
+  EXPECT_EQ(client.wait(0.5), std::nullopt) << client.standard_error();
+  machines_.bring_interface_up();
+  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
+  ASSERT_TRUE(advances(client));
+  ends_with_the_bytes_of_an_embedded_run(client);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,183 @@
+// Hydrostatics through the exchange: what one body's message holds, and which bodies' go with an answer.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "engine/body_evaluation.h"
+#include "engine/request_handler.h"
+#include "tests/engine/box_scene.h"
+
+namespace buoyancy {
+namespace {
+
+using ByteVector = std::vector<std::uint8_t>;
+
+const Scene& scene() {
+  static const Scene the_scene = box_scene();
+  return the_scene;
+}
+
+BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
+                                 Counters& counters) {
+  const Body* body = scene().find(state.body_id);
+  return hydrostatics_of_body(*body, scene().water(), asked_pose(state, lead_time).pose, status, counters);
+}
+
+TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
+  Counters counters;
+  const BodyHydrostatics found =
+      hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kOk, counters);
+  EXPECT_EQ(found.body_id, kHydrostaticBox);
+  EXPECT_EQ(found.status, BodyStatus::kOk);
+  EXPECT_EQ(counters.hydrostatics, 1);
+  EXPECT_NEAR(found.submerged_volume, 0.5, 1e-14);
+  EXPECT_NEAR(found.wetted_area, 3.0, 1e-14);
+  EXPECT_NEAR(found.waterplane_area, 1.0, 1e-14);
+  const double radius = 1.0 / 12.0 / 0.5;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool up = i == 2;
+    EXPECT_NEAR(found.center_of_buoyancy[i], up ? -0.25 : 0.0, 1e-14);
+    EXPECT_NEAR(found.waterplane_centroid[i], 0.0, 1e-14);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      EXPECT_NEAR(found.metacenters[axis][i], up ? radius - 0.25 : 0.0, 1e-13);
+    }
+  }
+  // A square has no axes of its own: any right-handed pair with up.
+  const auto& [first, second] = found.waterplane_axes;
+  EXPECT_NEAR(first[0] * second[1] - first[1] * second[0], 1.0, 1e-14);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    EXPECT_EQ(found.waterplane_axes[axis][2], 0.0);
+    EXPECT_NEAR(found.waterplane_second_moments[axis], 1.0 / 12.0, 1e-14);
+    EXPECT_NEAR(found.metacentric_radii[axis], radius, 1e-13);
+    EXPECT_NEAR(found.metacentric_heights[axis], radius - 0.25, 1e-13)
+        << "centre of mass: the volume's centroid";
+  }
+  // About the corner (0.5, 0.5, -0.5): a = (-0.5, -0.5), M = (-0.25, -0.25, 0.125).
+  const std::array<std::array<double, 6>, 6> stiffness{{{0, 0, 0, 0, 0, 0},
+                                                        {0, 0, 0, 0, 0, 0},
+                                                        {0, 0, 1, -0.5, 0.5, 0},
+                                                        {0, 0, -0.5, 1.0 / 3.0 + 0.125, -0.25, 0.25},
+                                                        {0, 0, 0.5, -0.25, 1.0 / 3.0 + 0.125, 0.25},
+                                                        {0, 0, 0, 0, 0, 0}}};
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      EXPECT_NEAR(found.stiffness[row][column], kWeight * stiffness[row][column], 1e-13 * kWeight)
+          << row << ", " << column;
+    }
+  }
+}
+
+TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
+  Counters counters;
+  BodyState rising = upright(kHydrostaticBox, -0.3);
+  rising.linear_velocity = {0.0, 0.0, 0.5};
+  const BodyHydrostatics found = hydrostatics_of(rising, 0.2, BodyStatus::kOk, counters);
+  EXPECT_NEAR(found.submerged_volume, 0.7, 1e-14);
+}
+
+TEST(BodyHydrostatics, OfABodyThatIsNotOkAreItsStatusAndZeros) {
+  Counters counters;
+  const BodyHydrostatics found =
+      hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kBadQuaternion, counters);
+  EXPECT_EQ(found.body_id, kHydrostaticBox);
+  EXPECT_EQ(found.status, BodyStatus::kBadQuaternion);
+  EXPECT_EQ(found.submerged_volume, 0.0);
+  EXPECT_EQ(found.metacenters, BodyHydrostatics{}.metacenters);
+  EXPECT_EQ(found.stiffness, BodyHydrostatics{}.stiffness);
+  EXPECT_EQ(counters.hydrostatics, 0);
+}
+
+ByteVector copied(Bytes bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+ByteVector asks_nothing(std::int64_t seq) {
+  return question_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
+}
+
+BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
+  BodiesHydrostatics hydrostatics;
+  EXPECT_FALSE(decode(bytes, hydrostatics).has_value());
+  return hydrostatics;
+}
+
+TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
+  Exchange exchange(scene());
+  std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
+                                upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
+  bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
+  exchange.answer(question_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
+  const BodiesHydrostatics found = decoded_hydrostatics(exchange.hydrostatics());
+  EXPECT_EQ(found.key.utime, 5);
+  EXPECT_EQ(found.key.session_id, 6);
+  EXPECT_EQ(found.key.seq, 7);
+  ASSERT_EQ(found.bodies.size(), 3U);
+  for (const BodyHydrostatics& body : found.bodies) EXPECT_EQ(body.body_id, kHydrostaticBox);
+  EXPECT_NEAR(found.bodies[0].submerged_volume, 0.25, 1e-14);
+  EXPECT_NEAR(found.bodies[1].submerged_volume, 0.75, 1e-14);
+  EXPECT_EQ(found.bodies[2].status, BodyStatus::kNonFinitePose);
+  EXPECT_EQ(found.bodies[2].submerged_volume, 0.0);
+  EXPECT_EQ(exchange.counters().hydrostatics, 2);
+}
+
+TEST(ExchangedHydrostatics, AreEmptyWhereNoBodyOfTheQuestionAsks) {
+  Exchange exchange(scene());
+  EXPECT_TRUE(exchange.hydrostatics().empty());
+  const ByteVector asking = question_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
+  exchange.answer(asking);
+  EXPECT_FALSE(exchange.hydrostatics().empty());
+  exchange.answer(asks_nothing(2));
+  EXPECT_TRUE(exchange.hydrostatics().empty());
+  exchange.answer(asking);
+  exchange.answer(asks_nothing(2));
+  exchange.answer(asks_nothing(2));
+  EXPECT_EQ(exchange.counters().repeated, 1);
+  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a repeat";
+  exchange.answer(asking);
+  exchange.answer(ByteVector{1, 2, 3});
+  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a rejected question";
+  EXPECT_EQ(exchange.counters().hydrostatics, 1) << "of a body that did not move they are computed once";
+}
+
+TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
+  Exchange exchange(scene());
+  const auto asked = [](std::int64_t session_id, double height) {
+    return question_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
+  };
+  exchange.answer(asked(1, 0.1));
+  const ByteVector first = copied(exchange.hydrostatics());
+  for (std::int64_t other = 2; other < 20; ++other) exchange.answer(asked(other, 0.2));
+  const std::int64_t computed = exchange.counters().hydrostatics;
+  exchange.answer(asked(1, 0.1));
+  EXPECT_EQ(copied(exchange.hydrostatics()), first);
+  EXPECT_EQ(exchange.counters().repeated, 1);
+  EXPECT_EQ(exchange.counters().hydrostatics, computed);
+}
+
+TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing) {
+  Exchange exchange(scene());
+  const auto ask = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
+    exchange.answer(question_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
+    BodiesHydrostatics found;
+    EXPECT_FALSE(decode(exchange.hydrostatics(), found).has_value());
+    return found.bodies;
+  };
+  const BodyState low = upright(kHydrostaticBox, 0.0);
+  const BodyState high = upright(kHydrostaticBox, 0.2);
+  const auto first = ask(0, {low});
+  const auto again = ask(1, {upright(kBox, 0.1), low});
+  EXPECT_EQ(exchange.counters().hydrostatics, 1);
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].stiffness, first[0].stiffness);
+  EXPECT_EQ(again[0].wetted_area, first[0].wetted_area);
+
+  // Named twice, each state gets its own.
+  const auto both = ask(2, {high, low});
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_NEAR(both[0].submerged_volume, 0.3, 1e-14);
+  EXPECT_EQ(both[1].submerged_volume, first[0].submerged_volume);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,144 @@
+// The wet surface's moments, and what is read out of them, against rational arithmetic.
+#include "hydrostatics/wetted_moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "geometry/shapes.h"
+#include "hydrostatics/displacement_moments.h"
+#include "hydrostatics/hydrostatic_mesh.h"
+#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/rational.h"
+#include "tests/hydrostatics/test_meshes.h"
+#include "tests/hydrostatics/wetted_moments_reference.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+const Water kWater;
+
+// Largest errors over the poses, in units of eps, of what the tree's descent leads to, against rationals.
+struct Errors {
+  double volume = 0.0, moment = 0.0, area = 0.0, waterplane_moment = 0.0, second_moments = 0.0;
+};
+
+double to_double(const Rational& value) {
+  return value.convert_to<double>();
+}
+
+template <typename Matrix>
+double difference(const Matrix& exact, const Eigen::MatrixXd& found) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < found.size(); ++i) {
+    const double one = to_double(exact(i % found.rows(), i / found.rows()) -
+                                 Rational(found(i % found.rows(), i / found.rows())));
+    sum += one * one;
+  }
+  return std::sqrt(sum);
+}
+
+// Of the product and in rationals, both about the product's point.
+struct BothReadOuts {
+  WetMoments wet;
+  FloatingMoments<double> found;
+  FloatingMoments<Rational> exact;
+};
+
+BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
+  const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
+  BothReadOuts both;
+  both.wet = wet_moments(*mesh.tree, plane);
+  both.found = read_out(both.wet.moments, both.wet.height, plane.up_B);
+  const Vec3T<Rational> k = exact_plane<Rational>(pose, kWater).up_B;
+  const Rational h_c = Rational(kWater.level) - kWater.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
+                       k.dot(mesh.center_B.cast<Rational>());
+  const auto about_c = read_out<Rational>(wet_moments_by_hand<Rational>(mesh.surface, k, h_c), -h_c, k);
+  both.exact = about_c.moved(both.wet.point.cast<Rational>());
+  return both;
+}
+
+TEST(WetMoments, LeadToReadOutsThatAreExactToRounding) {
+  for (const NamedMesh& named : closed_test_meshes()) {
+    if (named.mesh.triangles.size() > 800) continue;  // rationals take their time
+    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
+    RandomPoses random(44);
+    Errors worst;
+    for (int i = 0; i < 8; ++i) {
+      const Pose pose = i % 4 == 3 ? random.adversarial(named.mesh, kWater)
+                                   : random.crossing(bounding_box(named.mesh), kWater);
+      const BothReadOuts both = read_out_twice(mesh, pose);
+      const auto grow = [](double& largest, double error) { largest = std::max(largest, error); };
+      const double area = mesh.area * kEpsilon;
+      const double L = mesh.diagonal;
+      grow(worst.volume, std::abs(to_double(both.exact.volume - Rational(both.found.volume))));
+      grow(worst.moment, difference(both.exact.moment, both.found.moment) / (area * L * L));
+      // Where a face lies in the surface to within rounding, so does the question whether it is waterplane.
+      if (i % 4 == 3) continue;
+      grow(worst.area,
+           std::abs(to_double(both.exact.waterplane_area - Rational(both.found.waterplane_area))) / area);
+      grow(worst.waterplane_moment,
+           difference(both.exact.waterplane_moment, both.found.waterplane_moment) / (area * L));
+      grow(worst.second_moments,
+           difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments) /
+               (area * L * L));
+    }
+    EXPECT_LE(worst.volume, mesh.volume_gate()) << named.name;
+    for (const double error : {worst.moment, worst.area, worst.waterplane_moment, worst.second_moments}) {
+      EXPECT_LE(error, 4.0) << named.name;
+    }
+  }
+}
+
+TEST(WetMoments, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
+  const HydrostaticMesh mesh =
+      make_hydrostatic_mesh({make_shape(RockShape{.frequency = 8, .roughness = 0.0}), {}});
+  RandomPoses random(45);
+  for (int i = 0; i < 20; ++i) {
+    Pose pose{Vec3::Zero(), random.rotation()};
+    double dry = 1.01;
+    double wet = 0.9;
+    for (int step = 0; step < 60; ++step) {
+      pose.p_WB.z() = 0.5 * (dry + wet);
+      const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
+      const WetMoments moments = wet_moments(*mesh.tree, plane);
+      const double volume = read_out(moments.moments, moments.height, plane.up_B).volume;
+      (volume < 1e-6 * mesh.volume ? dry : wet) = pose.p_WB.z();
+    }
+    const BothReadOuts both = read_out_twice(mesh, pose);
+    const double volume = to_double(both.exact.volume);
+    const double area = to_double(both.exact.waterplane_area);
+    const double second = difference(both.exact.waterplane_second_moments, Mat3::Zero());
+    EXPECT_NEAR(both.found.volume, volume, 1e-11 * volume);
+    EXPECT_NEAR(both.found.waterplane_area, area, 1e-12 * area);
+    EXPECT_LE(difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments),
+              1e-11 * second);
+  }
+}
+
+TEST(WetMoments, TakeHeightsFromWhereTheWaterIsAndNotFromTheBodysMiddle) {
+  const TriangleMesh sphere = make_shape(RockShape{.frequency = 40, .roughness = 0.0});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
+  constexpr double kLeaf = 0.1;  // m, the size of 16 triangles
+  RandomPoses random(46);
+  for (int i = 0; i < 8; ++i) {
+    Pose pose{Vec3::Zero(), random.rotation()};
+    double lowest = 0.0;
+    for (std::size_t v = 0; v < sphere.vertex_count(); ++v) {
+      lowest = std::min(lowest, (pose.q_WB * sphere.vertex(static_cast<std::int32_t>(v))).z());
+    }
+    const double draft = 1e-9;
+    pose.p_WB.z() = -lowest - draft;
+    const BothReadOuts both = read_out_twice(mesh, pose);
+    // A cone's volume is A draft/3, so an error of the height of z is 3 z/draft of it.
+    const double volume = to_double(both.exact.volume);
+    EXPECT_LE(std::abs(both.found.volume - volume), 3.0 * kEpsilon * kLeaf / draft * volume);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,86 @@
+// random_search: searches for a question whose answer breaks a law (judge.h).
+//
+//   random_search [--cases N] [--seed S] [--record DIRECTORY] [--jobs J] [--table]
+//
+// Goes on where the seed's last run stopped, until N cases are done; Ctrl-C stops between blocks and loses
+// nothing. What fails is shrunk and printed as a test. The last line sums up all seeds of the record. Exit
+// codes: 0 nothing found, 1 a violation, in this run or before, 2 wrong arguments.
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "cli/progress_bar.h"
+#include "cli/tool_command_line.h"
+#include "tests/random_search/search_record.h"
+#include "tests/random_search/shrink.h"
+
+namespace {
+
+using namespace buoyancy;
+
+constexpr int kFound = 1;
+constexpr int kWrongInput = 2;
+constexpr std::int64_t kBlock = 64 * kQuestionsPerMesh;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+int refuse(const Error& error) {
+  std::fprintf(stderr, "random_search: %s\n", error.message().c_str());
+  return kWrongInput;
+}
+
+void print_failure(std::uint64_t seed, const FailedCase& failure) {
+  std::printf("seed %llu, case %lld: %s\n", static_cast<unsigned long long>(seed),
+              static_cast<long long>(failure.number), failure.mesh.c_str());
+  for (const std::string& violation : failure.violations) std::printf("  %s\n", violation.c_str());
+  const auto still_fails = [](const TriangleMesh& mesh, const SearchQuestion& asked) {
+    return fails(mesh, asked, product_answers);
+  };
+  const SearchCase original = search_case(seed, failure.number);
+  if (still_fails(original.mesh, original.asked))
+    std::printf("%s", as_test(shrunk(original, still_fails), seed, failure.number).c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  buoyancy::ToolCommandLine command_line("Searches for a question whose answer breaks a law.",
+                                         "random_search");
+  std::int64_t cases = 20'000;
+  std::uint64_t seed = 1;
+  std::filesystem::path record = "build/random_search";
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  bool table = false;
+  command_line.add_positive("--cases", cases, "Go on until so many cases of the seed are done");
+  command_line.add_option("--seed", seed, "What the cases are drawn from");
+  command_line.add_option("--record", record, "Directory of what was found so far");
+  command_line.add_number("--jobs", jobs, 1U, 1024U, "Threads");
+  command_line.add_flag("--table", table, "Print the largest figures of all seeds, as Markdown");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  const auto stop = [](int) { stop_requested = 1; };
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+
+  Expected<Tally> tally = load_tally(record, seed);
+  if (!tally) return refuse(tally.error());
+  ProgressBar progress("cases");
+  const std::int64_t before = tally->cases;
+  while (tally->cases < cases && stop_requested == 0) {
+    const std::int64_t left = cases - tally->cases;
+    const std::int64_t whole_meshes = (left + kQuestionsPerMesh - 1) / kQuestionsPerMesh * kQuestionsPerMesh;
+    const Tally block = search(seed, tally->cases, tally->cases + std::min(kBlock, whole_meshes), jobs);
+    *tally += block;
+    if (const Expected<void> saved = save_tally(record, seed, *tally); !saved) return refuse(saved.error());
+    if (!block.failures.empty()) progress.clear();
+    for (const FailedCase& failure : block.failures) print_failure(seed, failure);
+    progress.update(tally->cases - before, cases - before, tally->cases - before);
+  }
+  progress.clear();
+  const Expected<Tally> all = load_all(record);
+  if (!all) return refuse(all.error());
+  if (table) std::printf("%s", markdown(*all).c_str());
+  std::printf("seed %llu: %s; all seeds: %s\n", static_cast<unsigned long long>(seed),
+              summary(*tally).c_str(), summary(*all).c_str());
+  return all->failed_cases > 0 ? kFound : 0;
+}

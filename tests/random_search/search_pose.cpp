@@ -1,0 +1,127 @@
+#include "tests/random_search/search_pose.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "geometry/rotation_between.h"
+
+namespace buoyancy {
+namespace {
+
+double power_of_ten(RandomPoses& random, double low, double high) {
+  return std::pow(10.0, random.uniform(low, high));
+}
+
+double sign(RandomPoses& random) {
+  return random.pick(2) == 0 ? 1.0 : -1.0;
+}
+
+Eigen::Quaterniond quarter_turns(RandomPoses& random) {
+  const double r = std::sqrt(0.5);
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, r, 0, 0);
+  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, 0, 0, r);
+  return q;
+}
+
+Vec3 normal_of(const TriangleMesh& mesh, const Triangle& face) {
+  const Vec3 a = mesh.vertex(face[0]);
+  return (mesh.vertex(face[1]) - a).cross(mesh.vertex(face[2]) - a);
+}
+
+Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& face, const Vec3& up_W,
+                                   RandomPoses& random) {
+  switch (random.pick(6)) {
+    case 0:
+      return quarter_turns(random);
+    case 1: {
+      const double tilt = power_of_ten(random, -17.0, -3.0);
+      return quarter_turns(random) *
+             Eigen::Quaterniond(1.0, tilt * sign(random), tilt * random.uniform(-1, 1), 0.0);
+    }
+    case 2: {  // a face lies on the water, or nearly so
+      const Vec3 normal = normal_of(mesh, face).normalized();
+      if (!(normal.norm() > 0.5)) return random.rotation();
+      Eigen::Quaterniond flat = rotation_between(normal, sign(random) * up_W);
+      if (random.pick(2) == 0) return flat;
+      const double tilt = power_of_ten(random, -17.0, -6.0);
+      return flat * Eigen::Quaterniond(1.0, tilt, 0.0, tilt);
+    }
+    default:
+      return random.rotation();
+  }
+}
+
+// A point of B that the water's surface is to pass through.
+Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& up_B, RandomPoses& random) {
+  const BoundingBox box = bounding_box(mesh);
+  Vec3 a = mesh.vertex(face[0]);
+  switch (random.pick(6)) {
+    case 0:
+      return a;
+    case 1:
+      return 0.5 * (a + mesh.vertex(face[1]));
+    case 2: {  // grazes the highest or the lowest vertex
+      const double side = sign(random);
+      Vec3 farthest = a;
+      for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+        const Vec3 x = mesh.vertex(static_cast<std::int32_t>(i));
+        if (side * up_B.dot(x - farthest) > 0.0) farthest = x;
+      }
+      return farthest - side * power_of_ten(random, -15.0, -1.0) * box.diagonal() * up_B;
+    }
+    default:
+      return box.center() + random.uniform(-0.6, 0.6) * box.diagonal() * random.direction();
+  }
+}
+
+double nudged(double value, RandomPoses& random) {
+  const double to = sign(random) * std::numeric_limits<double>::infinity();
+  for (std::size_t ulps = random.pick(9); ulps > 0; --ulps) value = std::nextafter(value, to);
+  return value;
+}
+
+}  // namespace
+
+SearchQuestion random_question(const TriangleMesh& mesh, RandomPoses& random) {
+  const double size = bounding_box(mesh).diagonal();
+  SearchQuestion asked;
+  if (random.pick(3) == 0) asked.water.up_W = random.direction();
+  const Vec3 up_W = asked.water.up_W;
+  const Triangle face = mesh.triangles[random.pick(mesh.triangles.size())];
+  asked.pose.q_WB = random_rotation(mesh, face, up_W, random);
+  const Eigen::Quaterniond q_WB = asked.pose.q_WB.normalized();
+  const Vec3 target_B = random_target(mesh, face, q_WB.conjugate() * up_W, random);
+
+  Vec3 target_W = Vec3::Zero();  // where the target is to be, over the water's surface at 0
+  if (random.pick(3) == 0) {
+    target_W = size * power_of_ten(random, 0.0, 8.0) * random.direction();
+    target_W -= up_W.dot(target_W) * up_W;
+  }
+  if (random.pick(3) == 0) {
+    asked.water.level = sign(random) * size * power_of_ten(random, -2.0, 6.0);
+    target_W += asked.water.level * up_W;
+  }
+  if (random.pick(12) == 0) target_W += sign(random) * size * power_of_ten(random, -1.0, 4.0) * up_W;
+  asked.pose.p_WB = target_W - q_WB * target_B;
+  switch (random.pick(4)) {
+    case 0:
+      asked.water.level = nudged(asked.water.level, random);
+      break;
+    case 1:  // as rounding would have it: the vertex's own height is the level
+      asked.water.level = up_W.dot(q_WB * target_B + asked.pose.p_WB);
+      asked.water.level = nudged(asked.water.level, random);
+      break;
+    default:
+      break;
+  }
+  if (random.pick(4) == 0) asked.pose.q_WB.coeffs() *= sign(random) * random.uniform(0.999, 1.001);
+  asked.reference_B = bounding_box(mesh).center();
+  if (random.pick(2) == 0) asked.reference_B += size * power_of_ten(random, -1.0, 3.0) * random.direction();
+  if (random.pick(3) == 0) asked.reference_B = Vec3::Zero();
+  asked.tolerance = power_of_ten(random, -9.0, -1.0);
+  return asked;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,123 @@
+#include "tests/random_search/search_record.h"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+namespace buoyancy {
+namespace {
+
+using Json = nlohmann::json;
+constexpr const char* kPrefix = "seed-";
+
+std::filesystem::path file_of(const std::filesystem::path& directory, std::uint64_t seed) {
+  return directory / (kPrefix + std::to_string(seed) + ".json");
+}
+
+Json to_json(const Tally& tally) {
+  Json json{{"cases", tally.cases}, {"answers", tally.answers}, {"failed_cases", tally.failed_cases}};
+  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
+    for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
+      const Largest& largest = tally.largest[row][column];
+      json["largest"][name(kAnswerers[row])][Figures::kNames[column]] = {{"value", largest.value},
+                                                                         {"case", largest.at}};
+    }
+  }
+  json["failures"] = Json::array();
+  for (const FailedCase& failure : tally.failures)
+    json["failures"].push_back(
+        {{"case", failure.number}, {"mesh", failure.mesh}, {"violations", failure.violations}});
+  return json;
+}
+
+Tally from_json(const Json& json) {
+  Tally tally;
+  tally.cases = json.at("cases");
+  tally.answers = json.at("answers");
+  tally.failed_cases = json.at("failed_cases");
+  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
+    for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
+      const Json& largest = json.at("largest").at(name(kAnswerers[row])).at(Figures::kNames[column]);
+      tally.largest[row][column] = {largest.at("value"), largest.at("case")};
+    }
+  }
+  for (const Json& failure : json.at("failures"))
+    tally.failures.push_back({failure.at("case"), failure.at("mesh"), failure.at("violations")});
+  return tally;
+}
+
+Expected<Tally> load(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  const Json json = Json::parse(file, nullptr, false);
+  try {
+    return from_json(json);
+  } catch (const Json::exception&) {
+    return failure({path.string(), "is no record of a search", "what an earlier run wrote",
+                    "another version wrote it, or something else", "Remove it"});
+  }
+}
+
+}  // namespace
+
+Expected<Tally> load_tally(const std::filesystem::path& directory, std::uint64_t seed) {
+  const std::filesystem::path path = file_of(directory, seed);
+  if (!std::filesystem::exists(path)) return Tally{};
+  return load(path);
+}
+
+Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed, const Tally& tally) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  const std::filesystem::path path = file_of(directory, seed);
+  const std::filesystem::path fresh = path.string() + ".new";
+  std::ofstream file(fresh);
+  file << to_json(tally).dump(1) << '\n';
+  file.close();
+  if (file) std::filesystem::rename(fresh, path, error);
+  if (!file || error) {
+    return failure({path.string(), "cannot be written", "a directory for the search's records", "",
+                    "Name another with --record"});
+  }
+  return {};
+}
+
+Expected<Tally> load_all(const std::filesystem::path& directory) {
+  Tally total;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
+    Expected<Tally> tally = load(entry.path());
+    if (!tally) return tally;
+    total += *tally;
+  }
+  return total;
+}
+
+std::string markdown(const Tally& tally) {
+  std::string text = "| |";
+  for (const char* column : Figures::kNames) text += std::string(" ") + column + " |";
+  text += "\n|---|---|---|---|---|\n";
+  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
+    text += std::string("| `") + name(kAnswerers[row]) + "` |";
+    for (const Largest& largest : tally.largest[row]) {
+      std::array<char, 32> number;
+      std::snprintf(number.data(), number.size(), " %.2g |", largest.value);
+      text += largest.value > 0.0 ? number.data() : " |";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string summary(const Tally& tally) {
+  std::array<char, 160> text;
+  std::snprintf(text.data(), text.size(), "%lld cases, %lld answers, %lld violations",
+                static_cast<long long>(tally.cases), static_cast<long long>(tally.answers),
+                static_cast<long long>(tally.failed_cases));
+  return text.data();
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,155 @@
+#include "recording/record_writer.h"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <future>
+#include <string>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/unique_fd.h"
+#include "tests/support/temp_dir.h"
+
+namespace buoyancy {
+namespace {
+
+Bytes bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// While it lives, no file of this process grows beyond `bytes`: what a full disk does, without one.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(RecordFile, WritesRecordsInOrder) {
+  const ScratchDirectory directory;
+  const std::string path = directory.write("x", "what was there before, which goes");
+  auto file = RecordFile::create(path);
+  ASSERT_TRUE(file);
+  std::string expected;
+  for (int i = 0; i < 100'000; ++i) {
+    const std::string record = "record " + std::to_string(i) + "\n";
+    ASSERT_TRUE(file->append(bytes_of(record)));
+    expected += record;
+  }
+  ASSERT_TRUE(file->append(bytes_of(std::string(3'000'000, 'x'))));
+  expected += std::string(3'000'000, 'x');
+  ASSERT_TRUE(file->flush());
+  EXPECT_EQ(contents_of(path), expected);
+}
+
+TEST(RecordFile, EndsAtARecordsEndWhereTheDiskIsFull) {
+  const ScratchDirectory directory;
+  for (const rlim_t limit : {1'000'000U, 1'048'576U, 1'500'007U, 5U}) {
+    auto file = RecordFile::create(directory.path("x"));
+    ASSERT_TRUE(file);
+    Expected<void> written;
+    {
+      const FileSizeLimit full(limit);
+      for (int i = 0; i < 1'000'000 && written; ++i) written = file->append(bytes_of("0123456789"));
+    }
+    ASSERT_FALSE(written);
+    EXPECT_NE(written.error().message().find("could not be written"), std::string::npos);
+    EXPECT_EQ(contents_of(directory.path("x")).size(), limit / 10 * 10);
+  }
+}
+
+// A named pipe whose reader reads when it is told to.
+class UnreadPipe {
+ public:
+  UnreadPipe() : path_(directory_.path("pipe")) {
+    EXPECT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+    reader_ = FileDescriptor(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  }
+  const std::string& path() const { return path_; }
+  std::string read_all() const {
+    std::string all;
+    std::array<char, 65'536> part{};
+    for (ssize_t got = 0; (got = ::read(reader_.value(), part.data(), part.size())) > 0;) {
+      all.append(part.data(), static_cast<std::size_t>(got));
+    }
+    return all;
+  }
+
+ private:
+  ScratchDirectory directory_;
+  std::string path_;
+  FileDescriptor reader_;
+};
+
+TEST(RecordFile, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
+  const UnreadPipe pipe;
+  auto file = RecordFile::create(pipe.path());
+  ASSERT_TRUE(file);
+  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  file->give_up_after(signal.value());
+  const std::string record = "0123456789\n";
+  for (int i = 0; i < 50'000; ++i) ASSERT_TRUE(file->append(bytes_of(record)));
+  const Expected<void> flushed = file->flush();
+  ASSERT_FALSE(flushed);
+  EXPECT_NE(flushed.error().message().find("nobody has read from it"), std::string::npos)
+      << flushed.error().message();
+  const std::string written = pipe.read_all();
+  EXPECT_GT(written.size(), 10'000U);
+  EXPECT_EQ(written.size() % record.size(), 0U) << "the pipe ends within a record";
+}
+
+TEST(RecordFile, WritesAllToAPipeThatIsReadAfterASignal) {
+  const UnreadPipe pipe;
+  auto file = RecordFile::create(pipe.path());
+  ASSERT_TRUE(file);
+  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  file->give_up_after(signal.value());
+  std::string expected;
+  for (const std::size_t size : {10U, 4'000U, 4'096U, 5'000U, 300'000U, 1U, 4'097U}) {
+    const std::string record(size, static_cast<char>('a' + size % 26));
+    ASSERT_TRUE(file->append(bytes_of(record)));
+    expected += record;
+  }
+  std::future<bool> flushed = std::async(std::launch::async, [&file] { return file->flush().has_value(); });
+  std::string written;
+  while (flushed.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready)
+    written += pipe.read_all();
+  EXPECT_TRUE(flushed.get());
+  written += pipe.read_all();
+  EXPECT_TRUE(written == expected) << written.size();
+}
+
+TEST(RecordFile, SaysWhatIsWrongWithTheDisk) {
+  auto file = RecordFile::create("/dev/full");
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(file->append(bytes_of("x")));
+  const Expected<void> flushed = file->flush();
+  ASSERT_FALSE(flushed);
+  EXPECT_NE(flushed.error().message().find("the disk is full"), std::string::npos)
+      << flushed.error().message();
+  const auto missing = RecordFile::create("/no/such/directory/x");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message().find("the directory does not exist"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace buoyancy

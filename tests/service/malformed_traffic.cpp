@@ -1,0 +1,352 @@
+// A real buoyancyd under packets that are no questions, for as long as one likes.
+//
+//   malformed_traffic [--packets N] [--seed S] [--channel-names N]
+//
+// Sends N packets in batches, each followed by a valid question that must be answered. A packet is a valid
+// question damaged at random, one of the malformed messages of the test suite, a fragment of a message that
+// never becomes whole, bytes with a wrong LCM header, or a message on a channel that nobody asked for. Then
+// counts what the service says of itself beside what was sent, by cause, and its memory before and after.
+//
+// After that, with --channel-names, as many messages as that on channels of different names, of which nothing
+// may be kept.
+//
+// To be run in a network namespace with a multicast route (scripts/attack_service). Exit codes: 0 all
+// questions were answered, the counters add up, memory did not grow; 1 not so; 2 wrong arguments.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cinttypes>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/progress_bar.h"
+#include "cli/tool_command_line.h"
+#include "client/client.h"
+#include "tests/engine/malformed_messages.h"
+#include "tests/service/running_service.h"
+#include "tests/support/process_memory.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::int64_t kBatch = 64;        // packets between two questions: far fewer than the queues hold
+constexpr std::int64_t kWarmUp = 250'000;  // packets until every buffer is as large as it gets
+constexpr std::int64_t kMayGrow = 1'024;   // kB
+
+struct Rejected {
+  std::int64_t truncated = 0, fingerprint = 0, count = 0, length = 0;
+};
+
+// Everything that is sent on the channel of the questions, by what must become of it.
+struct Sent {
+  Rejected rejected;
+  std::int64_t questions = 0;  // damaged, but still a question: answered
+  std::int64_t elsewhere = 0;  // never reaches the service: another channel's, or no whole message
+
+  std::int64_t on_channel() const {
+    return rejected.truncated + rejected.fingerprint + rejected.count + rejected.length + questions;
+  }
+};
+
+// What docs/messages.md promises, written anew.
+void expect_of(const RawBytes& message, Sent& sent) {
+  constexpr std::size_t kFixed = 44;
+  constexpr std::size_t kBody = 108;
+  if (message.size() < kFixed) {
+    ++sent.rejected.truncated;
+    return;
+  }
+  RawReader reader(message);
+  const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reader.int32()));
+  const auto low = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reader.int32()));
+  for (int i = 0; i < 8; ++i) reader.int32();
+  const std::int64_t count = reader.int32();
+  if (static_cast<std::int64_t>(high << 32U | low) != raw_states_fingerprint()) {
+    ++sent.rejected.fingerprint;
+  } else if (count < 0) {
+    ++sent.rejected.count;
+  } else if (message.size() != kFixed + kBody * static_cast<std::size_t>(count)) {
+    ++sent.rejected.length;
+  } else {
+    ++sent.questions;
+  }
+}
+
+class Attacker {
+ public:
+  Attacker(RawLcmSocket& socket, std::uint64_t seed) : socket_(socket), random_(seed) {
+    for (const MalformedMessage& message : malformed_messages()) malformed_.push_back(message.bytes);
+  }
+
+  void send() {
+    switch (below(8)) {
+      case 0:
+        return on_our_channel(malformed_[below(malformed_.size())]);
+      case 1:
+        return send_fragment();
+      case 2:
+        return send_wrong_header();
+      case 3:
+        ++sent_.elsewhere;
+        return socket_.send("OTHER_" + std::to_string(below(100)), garbage(below(200)));
+      default:
+        return on_our_channel(damaged(valid_question()));
+    }
+  }
+
+  const Sent& sent() const { return sent_; }
+
+ private:
+  std::size_t below(std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random_);
+  }
+  std::uint8_t byte() { return static_cast<std::uint8_t>(below(256)); }
+
+  RawBytes garbage(std::size_t size) {
+    RawBytes bytes(size);
+    for (std::uint8_t& value : bytes) value = byte();
+    return bytes;
+  }
+
+  RawBytes valid_question() {
+    RawStates states =
+        one_body(static_cast<std::int64_t>(100 + below(200)), static_cast<std::int64_t>(below(1000)),
+                 0.01 * static_cast<double>(below(100)));
+    states.bodies.resize(below(5), states.bodies[0]);
+    return encode_states(states);
+  }
+
+  RawBytes damaged(RawBytes bytes) {
+    switch (below(7)) {
+      case 0:  // some bits anywhere
+        for (std::size_t i = 0; i <= below(8); ++i) {
+          bytes[below(bytes.size())] ^= static_cast<std::uint8_t>(1U << below(8));
+        }
+        break;
+      case 1:
+        bytes.resize(below(bytes.size()));
+        break;
+      case 2: {
+        const RawBytes more = garbage(1 + below(300));
+        bytes.insert(bytes.end(), more.begin(), more.end());
+        break;
+      }
+      case 3:  // the number of bodies
+        for (std::size_t i = 40; i < 44; ++i) bytes[i] = byte();
+        break;
+      case 4:  // the fingerprint
+        bytes[below(8)] = byte();
+        break;
+      case 5:  // everything behind the fixed fields: NaN, infinities, any body
+        for (std::size_t i = 44; i < bytes.size(); ++i) bytes[i] = byte();
+        break;
+      default:  // a stretch of it is missing in the middle
+        const std::size_t start = below(bytes.size());
+        const std::size_t end = start + below(bytes.size() - start + 1);
+        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(start),
+                    bytes.begin() + static_cast<std::ptrdiff_t>(end));
+        break;
+    }
+    return bytes;
+  }
+
+  void on_our_channel(const RawBytes& message) {
+    expect_of(message, sent_);
+    socket_.send("BUOYANCY_STATES", message);
+  }
+
+  // Of a message that never becomes whole.
+  void send_fragment() {
+    ++sent_.elsewhere;
+    const auto size = static_cast<std::int32_t>(below(2) == 0 ? below(1'000'000) : random_());
+    const auto count = static_cast<std::int16_t>(below(20) == 0 ? random_() : 2 + below(30));
+    const auto number = static_cast<std::int16_t>(below(2) == 0 ? 0 : below(40));
+    // liblcm dies of those just below 2^32.
+    const auto offset = static_cast<std::int32_t>(below(2) == 0 ? below(2'000'000) : ~below(100));
+    RawWriter packet;
+    packet.int32(0x4c433033).int32(static_cast<std::int32_t>(random_())).int32(size).int32(offset);
+    packet.int16(number).int16(count);
+    for (const char c : std::string("BUOYANCY_STATES")) packet.bytes.push_back(static_cast<std::uint8_t>(c));
+    packet.bytes.push_back(0);
+    const RawBytes rest = garbage(below(400));
+    packet.bytes.insert(packet.bytes.end(), rest.begin(), rest.end());
+    socket_.send_packet(packet.bytes);
+  }
+
+  void send_wrong_header() {
+    static constexpr std::array<std::uint8_t, 4> kMagic{'L', 'C', '0', '2'};
+    RawBytes packet = garbage(below(64));
+    switch (below(3)) {
+      case 0:  // no header of LCM, or a part of one
+        std::copy_n(kMagic.begin(), std::min(below(4), packet.size()), packet.begin());
+        ++sent_.elsewhere;
+        break;
+      case 1:  // a channel's name that is too long
+        packet.assign(kMagic.begin(), kMagic.end());
+        packet.resize(8 + 64 + below(200), 'N');
+        packet.push_back(0);
+        ++sent_.elsewhere;
+        break;
+      default:  // our channel's name, or a part of it, without its end: no room for any data
+        const std::string name = "BUOYANCY_STATES";
+        packet.assign(kMagic.begin(), kMagic.end());
+        packet.resize(8);
+        packet.insert(packet.end(), name.begin(), name.end() - static_cast<std::ptrdiff_t>(below(3)));
+        ++sent_.elsewhere;
+        break;
+    }
+    socket_.send_packet(packet);
+  }
+
+  RawLcmSocket& socket_;
+  std::mt19937_64 random_;
+  std::vector<RawBytes> malformed_;
+  Sent sent_;
+};
+
+// A client in lock-step, with its own retries. Throws where a question gets no answer, or a wrong one.
+class Asker {
+ public:
+  void ask() {
+    const double height = 0.001 * static_cast<double>(++asked_ % 1000);
+    BodyState state{.body_id = 1,
+                    .position = {1.0, 2.0, height},
+                    .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0},
+                    .linear_velocity = {},
+                    .angular_velocity = {}};
+    const auto answer = client_.ask(asked_, {&state, 1});
+    if (!answer) throw std::runtime_error(answer.error().message());
+    const double force = kDensity * kGravity * 6.0 * (2.0 - height);
+    if (std::abs((*answer)->bodies[0].force[2] - force) > 1e-9 * force) {
+      throw std::runtime_error("question " + std::to_string(asked_) + " was answered wrongly");
+    }
+  }
+
+  std::int64_t sent() const { return asked_ + repeats(); }
+  std::int64_t asked() const { return asked_; }
+  std::int64_t repeats() const { return client_.statistics().retries; }
+
+ private:
+  static Client open() {
+    Expected<Client> client = Client::open();
+    if (!client) throw std::runtime_error(client.error().message());
+    return std::move(*client);
+  }
+
+  Client client_ = open();
+  std::int64_t asked_ = 0;
+};
+
+bool print_row(const char* what, std::int64_t sent, std::int64_t counted) {
+  const bool holds = counted == sent;
+  std::printf("%-28s %12" PRId64 " %12" PRId64 "  %s\n", what, sent, counted, holds ? "" : "DIFFERS");
+  return holds;
+}
+
+bool counters_add_up(const Counters& counters, const Sent& sent, const Asker& asker) {
+  std::printf("%-28s %12s %12s\n", "", "sent", "counted");
+  bool holds = print_row("rejected_truncated", sent.rejected.truncated, counters.rejected_truncated);
+  holds &= print_row("rejected_fingerprint", sent.rejected.fingerprint, counters.rejected_fingerprint);
+  holds &= print_row("rejected_count", sent.rejected.count, counters.rejected_count);
+  holds &= print_row("rejected_length", sent.rejected.length, counters.rejected_length);
+  holds &= print_row("answered and repeated", sent.questions + asker.sent(),
+                     counters.answered + counters.repeated);
+  holds &= print_row("questions", sent.on_channel() + asker.sent(), counters.questions);
+  holds &= print_row("questions, sum of the above",
+                     counters.rejected() + counters.answered + counters.repeated, counters.questions);
+  std::printf("%-28s %12" PRId64 "\n%-28s %12s %12" PRId64 "\n", "not for the service", sent.elsewhere,
+              "sessions forgotten", "", counters.sessions_forgotten);
+  return holds;
+}
+
+// Does no channel's name stay in memory?
+bool forgets_names(RawLcmSocket& socket, Asker& asker, RunningService& service, std::int64_t names) {
+  const std::int64_t before = resident_kb(service.child().pid());
+  const auto start = std::chrono::steady_clock::now();
+  {
+    ProgressBar progress("names");
+    for (std::int64_t name = 0; name < names; ++name) {
+      socket.send("SOMEBODY_ELSES_CHANNEL_" + std::to_string(name), {});
+      if (name % kBatch == 0) {
+        asker.ask();
+        progress.update(name, names, name);
+      }
+    }
+  }
+  asker.ask();
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::int64_t after = resident_kb(service.child().pid());
+  const bool flat = after - before <= kMayGrow;
+  std::printf("\n%" PRId64 " channel names in %.1f s: memory %" PRId64 " kB before, %" PRId64 " kB after%s\n",
+              names, took, before, after, flat ? "" : ": GROWS");
+  return flat;
+}
+
+bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
+  RunningService service;
+  RawLcmSocket socket;
+  Attacker attacker(socket, seed);
+  Asker asker;
+  std::int64_t warm = 0;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    ProgressBar progress("packets");
+    for (std::int64_t packet = 1; packet <= packets; ++packet) {
+      attacker.send();
+      if (packet % kBatch != 0 && packet != packets) continue;
+      asker.ask();
+      progress.update(packet, packets, packet);
+      if (warm == 0 && packet >= std::min(kWarmUp, packets / 2)) warm = resident_kb(service.child().pid());
+    }
+  }
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::int64_t after = resident_kb(service.child().pid());
+  std::printf("%" PRId64 " packets, seed %" PRIu64 ", in %.1f s; %" PRId64
+              " questions between them, all answered, %" PRId64 " asked again\n",
+              packets, seed, took, asker.asked(), asker.repeats());
+  const std::int64_t least = attacker.sent().on_channel() + asker.sent();
+  RawLcmSocket status_socket;  // the other's is full of what it sent
+  const auto status = hear_status(
+      status_socket, [least](const ServiceStatus& now) { return now.counters.questions >= least; });
+  if (!status) throw std::runtime_error("the service's counters stay below what was sent: packets were lost");
+  bool holds = counters_add_up(status->counters, attacker.sent(), asker);
+  const bool flat = after - warm <= kMayGrow;
+  std::printf("memory (VmRSS): %" PRId64 " kB after the first %" PRId64 " packets, %" PRId64
+              " kB at the end%s\n",
+              warm, std::min(kWarmUp, packets / 2), after, flat ? "" : ": GROWS");
+  holds &= flat;
+  if (names > 0) holds &= forgets_names(socket, asker, service, names);
+  service.child().send_signal(SIGTERM);
+  if (service.child().wait(kWaitTimeout) != 0)
+    throw std::runtime_error("buoyancyd did not end well: " + service.log());
+  return holds;
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  buoyancy::ToolCommandLine command_line("Packets that are no questions, at a real buoyancyd",
+                                         "malformed_traffic");
+  std::int64_t packets = 3'000'000;
+  std::uint64_t seed = 1;
+  std::int64_t names = 1'000'000;
+  command_line.add_number("--packets", packets, std::int64_t{1}, std::int64_t{1} << 40U, "How many");
+  command_line.add_option("--seed", seed, "Of the random numbers");
+  command_line.add_number("--channel-names", names, std::int64_t{0}, std::int64_t{1} << 40U,
+                          "Then so many channels of different names");
+  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  try {
+    return buoyancy::run(packets, seed, names) ? 0 : 1;
+  } catch (const std::exception& failed) {
+    std::fprintf(stderr, "malformed_traffic: %s\n", failed.what());
+    return 1;
+  }
+}

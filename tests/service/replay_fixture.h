@@ -1,0 +1,94 @@
+// buoyancy-replay as a program, on logs made here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "messages/wire.h"
+#include "recording/event_log.h"
+#include "tests/service/one_box_scene.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+
+class Replay : public testing::Test {
+ protected:
+  static ChildCommand command(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BUOYANCY_REPLAY);
+    return command_of(std::move(arguments));
+  }
+  FinishedProcess run(std::vector<std::string> arguments) const {
+    return run_to_end(command(std::move(arguments)), kWaitTimeout);
+  }
+  FinishedProcess replay(const std::string& input, const std::string& output,
+                         const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments{"--scene", scene_, input, output};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(std::move(arguments));
+  }
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  std::string write(const std::string& name, const std::string& contents) const {
+    return directory_.write(name, contents);
+  }
+
+  ScratchDirectory directory_;
+  std::string scene_ = directory_.write("scene.toml", kOneBoxScene);
+};
+
+inline std::vector<std::uint8_t> question(std::int64_t utime, double height) {
+  Question question;
+  question.key = {utime, 0, utime};
+  question.bodies.resize(1);
+  question.bodies[0].body_id = 1;
+  question.bodies[0].position = {7.0, 8.0, height};
+  question.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
+  std::vector<std::uint8_t> bytes;
+  encode(question, bytes);
+  return bytes;
+}
+
+inline std::string event(const std::string& channel, std::int64_t timestamp,
+                         const std::vector<std::uint8_t>& data) {
+  std::vector<std::uint8_t> bytes;
+  encode_event(0, timestamp, channel, data, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+inline std::string log_of_questions(int count) {
+  std::string log;
+  for (int i = 0; i < count; ++i) log += event("BUOYANCY_STATES", 500 + i, question(i, 0.125 * i));
+  return log;
+}
+
+// What a log holds on the channels that are wanted.
+struct LoggedEvent {
+  std::int64_t timestamp = 0;
+  std::string channel;
+  std::vector<std::uint8_t> bytes;
+};
+
+inline std::vector<LoggedEvent> events_of(const std::string& path, ChannelFilter wanted) {
+  auto reader = EventLogReader::open(path, std::move(wanted));
+  if (!reader) throw std::runtime_error(reader.error().message());
+  std::vector<LoggedEvent> found;
+  while (true) {
+    const InputItem item = reader->next();
+    if (std::holds_alternative<EndOfInput>(item)) return found;
+    if (const auto* event = std::get_if<RecordedEvent>(&item)) {
+      found.push_back(
+          {event->timestamp, std::string(event->channel), {event->bytes.begin(), event->bytes.end()}});
+    }
+  }
+}
+
+inline std::vector<LoggedEvent> events_of(const std::string& path) {
+  return events_of(path, [](std::string_view) { return true; });
+}
+
+}  // namespace buoyancy

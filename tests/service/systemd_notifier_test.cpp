@@ -1,0 +1,177 @@
+// What a service manager hears of buoyancyd, by a socket as systemd gives one.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include "tests/service/leased_file.h"
+#include "tests/service/running_service.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+class NotifySocket {
+ public:
+  NotifySocket() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path().c_str(), sizeof address.sun_path - 1);
+    if (::bind(socket_.value(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      throw std::runtime_error("no socket " + path());
+    }
+  }
+  std::string path() const { return directory_.path("notify"); }
+
+  // The next datagram; nullopt: none within `seconds`.
+  std::optional<std::string> receive(double seconds) {
+    pollfd waiting{socket_.value(), POLLIN, 0};
+    if (::poll(&waiting, 1, static_cast<int>(seconds * 1e3)) != 1) return std::nullopt;
+    std::array<char, 4096> text{};
+    const ssize_t size = ::recv(socket_.value(), text.data(), text.size(), 0);
+    return std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  }
+
+  // Those up to the one that begins with `text`; it is the last, or missing after kWaitTimeout.
+  std::vector<std::string> receive_until(const std::string& text) {
+    std::vector<std::string> heard;
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+    while (std::chrono::steady_clock::now() < limit) {
+      const std::optional<std::string> next = receive(kWaitTimeout);
+      if (!next) break;
+      heard.push_back(*next);
+      if (next->starts_with(text)) break;
+    }
+    return heard;
+  }
+
+  bool hears(const std::string& text) {
+    const std::vector<std::string> heard = receive_until(text);
+    return !heard.empty() && heard.back().starts_with(text);
+  }
+
+ private:
+  ScratchDirectory directory_;
+  FileDescriptor socket_;
+};
+
+class ServiceManaged : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!BUOYANCY_TALKS_TO_SYSTEMD) GTEST_SKIP() << "built without libsystemd";
+  }
+  std::vector<std::string> environment(const std::string& watchdog_usec = "") const {
+    std::vector<std::string> entries{"NOTIFY_SOCKET=" + manager_.path()};
+    if (!watchdog_usec.empty()) entries.push_back("WATCHDOG_USEC=" + watchdog_usec);
+    return entries;
+  }
+
+  NotifySocket manager_;
+  RawLcmSocket socket_;
+};
+
+TEST_F(ServiceManaged, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
+  const RunningService service({}, kBoxScene, environment());
+  ASSERT_TRUE(manager_.hears("READY=1"));
+  ask(socket_, one_body(1, 1, 0.0));
+  EXPECT_EQ(hear(socket_).seq, 1);
+  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 1 question answered"));
+}
+
+TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
+  const ScratchDirectory directory;
+  HeldFile scene(directory.write("scene.toml", kBoxScene));
+  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
+  ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
+  command.environment = environment();
+  ChildProcess child(command);
+  while (!scene.awaited()) ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
+  EXPECT_EQ(manager_.receive(0.1), std::nullopt);
+  scene.let_go();
+  EXPECT_TRUE(manager_.hears("READY=1"));
+}
+
+TEST_F(ServiceManaged, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
+  RunningService service({}, kBoxScene, environment());
+  ASSERT_TRUE(manager_.hears("READY=1"));
+  service.child().send_signal(SIGHUP);
+  const std::vector<std::string> begin = manager_.receive_until("RELOADING=1");
+  ASSERT_FALSE(begin.empty());
+  long long microseconds = 0;
+  ASSERT_EQ(std::sscanf(begin.back().c_str(), "RELOADING=1\nMONOTONIC_USEC=%lld", &microseconds), 1)
+      << begin.back();
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  EXPECT_LE(microseconds, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  EXPECT_GT(microseconds, 0);
+  EXPECT_TRUE(manager_.hears("READY=1"));
+
+  service.write("scene.toml", "nothing");
+  service.child().send_signal(SIGHUP);
+  EXPECT_TRUE(manager_.hears("RELOADING=1"));
+  EXPECT_TRUE(manager_.hears("READY=1"));
+  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 0 questions answered; the last reload failed"));
+}
+
+TEST_F(ServiceManaged, HearsThatItStopsBeforeItEnds) {
+  RunningService service({}, kBoxScene, environment());
+  ASSERT_TRUE(manager_.hears("READY=1"));
+  service.child().send_signal(SIGTERM);
+  EXPECT_TRUE(manager_.hears("STOPPING=1"));
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
+}
+
+TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
+  RunningService service({}, kBoxScene, environment("100000"));
+  for (int beat = 0; beat < 5; ++beat) ASSERT_TRUE(manager_.hears("WATCHDOG=1"));
+  service.stop();
+  while (manager_.receive(0.0)) {  // what was sent before
+  }
+  EXPECT_EQ(manager_.receive(0.5), std::nullopt) << "ten beats";
+  service.child().send_signal(SIGCONT);
+  EXPECT_TRUE(manager_.hears("WATCHDOG=1"));
+}
+
+TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileASceneLoads) {
+  RunningService service({}, kBoxScene, environment("100000"));
+  HeldFile scene(service.path("scene.toml"));
+  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
+  service.child().send_signal(SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1"));
+  for (int beat = 0; beat < 10; ++beat) {
+    const std::vector<std::string> heard = manager_.receive_until("WATCHDOG=1");
+    ASSERT_FALSE(heard.empty());
+    EXPECT_EQ(std::ranges::count(heard, "READY=1"), 0);
+  }
+  scene.let_go();
+  EXPECT_TRUE(manager_.hears("READY=1"));
+}
+
+TEST_F(ServiceManaged, HearsNoBeatWhereNoWatchdogWaits) {
+  const RunningService service({}, kBoxScene, environment());
+  const std::vector<std::string> heard = manager_.receive_until("STATUS=2 bodies, 0");
+  ASSERT_TRUE(manager_.hears("READY=1"));
+  std::optional<std::string> more = manager_.receive(1.5);
+  EXPECT_EQ(more, std::nullopt) << "no beat, and a status that did not change is not said again";
+}
+
+TEST(WithoutAServiceManager, TheServiceAnswersThoughTheSocketIsGone) {
+  std::string gone;
+  {
+    const NotifySocket manager;
+    gone = manager.path();
+  }
+  const RunningService service({}, kBoxScene, {"NOTIFY_SOCKET=" + gone, "WATCHDOG_USEC=100000"});
+  RawLcmSocket socket;
+  for (int beat = 0; beat < 3; ++beat) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
+  ask(socket, one_body(1, 1, 0.0));
+  EXPECT_EQ(hear(socket).seq, 1);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,32 @@
+#include "tests/simulation/in_process_run.h"
+
+#include <stdexcept>
+
+namespace buoyancy {
+
+Scene scene_of(const std::string& text) {
+  const Expected<SceneDescription> description = parse_scene(text, "test.toml", ".");
+  if (!description) throw std::runtime_error(description.error().message());
+  Expected<Scene> scene = Scene::prepare(*description);
+  if (!scene) throw std::runtime_error(scene.error().message());
+  return std::move(*scene);
+}
+
+Simulation simulation_of(const Scene& scene, const SimulationOptions& options) {
+  Expected<Simulation> simulation = Simulation::make(scene, options);
+  if (!simulation) throw std::runtime_error(simulation.error().message());
+  return std::move(*simulation);
+}
+
+void run_embedded(const Scene& scene, Simulation& simulation, std::int64_t steps,
+                  const std::function<void(const Simulation&)>& see) {
+  const std::atomic<bool> never{false};
+  Asker asker{EmbeddedAsker(scene)};
+  const Expected<RunEnd> end = run(simulation, asker, steps, never, [&](const Simulation& now) {
+    if (see) see(now);
+    return Expected<void>{};
+  });
+  if (!end) throw std::runtime_error(end.error().message());
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,141 @@
+#include "simulation/natural_frequency.h"
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/geometry/mesh_files.h"
+#include "tests/simulation/in_process_run.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kDensity = 1000.0;  // kg/m^3, the water's
+
+struct Prepared {
+  Scene scene;
+  RigidBody rigid;
+  RigidBodyState state;
+
+  const Body& body() const { return scene.bodies().front(); }
+  FastestMotion fastest() const { return fastest_motion(body(), rigid, state, scene.water()); }
+  double bound() const { return frequency_bound(body(), rigid, scene.water()); }
+};
+
+// One body with these lines, and these in its [body.client].
+Prepared prepared(const std::string& keys, const std::string& client) {
+  Scene scene = scene_of("[water]\ndensity = 1000\nlevel = 3\n[[body]]\nid = 1\n" + keys +
+                         "\n[body.client]\n" + client);
+  const Simulation simulation = simulation_of(scene, {});
+  const SimulatedBody& body = simulation.bodies().front();
+  const RigidBody rigid = body.rigid;
+  const RigidBodyState state = body.state;
+  return {std::move(scene), rigid, state};
+}
+
+// A plate of 1 x 1 x 0.2 m at its draft.
+std::string floating_plate(double relative_density, double above_rest = 0.0) {
+  return "density = " + std::to_string(kDensity * relative_density) + "\nposition = [0, 0, " +
+         std::to_string(3.0 + (0.5 - relative_density) * 0.2 + above_rest) + "]\n";
+}
+const std::string kPlate = R"(shape = { type = "box", size = [1, 1, 0.2] })";
+
+TEST(FastestMotion, OfAFlatPlateAtRestIsItsHeave) {
+  for (const double s : {0.05, 0.3, 0.8}) {
+    const FastestMotion fastest = prepared(kPlate, floating_plate(s)).fastest();
+    EXPECT_NEAR(fastest.frequency, std::sqrt(kStandardGravity / (0.2 * s)), 1e-9 * fastest.frequency) << s;
+    EXPECT_NEAR(fastest.draft, 0.2 * s, 1e-9) << s;
+  }
+}
+
+TEST(FastestMotion, OfABodyOfLittleInertiaIsItsRoll) {
+  // Mass on the axes: rho g (J + V (z_b - z_c)) / I with J = 1/12 and z_b - z_c = -0.1 (1 - s).
+  const double s = 0.5;
+  const double inertia = 0.2;
+  const Prepared plate = prepared(kPlate, floating_plate(s) + "inertia = [0.2, 0.2, 0.2]\n");
+  const double stiffness = kDensity * kStandardGravity * (1.0 / 12.0 - 0.2 * s * 0.1 * (1.0 - s));
+  EXPECT_NEAR(plate.fastest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.fastest().frequency);
+}
+
+TEST(FastestMotion, OfADryBodyIsThatOfTheWaterThatItFallsInto) {
+  const Prepared plate = prepared(kPlate, floating_plate(0.1, 1.0));
+  EXPECT_GE(plate.fastest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));
+}
+
+TEST(FastestMotion, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
+  // A light plate on its edge has a small waterplane; lying flat it is stiff.
+  const double heave = std::sqrt(kStandardGravity / 0.02);
+  const Prepared on_edge = prepared(kPlate,
+                                    "density = 100\nposition = [0, 0, 3.4]\norientation = "
+                                    "[0.7071067811865476, 0.7071067811865475, 0, 0]\n");
+  EXPECT_GE(on_edge.fastest().frequency, heave * (1.0 - 1e-9));
+}
+
+TEST(FastestMotion, CountsNothingThatItsEnergyDoesNotReach) {
+  // An upright cone on its apex, at rest at half its height: the waterplane further up is wider, and stays
+  // dry.
+  const Prepared cone = prepared(
+      R"(shape = { type = "cone", radius = 1, height = 1, segments = 64 })",
+      "density = 125\ncenter_of_mass = [0, 0, 0.9]\nposition = [0, 0, 3.5]\norientation = [0, 1, 0, 0]\n");
+  // Heave: w^2 = rho g A / m = 3 g / draft for a cone at its draft.
+  EXPECT_NEAR(cone.fastest().frequency, std::sqrt(3.0 * kStandardGravity / 0.5), 0.01);
+  EXPECT_NEAR(cone.fastest().draft, 0.5, 1e-9);
+}
+
+TEST(FastestMotion, IsTheSameWhateverMethodAnswersForTheBody) {
+  const FastestMotion expected = prepared(kPlate, floating_plate(0.3)).fastest();
+  for (const char* method : {R"(method = "exact")", R"(method = "fast_surface")"}) {
+    std::string keys = kPlate + "\n";
+    keys += method;
+    const FastestMotion found = prepared(keys, floating_plate(0.3)).fastest();
+    EXPECT_EQ(found.frequency, expected.frequency) << method;
+    EXPECT_EQ(found.draft, expected.draft) << method;
+  }
+}
+
+TEST(FastestMotion, IsZeroWithoutWaterOrGravity) {
+  Prepared plate = prepared(kPlate, floating_plate(0.3));
+  Water none = plate.scene.water();
+  none.gravity = 0.0;
+  EXPECT_EQ(fastest_motion(plate.body(), plate.rigid, plate.state, none).frequency, 0.0);
+  EXPECT_EQ(frequency_bound(plate.body(), plate.rigid, none), 0.0);
+}
+
+TEST(FastestMotion, IsNeverAboveItsBound) {
+  for (const char* shape : {R"(shape = { type = "box", size = [2, 1, 0.1] })",
+                            R"(shape = { type = "sphere" })", R"(shape = { type = "torus_knot" })",
+                            R"(shape = { type = "wigley" })", R"(shape = { type = "rock", frequency = 5 })",
+                            R"(shape = { type = "box", size = [9, 0.01, 0.01] })"}) {
+    for (const char* density : {"density = 5\n", "density = 300\n", "density = 950\n"}) {
+      const Prepared body = prepared(
+          shape, std::string("position = [0, 0, 4]\norientation = [0.9, 0.3, 0.2, 0.1]\n") + density);
+      EXPECT_GT(body.fastest().frequency, 0.0) << shape << density;
+      EXPECT_GT(body.bound(), body.fastest().frequency) << shape << density;
+    }
+  }
+}
+
+TEST(FastestMotion, OfAnOpenHullIsThatOfItsSidesWhileItsEdgeIsDry) {
+  // A tray of 1 x 1 x 0.2 m, without its lid.
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory.path() / "tray.off";
+  std::ofstream(path)
+      << "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.2\n1 0 0.2\n1 1 0.2\n0 1 0.2\n"
+         "3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
+  const std::string source = "mesh = \"" + path.string() + "\"\nopen = \"dry_boundary\"";
+  const std::string mass = "mass = 100\ncenter_of_mass = [0.5, 0.5, 0.05]\ninertia = [100, 100, 100]\n";
+  const double heave = std::sqrt(kDensity * kStandardGravity / 100.0);
+  // Afloat, and a metre over its draft.
+  for (const char* position : {"position = [0, 0, 2.9]\n", "position = [0, 0, 3.9]\n"}) {
+    const Prepared tray = prepared(source, mass + position);
+    EXPECT_NEAR(tray.fastest().frequency, heave, 1e-3 * heave) << position;
+    EXPECT_GT(tray.bound(), tray.fastest().frequency);
+  }
+  // At the start already: there is no energy to compare with.
+  EXPECT_EQ(prepared(source, mass + "position = [0, 0, 2]\n").fastest().frequency, 0.0);
+}
+
+}  // namespace
+}  // namespace buoyancy

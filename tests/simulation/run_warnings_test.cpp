@@ -1,0 +1,210 @@
+#include "simulation/run_warnings.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "tests/simulation/in_process_run.h"
+#include "tests/stress/stress_case.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
+
+// A plate of 1 x 1 x 0.2 m that bobs by half its draft: an exact harmonic oscillator, and heave its fastest
+// swing.
+std::string plate(int id, double relative_density) {
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(),
+                "[[body]]\nid = %d\nname = \"plate %d\"\nshape = { type = \"box\", size = [1, 1, 0.2] }\n"
+                "[body.client]\ndensity = %.17g\nposition = [%d, 0, %.17g]\n",
+                id, id, 1000.0 * relative_density, 5 * id, 0.1 - 0.1 * relative_density);
+  return text.data();
+}
+const std::string kWater = "[water]\ndensity = 1000\n";
+
+double frequency_of_plate(double relative_density) {
+  return std::sqrt(kStandardGravity / (0.2 * relative_density));
+}
+
+SimulationOptions options_of(Integrator integrator, double step) {
+  SimulationOptions options;
+  options.integrator = integrator;
+  options.step = step;
+  return options;
+}
+
+bool contains(const std::optional<Error>& warning, const std::string& words) {
+  return warning && warning->message().find(words) != std::string::npos;
+}
+
+TEST(StepWarning, ComesBeforeEveryBlowUpFrom1KilohertzTo10HertzAndOnlyThen) {
+  StressCase stress("1 kHz to 10 Hz steps, stiff light bodies", "w h; 2,000 steps of the body itself",
+                    "warned of exactly where w h > 0.5, as blowing up from 2 on");
+  int quiet = 0;
+  int inaccurate = 0;
+  int blown_up = 0;
+  for (const double relative_density : {0.5, 0.1, 0.02, 0.004}) {
+    const Scene scene = scene_of(kWater + plate(1, relative_density));
+    for (const double step : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1}) {
+      for (const Integrator integrator : kBoth) {
+        Simulation simulation = simulation_of(scene, options_of(integrator, step));
+        const double wh = frequency_of_plate(relative_density) * step;
+        SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(name(integrator)));
+        const std::optional<Error> warning = step_warning(simulation);
+        run_embedded(scene, simulation, 2000);
+        const EnergyRecord& energy = simulation.bodies().front().energy;
+        if (wh <= kAccurateSwing) {
+          EXPECT_FALSE(warning) << warning->message();
+          EXPECT_FALSE(energy_warning(simulation));
+          const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : wh;
+          EXPECT_LT(energy.greatest - energy.least, 1.1 * swing * energy.greatest_kinetic);
+          ++quiet;
+        } else if (wh < kStableSwing) {
+          EXPECT_TRUE(contains(warning, "stable but inaccurate"));
+          ++inaccurate;
+        } else {
+          EXPECT_TRUE(contains(warning, "blows up"));
+          EXPECT_TRUE(contains(energy_warning(simulation), "energy rose"));
+          ++blown_up;
+        }
+        stress.require(warning.has_value() == (wh > kAccurateSwing), "w h = " + std::to_string(wh));
+      }
+    }
+  }
+  EXPECT_GE(quiet, 10);
+  EXPECT_GE(inaccurate, 10);
+  EXPECT_GE(blown_up, 4);
+}
+
+TEST(StepWarning, AdvisesAStepThatItHasNothingAgainst) {
+  for (const double lead_time : {0.0, 0.02, 1.0}) {
+    for (const Integrator integrator : kBoth) {
+      const Scene scene = scene_of(kWater + plate(1, 0.02));
+      SimulationOptions options = options_of(integrator, 0.1);
+      options.lead_time = lead_time;
+      const std::optional<Error> warning = step_warning(simulation_of(scene, options));
+      ASSERT_TRUE(warning);
+      double advised = 0.0;
+      ASSERT_EQ(std::sscanf(warning->remedy.c_str(), "Take --step %lf or less", &advised), 1)
+          << warning->remedy;
+      options.step = advised;
+      EXPECT_FALSE(step_warning(simulation_of(scene, options))) << advised;
+      options.step = 1.15 * advised;
+      EXPECT_TRUE(step_warning(simulation_of(scene, options))) << advised;
+    }
+  }
+}
+
+TEST(StepWarning, NamesTheWorstBodyItsFiguresAndHowManyMore) {
+  const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(3, 0.02) + plate(2, 0.004) + plate(4, 0.02));
+  const std::optional<Error> warning =
+      step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02)));
+  ASSERT_TRUE(warning);
+  EXPECT_EQ(warning->subject, "body 2 (plate 2) and 2 more");
+  for (const char* figure : {"0.02 s", "111 rad/s", "2.21", "0.8 kg", "--step 0.0045"}) {
+    EXPECT_TRUE(contains(warning, figure)) << figure << ": " << warning->message();
+  }
+}
+
+TEST(StepWarning, ComesWhileTheBodyIsStillInTheAir) {
+  const Scene scene = scene_of(kWater + plate(1, 0.02) + "linear_velocity = [0, 0, 10]\n");
+  EXPECT_TRUE(step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02))));
+}
+
+TEST(StepWarning, KnowsThatDampingMakesNoStepTooLarge) {
+  // The same plate at w h = 0.49, with a damping whose own rate is 1e6 per step.
+  const double step = 0.49 / frequency_of_plate(0.1);
+  const Scene scene =
+      scene_of(kWater + plate(1, 0.1) +
+               "linear_damping = 1e9\nangular_damping = 1e9\nlinear_damping_quadratic = 1e9\n");
+  for (const Integrator integrator : kBoth) {
+    Simulation simulation = simulation_of(scene, options_of(integrator, step));
+    EXPECT_FALSE(step_warning(simulation));
+    run_embedded(scene, simulation, 2000);
+    EXPECT_LE(simulation.bodies().front().energy.greatest, simulation.bodies().front().energy.initial);
+  }
+}
+
+TEST(StepWarning, KnowsTheStepFromWhichALeadTimeThatNothingIsLateByBlowsUp) {
+  // h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
+  const double w = frequency_of_plate(0.1);
+  const Scene scene = scene_of(kWater + plate(1, 0.1));
+  for (const Integrator integrator : kBoth) {
+    for (const double lead_time : {0.2 / w, 3.0 / w}) {
+      const double lead = (integrator == Integrator::kVelocityVerlet ? 2.0 : 1.0) * lead_time;
+      const double limit = std::sqrt(lead * lead + 4.0 / (w * w)) - lead;
+      for (const double factor : {0.97, 1.03}) {
+        SimulationOptions options = options_of(integrator, factor * limit);
+        options.lead_time = lead_time;
+        Simulation simulation = simulation_of(scene, options);
+        const std::optional<Error> warning = step_warning(simulation);
+        EXPECT_TRUE(contains(warning, factor < 1.0 ? "stable but inaccurate" : "blows up")) << factor;
+        EXPECT_TRUE(contains(warning, "lead time"));
+        // Below, the lead time damps the motion away; beyond, it goes on as far as the water goes.
+        double lowest = 1.0;
+        double highest = -1.0;
+        run_embedded(scene, simulation, 3000, [&](const Simulation& now) {
+          if (now.step_number() < 2900) return;
+          const double height = now.bodies().front().state.center_W.z();
+          lowest = std::min(lowest, height);
+          highest = std::max(highest, height);
+        });
+        EXPECT_EQ(highest - lowest > 1e-4, factor > 1.0)
+            << name(integrator) << " " << lead_time << " " << factor << ": " << highest - lowest;
+      }
+    }
+  }
+}
+
+TEST(LatenessWarning, ComesAboveATenthOfARadian) {
+  const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(2, 0.1));
+  const double w = frequency_of_plate(0.1);
+  const Simulation simulation = simulation_of(scene, {});
+  EXPECT_FALSE(lateness_warning(simulation, 0.0));
+  EXPECT_FALSE(lateness_warning(simulation, 0.099 / w));
+  const std::optional<Error> warning = lateness_warning(simulation, 0.101 / w);
+  EXPECT_TRUE(contains(warning, "body 2 (plate 2)"));
+  EXPECT_TRUE(contains(warning, "= 0.101")) << warning->message();
+  EXPECT_TRUE(contains(lateness_warning(simulation, 1.0), "and 1 more"));
+}
+
+TEST(LatenessWatch, WarnsOnceWhenTheMeanDelayOfASecondIsTooMuch) {
+  const Scene scene = scene_of(kWater + plate(1, 0.5) + "linear_damping = 1000\n");
+  const double w = frequency_of_plate(0.5);
+  const double step = 0.02 / w;
+  for (const std::int64_t late_steps : {4, 6}) {
+    SimulationOptions options = options_of(Integrator::kVelocityVerlet, step);
+    options.late_steps = late_steps;
+    Simulation simulation = simulation_of(scene, options);
+    LatenessWatch watch;
+    int warnings = 0;
+    double first = -1.0;
+    run_embedded(scene, simulation, 2000, [&](const Simulation& now) {
+      if (!watch.see(now)) return;
+      if (++warnings == 1) first = now.time();
+    });
+    EXPECT_EQ(warnings, late_steps == 6 ? 1 : 0);
+    if (warnings > 0) {
+      EXPECT_NEAR(first, 1.0, 2.0 * step);
+    }
+  }
+}
+
+TEST(EnergyWarning, DoesNotMistakeRestForARun) {
+  // A nanometre from rest: the energy's rounding is more than its kinetic energy.
+  const Scene scene = scene_of(
+      "[water]\ndensity = 1000\nlevel = 1e3\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 0.3] "
+      "}\n"
+      "[body.client]\ndensity = 300\nposition = [0, 0, 1000.060000001]\n");
+  for (const Integrator integrator : kBoth) {
+    Simulation simulation = simulation_of(scene, options_of(integrator, 0.01));
+    run_embedded(scene, simulation, 20'000);
+    EXPECT_FALSE(energy_warning(simulation));
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

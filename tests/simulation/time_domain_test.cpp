@@ -1,0 +1,306 @@
+// The simulator against closed forms over long times: an undamped bob's energy, order and period, with
+// wrenches in time and late.
+//
+// A wall-sided body that heaves within its sides is an exact harmonic oscillator, w^2 = rho g A_wp / m, and
+// both integrators have closed forms on it (integrator_test). Tests that are rows of the stress catalogue put
+// their largest figures into the report (docs/stability.md, "In time").
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "simulation/run_warnings.h"
+#include "tests/simulation/in_process_run.h"
+#include "tests/stress/stress_case.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
+constexpr double kDensity = 1000.0;  // kg/m^3, the water's
+
+// A box of half the water's density, let go a quarter of its draft above its rest: 12 triangles.
+struct Bob {
+  double draft = 0.2;  // m: half its height
+  double width = 1.0;  // m, both ways
+
+  double start() const { return 0.25 * draft; }                             // m
+  double frequency() const { return std::sqrt(kStandardGravity / draft); }  // rad/s
+  // J: of its motion.
+  double swing() const { return 0.5 * kDensity * kStandardGravity * width * width * start() * start(); }
+
+  Scene scene() const {
+    std::array<char, 256> text{};
+    std::snprintf(text.data(), text.size(),
+                  "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\n"
+                  "shape = { type = \"box\", size = [%g, %g, %g] }\n"
+                  "[body.client]\ndensity = 500\nposition = [0, 0, %.17g]\n",
+                  width, width, 2.0 * draft, start());
+    return scene_of(text.data());
+  }
+};
+
+SimulationOptions options_of(Integrator integrator, double step) {
+  SimulationOptions options;
+  options.integrator = integrator;
+  options.step = step;
+  return options;
+}
+
+double energy_error(const SimulatedBody& body) {
+  return std::abs(body.energy.current - body.energy.initial);
+}
+
+struct EnergyErrors {
+  double early = 0.0;  // J: largest of the first tenth of a run
+  double late = 0.0;   // J: of the last
+};
+
+EnergyErrors energy_errors(const Scene& scene, Integrator integrator, double step, std::int64_t steps) {
+  Simulation simulation = simulation_of(scene, options_of(integrator, step));
+  EnergyErrors errors;
+  run_embedded(scene, simulation, steps, [&](const Simulation& now) {
+    const double error = energy_error(now.bodies().front());
+    if (10 * now.step_number() < steps) errors.early = std::max(errors.early, error);
+    if (10 * now.step_number() >= 9 * steps) errors.late = std::max(errors.late, error);
+  });
+  EXPECT_FALSE(energy_warning(simulation));
+  return errors;
+}
+
+TEST(UndampedBob, KeepsItsEnergyWithinTheIntegratorsSwingOverAMillionSteps) {
+  const Bob bob;
+  const Scene scene = bob.scene();
+  const double step = 0.01;
+  const double wh = bob.frequency() * step;
+  StressCase stress("undamped bob, 1e6 steps: energy bounded", "the integrators' closed forms",
+                    "the integrator's swing + 5 %; in the last tenth that of the first + 5 %");
+  for (const Integrator integrator : kBoth) {
+    const EnergyErrors errors = energy_errors(scene, integrator, step, 1'000'000);
+    const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
+    const std::string at(name(integrator));
+    stress.check(errors.early, 1.05 * swing * bob.swing(), at + ", first tenth");
+    stress.check(errors.late, 1.05 * errors.early, at + ", last tenth");
+  }
+}
+
+TEST(UndampedBob, KeepsItsEnergyWhereItRollsAndPitchesToo) {
+  const Scene scene = scene_of(
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 0.8, 0.4] }\n"
+      "[body.client]\ndensity = 500\nposition = [0, 3, 0.03]\norientation = [0.999, 0.03, 0.02, 0]\n");
+  for (const Integrator integrator : kBoth) {
+    const EnergyErrors errors = energy_errors(scene, integrator, 0.01, 200'000);
+    EXPECT_LT(errors.late, 1.1 * errors.early) << name(integrator);
+  }
+}
+
+// The slope of log(error) over log(step), by least squares, of the bob after one second.
+double fitted_order(Integrator integrator) {
+  const Bob bob;
+  const Scene scene = bob.scene();
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const int steps : {200, 400, 800, 1600, 3200}) {
+    Simulation simulation = simulation_of(scene, options_of(integrator, 1.0 / steps));
+    run_embedded(scene, simulation, steps);
+    const RigidBodyState& state = simulation.bodies().front().state;
+    const double height = bob.start() * std::cos(bob.frequency());
+    const double speed = -bob.start() * bob.frequency() * std::sin(bob.frequency());
+    x.push_back(-std::log(steps));
+    y.push_back(
+        std::log(std::hypot(state.center_W.z() - height, (state.velocity_W.z() - speed) / bob.frequency())));
+  }
+  const auto n = static_cast<double>(x.size());
+  double sx = 0.0;
+  double sy = 0.0;
+  double sxx = 0.0;
+  double sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sx += x[i];
+    sy += y[i];
+    sxx += x[i] * x[i];
+    sxy += x[i] * y[i];
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+TEST(UndampedBob, ConvergesWithOrderOneAndTwoInTheStep) {
+  StressCase stress("undamped bob: order in the step", "closed form; steps of 1/200 to 1/3200 s",
+                    "order 1 (semi-implicit Euler), 2 (Verlet), +- 0.05");
+  const auto check = [&](Integrator integrator, double order) {
+    stress.check(std::abs(fitted_order(integrator) - order), 0.05, std::string(name(integrator)));
+  };
+  check(Integrator::kSemiImplicitEuler, 1.0);
+  check(Integrator::kVelocityVerlet, 2.0);
+}
+
+// From the first to the last upward crossing of the rest position.
+class PeriodMeter {
+ public:
+  void see(double height, double time, double step) {
+    if (last_height_ < 0.0 && height >= 0.0) {
+      last_ = time - step * height / (height - last_height_);
+      if (++periods_ == 0) first_ = last_;
+    }
+    last_height_ = height;
+  }
+  double mean() const { return (last_ - first_) / periods_; }
+
+ private:
+  double last_height_ = 0.0;
+  double first_ = 0.0;
+  double last_ = 0.0;
+  int periods_ = -1;
+};
+
+TEST(UndampedBob, HasThePeriodOfItsMassAndWaterplaneWhateverItsWallSidedShape) {
+  struct {
+    std::string shape;
+    double area;    // m^2
+    double height;  // m
+  } const shapes[] = {
+      {R"({ type = "box", size = [1, 1, 0.4] })", 1.0, 0.4},
+      {R"({ type = "box", size = [3, 0.7, 0.3], segments = [4, 3, 2] })", 2.1, 0.3},
+      // A prism of 24 sides, as the mesh has it.
+      {R"({ type = "cylinder", radius = 0.5, height = 0.4, segments = 24, stacks = 2 })",
+       12.0 * 0.25 * std::sin(2.0 * std::numbers::pi / 24.0), 0.4},
+  };
+  StressCase stress("bob period: wall-sided bodies", "2 pi sqrt(m / (rho g A_wp)), less Verlet's own share",
+                    "1e-6 of the period");
+  for (const auto& shape : shapes) {
+    for (const double relative_density : {0.2, 0.5, 0.9}) {
+      // Centre of mass and rest: the body's centre is (1/2 - s) H over the level.
+      const double amplitude = 1e-3;
+      const double rest = (0.5 - relative_density) * shape.height;
+      const Scene scene = scene_of("[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = " + shape.shape +
+                                   "\n[body.client]\ndensity = " + std::to_string(1000.0 * relative_density) +
+                                   "\nposition = [0, 0, " + std::to_string(rest + amplitude) + "]\n");
+      const double mass = kDensity * relative_density * shape.area * shape.height;
+      const double period =
+          2.0 * std::numbers::pi * std::sqrt(mass / (kDensity * kStandardGravity * shape.area));
+
+      const double step = 2e-3;
+      Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, step));
+      PeriodMeter meter;
+      run_embedded(scene, simulation, 20'000, [&](const Simulation& now) {
+        meter.see(now.bodies().front().state.center_W.z() - rest, now.time(), step);
+      });
+      // Verlet's own period is T (1 - (w h)^2 / 24).
+      const double wh = 2.0 * std::numbers::pi / period * step;
+      stress.check(std::abs(meter.mean() - period * (1.0 - wh * wh / 24.0)), 1e-6 * period,
+                   shape.shape + ", relative density " + std::to_string(relative_density));
+      EXPECT_NEAR(meter.mean(), period, wh * wh / 23.0 * period) << shape.shape << " " << relative_density;
+    }
+  }
+}
+
+struct LateRun {
+  double largest_error = 0.0;  // of the energy, of the bob's swing
+  double final_growth = 0.0;   // energy of the motion at the end / at the start
+  bool warned = false;
+};
+
+// A minute of the bob with wrenches late by so many steps, `delay` in all.
+LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t late_steps, double delay,
+                 bool with_lead_time) {
+  SimulationOptions options = options_of(integrator, delay / static_cast<double>(late_steps));
+  options.late_steps = late_steps;
+  options.lead_time = with_lead_time ? delay : 0.0;
+  const Scene scene = bob.scene();
+  Simulation simulation = simulation_of(scene, options);
+  LateRun run;
+  run_embedded(scene, simulation, std::llround(60.0 / options.step), [&](const Simulation& now) {
+    run.largest_error = std::max(run.largest_error, energy_error(now.bodies().front()) / bob.swing());
+  });
+  const EnergyRecord& energy = simulation.bodies().front().energy;
+  run.final_growth = 1.0 + (energy.current - energy.initial) / bob.swing();
+  run.warned = energy_warning(simulation).has_value();
+  EXPECT_NEAR(simulation.delay(), delay, 1e-12);
+  return run;
+}
+
+TEST(LateWrench, KeepsTheEnergyWithinOnePercentOverAMinuteWithALeadTime) {
+  const Bob bob;
+  StressCase stress("wrench one and five steps late, `lead_time` set, alpha = w delay <= 0.02",
+                    "the energy at the start, over 60 s", "1 % (Euler: and its own swing)");
+  for (const std::int64_t late_steps : {1, 5}) {
+    for (const double alpha : {0.02, 0.01}) {
+      const std::string at =
+          ", " + std::to_string(late_steps) + " late, alpha " + (alpha == 0.02 ? "0.02" : "0.01");
+      const LateRun verlet =
+          late_run(bob, Integrator::kVelocityVerlet, late_steps, alpha / bob.frequency(), true);
+      stress.check(verlet.largest_error, 0.01, "Verlet" + at);
+      // Beside what this integrator's energy swings by on its own.
+      const LateRun euler =
+          late_run(bob, Integrator::kSemiImplicitEuler, late_steps, alpha / bob.frequency(), true);
+      stress.check(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(late_steps), "Euler" + at);
+      EXPECT_FALSE(verlet.warned || euler.warned);
+    }
+  }
+}
+
+TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
+  // At the rate w^2 delay: threefold in a minute. A large, slow bob: a delay that is worth as much is few
+  // steps.
+  const Bob bob{5.0, 20.0};
+  const double delay = std::log(3.0) / (60.0 * bob.frequency() * bob.frequency());
+  StressCase stress("the same delay without and with `lead_time`: threefold energy in 60 s, or as it was",
+                    "exp(w^2 delay t)", "+- 0.05; +- 0.01; warned of without");
+  for (const Integrator integrator : kBoth) {
+    for (const std::int64_t late_steps : {1, 5}) {
+      const LateRun late = late_run(bob, integrator, late_steps, delay, false);
+      const std::string at = std::string(name(integrator)) + ", " + std::to_string(late_steps) + " late";
+      stress.check(std::abs(late.final_growth - 3.0), 0.05, at);
+      stress.require(late.warned, at + ", warning");
+      const LateRun led = late_run(bob, integrator, late_steps, delay, true);
+      stress.check(std::abs(led.final_growth - 1.0), 0.01, at + ", led");
+    }
+  }
+}
+
+TEST(LateWrench, IsThatOfSoManyStepsAgoAndTheFirstUntilThen) {
+  SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
+  options.late_steps = 3;
+  const Bob bob;
+  const Scene scene = bob.scene();
+  Simulation simulation = simulation_of(scene, options);
+  std::vector<double> heights;
+  run_embedded(scene, simulation, 20, [&](const Simulation& now) {
+    const SimulatedBody& body = now.bodies().front();
+    heights.push_back(body.state.center_W.z());
+    const std::size_t asked = heights.size() > 3 ? heights.size() - 4 : 0;
+    ASSERT_NEAR(body.wrench.submerged_volume, bob.draft - heights[asked], 1e-14) << heights.size();
+    ASSERT_NEAR(now.delay(), 0.01 * static_cast<double>(heights.size() - 1 - asked), 1e-15);
+  });
+}
+
+TEST(LateWrench, LeavesTheEnergyThatOfTheBodyAsItLies) {
+  const Bob bob;
+  const Scene scene = bob.scene();
+  for (const std::int64_t late_steps : {0, 3}) {
+    for (const double lead_time : {0.0, 0.03}) {
+      SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
+      options.late_steps = late_steps;
+      options.lead_time = lead_time;
+      Simulation simulation = simulation_of(scene, options);
+      run_embedded(scene, simulation, 50, [&](const Simulation& now) {
+        const SimulatedBody& body = now.bodies().front();
+        const double mass = kDensity * bob.draft;
+        const double height = body.state.center_W.z();
+        const double depth = bob.draft - height;
+        // Of a prism of 1 m^2 the centre of buoyancy is at half its depth.
+        const double energy = 0.5 * mass * body.state.velocity_W.squaredNorm() +
+                              mass * kStandardGravity * height +
+                              0.5 * kDensity * kStandardGravity * depth * depth;
+        ASSERT_NEAR(body.energy.current, energy, 1e-10) << late_steps << " " << lead_time;
+      });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

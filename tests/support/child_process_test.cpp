@@ -1,0 +1,130 @@
+#include "tests/support/child_process.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/support/temp_dir.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+ChildCommand shell(const std::string& script) {
+  ChildCommand command;
+  command.arguments = {"sh", "-c", script};
+  return command;
+}
+
+TEST(ChildProcess, CapturesBothStreamsAndTheExitCode) {
+  const FinishedProcess finished = run_to_end(shell("echo out; echo error >&2; exit 3"), kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 3);
+  EXPECT_EQ(finished.standard_output, "out\n");
+  EXPECT_EQ(finished.standard_error, "error\n");
+}
+
+TEST(ChildProcess, DoesNotBlockOnMoreOutputThanAPipeHolds) {
+  const FinishedProcess finished = run_to_end(shell("head -c 1000000 /dev/zero"), kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_EQ(finished.standard_output.size(), 1000000U);
+}
+
+TEST(ChildProcess, IsReadableWhileItRunsAndEndsBySignal) {
+  ChildProcess child(shell("echo ready; exec sleep 600"));
+  EXPECT_TRUE(child.wait_for_text("ready\n", kWaitTimeout));
+  EXPECT_EQ(child.wait(0.0), std::nullopt);
+  child.send_signal(SIGTERM);
+  EXPECT_EQ(child.wait(kWaitTimeout), 128 + SIGTERM);
+}
+
+TEST(ChildProcess, StopsWaitingForTextThatNeverCame) {
+  ChildProcess child(shell("echo something else"));
+  EXPECT_FALSE(child.wait_for_text("ready", kWaitTimeout));
+  EXPECT_EQ(child.wait(0.0), 0);
+}
+
+TEST(ChildProcess, IsGoneAfterItsDestructor) {
+  pid_t pid = 0;
+  {
+    const ChildProcess child(shell("exec sleep 600"));
+    pid = child.pid();
+  }
+  EXPECT_EQ(kill(pid, 0), -1);
+}
+
+ChildCommand with_descendants(const std::string& script) {
+  ChildCommand command = shell(script);
+  command.with_descendants = true;
+  return command;
+}
+
+// Starts two processes in sessions of their own, one of which has lost its parent, and says who they are.
+const std::string kStartsOthers =
+    "setsid sh -c 'echo $$; exec sleep 600' & (setsid sh -c 'echo $$; exec sleep 600' &); "
+    "while [ $(wc -l <out) -lt 2 ]; do sleep 0.01; done; ";
+
+class Descendants : public testing::Test {
+ protected:
+  // A command whose output goes to the file that kStartsOthers counts lines in.
+  ChildCommand command(const std::string& script) const {
+    ChildCommand whole = with_descendants(kStartsOthers + script);
+    whole.directory = directory_.path("");
+    whole.standard_output = directory_.path("out");
+    return whole;
+  }
+  // How many of the processes that the program named are there.
+  int left() const {
+    std::ifstream file(directory_.path("out"));
+    int count = 0;
+    for (pid_t pid = 0; file >> pid;) count += kill(pid, 0) == 0 ? 1 : 0;
+    return count;
+  }
+
+ private:
+  ScratchDirectory directory_;
+};
+
+TEST_F(Descendants, AreGoneWhenTheProgramHasEnded) {
+  ChildProcess child(command("exit 3"));
+  EXPECT_EQ(child.wait(kWaitTimeout), 3);
+  EXPECT_EQ(left(), 0);
+}
+
+TEST_F(Descendants, AreGoneAfterTheDestructor) {
+  {
+    ChildProcess child(command("echo started >&2; exec sleep 600"));
+    EXPECT_TRUE(child.wait_for_text("started", kWaitTimeout));
+    EXPECT_EQ(left(), 2);
+  }
+  EXPECT_EQ(left(), 0);
+}
+
+TEST_F(Descendants, EndWithAProgramThatHandlesASignal) {
+  ChildProcess child(command("trap 'exit 5' TERM; echo started >&2; while :; do sleep 0.01; done"));
+  EXPECT_TRUE(child.wait_for_text("started", kWaitTimeout));
+  child.send_signal(SIGTERM);
+  EXPECT_EQ(child.wait(kWaitTimeout), 5);
+  EXPECT_EQ(left(), 0);
+  child.send_signal(SIGTERM);
+}
+
+TEST(ChildProcess, GivesEnvironmentDirectoryAndOutputFile) {
+  ChildCommand command = shell("echo $GREETING $(pwd); test -e /dev/full");
+  command.environment = {"GREETING=hello"};
+  command.directory = std::string("/");
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).standard_output, "hello /\n");
+  command.standard_output = "/dev/full";
+  EXPECT_EQ(run_to_end(command, kWaitTimeout).standard_output, "");
+}
+
+TEST(ChildProcess, ExitsWith127WhereTheProgramIsMissing) {
+  ChildCommand command;
+  command.arguments = {"/no/such/program"};
+  const FinishedProcess finished = run_to_end(command, kWaitTimeout);
+  EXPECT_EQ(finished.exit_code, 127);
+  EXPECT_NE(finished.standard_error.find("/no/such/program"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace buoyancy

@@ -1,0 +1,90 @@
+#include "tests/view/image.h"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include "tests/support/temp_dir.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr Colour kSea{10, 20, 200};
+constexpr Colour kDuck{250, 220, 0};
+
+// Two rows of three pixels; the duck is at (1, 0) and (1, 1), or wherever `duck` says.
+std::string three_by_two(int duck = 1) {
+  std::array<png_byte, 18> pixels{};
+  for (int at = 0; at < 6; ++at) {
+    const Colour colour = at % 3 == duck ? kDuck : kSea;
+    const std::size_t byte = 3 * static_cast<std::size_t>(at);
+    pixels.at(byte) = static_cast<png_byte>(colour.red);
+    pixels.at(byte + 1) = static_cast<png_byte>(colour.green);
+    pixels.at(byte + 2) = static_cast<png_byte>(colour.blue);
+  }
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = 3;
+  image.height = 2;
+  image.format = PNG_FORMAT_RGB;
+  std::string png(10'000, '\0');
+  png_alloc_size_t size = png.size();
+  EXPECT_NE(png_image_write_to_memory(&image, png.data(), &size, 0, pixels.data(), 0, nullptr), 0);
+  png.resize(size);
+  return png;
+}
+
+TEST(Picture, HoldsEveryPixelOfThePng) {
+  const Picture picture(three_by_two());
+  EXPECT_EQ(picture.width(), 3);
+  EXPECT_EQ(picture.height(), 2);
+  EXPECT_EQ(picture.pixel(0, 0), kSea);
+  EXPECT_EQ(picture.pixel(1, 1), kDuck);
+  EXPECT_EQ(picture.pixel(2, 1), kSea);
+}
+
+TEST(Picture, CountsThePixelsOfARegionThatAreWanted) {
+  const Picture picture(three_by_two());
+  EXPECT_DOUBLE_EQ(picture.share(picture.whole(), is_near(kDuck)), 2.0 / 6.0);
+  EXPECT_DOUBLE_EQ(picture.share({1, 0, 2, 2}, is_near(kDuck)), 0.5);
+  EXPECT_DOUBLE_EQ(picture.share({1, 1, 1, 1}, is_near(kDuck)), 1.0);
+}
+
+TEST(Picture, IsNearAColourWithinItsToleranceAlone) {
+  EXPECT_TRUE(is_near(kSea, 5)({15, 15, 205}));
+  EXPECT_FALSE(is_near(kSea, 5)({16, 20, 200}));
+  EXPECT_FALSE(is_near(kSea, 5)({10, 14, 200}));
+  EXPECT_FALSE(is_near(kSea, 5)({10, 20, 206}));
+}
+
+TEST(Picture, SaysHowMuchOfARegionChanged) {
+  const Picture before(three_by_two(1));
+  const Picture after(three_by_two(2));
+  EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole()), 4.0 / 6.0);
+  EXPECT_DOUBLE_EQ(before.share_changed(after, {0, 0, 1, 2}), 0.0);
+  EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole(), 255), 0.0);
+}
+
+TEST(Picture, IsTheSameAfterItWasSaved) {
+  const ScratchDirectory directory;
+  const std::string path = directory.path("a/folder/that/is/not/there.png");
+  Picture(three_by_two()).save(path);
+  EXPECT_EQ(contents_of(path), three_by_two());
+}
+
+TEST(Picture, RefusesWhatIsNoPngAndWhatIsNotInIt) {
+  EXPECT_THROW(Picture("not a PNG"), std::runtime_error);
+  const std::string png = three_by_two();
+  EXPECT_THROW(Picture(png.substr(0, png.size() / 2)), std::runtime_error);
+  const Picture picture(png);
+  EXPECT_THROW(picture.pixel(3, 0), std::runtime_error);
+  EXPECT_THROW(picture.pixel(0, -1), std::runtime_error);
+  EXPECT_THROW(picture.share({2, 0, 2, 1}, is_near(kSea)), std::runtime_error);
+  EXPECT_THROW(picture.share({0, 0, 0, 1}, is_near(kSea)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace buoyancy

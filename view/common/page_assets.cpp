@@ -1,0 +1,85 @@
+#include "view/common/page_assets.h"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "view/page_files.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr std::string_view kInsert = "<!-- insert ";
+constexpr std::string_view kInsertEnd = " -->";
+
+std::string element(std::string_view tag, std::string_view text) {
+  std::string made = "<";
+  made += tag;
+  made += ">\n";
+  made += text;
+  made += "\n</";
+  made += tag;
+  made += ">";
+  return made;
+}
+
+std::string inserted(std::string_view name, std::string_view three) {
+  if (name == "three.js") return element("script", three);
+  return element(name.ends_with(".css") ? "style" : "script", page_text(name));
+}
+
+}  // namespace
+
+std::string_view page_text(std::string_view file_name) {
+  for (const PageFile& file : kPageFiles) {
+    if (file.name == file_name) return file.text;
+  }
+  return {};
+}
+
+Expected<std::string> three_js(const std::filesystem::path& path) {
+  std::error_code no_such_file;
+  const bool is_directory = std::filesystem::is_directory(path, no_such_file);  // whose reading throws
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  if (!is_directory) text.assign(std::istreambuf_iterator<char>(file), {});
+  const std::string subject = path.string();
+  if (is_directory || !file.is_open() || file.bad()) {
+    return failure({subject, "cannot be read", "three.js as Debian installs it", "it is not installed",
+                    "apt-get install libjs-three, or --three FILE"});
+  }
+  if (text.find("WebGLRenderer") == std::string::npos || text.find("</script") != std::string::npos) {
+    return failure({subject, "is not the three.js that a page can hold",
+                    "a classic script (three.min.js) that defines THREE", "another file of that name",
+                    "--three /usr/share/javascript/three/three.min.js"});
+  }
+  return text;
+}
+
+std::string self_contained_page(std::string_view file_name, std::string_view three) {
+  std::string page;
+  std::string_view rest = page_text(file_name);
+  while (true) {
+    const std::size_t start = rest.find(kInsert);
+    const std::size_t end = rest.find(kInsertEnd, start);
+    page += rest.substr(0, start);
+    if (start == std::string_view::npos) return page;
+    page += inserted(rest.substr(start + kInsert.size(), end - start - kInsert.size()), three);
+    rest.remove_prefix(end + kInsertEnd.size());
+  }
+}
+
+std::string escaped_for_script(std::string_view json) {
+  std::string escaped;
+  escaped.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      escaped += "\\u003c";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace buoyancy

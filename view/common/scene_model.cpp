@@ -1,0 +1,109 @@
+#include "view/common/scene_model.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <meshoptimizer.h>
+
+#include "scene/scene_report.h"
+#include "view/common/base64.h"
+
+namespace buoyancy {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Drawing {
+  std::vector<float> positions;        // three a vertex
+  std::vector<std::uint32_t> indices;  // three a triangle
+};
+
+Drawing whole_drawing(const TriangleMesh& mesh) {
+  Drawing drawing;
+  drawing.positions.reserve(3 * mesh.vertex_count());
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    for (const double coordinate : {mesh.x[i], mesh.y[i], mesh.z[i]}) {
+      drawing.positions.push_back(static_cast<float>(coordinate));
+    }
+  }
+  drawing.indices.reserve(3 * mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::int32_t vertex : triangle) drawing.indices.push_back(static_cast<std::uint32_t>(vertex));
+  }
+  return drawing;
+}
+
+void reduce(Drawing& drawing, std::size_t most_triangles) {
+  constexpr float kLargestError = 0.02F;  // of the mesh's extent
+  constexpr std::size_t kVertexBytes = 3 * sizeof(float);
+  const std::size_t vertices = drawing.positions.size() / 3;
+  const std::size_t most_indices = 3 * most_triangles;
+  std::vector<std::uint32_t> reduced(drawing.indices.size());
+  std::size_t count =
+      meshopt_simplify(reduced.data(), drawing.indices.data(), drawing.indices.size(),
+                       drawing.positions.data(), vertices, kVertexBytes, most_indices, kLargestError);
+  if (count > most_indices) {  // it keeps the topology, which a soup of small parts does not let it do
+    count = meshopt_simplifySloppy(reduced.data(), drawing.indices.data(), drawing.indices.size(),
+                                   drawing.positions.data(), vertices, kVertexBytes, most_indices, 1.0F);
+  }
+  reduced.resize(count);
+  drawing.indices = std::move(reduced);
+  std::vector<float> used(drawing.positions.size());
+  const std::size_t used_vertices =
+      meshopt_optimizeVertexFetch(used.data(), drawing.indices.data(), drawing.indices.size(),
+                                  drawing.positions.data(), vertices, kVertexBytes);
+  used.resize(3 * used_vertices);
+  drawing.positions = std::move(used);
+}
+
+// The most triangles that each mesh may show so that all together stay within the budget and the small ones
+// whole.
+std::size_t largest_part(const Scene& scene, std::size_t most_triangles) {
+  std::vector<std::size_t> sizes;
+  for (const auto& prepared : scene.meshes()) sizes.push_back(prepared->mesh.surface.triangles.size());
+  std::ranges::sort(sizes);
+  std::size_t left = most_triangles;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const std::size_t part = left / (sizes.size() - i);
+    if (sizes[i] > part) return part;
+    left -= sizes[i];
+  }
+  return most_triangles;
+}
+
+std::string file_name_of(const Json& path) {
+  return std::filesystem::path(path.get<std::string>()).filename().string();
+}
+
+Json array_of(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+}  // namespace
+
+Json scene_model(const Scene& scene, const SceneModelOptions& options) {
+  Json model = Json::parse(scene_report_json(scene));
+  model["scene"] = file_name_of(model["scene"]);
+  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
+    const auto& center = scene.bodies()[i].center_of_mass_B;
+    model["bodies"][i]["center_of_mass"] = center ? array_of(*center) : Json(nullptr);
+  }
+  const std::size_t part = std::max<std::size_t>(4, largest_part(scene, options.most_triangles));
+  for (std::size_t i = 0; i < scene.meshes().size(); ++i) {
+    const HydrostaticMesh& mesh = scene.meshes()[i]->mesh;
+    Drawing drawing = whole_drawing(mesh.surface);
+    if (mesh.surface.triangles.size() > part) reduce(drawing, part);
+    Json& description = model["meshes"][i];
+    description["name"] = file_name_of(description["name"]);
+    description["center"] = array_of(mesh.center_B);
+    description["shown_triangles"] = drawing.indices.size() / 3;
+    description["positions"] = base64_of<float>(drawing.positions);
+    description["indices"] = base64_of<std::uint32_t>(drawing.indices);
+  }
+  return model;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,214 @@
+#include "view/live/snapshot_json.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace buoyancy {
+namespace {
+
+using nlohmann::json;
+
+// The bodies' part is written by hand: thirty times a second and a hundred bodies, most of a snapshot.
+class BodyText {
+ public:
+  explicit BodyText(std::string& text) : text_(text) {}
+
+  BodyText& plain(std::string_view characters) {
+    text_ += characters;
+    return *this;
+  }
+  // As many digits as its type needs.
+  template <typename T>
+  BodyText& number_as(double value) {
+    const auto rounded = static_cast<T>(value);
+    if (!std::isfinite(rounded)) return plain("null");
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), rounded).ptr;
+    text_.append(digits.data(), end);
+    return *this;
+  }
+  BodyText& number(double value) { return number_as<float>(value); }
+  BodyText& whole_number(std::int64_t value) { return plain(std::to_string(value)); }
+  template <std::size_t kSize>
+  BodyText& numbers(const std::array<double, kSize>& values) {
+    return numbers_as<float>(values);
+  }
+  template <typename T, std::size_t kSize>
+  BodyText& numbers_as(const std::array<double, kSize>& values) {
+    for (std::size_t i = 0; i < kSize; ++i) plain(i == 0 ? "[" : ",").template number_as<T>(values[i]);
+    return plain("]");
+  }
+
+ private:
+  std::string& text_;
+};
+
+void append(std::string& text, const WatchedBody& body, double now) {
+  const bool overdue = body.answer_is_overdue(BusWatch::kAnswerPatience);
+  const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
+  const bool whole = wrench != nullptr && !body.says_force_and_torque_alone;
+  BodyText out(text);
+  out.plain(R"({"id":)").whole_number(body.id).plain(R"(,"status":)");
+  if (whole) {
+    out.whole_number(static_cast<std::int64_t>(wrench->status));
+  } else {
+    out.plain("null");
+  }
+  // Whole: a thousand kilometres from W's origin a float is half a metre.
+  out.plain(R"(,"p":)").numbers_as<double>(body.pose->position);
+  out.plain(R"(,"q":)").numbers(body.pose->quaternion_wxyz);
+  if (wrench != nullptr) {
+    out.plain(R"(,"f":)").numbers(wrench->force).plain(R"(,"t":)").numbers(wrench->torque);
+  } else {
+    out.plain(R"(,"f":null,"t":null)");
+  }
+  if (whole) {
+    out.plain(R"(,"b":)").numbers(wrench->center_of_buoyancy);
+    out.plain(R"(,"volume":)").number(wrench->submerged_volume);
+    out.plain(R"(,"force_bound":)").number(wrench->force_error_bound);
+    out.plain(R"(,"torque_bound":)").number(wrench->torque_error_bound);
+  } else {
+    out.plain(R"(,"b":null,"volume":null,"force_bound":null,"torque_bound":null)");
+  }
+  if (body.metacenters && !overdue) {
+    const auto& [points, heights] = *body.metacenters;
+    out.plain(R"(,"m":[)").numbers(points[0]).plain(",").numbers(points[1]).plain("]");
+    out.plain(R"(,"gm":)").numbers(heights);
+  } else {
+    out.plain(R"(,"m":null,"gm":null)");
+  }
+  out.plain(R"(,"age":)").number(now - *body.asked).plain("}");
+}
+
+json or_null(std::optional<double> value) {
+  return value ? json(*value) : json();
+}
+
+json percentiles_json(const LatencyPercentiles& latency) {
+  return {{"p50", latency.p50}, {"p99", latency.p99}, {"p999", latency.p999}, {"max", latency.max}};
+}
+
+json second_json(const WatchedSecond& second) {
+  const auto where_answered = [&second](double value) { return second.answers > 0 ? json(value) : json(); };
+  return {{"number", second.number},
+          {"questions", second.questions},
+          {"answers", second.answers},
+          {"unanswered", second.unanswered},
+          {"p50", where_answered(second.latency.p50)},
+          {"p99", where_answered(second.latency.p99)},
+          {"max", where_answered(second.latency.max)}};
+}
+
+// Of Counters what says something to an onlooker; names as in service_status_t.
+json status_json(const ServiceStatus& status) {
+  const Counters& counters = status.counters;
+  json bodies;
+  for (int i = 0; i < kBodyStatusCount; ++i) {
+    bodies[name(static_cast<BodyStatus>(i))] = counters.bodies[static_cast<std::size_t>(i)];
+  }
+  return {{"instance_id", std::to_string(status.instance_id)},
+          {"version", status.version},
+          {"scene", status.scene},
+          {"uptime", status.uptime},
+          {"mode", status.mode == Mode::kLockstep ? "lockstep" : "latest"},
+          {"threads", status.threads},
+          {"scene_bodies", status.scene_bodies},
+          {"reloads", status.reloads},
+          {"reloads_failed", status.reloads_failed},
+          {"not_sent", status.not_sent},
+          {"packets_dropped", status.packets_dropped},
+          {"fragments_dropped", status.fragments_dropped},
+          {"questions", counters.questions},
+          {"answered", counters.answered},
+          {"repeated", counters.repeated},
+          {"changed_repeats", counters.changed_repeats},
+          {"stale", counters.stale},
+          {"overtaken", counters.overtaken},
+          {"sessions", counters.sessions},
+          {"sessions_forgotten", counters.sessions_forgotten},
+          {"rejected", counters.rejected()},
+          {"bodies", bodies},
+          {"quaternions_normalised", counters.quaternions_normalised},
+          {"bodies_dry", counters.bodies_dry},
+          {"bodies_wet", counters.bodies_wet},
+          {"bodies_crossing", counters.bodies_crossing},
+          {"bodies_unchanged", counters.bodies_unchanged},
+          {"hydrostatics", counters.hydrostatics},
+          {"latency", percentiles_json(status.latency)},
+          {"queue_wait", status.queue_wait}};
+}
+
+json counts_json(const BusWatch& watch) {
+  const QuestionLedger::Counts& ledger = watch.ledger();
+  const BusWatch::Counts& counts = watch.counts();
+  json malformed;
+  for (const Rejection rejection :
+       {Rejection::kTruncated, Rejection::kFingerprint, Rejection::kCount, Rejection::kLength}) {
+    malformed[describe(rejection)] = counts.malformed[static_cast<std::size_t>(rejection)];
+  }
+  return {{"questions", ledger.questions},
+          {"questions_repeated", ledger.questions_repeated},
+          {"questions_missed", ledger.questions_missed},
+          {"answers", ledger.answers},
+          {"answers_repeated", ledger.answers_repeated},
+          {"answers_without_question", ledger.answers_without_question},
+          {"unanswered", ledger.unanswered},
+          {"sessions", ledger.sessions},
+          {"malformed", malformed},
+          {"packets_dropped", counts.losses.packets},
+          {"fragments_dropped", counts.losses.fragments},
+          {"bodies_not_in_scene", counts.bodies_not_in_scene},
+          {"statuses", counts.statuses},
+          {"services_started", counts.services_started}};
+}
+
+// A scene's name may hold bytes that are no UTF-8, which must not end the program.
+std::string text_of(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string snapshot_json(const BusWatch& watch, std::int64_t number, double time, double listening,
+                          double now) {
+  const auto age = [now](std::optional<double> heard) { return heard ? or_null(now - *heard) : json(); };
+  json services = json::array();
+  for (const std::int64_t id : watch.services(now)) services.push_back(std::to_string(id));
+  const json rest{{"number", number},
+                  {"time", time},
+                  {"listening", listening},
+                  {"service", name(watch.service_state(now))},
+                  {"services", services},
+                  {"status", watch.status() ? status_json(*watch.status()) : json()},
+                  {"status_age", age(watch.status_heard())},
+                  {"answer_age", age(watch.answer_heard())},
+                  {"question_age", age(watch.question_heard())},
+                  {"second", watch.seconds().empty() ? json() : second_json(watch.seconds().back())},
+                  {"latency", percentiles_json(watch.latency())},
+                  {"counts", counts_json(watch)}};
+  std::string text = text_of(rest);
+  text.back() = ',';  // instead of the closing brace
+  text += R"("bodies":[)";
+  bool first = true;
+  for (const WatchedBody& body : watch.bodies()) {
+    if (!body.pose) continue;
+    if (!std::exchange(first, false)) text += ',';
+    append(text, body, now);
+  }
+  text += "]}";
+  return text;
+}
+
+std::string history_json(const BusWatch& watch) {
+  json seconds = json::array();
+  for (const WatchedSecond& second : watch.seconds()) seconds.push_back(second_json(second));
+  return text_of(seconds);
+}
+
+}  // namespace buoyancy
