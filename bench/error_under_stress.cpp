@@ -36,14 +36,14 @@ Vec3 float32_force(const TriangleMesh& mesh, const Pose& pose, const Water& wate
   const Mat3T<float> R_WB = pose.q_WB.normalized().toRotationMatrix().cast<float>();
   const Vec3f p_WB = pose.p_WB.cast<float>();
   const auto level = static_cast<float>(water.level);
-  std::vector<Corner<float>> corners;
+  std::vector<ClipVertex<float>> corners;
   corners.reserve(mesh.vertex_count());
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     const Vec3f x_W = R_WB * mesh.vertex(static_cast<std::int32_t>(i)).cast<float>() + p_WB;
     corners.push_back({Point<float>::from(x_W), x_W.z() - level});
   }
   Vec3f force = Vec3f::Zero();
-  const auto add = [&](const Corner<float>& a, const Corner<float>& b, const Corner<float>& c) {
+  const auto add = [&](const ClipVertex<float>& a, const ClipVertex<float>& b, const ClipVertex<float>& c) {
     force += (a.z + b.z + c.z) / 6.0F * cross(b.y - a.y, c.y - a.y).vec3();
   };
   for (const Triangle& triangle : mesh.triangles) {
@@ -52,7 +52,7 @@ Vec3 float32_force(const TriangleMesh& mesh, const Pose& pose, const Water& wate
     if (wet == 3) {
       add(corner(0), corner(1), corner(2));
     } else if (wet != 0) {
-      visit_wet_part(corner(0), corner(1), corner(2), add);
+      for_each_wet_triangle(corner(0), corner(1), corner(2), add);
     }
   }
   return force.cast<double>();
@@ -86,7 +86,7 @@ void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
   };
   for (const Method method : kAllMethods) {
     const Solver solver(mesh, method);
-    print(std::string(name(method)), [&](const Sample& sample) {
+    print(std::string(to_string(method)), [&](const Sample& sample) {
       return buoyancy(solver, sample.pose, sample.water, mesh.center_B).force_W;
     });
   }

@@ -22,7 +22,7 @@ T value_or_exit(Expected<T> expected) {
 }
 
 [[noreturn]] inline void give_up(const std::string& reason) {
-  value_or_exit<void>(failure({"benchmark", reason, "right answers", "", ""}));
+  value_or_exit<void>(make_error({"benchmark", reason, "right results", "", ""}));
   std::abort();
 }
 

@@ -1,9 +1,9 @@
 // What LCM itself costs: a process that does nothing but answer. It subscribes to the channel of the
-// questions and publishes for each as many bytes as the service would, made beforehand but for the key.
+// requests and publishes for each as many bytes as the service would, made beforehand but for the key.
 //
 //   lcm_echo URL BODIES
 //
-// BODIES: how many bodies an answer has, with the ids 1 to BODIES. Says "ready" on standard error, then
+// BODIES: how many bodies a response has, with the ids 1 to BODIES. Says "ready" on standard error, then
 // echoes until it is killed.
 #include <algorithm>
 #include <charconv>
@@ -19,24 +19,24 @@
 
 namespace {
 
-// utime, session_id and seq stand behind the fingerprint in questions and answers alike.
+// utime, session_id and seq stand behind the fingerprint in requests and answers alike.
 constexpr std::size_t kKeyStart = 8;
 constexpr std::size_t kKeySize = 24;
 
-std::vector<std::uint8_t> answer_of(std::int32_t bodies) {
-  buoyancy::Answer answer;
-  for (std::int32_t id = 1; id <= bodies; ++id) answer.bodies.push_back({.body_id = id});
+std::vector<std::uint8_t> response_of(std::int32_t bodies) {
+  buoyancy::WrenchResponse response;
+  for (std::int32_t id = 1; id <= bodies; ++id) response.bodies.push_back({.body_id = id});
   std::vector<std::uint8_t> bytes;
-  encode(answer, bytes);
+  encode(response, bytes);
   return bytes;
 }
 
-extern "C" void echo_question(const lcm_recv_buf_t* question, const char* /*channel*/, void* answer) {
-  auto& bytes = *static_cast<std::vector<std::uint8_t>*>(answer);
-  if (question->data_size < kKeyStart + kKeySize) return;
-  std::memcpy(bytes.data() + kKeyStart, static_cast<const std::uint8_t*>(question->data) + kKeyStart,
+extern "C" void echo_request(const lcm_recv_buf_t* request, const char* /*channel*/, void* response) {
+  auto& bytes = *static_cast<std::vector<std::uint8_t>*>(response);
+  if (request->data_size < kKeyStart + kKeySize) return;
+  std::memcpy(bytes.data() + kKeyStart, static_cast<const std::uint8_t*>(request->data) + kKeyStart,
               kKeySize);
-  lcm_publish(question->lcm, std::string(buoyancy::kWrenchesChannel).c_str(), bytes.data(),
+  lcm_publish(request->lcm, std::string(buoyancy::kWrenchesChannel).c_str(), bytes.data(),
               static_cast<unsigned>(bytes.size()));
 }
 
@@ -48,10 +48,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: lcm_echo URL BODIES\n");
     return 2;
   }
-  std::vector<std::uint8_t> answer = answer_of(bodies);
+  std::vector<std::uint8_t> response = response_of(bodies);
   lcm_t* lcm = lcm_create(argv[1]);
   if (lcm == nullptr || lcm_get_fileno(lcm) < 0) return 1;
-  lcm_subscribe(lcm, std::string(buoyancy::kStatesChannel).c_str(), echo_question, &answer);
+  lcm_subscribe(lcm, std::string(buoyancy::kStatesChannel).c_str(), echo_request, &response);
   std::fprintf(stderr, "ready\n");
   while (lcm_handle(lcm) == 0) {
   }

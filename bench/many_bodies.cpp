@@ -1,5 +1,5 @@
 // A scene of a thousand rocks of which ten cross the water: what the bodies that need nothing cost. A
-// question goes in as bytes and its answer comes out as bytes, as in the service, without the network.
+// request goes in as bytes and its response comes out as bytes, as in the service, without the network.
 // Markdown on standard output.
 //
 // Every body moves at every step, so that none is answered from memory; the last row has them all at rest.
@@ -29,7 +29,7 @@ Expected<Scene> rocks() {
             "\nshape = { type = \"rock\", radius = 1, frequency = 16 }\n";
   }
   Expected<SceneDescription> description = parse_scene(text, "a thousand rocks", {});
-  if (!description) return failure(std::move(description.error()));
+  if (!description) return make_error(std::move(description.error()));
   return Scene::prepare(*description);
 }
 
@@ -41,9 +41,9 @@ struct Row {
 };
 
 // The first `bodies` of the scene at one step; the first ten cross the water.
-std::vector<std::uint8_t> question_at(int bodies, int step, const Row& row) {
-  Question question;
-  question.key = {.utime = 0, .session_id = 1, .seq = step};
+std::vector<std::uint8_t> request_at(int bodies, int step, const Row& row) {
+  WrenchRequest request;
+  request.key = {.utime = 0, .session_id = 1, .seq = step};
   const double time = row.moving ? 0.01 * step : 0.0;
   for (int id = 1; id <= bodies; ++id) {
     BodyState state;
@@ -53,10 +53,10 @@ std::vector<std::uint8_t> question_at(int bodies, int step, const Row& row) {
                       (id <= kCrossing ? 0.08 * id - 0.4 : row.height) + 1e-3 * std::sin(time)};
     state.quaternion_wxyz = {std::cos(half_angle), 0.6 * std::sin(half_angle), 0.8 * std::sin(half_angle),
                              0.0};
-    question.bodies.push_back(state);
+    request.bodies.push_back(state);
   }
   std::vector<std::uint8_t> bytes;
-  encode(question, bytes);
+  encode(request, bytes);
   return bytes;
 }
 
@@ -67,23 +67,23 @@ struct StepTimes {
 
 bool time_steps(const Scene& scene, const Row& row, StepTimes& times) {
   using Clock = std::chrono::steady_clock;
-  Exchange all(scene, {.threads = row.threads});
-  Exchange alone(scene, {.threads = row.threads});
+  RequestHandler all(scene, {.threads = row.threads});
+  RequestHandler alone(scene, {.threads = row.threads});
   std::vector<double> of_all;
   std::vector<double> of_alone;
   for (int step = 0; step < kSteps; ++step) {
-    const auto every_body = question_at(kBodies, step, row);
-    const auto crossing = question_at(kCrossing, step, row);
+    const auto every_body = request_at(kBodies, step, row);
+    const auto crossing = request_at(kCrossing, step, row);
     const auto start = Clock::now();
-    all.answer(every_body);
+    all.handle(every_body);
     const auto between = Clock::now();
-    alone.answer(crossing);
+    alone.handle(crossing);
     const auto end = Clock::now();
     of_all.push_back(std::chrono::duration<double, std::nano>(between - start).count());
     of_alone.push_back(std::chrono::duration<double, std::nano>(end - between).count());
   }
   times = {median(of_all), median(of_alone)};
-  const Counters& counters = all.counters();
+  const ServiceCounters& counters = all.counters();
   const std::int64_t unchanged = row.moving ? 0 : std::int64_t{kBodies} * (kSteps - 1);
   const std::int64_t others = std::int64_t{kBodies - kCrossing} * kSteps;
   return counters.bodies_crossing == std::int64_t{kCrossing} * kSteps &&
@@ -99,7 +99,7 @@ int run() {
   }
   std::printf("### A thousand bodies of which ten cross the water\n\n");
   std::printf(
-      "Rocks of 5,120 triangles, hierarchical, a question's bytes in, its answer's bytes out. Held to 1.5 "
+      "Rocks of 5,120 triangles, hierarchical, a request's bytes in, its response's bytes out. Held to 1.5 "
       "times what "
       "the\nten cost alone and 100 ns for each of the others.\n\n");
   std::printf(

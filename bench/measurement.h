@@ -10,7 +10,7 @@
 // median_ns   of the whole query, over the poses
 // *_error     the largest over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
 //             V_T L; nan for `read`
-// bound       the largest force error bound that the answers came with, over rho g V_T; nan for
+// bound       the largest force error bound that the results came with, over rho g V_T; nan for
 //             `read`
 #pragma once
 
@@ -22,7 +22,7 @@
 
 namespace buoyancy {
 
-inline constexpr const char* kReadRow = "read";
+inline constexpr const char* kMemoryReadRow = "read";
 inline constexpr const char* kNoTarget = "-";
 
 struct MeasuredRow {

@@ -1,9 +1,9 @@
-// Ten times more questions than the service can answer, from several sessions, in mode latest: how old is
+// Ten times more requests than the service can answer, from several sessions, in mode latest: how old is
 // what it answers, and does everybody get answers? Markdown on standard output.
 //
 //   overload [--quick]
 //
-// The age of an answer is from the sending of the question that it answers to its arrival. To be run in a
+// The age of a response is from the sending of the request that it answers to its arrival. To be run in a
 // network namespace with a multicast route (scripts/measure_round_trip). Exit codes as of round_trip.
 #include <algorithm>
 #include <chrono>
@@ -37,13 +37,13 @@ double seconds(Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-std::vector<std::uint8_t> question_of(std::int64_t session, std::int64_t seq) {
+std::vector<std::uint8_t> request_of(std::int64_t session, std::int64_t seq) {
   BodyState state;
   state.body_id = 1;
   state.position = {0.0, 0.0, 0.3 * std::sin(0.1 * static_cast<double>(seq) + static_cast<double>(session))};
   state.quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
-  encode(Question{.key = {seq, session, seq}, .lead_time = 0.0, .bodies = {state}}, bytes);
+  encode(WrenchRequest{.key = {seq, session, seq}, .lead_time = 0.0, .bodies = {state}}, bytes);
   return bytes;
 }
 
@@ -54,12 +54,12 @@ struct QueryTime {
 // In this process, with nobody else asking: what is beyond the p50 here is the machine's doing.
 QueryTime query_time(const Scene& scene) {
   constexpr std::size_t kQueries = 1000;
-  Exchange exchange(scene);
+  RequestHandler handler(scene);
   std::vector<double> times(kQueries);
   for (std::size_t i = 0; i < kQueries; ++i) {
-    const std::vector<std::uint8_t> question = question_of(0, static_cast<std::int64_t>(i));
+    const std::vector<std::uint8_t> request = request_of(0, static_cast<std::int64_t>(i));
     const auto start = Clock::now();
-    exchange.answer(question);
+    handler.handle(request);
     times[i] = seconds(Clock::now() - start);
   }
   std::sort(times.begin(), times.end());
@@ -68,30 +68,30 @@ QueryTime query_time(const Scene& scene) {
 
 struct Heard {
   std::vector<double> ages;  // s
-  std::vector<std::int64_t> answers = std::vector<std::int64_t>(kSessions);
-  std::vector<double> longest_gap = std::vector<double>(kSessions);  // s, between two answers
+  std::vector<std::int64_t> responses = std::vector<std::int64_t>(kSessions);
+  std::vector<double> longest_gap = std::vector<double>(kSessions);  // s, between two responses
 };
 
-// Asks for `duration` seconds, a question each `interval`, the sessions in turn.
-class Askers {
+// Asks for `duration` seconds, a request each `interval`, the sessions in turn.
+class Clients {
  public:
-  Askers() : connection_(value_or_exit(LcmConnection::open(url_of_port(kServicePort)))) {
+  Clients() : connection_(value_or_exit(LcmConnection::open(url_of_port(kServicePort)))) {
     value_or_exit(connection_.subscribe(std::string(kWrenchesChannel),
                                         [this](Bytes bytes, std::string_view) { receive(bytes); }));
   }
 
   Heard run(double duration, double interval) {
     const auto start = Clock::now();
-    last_answer_.assign(kSessions, start);
+    last_response_.assign(kSessions, start);
     for (std::int64_t number = 0; seconds(Clock::now() - start) < duration; ++number) {
       const auto due = start + std::chrono::duration_cast<Clock::duration>(
                                    std::chrono::duration<double>(interval * static_cast<double>(number)));
       listen_until(due);
       const std::size_t session = static_cast<std::size_t>(number) % kSessions;
       const auto seq = static_cast<std::int64_t>(sent_[session].size());
-      const std::vector<std::uint8_t> question = question_of(static_cast<std::int64_t>(session), seq);
+      const std::vector<std::uint8_t> request = request_of(static_cast<std::int64_t>(session), seq);
       sent_[session].push_back(Clock::now());
-      value_or_exit(connection_.publish(std::string(kStatesChannel), question));
+      value_or_exit(connection_.publish(std::string(kStatesChannel), request));
     }
     return heard_;
   }
@@ -107,19 +107,20 @@ class Askers {
 
   void receive(Bytes bytes) {
     const auto now = Clock::now();
-    if (decode(bytes, answer_)) give_up("an answer that is none");
-    if (answer_.bodies.size() != 1 || answer_.bodies[0].force[2] <= 0.0) give_up("a wrong answer");
-    const auto session = static_cast<std::size_t>(answer_.key.session_id);
-    heard_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(answer_.key.seq)]));
-    ++heard_.answers[session];
-    heard_.longest_gap[session] = std::max(heard_.longest_gap[session], seconds(now - last_answer_[session]));
-    last_answer_[session] = now;
+    if (decode(bytes, response_)) give_up("a response that is none");
+    if (response_.bodies.size() != 1 || response_.bodies[0].force[2] <= 0.0) give_up("a wrong response");
+    const auto session = static_cast<std::size_t>(response_.key.session_id);
+    heard_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(response_.key.seq)]));
+    ++heard_.responses[session];
+    heard_.longest_gap[session] =
+        std::max(heard_.longest_gap[session], seconds(now - last_response_[session]));
+    last_response_[session] = now;
   }
 
   LcmConnection connection_;
   std::vector<std::vector<Clock::time_point>> sent_ = std::vector<std::vector<Clock::time_point>>(kSessions);
-  std::vector<Clock::time_point> last_answer_;
-  Answer answer_;  // reused
+  std::vector<Clock::time_point> last_response_;
+  WrenchResponse response_;  // reused
   Heard heard_;
 };
 
@@ -127,21 +128,21 @@ void run(bool quick) {
   ServiceProcess service(kScene, "latest");
   const QueryTime alone = query_time(scene_of(kScene));
   const double interval = alone.p50 / kOverload;
-  Heard heard = Askers().run(quick ? 2.0 : 10.0, interval);
-  if (heard.ages.empty()) give_up("no answers");
+  Heard heard = Clients().run(quick ? 2.0 : 10.0, interval);
+  if (heard.ages.empty()) give_up("no responses");
   std::sort(heard.ages.begin(), heard.ages.end());
   const auto age_at = [&](double share) {
     return 1e3 * heard.ages[static_cast<std::size_t>(share * static_cast<double>(heard.ages.size() - 1))];
   };
-  const auto [fewest, most] = std::minmax_element(heard.answers.begin(), heard.answers.end());
+  const auto [fewest, most] = std::minmax_element(heard.responses.begin(), heard.responses.end());
   const double gap = *std::max_element(heard.longest_gap.begin(), heard.longest_gap.end());
   const double allowed = 1e3 * (alone.p50 + kAllowance);
-  std::printf("### Ten times too many questions\n\n");
+  std::printf("### Ten times too many requests\n\n");
   std::printf(
-      "Mode latest, %zu sessions, %.0f questions a second, of which the service can answer one in ten: a "
+      "Mode latest, %zu sessions, %.0f requests a second, of which the service can answer one in ten: a "
       "query takes %.2f ms (p99 %.2f ms).\n\n",
       kSessions, 1.0 / interval, 1e3 * alone.p50, 1e3 * alone.p99);
-  std::printf("| age of the answered question | ms |\n|---|---:|\n");
+  std::printf("| age of the answered request | ms |\n|---|---:|\n");
   std::printf("| p50 | %.2f |\n| p99 | %.2f |\n| largest | %.2f |\n", age_at(0.5), age_at(0.99), age_at(1.0));
   std::printf("| p99, must (one query and 1 ms): %s | %.2f |\n\n", age_at(0.99) <= allowed ? "met" : "MISSED",
               allowed);
@@ -154,6 +155,6 @@ void run(bool quick) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  return buoyancy::run_with_quick_option(argc, argv, "Ten times more questions than buoyancyd can answer",
+  return buoyancy::run_with_quick_option(argc, argv, "Ten times more requests than buoyancyd can answer",
                                          "Two seconds instead of ten", buoyancy::run);
 }

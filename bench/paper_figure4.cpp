@@ -45,7 +45,8 @@ void run() {
         const Pose pose{Vec3(0, 0, h), Eigen::Quaterniond::Identity()};
         const double force = buoyancy(solver, pose, kUnitWater, Vec3::Zero()).force_W.z();
         std::printf("%s,%zu,%s,%.17g,%.17g,%.17g,%.17g\n", c.name.c_str(), mesh.surface.triangles.size(),
-                    std::string(name(method)).c_str(), h, force, c.force(h), (force - c.force(h)) / c.whole);
+                    std::string(to_string(method)).c_str(), h, force, c.force(h),
+                    (force - c.force(h)) / c.whole);
       }
     }
   }

@@ -28,13 +28,13 @@ Errors largest_errors(const BenchmarkMesh& model, const Solver& solver, const st
   Errors errors;
   const double volume = model.mesh.volume;
   for (const Pose& pose : poses) {
-    const BuoyancyAnswer answer = buoyancy(solver, pose, kUnitWater, Vec3::Zero());
+    const BuoyancyResult result = buoyancy(solver, pose, kUnitWater, Vec3::Zero());
     const auto oracle = exact_displacement<long double>(model.source, pose, kUnitWater);
     const Vec3 force_W = static_cast<double>(oracle.volume) * kUnitWater.up_W;
     const Vec3 torque_W = pose.q_WB * oracle.torque(Vec3::Zero()).cast<double>();
-    errors.force = std::max(errors.force, (answer.force_W - force_W).norm() / volume);
+    errors.force = std::max(errors.force, (result.force_W - force_W).norm() / volume);
     errors.torque =
-        std::max(errors.torque, (answer.torque_W - torque_W).norm() / (volume * model.mesh.diagonal));
+        std::max(errors.torque, (result.torque_W - torque_W).norm() / (volume * model.mesh.diagonal));
   }
   return errors;
 }
@@ -54,7 +54,7 @@ void read_mesh(benchmark::State& state, const HydrostaticMesh& mesh) {
   count(state, mesh, {});
 }
 
-void answer_sweep(benchmark::State& state, const Solver& solver, const std::vector<Pose>& poses,
+void result_sweep(benchmark::State& state, const Solver& solver, const std::vector<Pose>& poses,
                   const Errors& errors) {
   std::size_t i = 0;
   for (auto _ : state) {
@@ -83,12 +83,13 @@ int run(int argc, char** argv) {
       const Errors errors = largest_errors(models[m], solver, sweeps[m]);
       if (is_exact(solver.method()) && !(errors.force < 1e-12 && errors.torque < 1e-12)) {
         std::fprintf(stderr, "%s on %s: error %g of the whole in force, %g in torque; expected below 1e-12\n",
-                     std::string(name(solver.method())).c_str(), model.c_str(), errors.force, errors.torque);
+                     std::string(to_string(solver.method())).c_str(), model.c_str(), errors.force,
+                     errors.torque);
         return EXIT_FAILURE;
       }
       benchmark::RegisterBenchmark(
-          (model + "/" + std::string(name(solver.method()))).c_str(),
-          [&, m, errors](benchmark::State& state) { answer_sweep(state, solver, sweeps[m], errors); });
+          (model + "/" + std::string(to_string(solver.method()))).c_str(),
+          [&, m, errors](benchmark::State& state) { result_sweep(state, solver, sweeps[m], errors); });
     }
   }
   benchmark::Initialize(&argc, argv);

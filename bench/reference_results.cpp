@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "median.h"
 #include "tests/hydrostatics/exact_oracle.h"
@@ -13,7 +13,7 @@
 namespace buoyancy {
 namespace {
 
-TrueAnswer true_answer(const TriangleMesh& source, const Pose& pose) {
+ReferenceResult true_result(const TriangleMesh& source, const Pose& pose) {
   const auto oracle = exact_displacement<long double>(source, pose, kUnitWater);
   return {static_cast<double>(oracle.volume) * kUnitWater.up_W,
           pose.q_WB.normalized() * oracle.torque(Vec3::Zero()).cast<double>()};
@@ -23,7 +23,7 @@ std::string numbers(const Eigen::VectorXd& values) {
   std::string text;
   for (const double value : values) {
     text += ' ';
-    text += number_text(value);
+    text += format_shortest(value);
   }
   return text;
 }
@@ -31,9 +31,9 @@ std::string numbers(const Eigen::VectorXd& values) {
 std::string subject(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set, std::size_t index) {
   const Pose& pose = set.poses[index];
   std::string text = model.name + " of " + std::to_string(model.source.triangles.size()) + " triangles, " +
-                     std::string(name(solver.method()));
+                     std::string(to_string(solver.method()));
   if (solver.method() == Method::kHierarchical)
-    text += " at tolerance " + number_text(solver.tolerance()) + " on " + simd_target();
+    text += " at tolerance " + format_shortest(solver.tolerance()) + " on " + simd_target();
   const Eigen::Vector4d q_WB(pose.q_WB.w(), pose.q_WB.x(), pose.q_WB.y(), pose.q_WB.z());
   text += ", " + set.regime + " pose " + std::to_string(index) + " (p_WB" + numbers(pose.p_WB) + ", q_WB" +
           numbers(q_WB);
@@ -42,7 +42,7 @@ std::string subject(const BenchmarkMesh& model, const Solver& solver, const Pose
 
 }  // namespace
 
-PoseSet with_true_answers(std::string regime, std::vector<Pose> poses, const TriangleMesh& source) {
+PoseSet with_reference_results(std::string regime, std::vector<Pose> poses, const TriangleMesh& source) {
   PoseSet set{std::move(regime), std::move(poses), {}};
   set.truth.resize(set.poses.size());
   const std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
@@ -51,40 +51,42 @@ PoseSet with_true_answers(std::string regime, std::vector<Pose> poses, const Tri
   for (std::size_t worker = 0; worker < workers; ++worker) {
     threads.emplace_back([&, worker] {
       for (std::size_t i = worker; i < set.poses.size(); i += workers)
-        set.truth[i] = true_answer(source, set.poses[i]);
+        set.truth[i] = true_result(source, set.poses[i]);
     });
   }
   threads.clear();  // waits for them
   return set;
 }
 
-Expected<SolverErrors> checked_errors(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set) {
+Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set) {
   const double whole = model.mesh.volume;  // rho g V_T
   const double whole_moment = whole * model.mesh.diagonal;
   constexpr double kExactEnough = 1e-11;
   const double largest_bound = solver.method() == Method::kHierarchical
-                                   ? std::max(solver.tolerance(), 4.0 * model.mesh.volume_gate() / whole)
+                                   ? std::max(solver.tolerance(), 4.0 * model.mesh.volume_tolerance() / whole)
                                    : kExactEnough;
   SolverErrors errors;
   std::vector<double> force_errors;
   std::vector<double> bounds;
   for (std::size_t i = 0; i < set.poses.size(); ++i) {
-    const BuoyancyAnswer answer = buoyancy(solver, set.poses[i], kUnitWater, Vec3::Zero());
-    const double force_error = (answer.force_W - set.truth[i].force_W).norm() / whole;
-    const double torque_error = (answer.torque_W - set.truth[i].torque_W).norm() / whole_moment;
-    const double force_bound = answer.force_error_bound / whole;
-    const double torque_bound = answer.torque_error_bound / whole_moment;
+    const BuoyancyResult result = buoyancy(solver, set.poses[i], kUnitWater, Vec3::Zero());
+    const double force_error = (result.force_W - set.truth[i].force_W).norm() / whole;
+    const double torque_error = (result.torque_W - set.truth[i].torque_W).norm() / whole_moment;
+    const double force_bound = result.force_error_bound / whole;
+    const double torque_bound = result.torque_error_bound / whole_moment;
     const auto refuse = [&](const std::string& found, const std::string& expectation) {
-      return failure({subject(model, solver, set, i), found, expectation + " of the whole", "", ""});
+      return make_error({subject(model, solver, set, i), found, expectation + " of the whole", "", ""});
     };
     // Written so that NaN is refused.
     if (!(force_error <= force_bound))
-      return refuse("force is off by " + number_text(force_error), "at most " + number_text(force_bound));
+      return refuse("force is off by " + format_shortest(force_error),
+                    "at most " + format_shortest(force_bound));
     if (!(torque_error <= torque_bound))
-      return refuse("torque is off by " + number_text(torque_error), "at most " + number_text(torque_bound));
+      return refuse("torque is off by " + format_shortest(torque_error),
+                    "at most " + format_shortest(torque_bound));
     if (is_exact(solver.method()) && !(force_bound <= largest_bound))
-      return refuse("the bound of force is " + number_text(force_bound),
-                    "at most " + number_text(largest_bound));
+      return refuse("the bound of force is " + format_shortest(force_bound),
+                    "at most " + format_shortest(largest_bound));
     force_errors.push_back(force_error);
     bounds.push_back(force_bound);
     errors.force = std::max(errors.force, force_error);

@@ -4,8 +4,8 @@
 //
 //   replay_speed DIRECTORY [LARGE_LOG_MB]
 //
-// The answers are checked before anything is timed. The last table replays a log of LARGE_LOG_MB (default
-// 2048) and says what the process's memory grew by. Exit 1 where an answer is wrong or the disk is full.
+// The responses are checked before anything is timed. The last table replays a log of LARGE_LOG_MB (default
+// 2048) and says what the process's memory grew by. Exit 1 where a response is wrong or the disk is full.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -36,18 +36,18 @@ double height_at(std::int64_t event) {
 }
 
 void write_log(const std::string& path, std::int64_t events) {
-  RecordFile file = value_or_exit(RecordFile::create(path));
-  Question question;
-  question.bodies.resize(1);
+  RecordWriter file = value_or_exit(RecordWriter::create(path));
+  WrenchRequest request;
+  request.bodies.resize(1);
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint8_t> event;
   for (std::int64_t i = 0; i < events; ++i) {
-    question.key = {.utime = i, .session_id = 1, .seq = i};
+    request.key = {.utime = i, .session_id = 1, .seq = i};
     const double half_angle = 1e-4 * static_cast<double>(i);
-    question.bodies[0] = {.body_id = 1,
-                          .position = {0.0, 0.0, height_at(i)},
-                          .quaternion_wxyz = {std::cos(half_angle), 0.0, 0.0, std::sin(half_angle)}};
-    encode(question, bytes);
+    request.bodies[0] = {.body_id = 1,
+                         .position = {0.0, 0.0, height_at(i)},
+                         .quaternion_wxyz = {std::cos(half_angle), 0.0, 0.0, std::sin(half_angle)}};
+    encode(request, bytes);
     encode_event(i, i, kStatesChannel, bytes, event);
     value_or_exit(file.append(event));
   }
@@ -57,22 +57,22 @@ void write_log(const std::string& path, std::int64_t events) {
 void read_and_write(const std::string& input, const std::string& output) {
   EventLogReader reader =
       value_or_exit(EventLogReader::open(input, only_channel(std::string(kStatesChannel))));
-  RecordFile file = value_or_exit(RecordFile::create(output));
-  Question question;
-  Answer answer;
+  RecordWriter file = value_or_exit(RecordWriter::create(output));
+  WrenchRequest request;
+  WrenchResponse response;
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint8_t> event;
   std::int64_t number = 0;
   while (true) {
-    const InputItem item = reader.next();
+    const LogItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
     if (recorded == nullptr) break;
-    if (decode(recorded->bytes, question)) give_up("not a question");
-    answer.key = question.key;
-    answer.bodies.resize(question.bodies.size());
-    for (std::size_t i = 0; i < answer.bodies.size(); ++i)
-      answer.bodies[i].body_id = question.bodies[i].body_id;
-    encode(answer, bytes);
+    if (decode(recorded->bytes, request)) give_up("not a request");
+    response.key = request.key;
+    response.bodies.resize(request.bodies.size());
+    for (std::size_t i = 0; i < response.bodies.size(); ++i)
+      response.bodies[i].body_id = request.bodies[i].body_id;
+    encode(response, bytes);
     encode_event(number++, recorded->timestamp, kWrenchesChannel, bytes, event);
     value_or_exit(file.append(event));
   }
@@ -84,20 +84,20 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
   lcm::LogFile reader(input, "r");
   lcm::LogFile writer(output, "w");
   if (!reader.good() || !writer.good()) give_up("LCM could not open the logs");
-  body_states_t question{};
-  body_wrenches_t answer{};
+  body_states_t request{};
+  body_wrenches_t response{};
   std::vector<std::uint8_t> bytes;
   while (const lcm::LogEvent* event = reader.readNextEvent()) {
-    if (question.decode(event->data, 0, event->datalen) < 0) give_up("not a question");
-    answer.utime = question.utime;
-    answer.session_id = question.session_id;
-    answer.seq = question.seq;
-    answer.num_bodies = question.num_bodies;
-    answer.bodies.resize(question.bodies.size());
-    for (std::size_t i = 0; i < answer.bodies.size(); ++i)
-      answer.bodies[i].body_id = question.bodies[i].body_id;
-    bytes.resize(static_cast<std::size_t>(answer.getEncodedSize()));
-    answer.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    if (request.decode(event->data, 0, event->datalen) < 0) give_up("not a request");
+    response.utime = request.utime;
+    response.session_id = request.session_id;
+    response.seq = request.seq;
+    response.num_bodies = request.num_bodies;
+    response.bodies.resize(request.bodies.size());
+    for (std::size_t i = 0; i < response.bodies.size(); ++i)
+      response.bodies[i].body_id = request.bodies[i].body_id;
+    bytes.resize(static_cast<std::size_t>(response.getEncodedSize()));
+    response.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
     lcm::LogEvent written{};
     written.timestamp = event->timestamp;
     written.channel = std::string(kWrenchesChannel);
@@ -109,7 +109,7 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
 
 void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
   ReplayChannels channels = value_or_exit(ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
-  PoseQuestions poses({}, 1);
+  PoseRequestAdapter poses({}, 1);
   ReplayInput reader =
       value_or_exit(ReplayInput::open(input, FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
   ReplayOutput writer = value_or_exit(ReplayOutput::create(output, FileFormat::kLcmLog));
@@ -126,16 +126,16 @@ void replay_log(const Scene& scene, const std::string& input, const std::string&
   if (!summary.complete()) give_up("the replay was not complete");
 }
 
-void check_answers(const std::string& path) {
+void check_responses(const std::string& path) {
   EventLogReader reader =
       value_or_exit(EventLogReader::open(path, only_channel(std::string(kWrenchesChannel))));
-  Answer answer;
+  WrenchResponse response;
   for (std::int64_t i = 0; i < kEvents; ++i) {
-    const InputItem item = reader.next();
+    const LogItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
-    if (recorded == nullptr || decode(recorded->bytes, answer)) give_up("an answer is missing");
+    if (recorded == nullptr || decode(recorded->bytes, response)) give_up("a response is missing");
     const double volume = 2.0 * 3.0 * (1.0 - height_at(i));
-    if (!(std::abs(answer.bodies.at(0).submerged_volume - volume) < 1e-12)) {
+    if (!(std::abs(response.bodies.at(0).submerged_volume - volume) < 1e-12)) {
       give_up("answer " + std::to_string(i) + " is wrong");
     }
   }
@@ -178,7 +178,7 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
   const std::string output = directory + "/out.lcmlog";
   write_log(input, kEvents);
   replay_log(scene, input, output, 0);
-  check_answers(output);
+  check_responses(output);
 
   Times with_lcm;
   Times bare;
@@ -191,7 +191,7 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
     all.add(seconds_of([&] { replay_log(scene, input, output, 0); }));
   }
   std::printf(
-      "| %lld questions about a box | per second | processor time each, us | of the first row's speed | of "
+      "| %lld requests about a box | per second | processor time each, us | of the first row's speed | of "
       "the "
       "second's |  |\n",
       static_cast<long long>(kEvents));

@@ -129,7 +129,7 @@ class Report {
         file_, "Vertices and indices are read again and again, from the nearest cache that holds them.\n\n");
     MarkdownTable table({"mesh", "triangles", "read, us", "hierarchical, us", "query / read", ""});
     for (const MeshName& mesh : meshes_) {
-      const double reading = find(mesh, kReadRow, 0.0)->median_ns;
+      const double reading = find(mesh, kMemoryReadRow, 0.0)->median_ns;
       const double query = find(mesh, "hierarchical", 0.0)->median_ns;
       table.add({mesh.name, std::to_string(mesh.triangles), microseconds(reading), microseconds(query),
                  text("%.2f", query / reading),
@@ -178,7 +178,7 @@ class Report {
 
   void tolerances() const {
     std::fprintf(file_,
-                 "### Tolerance\n\nTrue error of force beside the bound that came with the answer, poses far "
+                 "### Tolerance\n\nTrue error of force beside the bound that came with the result, poses far "
                  "apart.\n\n");
     MarkdownTable table({"mesh", "triangles", "tolerance", "time, us", "error, median", "error, largest",
                          "bound, median", "bound, largest"});
@@ -227,8 +227,8 @@ class Report {
   void by_method(const std::string& regime, bool with_read, const Cell& cell) const {
     std::vector<std::string> header{"mesh", "triangles"};
     std::vector<std::pair<std::string, double>> columns;
-    if (with_read) columns.emplace_back(kReadRow, 0.0);
-    for (const Method method : kAllMethods) columns.emplace_back(name(method), 0.0);
+    if (with_read) columns.emplace_back(kMemoryReadRow, 0.0);
+    for (const Method method : kAllMethods) columns.emplace_back(to_string(method), 0.0);
     for (const double tolerance : kMeasuredTolerances) {
       if (tolerance > 0.0) columns.emplace_back("hierarchical", tolerance);
     }

@@ -1,7 +1,7 @@
 // What a person reads of the measurements: tables of time and error, and each thing that was promised of
 // `hierarchical` beside what came out.
 //
-// A heading, a table and a few sentences per question, as Markdown: the same text stands in the documents.
+// A heading, a table and a few sentences per request, as Markdown: the same text stands in the documents.
 #pragma once
 
 #include <cstdio>

@@ -3,7 +3,7 @@
 //
 //   report_page_size DIRECTORY [LOG_MB]
 //
-// Logs of LOG_MB (default 2048) with questions and answers, of one body and of a hundred that bob in the
+// Logs of LOG_MB (default 2048) with requests and answers, of one body and of a hundred that bob in the
 // water. Exit 1 where a page cannot be made or does not open.
 #include <chrono>
 #include <cmath>
@@ -41,39 +41,39 @@ std::string write_scene(const std::string& directory, int bodies) {
             "\nshape = { type = \"rock\", radius = 1.0, frequency = 8 }\n[body.client]\ndensity = 500.0\n";
   }
   std::string path = directory + "/" + std::to_string(bodies) + ".toml";
-  RecordFile file = value_or_exit(RecordFile::create(path));
+  RecordWriter file = value_or_exit(RecordWriter::create(path));
   value_or_exit(file.append({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
   value_or_exit(file.flush());
   return path;
 }
 
-// A thousand questions a second of simulated time, and their answers. Returns the number of rows.
+// A thousand requests a second of simulated time, and their responses. Returns the number of rows.
 std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t bytes) {
-  RecordFile file = value_or_exit(RecordFile::create(path));
-  Exchange exchange(scene);
-  Question question;
-  question.bodies.resize(scene.bodies().size());
+  RecordWriter file = value_or_exit(RecordWriter::create(path));
+  RequestHandler handler(scene);
+  WrenchRequest request;
+  request.bodies.resize(scene.bodies().size());
   std::vector<std::uint8_t> asked;
   std::vector<std::uint8_t> event;
   std::int64_t written = 0;
   std::int64_t seq = 0;
   for (; written < bytes; ++seq) {
-    question.key = {.utime = 1'000 * seq, .session_id = 1, .seq = seq};
+    request.key = {.utime = 1'000 * seq, .session_id = 1, .seq = seq};
     const double seconds = 1e-3 * static_cast<double>(seq);
-    for (std::size_t i = 0; i < question.bodies.size(); ++i) {
+    for (std::size_t i = 0; i < request.bodies.size(); ++i) {
       const auto place = static_cast<double>(i);
       const double half_angle = 0.1 * std::sin(0.7 * seconds + place);
-      question.bodies[i] = {.body_id = scene.bodies()[i].id,
-                            .position = {3.0 * std::fmod(place, 10.0), 3.0 * std::floor(place / 10.0),
-                                         0.4 * std::sin(seconds + place)},
-                            .quaternion_wxyz = {std::cos(half_angle), std::sin(half_angle), 0.0, 0.0}};
+      request.bodies[i] = {.body_id = scene.bodies()[i].id,
+                           .position = {3.0 * std::fmod(place, 10.0), 3.0 * std::floor(place / 10.0),
+                                        0.4 * std::sin(seconds + place)},
+                           .quaternion_wxyz = {std::cos(half_angle), std::sin(half_angle), 0.0, 0.0}};
     }
-    encode(question, asked);
-    const Bytes answer = exchange.answer(asked);
+    encode(request, asked);
+    const Bytes response = handler.handle(asked);
     encode_event(2 * seq, 1'000 * seq, kStatesChannel, asked, event);
     value_or_exit(file.append(event));
     written += static_cast<std::int64_t>(event.size());
-    encode_event(2 * seq + 1, 1'000 * seq + 40, kWrenchesChannel, answer, event);
+    encode_event(2 * seq + 1, 1'000 * seq + 40, kWrenchesChannel, response, event);
     value_or_exit(file.append(event));
     written += static_cast<std::int64_t>(event.size());
   }
@@ -82,7 +82,7 @@ std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t
 }
 
 // MB, of any program that has run to its end.
-double most_memory() {
+double max_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_CHILDREN, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1'024.0 / kMegabyte;
@@ -107,7 +107,7 @@ Made make_page(const std::string& directory, int bodies, std::int64_t megabytes)
   const FinishedProcess finished =
       run_to_end(command_of({BUOYANCY_REPORT, "--scene", scene, log, made.page}), kLongest);
   made.seconds = seconds_since(start);
-  made.memory = most_memory();
+  made.memory = max_memory();
   std::filesystem::remove(log);
   if (finished.exit_code != 0) give_up(finished.standard_error);
   return made;

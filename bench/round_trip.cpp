@@ -1,11 +1,11 @@
-// What a question costs over the network: round trips of a lock-step client against the real buoyancyd,
+// What a request costs over the network: round trips of a lock-step client against the real buoyancyd,
 // beside a process that only echoes as many bytes (lcm_echo), in the same run, over UDP. Markdown on standard
 // output.
 //
 //   round_trip [--quick]
 //
 // To be run in a network namespace with a multicast route (scripts/measure_round_trip). Answers are checked
-// before they are timed. Exit codes: 0 measured; 1 a wrong answer or no network; 2 wrong arguments. A goal
+// before they are timed. Exit codes: 0 measured; 1 a wrong response or no network; 2 wrong arguments. A goal
 // that is missed is printed and changes no exit code: times depend on the machine and on what else it does.
 #include <algorithm>
 #include <chrono>
@@ -34,7 +34,7 @@ using Times = std::vector<double>;  // us
 using States = std::vector<BodyState>;
 
 constexpr std::size_t kRuns = 5;
-constexpr std::size_t kBlock = 250;  // questions to one of the two before the other's turn
+constexpr std::size_t kBlock = 250;  // requests to one of the two before the other's turn
 constexpr double kMaxP50 = 1.25;     // of the echo's
 constexpr double kMaxP99 = 1.5;
 constexpr double kMaxOfMany = 1.5;
@@ -51,7 +51,7 @@ double microseconds(Clock::duration duration) {
 
 Client client_at(int port) {
   ClientOptions options;
-  options.link.lcm_url = url_of_port(port);
+  options.channel.lcm_url = url_of_port(port);
   return value_or_exit(Client::open(options));
 }
 
@@ -60,7 +60,7 @@ Client client_at(int port) {
 States states_at(const Scene& scene, std::size_t step, double sink = 0.0) {
   States states;
   for (const Body& body : scene.bodies()) {
-    const HydrostaticMesh& mesh = body.prepared->mesh;
+    const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
     const double angle = 0.1 * body.id + 1e-3 * static_cast<double>(step);
     const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, std::sin(angle)).normalized()));
     Vec3 position = Vec3(5.0 * body.id, 0.0, 0.1 * mesh.box_max.minCoeff() * std::sin(7.0 * angle) - sink);
@@ -74,36 +74,37 @@ States states_at(const Scene& scene, std::size_t step, double sink = 0.0) {
   return states;
 }
 
-Answer ask(Client& client, std::size_t step, const States& states) {
-  return *value_or_exit(client.ask(static_cast<std::int64_t>(step), states));
+WrenchResponse send_request(Client& client, std::size_t step, const States& states) {
+  return *value_or_exit(client.request(static_cast<std::int64_t>(step), states));
 }
 
-// Wholly under water the known force, rho g V upwards; at the surface what the exchange says in this process,
+// Wholly under water the known force, rho g V upwards; at the surface what the handler says in this process,
 // bit for bit, and neither nothing nor the whole.
-void check_answers(Client& client, const Scene& scene) {
+void check_responses(Client& client, const Scene& scene) {
   constexpr double kRelative = 1e-12;
-  const Answer deep = ask(client, 0, states_at(scene, 0, 1000.0));
+  const WrenchResponse deep = send_request(client, 0, states_at(scene, 0, 1000.0));
   const States states = states_at(scene, 1);
-  const Answer crossing = ask(client, 1, states);
-  std::vector<std::uint8_t> question;
-  encode(Question{.key = crossing.key, .lead_time = 0.0, .bodies = states}, question);
-  Exchange exchange(scene, {.threads = 1});
-  const Bytes expected = exchange.answer(question);
+  const WrenchResponse crossing = send_request(client, 1, states);
+  std::vector<std::uint8_t> request;
+  encode(WrenchRequest{.key = crossing.key, .lead_time = 0.0, .bodies = states}, request);
+  RequestHandler handler(scene, {.threads = 1});
+  const Bytes expected = handler.handle(request);
   std::vector<std::uint8_t> found;
   encode(crossing, found);
   if (!std::equal(found.begin(), found.end(), expected.begin(), expected.end())) {
-    give_up("the service's answer is not the exchange's");
+    give_up("the service's response is not the handler's");
   }
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Water& water = scene.water();
-    const double whole = water.density * water.gravity * scene.bodies()[i].prepared->mass_properties.volume;
+    const double whole =
+        water.density * water.gravity * scene.bodies()[i].prepared_mesh->mass_properties.volume;
     const double force = crossing.bodies[i].force[2];
     if (std::abs(deep.bodies[i].force[2] - whole) > kRelative * whole) give_up("a wrong force under water");
     if (force <= 0.0 || force >= whole) give_up("a body does not cross the surface");
   }
 }
 
-// The questions of one run, asked of the service and of the echo in turns; and in this process, without any
+// The requests of one run, asked of the service and of the echo in turns; and in this process, without any
 // network, for the solver's own time.
 struct Run {
   Times service, echo, solver;
@@ -111,34 +112,34 @@ struct Run {
 
 struct Pair {
   Client service, echo;
-  Exchange exchange;
+  RequestHandler handler;
   std::size_t step = 2;
 };
 
 void time_block(Client& client, const std::vector<States>& block, std::size_t first, Times& times) {
   for (std::size_t i = 0; i < block.size(); ++i) {
     const auto start = Clock::now();
-    const auto answer = client.ask(static_cast<std::int64_t>(first + i), block[i]);
+    const auto response = client.request(static_cast<std::int64_t>(first + i), block[i]);
     times.push_back(microseconds(Clock::now() - start));
-    if (!answer) give_up(answer.error().message());
+    if (!response) give_up(response.error().message());
   }
 }
 
-Run time_run(Pair& pair, std::size_t questions) {
+Run time_run(Pair& pair, std::size_t requests) {
   Run run;
   std::vector<std::uint8_t> bytes;
-  while (run.service.size() < questions) {
+  while (run.service.size() < requests) {
     std::vector<States> block;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      block.push_back(states_at(pair.exchange.scene(), pair.step + i));
+      block.push_back(states_at(pair.handler.scene(), pair.step + i));
     }
     time_block(pair.service, block, pair.step, run.service);
     time_block(pair.echo, block, pair.step, run.echo);
     for (std::size_t i = 0; i < kBlock; ++i) {
       const auto seq = static_cast<std::int64_t>(pair.step + i);
-      encode(Question{.key = {seq, 1, seq}, .lead_time = 0.0, .bodies = block[i]}, bytes);
+      encode(WrenchRequest{.key = {seq, 1, seq}, .lead_time = 0.0, .bodies = block[i]}, bytes);
       const auto start = Clock::now();
-      pair.exchange.answer(bytes);
+      pair.handler.handle(bytes);
       run.solver.push_back(microseconds(Clock::now() - start));
     }
     pair.step += kBlock;
@@ -161,13 +162,13 @@ double median_of(const std::vector<Run>& runs, Value&& value) {
   return median(values);
 }
 
-// threads: that the exchange in this process may use, as ExchangeOptions has it.
-Figures measure(const Scene& scene, std::size_t questions, unsigned threads) {
-  Pair pair{client_at(kServicePort), client_at(kEchoPort), Exchange(scene, {.threads = threads})};
-  check_answers(pair.service, scene);
+// threads: that the handler in this process may use, as RequestHandlerOptions has it.
+Figures measure(const Scene& scene, std::size_t requests, unsigned threads) {
+  Pair pair{client_at(kServicePort), client_at(kEchoPort), RequestHandler(scene, {.threads = threads})};
+  check_responses(pair.service, scene);
   time_run(pair, kBlock);  // both warm
   std::vector<Run> runs;
-  for (std::size_t i = 0; i < kRuns; ++i) runs.push_back(time_run(pair, questions));
+  for (std::size_t i = 0; i < kRuns; ++i) runs.push_back(time_run(pair, requests));
   const auto p50 = [](const Times& times) { return percentile(times, 0.5); };
   const auto p99 = [](const Times& times) { return percentile(times, 0.99); };
   Figures figures{};
@@ -189,47 +190,47 @@ Figures measure(const Scene& scene, std::size_t questions, unsigned threads) {
 
 enum class Processors { kOne, kAll };
 
-Figures measure(const std::string& scene, int bodies, std::size_t questions, Processors processors) {
-  std::optional<OnOneProcessor> one;
+Figures measure(const std::string& scene, int bodies, std::size_t requests, Processors processors) {
+  std::optional<PinToOneCpu> one;
   if (processors == Processors::kOne) one.emplace();
   const ServiceProcess service(scene);
   const EchoProcess echo(bodies);
-  return measure(scene_of(scene), questions, one ? 1 : 0);
+  return measure(scene_of(scene), requests, one ? 1 : 0);
 }
 
 void add_round_trips(MarkdownTable& table, const std::string& where, Processors processors,
-                     std::size_t questions) {
-  const Figures one = measure(bodies_of(1, kCrate), 1, questions, processors);
+                     std::size_t requests) {
+  const Figures one = measure(bodies_of(1, kCrate), 1, requests, processors);
   table.add({where, "1", "p50", text("%.1f", one.service_p50), text("%.1f", one.echo_p50),
              text("%.2f", one.solver_p50), text("%.2f", one.ratio_p50), text("%.2f", kMaxP50),
              met(one.ratio_p50 <= kMaxP50)});
   table.add({where, "1", "p99", text("%.1f", one.service_p99), text("%.1f", one.echo_p99), "",
              text("%.2f", one.ratio_p99), text("%.2f", kMaxP99), met(one.ratio_p99 <= kMaxP99)});
-  const Figures many = measure(bodies_of(100, kCrate), 100, questions / 4, processors);
+  const Figures many = measure(bodies_of(100, kCrate), 100, requests / 4, processors);
   table.add({where, "100", "p50", text("%.1f", many.service_p50), text("%.1f", many.echo_p50),
              text("%.1f", many.solver_p50), text("%.2f", many.of_echo) + " *", text("%.2f", kMaxOfMany),
              met(many.of_echo <= kMaxOfMany)});
 }
 
-void print_round_trips(std::size_t questions) {
+void print_round_trips(std::size_t requests) {
   std::printf(
       "### Round trip beside an echo\n\n"
       "Bodies of 1,200 triangles that cross the water. The echo is a bare LCM process that answers with as "
       "many "
-      "bytes. Medians of\n%zu runs of %zu questions each, of the ratios too; in every run service and echo "
-      "take turns.\nThe echo is woken twice for each question, by liblcm's thread and as that thread. Where "
+      "bytes. Medians of\n%zu runs of %zu requests each, of the ratios too; in every run service and echo "
+      "take turns.\nThe echo is woken twice for each request, by liblcm's thread and as that thread. Where "
       "waking another processor is dear, as on\na virtual machine, it depends on the kernel's scheduler how "
-      "much that costs; with one processor for all, little. The service\nlooks for the next question before "
-      "it sleeps, as the asker does, of both.\n\n",
-      kRuns, questions);
+      "much that costs; with one processor for all, little. The service\nlooks for the next request before "
+      "it sleeps, as the client does, of both.\n\n",
+      kRuns, requests);
   MarkdownTable table(
       {"processors", "bodies", "", "service, us", "echo, us", "solver, us", "ratio", "must", ""});
-  add_round_trips(table, "one", Processors::kOne, questions);
-  add_round_trips(table, "all", Processors::kAll, questions);
+  add_round_trips(table, "one", Processors::kOne, requests);
+  add_round_trips(table, "all", Processors::kAll, requests);
   table.print(stdout, 3);
   std::printf(
       "\\* Of what is left of the service's time without the solver's, which is that of the same "
-      "questions in the asker's own\nprocess.\n\n");
+      "requests in the client's own\nprocess.\n\n");
 }
 
 // Steps per second that bullet_crate prints at its end.
@@ -242,7 +243,7 @@ double crate_steps(int port) {
 }
 
 void add_steps(MarkdownTable& table, const std::string& where, std::size_t runs) {
-  const ServiceProcess service(contents_of(BUOYANCY_SOURCE_DIR "/scenes/box.toml"));
+  const ServiceProcess service(read_file(BUOYANCY_SOURCE_DIR "/scenes/box.toml"));
   const EchoProcess echo(1);
   Times of_service(runs);
   Times of_echo(runs);
@@ -260,20 +261,20 @@ void add_steps(MarkdownTable& table, const std::string& where, std::size_t runs)
 void print_steps(std::size_t runs) {
   std::printf(
       "### Steps per second of somebody else's simulator\n\n"
-      "`bullet_crate`, 20,000 steps in lock-step, one question each, medians of %zu runs. One processor: as "
+      "`bullet_crate`, 20,000 steps in lock-step, one request each, medians of %zu runs. One processor: as "
       "with "
       "`taskset -c 0`\nfor both programs.\n\n",
       runs);
   MarkdownTable table({"processors", "steps/s", "of the echo, steps/s", "share", "must", ""});
   {
-    const OnOneProcessor one;
+    const PinToOneCpu one;
     add_steps(table, "one", runs);
   }
   add_steps(table, "all", runs);
   table.print(stdout, 1);
 }
 
-void print_large_scenes(std::size_t questions) {
+void print_large_scenes(std::size_t requests) {
   struct Row {
     std::string name, body;
   };
@@ -291,7 +292,7 @@ void print_large_scenes(std::size_t questions) {
   MarkdownTable table({"bodies", "steps/s", "round trip p50, us", "p99, us", "solver, us", "echo, us",
                        "solver's share", "aim"});
   for (const Row& row : rows) {
-    const Figures figures = measure(bodies_of(100, row.body), 100, questions, Processors::kAll);
+    const Figures figures = measure(bodies_of(100, row.body), 100, requests, Processors::kAll);
     table.add(
         {row.name, text("%.0f", figures.steps), text("%.0f", figures.service_p50),
          text("%.0f", figures.service_p99), text("%.0f", figures.solver_p50), text("%.0f", figures.echo_p50),
@@ -306,18 +307,18 @@ void print_restart() {
   const Scene prepared = scene_of(scene);
   std::optional<ServiceProcess> service(std::in_place, scene);
   ClientOptions options;
-  options.link.lcm_url = url_of_port(kServicePort);
-  options.patience = {.timeout = 0.005, .retries = 10'000};
+  options.channel.lcm_url = url_of_port(kServicePort);
+  options.retry_policy = {.timeout = 0.005, .max_retries = 10'000};
   Client client = value_or_exit(Client::open(options));
-  check_answers(client, prepared);
+  check_responses(client, prepared);
   Times until_ready;
-  Times until_answer;
+  Times until_response;
   for (std::size_t step = 2; step < 2 + kRuns; ++step) {
     const auto killed = Clock::now();
     service->child().send_signal(SIGKILL);
     service->child().wait(10.0);
     auto answered = std::async(std::launch::async, [&] {
-      ask(client, step, states_at(prepared, step));
+      send_request(client, step, states_at(prepared, step));
       return Clock::now();
     });
     service.reset();
@@ -325,15 +326,15 @@ void print_restart() {
     const auto ready = Clock::now();
     until_ready.push_back(1e-3 * microseconds(ready - killed));
     // Seen to be ready a moment after it said so, and by then perhaps answered.
-    until_answer.push_back(std::max(0.0, 1e-3 * microseconds(answered.get() - ready)));
+    until_response.push_back(std::max(0.0, 1e-3 * microseconds(answered.get() - ready)));
   }
-  const double worst = *std::max_element(until_answer.begin(), until_answer.end());
+  const double worst = *std::max_element(until_response.begin(), until_response.end());
   std::printf(
       "### Killed and started again\n\n"
       "`kill -9`, then the same command again, %zu times, while a client asks every 5 ms: ready after %.0f "
       "ms "
-      "(median), its question\nanswered %.1f ms later (median; at most %.1f ms, must 1000 ms: %s).\n\n",
-      kRuns, median(until_ready), median(until_answer), worst, met(worst <= 1000.0).c_str());
+      "(median), its request\nanswered %.1f ms later (median; at most %.1f ms, must 1000 ms: %s).\n\n",
+      kRuns, median(until_ready), median(until_response), worst, met(worst <= 1000.0).c_str());
 }
 
 void run(bool quick) {
@@ -348,5 +349,5 @@ void run(bool quick) {
 
 int main(int argc, char** argv) {
   return buoyancy::run_with_quick_option(argc, argv, "Round trips against buoyancyd beside an echo",
-                                         "Fewer questions", buoyancy::run);
+                                         "Fewer requests", buoyancy::run);
 }

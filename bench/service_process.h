@@ -48,9 +48,9 @@ inline constexpr int kEchoPort = 7668;
 
 // While it lives, everything that is started has one processor for all of it: a round trip then wakes no
 // other one, which is dear on a virtual machine, and happens or not as the kernel's scheduler likes.
-class OnOneProcessor {
+class PinToOneCpu {
  public:
-  OnOneProcessor() {
+  PinToOneCpu() {
     ::sched_getaffinity(0, sizeof before_, &before_);
     int first = 0;
     while (CPU_ISSET(first, &before_) == 0) ++first;
@@ -59,9 +59,9 @@ class OnOneProcessor {
     CPU_SET(first, &one);
     ::sched_setaffinity(0, sizeof one, &one);
   }
-  OnOneProcessor(const OnOneProcessor&) = delete;
-  OnOneProcessor& operator=(const OnOneProcessor&) = delete;
-  ~OnOneProcessor() { ::sched_setaffinity(0, sizeof before_, &before_); }
+  PinToOneCpu(const PinToOneCpu&) = delete;
+  PinToOneCpu& operator=(const PinToOneCpu&) = delete;
+  ~PinToOneCpu() { ::sched_setaffinity(0, sizeof before_, &before_); }
 
  private:
   cpu_set_t before_{};
@@ -75,7 +75,7 @@ class ServiceProcess {
   ChildProcess& child() { return process_.child(); }
 
  private:
-  ScratchDirectory directory_;
+  TempDir directory_;
   ReadyProcess process_;
 };
 

@@ -3,7 +3,7 @@
 //   speed_accuracy [--quick | --smoke] [--csv FILE]
 //
 // Prints tables and what was promised beside what came out (report.h); --csv writes a row per measurement
-// (measured_row.h). Exit codes: 0 measured; 1 an answer was farther from the truth than its own bound, or the
+// (measurement.h). Exit codes: 0 measured; 1 a result was farther from the truth than its own bound, or the
 // file could not be written; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
 // times depend on the machine and on what else it does.
 #include <algorithm>
@@ -27,9 +27,9 @@
 namespace buoyancy {
 namespace {
 
-enum class Extent { kFull, kQuick, kSmoke };
+enum class Extent { kFull, kSpinTime, kSmoke };
 
-// A mesh of the plan; its poses and true answers are shared with the same mesh in shuffled order.
+// A mesh of the plan; its poses and true results are shared with the same mesh in shuffled order.
 struct PlannedMesh {
   BenchmarkMesh (*make)();
   bool with_shuffled;
@@ -55,7 +55,7 @@ bool is_part_of(const PlannedMesh& planned, Extent extent) {
   switch (extent) {
     case Extent::kFull:
       return planned.full;
-    case Extent::kQuick:
+    case Extent::kSpinTime:
       return planned.quick;
     case Extent::kSmoke:
       return planned.smoke;
@@ -78,13 +78,13 @@ int sweeps_of(Extent extent, std::size_t triangles) {
 TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
   using Clock = std::chrono::steady_clock;
   const auto triangles = static_cast<double>(model.source.triangles.size());
-  double least_ns = std::numeric_limits<double>::max();
+  double min_ns = std::numeric_limits<double>::max();
   for (int i = 0; i < (extent == Extent::kFull ? 5 : 2); ++i) {
     const auto start = Clock::now();
     const MomentTree tree = build_moment_tree(model.mesh.surface);
-    least_ns = std::min(least_ns, std::chrono::duration<double, std::nano>(Clock::now() - start).count());
+    min_ns = std::min(min_ns, std::chrono::duration<double, std::nano>(Clock::now() - start).count());
   }
-  return {model.name, model.source.triangles.size(), least_ns / triangles,
+  return {model.name, model.source.triangles.size(), min_ns / triangles,
           static_cast<double>(model.mesh.tree->bytes()) / triangles};
 }
 
@@ -110,8 +110,8 @@ Expected<Measurements> measure_all(Extent extent) {
     const int poses = poses_of(extent);
     const Pose floating = floating_pose(Solver(model.mesh, Method::kHierarchical));
     const std::vector<PoseSet> sets{
-        with_true_answers("independent", sweep_of_poses(model.source, poses), model.source),
-        with_true_answers("coherent", coherent_poses(model.mesh, floating, poses), model.source)};
+        with_reference_results("independent", sweep_of_poses(model.source, poses), model.source),
+        with_reference_results("coherent", coherent_poses(model.mesh, floating, poses), model.source)};
     if (const auto done = measure(model, sets, extent, measured); !done) return tl::unexpected(done.error());
     if (!planned.with_shuffled) continue;
     if (const auto done = measure(shuffled(model), sets, extent, measured); !done)
@@ -140,7 +140,7 @@ int run(int argc, char** argv) {
       return EXIT_FAILURE;
     }
   }
-  const auto measured = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kQuick : Extent::kFull);
+  const auto measured = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kSpinTime : Extent::kFull);
   if (!measured) {
     std::fprintf(stderr, "%s\n", measured.error().message().c_str());
     return EXIT_FAILURE;

@@ -31,7 +31,7 @@ double clock_cost_ns() {
 }
 
 // Where results go, so that no query can be left out.
-volatile double kept_answer;
+volatile double kept_result;
 volatile std::uint64_t kept_reading;
 
 // One row and what it takes to time it.
@@ -39,14 +39,14 @@ struct Contender {
   MeasuredRow row;
   const Solver* solver = nullptr;  // nullptr: reads the mesh
   std::string forced_target;       // "": the best
-  std::vector<double> least_ns;    // of each pose
+  std::vector<double> min_ns;      // of each pose
 };
 
-void ask(const Contender& contender, const TriangleMesh& surface, const Pose& pose) {
+void run_query(const Contender& contender, const TriangleMesh& surface, const Pose& pose) {
   if (contender.solver == nullptr) {
     kept_reading = read_vertices_and_indices(surface);
   } else {
-    kept_answer = buoyancy(*contender.solver, pose, kUnitWater, Vec3::Zero()).volume;
+    kept_result = buoyancy(*contender.solver, pose, kUnitWater, Vec3::Zero()).volume;
   }
 }
 
@@ -56,14 +56,14 @@ void sweep(Contender& contender, const TriangleMesh& surface, const std::vector<
   force_simd_target(contender.forced_target);
   const auto start_of_turn = Clock::now();
   for (const Pose& pose : poses) {
-    ask(contender, surface, pose);
+    run_query(contender, surface, pose);
     if (nanoseconds(start_of_turn, Clock::now()) > kWarmUpNs) break;
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto start = Clock::now();
-    ask(contender, surface, poses[i]);
+    run_query(contender, surface, poses[i]);
     const double time = std::max(0.0, nanoseconds(start, Clock::now()) - clock_ns);
-    contender.least_ns[i] = std::min(contender.least_ns[i], time);
+    contender.min_ns[i] = std::min(contender.min_ns[i], time);
   }
 }
 
@@ -84,10 +84,10 @@ Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, cons
     contender.row.mesh = model.name;
     contender.row.triangles = model.source.triangles.size();
     contender.row.regime = set.regime;
-    contender.row.method = solver == nullptr ? kReadRow : name(solver->method());
+    contender.row.method = solver == nullptr ? kMemoryReadRow : to_string(solver->method());
     contender.solver = solver;
     contender.forced_target = forced_target;
-    contender.least_ns.assign(set.poses.size(), std::numeric_limits<double>::max());
+    contender.min_ns.assign(set.poses.size(), std::numeric_limits<double>::max());
     if (solver != nullptr && solver->method() == Method::kHierarchical) {
       force_simd_target(forced_target);
       contender.row.target = simd_target();
@@ -107,7 +107,7 @@ Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, cons
     contender.row.errors = {kNone, kNone, kNone, kNone, kNone};
     if (contender.solver == nullptr) continue;
     force_simd_target(contender.forced_target);
-    const auto errors = checked_errors(model, *contender.solver, set);
+    const auto errors = measure_errors(model, *contender.solver, set);
     force_simd_target("");
     if (!errors) return tl::unexpected(errors.error());
     contender.row.errors = *errors;
@@ -126,7 +126,7 @@ Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, cons
   std::vector<MeasuredRow> rows;
   rows.reserve(contenders.size());
   for (Contender& contender : contenders) {
-    contender.row.median_ns = median(std::move(contender.least_ns));
+    contender.row.median_ns = median(std::move(contender.min_ns));
     rows.push_back(std::move(contender.row));
   }
   return rows;

@@ -1,11 +1,11 @@
-// What the live view costs the service that it looks at: round trips of an asker that asks a thousand times a
+// What the live view costs the service that it looks at: round trips of a client that asks a thousand times a
 // second about a hundred bodies, with and without a view that a page is connected to, in turns, over UDP.
 // Markdown on standard output.
 //
 //   view_overhead [--quick]
 //
 // To be run in a network namespace with a multicast route (scripts/measure_view). Exit codes: 0 measured; 1 a
-// wrong answer or no network; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
+// wrong response or no network; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
 // times depend on the machine and on what else it does.
 #include <algorithm>
 #include <atomic>
@@ -36,8 +36,8 @@ using Times = std::vector<double>;  // us
 
 constexpr int kBodies = 100;
 constexpr double kRate = 1000.0;  // Hz
-constexpr double kMostChange = 0.05;
-constexpr double kLeastUpdates = 20.0;  // Hz
+constexpr double kMaxChange = 0.05;
+constexpr double kMinUpdates = 20.0;  // Hz
 
 // A box of 1,200 triangles.
 const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
@@ -76,7 +76,7 @@ class WatchedView {
   double processor_time() { return buoyancy::processor_time(process_.child().pid()); }
 
  private:
-  ScratchDirectory directory_;
+  TempDir directory_;
   ReadyProcess process_;
   EventReader reader_;
   std::atomic<std::int64_t> snapshots_{0};
@@ -84,23 +84,23 @@ class WatchedView {
   std::thread thread_;
 };
 
-class PacedAsker {
+class PacedClient {
  public:
-  PacedAsker() : client_(open()) {}
+  PacedClient() : client_(open()) {}
 
-  // Round trips of questions asked at kRate.
-  Times ask(std::size_t questions) {
+  // Round trips of requests asked at kRate.
+  Times request(std::size_t requests) {
     Times times;
-    times.reserve(questions);
+    times.reserve(requests);
     auto due = Clock::now();
-    for (std::size_t i = 0; i < questions; ++i) {
+    for (std::size_t i = 0; i < requests; ++i) {
       std::this_thread::sleep_until(due);
       move();
       const auto start = Clock::now();
-      const auto answer = client_.ask(++step_, states_);
+      const auto response = client_.request(++step_, states_);
       times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-      if (!answer) give_up(answer.error().message());
-      if ((*answer)->bodies.back().force[2] <= 0.0) give_up("a body in the water is not borne");
+      if (!response) give_up(response.error().message());
+      if ((*response)->bodies.back().force[2] <= 0.0) give_up("a body in the water is not borne");
       due = std::max(due + std::chrono::microseconds(static_cast<int>(1e6 / kRate)), Clock::now());
     }
     return times;
@@ -109,7 +109,7 @@ class PacedAsker {
  private:
   static Client open() {
     ClientOptions options;
-    options.link.lcm_url = url_of_port(kServicePort);
+    options.channel.lcm_url = url_of_port(kServicePort);
     return value_or_exit(Client::open(options));
   }
 
@@ -131,22 +131,22 @@ class PacedAsker {
 };
 
 void run(bool quick) {
-  constexpr std::size_t kQuestions = 1'000;  // a second: what else the machine does is the same for both
+  constexpr std::size_t kRequests = 1'000;  // a second: what else the machine does is the same for both
   constexpr std::size_t kWarmUp = 300;
   const std::size_t rounds = quick ? 20 : 100;
   const std::string scene = bodies_of(kBodies, kCrate);
   const ServiceProcess service(scene);
-  PacedAsker asker;
-  asker.ask(kQuestions);
+  PacedClient client;
+  client.request(kRequests);
   Times without_p50, with_p50, without_p99, with_p99, changes, updates, processor;
   for (std::size_t round = 0; round < rounds; ++round) {
     const auto with = [&] {
       WatchedView view(scene);
-      asker.ask(kWarmUp);  // until the view is past its start
+      client.request(kWarmUp);  // until the view is past its start
       const std::int64_t snapshots = view.snapshots();
       const double used = view.processor_time();
       const auto start = Clock::now();
-      const Times times = asker.ask(kQuestions);
+      const Times times = client.request(kRequests);
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       updates.push_back(static_cast<double>(view.snapshots() - snapshots) / seconds);
       processor.push_back(100.0 * (view.processor_time() - used) / seconds);
@@ -154,8 +154,8 @@ void run(bool quick) {
       with_p99.push_back(percentile(times, 0.99));
     };
     const auto without = [&] {
-      asker.ask(kWarmUp);
-      const Times times = asker.ask(kQuestions);
+      client.request(kWarmUp);
+      const Times times = client.request(kRequests);
       without_p50.push_back(percentile(times, 0.5));
       without_p99.push_back(percentile(times, 0.99));
     };
@@ -175,17 +175,17 @@ void run(bool quick) {
       "and "
       "without a\n`buoyancy-view` that a reader of its events is connected to, in turns: medians of %zu "
       "rounds of %zu "
-      "questions each.\n\n",
-      kBodies, kRate, rounds, kQuestions);
+      "requests each.\n\n",
+      kBodies, kRate, rounds, kRequests);
   MarkdownTable table({"", "without", "with", "change", "must", ""});
   table.add({"round trip, p50, us", text("%.1f", median(without_p50)), text("%.1f", median(with_p50)),
-             text("%+.1f %%", 100.0 * change), "below 5 %", met(change < kMostChange)});
+             text("%+.1f %%", 100.0 * change), "below 5 %", met(change < kMaxChange)});
   table.add({"round trip, p99, us", text("%.1f", median(without_p99)), text("%.1f", median(with_p99)),
              text("%+.1f %%", 100.0 * (median(with_p99) / median(without_p99) - 1.0)), "", ""});
   const double mean_updates =
       std::accumulate(updates.begin(), updates.end(), 0.0) / static_cast<double>(updates.size());
   table.add({"snapshots a second, mean", "", text("%.1f", mean_updates), "", "20 or more",
-             met(mean_updates >= kLeastUpdates)});
+             met(mean_updates >= kMinUpdates)});
   table.add({"snapshots a second, the fewest of a round", "",
              text("%.1f", *std::min_element(updates.begin(), updates.end())), "", "", ""});
   table.add({"processor time of the view, % of one", "", text("%.1f", median(processor)), "", "", ""});
@@ -197,5 +197,5 @@ void run(bool quick) {
 
 int main(int argc, char** argv) {
   return buoyancy::run_with_quick_option(argc, argv, "What a live view costs the service that it looks at",
-                                         "Fewer questions and rounds", buoyancy::run);
+                                         "Fewer requests and rounds", buoyancy::run);
 }

@@ -1,5 +1,5 @@
 // buoyancy-client: simulates the bodies of a scene that have a [body.client] and asks a buoyancy service, or
-// the same exchange in its own process, for the wrenches on them. Exit codes: 0 the run is complete, 1 it
+// the same handler in its own process, for the wrenches on them. Exit codes: 0 the run is complete, 1 it
 // failed or was interrupted, 2 wrong arguments, scene or mesh.
 
 #include <array>
@@ -25,9 +25,9 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kMostSteps = 1e15;  // whole numbers up to here are exact as doubles
-constexpr std::int64_t kMostCount = std::int64_t{1} << 40U;
-constexpr std::int64_t kMostLateSteps = 10000;  // so many answers are kept
+constexpr double kMaxSteps = 1e15;  // whole numbers up to here are exact as doubles
+constexpr std::int64_t kMaxCount = std::int64_t{1} << 40U;
+constexpr std::int64_t kMaxLateSteps = 10000;  // so many answers are kept
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
@@ -38,8 +38,8 @@ void request_stop(int /*signal*/) {
 
 struct Arguments {
   std::string scene;
-  LinkOptions link;
-  Patience patience;
+  ChannelOptions channel;
+  RetryPolicy retry_policy;
   bool embedded = false;
   bool no_spin = false;
   double duration = 10.0;  // s
@@ -47,9 +47,9 @@ struct Arguments {
   std::optional<double> rate;  // Hz
   std::string csv;
   std::int64_t csv_every = 1;
-  std::string integrator{name(Integrator::kVelocityVerlet)};
+  std::string integrator{to_string(Integrator::kVelocityVerlet)};
   double lead_time = 0.0;
-  std::int64_t late_steps = 0;
+  std::int64_t delay_steps = 0;
   std::optional<std::int64_t> session;
   bool json = false;
 };
@@ -69,10 +69,10 @@ CLI::Validator number_in(double low, double high, const std::string& unit) {
   return {check, unit};
 }
 
-void define_arguments(CLI::App& app, Arguments& arguments) {
+void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-client " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "Scene file")->required();
-  auto* url = app.add_option("-l,--lcm-url", arguments.link.lcm_url,
+  auto* url = app.add_option("-l,--lcm-url", arguments.channel.lcm_url,
                              "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
   auto* embedded = app.add_flag("--embedded", arguments.embedded,
                                 "Answer in this process, without a network and without buoyancyd");
@@ -85,41 +85,43 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
   auto* rate =
       app.add_option(
              "--rate", arguments.rate,
-             "Run freely at this many steps per second of wall-clock time, with the newest answer there is "
-             "(default: lock-step, as fast as answers come)")
+             "Run freely at this many steps per second of wall-clock time, with the newest response there is "
+             "(default: lock-step, as fast as responses come)")
           ->check(number_in(0.0, 1e6, "HZ"))
           ->excludes(embedded);
   app.add_option("--csv", arguments.csv, "Write states and wrenches to this file");
   app.add_option("--csv-every", arguments.csv_every, "Write only every Nth step")
-      ->check(CLI::Range(std::int64_t{1}, kMostCount, "N"))
+      ->check(CLI::Range(std::int64_t{1}, kMaxCount, "N"))
       ->capture_default_str();
   app.add_option("--integrator", arguments.integrator, "How bodies are moved")
-      ->check(CLI::IsMember({std::string(name(Integrator::kSemiImplicitEuler)),
-                             std::string(name(Integrator::kVelocityVerlet))}))
+      ->check(CLI::IsMember({std::string(to_string(Integrator::kSemiImplicitEuler)),
+                             std::string(to_string(Integrator::kVelocityVerlet))}))
       ->capture_default_str();
   app.add_option("--lead-time", arguments.lead_time,
                  "Have the wrench evaluated at the pose extrapolated by this many seconds")
       ->check(number_in(-1e3, 1e3, "S"))
       ->capture_default_str();
-  app.add_option("--late", arguments.late_steps,
-                 "Use every answer this many steps late: what a simulator that does not wait would see, but "
-                 "the same in every run")
-      ->check(CLI::Range(std::int64_t{0}, kMostLateSteps, "STEPS"))
+  app.add_option(
+         "--late", arguments.delay_steps,
+         "Use every response this many steps late: what a simulator that does not wait would see, but "
+         "the same in every run")
+      ->check(CLI::Range(std::int64_t{0}, kMaxLateSteps, "STEPS"))
       ->excludes(rate)
       ->capture_default_str();
-  app.add_option("--timeout", arguments.patience.timeout, "Ask again after this many seconds")
+  app.add_option("--timeout", arguments.retry_policy.timeout, "Ask again after this many seconds")
       ->check(number_in(0.0, 1e6, "S"))
       ->capture_default_str();
-  app.add_option("--retries", arguments.patience.retries, "Ask again at most this often before giving up")
-      ->check(CLI::Range(std::int64_t{0}, kMostCount, "N"))
+  app.add_option("--retries", arguments.retry_policy.max_retries,
+                 "Ask again at most this often before giving up")
+      ->check(CLI::Range(std::int64_t{0}, kMaxCount, "N"))
       ->capture_default_str();
-  app.add_option("--states-channel", arguments.link.states_channel, "Channel of the questions")
+  app.add_option("--states-channel", arguments.channel.states_channel, "Channel of the requests")
       ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.link.wrenches_channel, "Channel of the answers")
+  app.add_option("--wrenches-channel", arguments.channel.wrenches_channel, "Channel of the responses")
       ->capture_default_str();
   app.add_flag(
          "--no-spin", arguments.no_spin,
-         "Sleep as soon as no answer is there, instead of looking for it for up to 50 us while they come "
+         "Sleep as soon as no response is there, instead of looking for it for up to 50 us while they come "
          "quickly: takes less of the processor, and longer for each step")
       ->excludes(embedded);
   app.add_option("--session", arguments.session, "Session id (default: drawn anew by every run)");
@@ -128,18 +130,18 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
 
 // What no single option shows.
 Expected<void> check_arguments(const Arguments& arguments, double steps) {
-  if (steps > kMostSteps) {
-    return failure({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
+  if (steps > kMaxSteps) {
+    return make_error({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
   }
-  const LinkOptions& link = arguments.link;
-  for (const std::string& channel : {link.states_channel, link.wrenches_channel}) {
-    if (Expected<void> checked = check_channel(channel); !checked) return checked;
+  const ChannelOptions& channel = arguments.channel;
+  for (const std::string& name : {channel.states_channel, channel.wrenches_channel}) {
+    if (Expected<void> checked = check_channel(name); !checked) return checked;
   }
-  if (link.states_channel == link.wrenches_channel) {
-    return failure({"channels", "both are " + link.states_channel, "two different names",
-                    "questions would be taken for answers", ""});
+  if (channel.states_channel == channel.wrenches_channel) {
+    return make_error({"channels", "both are " + channel.states_channel, "two different names",
+                       "requests would be taken for answers", ""});
   }
-  return check_lcm_url(link.lcm_url);
+  return check_lcm_url(channel.lcm_url);
 }
 
 int report(const Error& error, int exit_code) {
@@ -147,43 +149,43 @@ int report(const Error& error, int exit_code) {
   return exit_code;
 }
 
-Expected<Asker> make_asker(const Arguments& arguments, const Scene& scene) {
-  if (arguments.embedded) return Asker(EmbeddedAsker(scene));
-  Expected<AnswerLink> link = AnswerLink::open(arguments.link);
-  if (!link) return failure(link.error());
-  if (!arguments.rate) return Asker(LockstepAsker(std::move(*link), arguments.patience));
-  return Asker(FreeRunningAsker(std::move(*link), arguments.patience, 1.0 / *arguments.rate));
+Expected<RequestClient> make_client(const Arguments& arguments, const Scene& scene) {
+  if (arguments.embedded) return RequestClient(InProcessClient(scene));
+  Expected<LcmRequestChannel> channel = LcmRequestChannel::open(arguments.channel);
+  if (!channel) return make_error(channel.error());
+  if (!arguments.rate) return RequestClient(LockstepClient(std::move(*channel), arguments.retry_policy));
+  return RequestClient(FreeRunningClient(std::move(*channel), arguments.retry_policy, 1.0 / *arguments.rate));
 }
 
 int simulate(Arguments arguments) {
-  arguments.link.stop = &stop_requested;
-  arguments.link.spin = !arguments.no_spin;
+  arguments.channel.cancelled = &stop_requested;
+  arguments.channel.spin = !arguments.no_spin;
   SimulationOptions options;
   options.step = arguments.step.value_or(arguments.rate ? 1.0 / *arguments.rate : options.step);
   options.integrator = *integrator_from_name(arguments.integrator);
   options.lead_time = arguments.lead_time;
-  options.late_steps = arguments.late_steps;
-  options.session_id = arguments.session.value_or(draw_session_id());
-  const double steps_asked = std::round(arguments.duration / options.step);
-  if (const Expected<void> checked = check_arguments(arguments, steps_asked); !checked) {
-    return report(checked.error(), kWrongInput);
+  options.delay_steps = arguments.delay_steps;
+  options.session_id = arguments.session.value_or(make_session_id());
+  const double steps_requested = std::round(arguments.duration / options.step);
+  if (const Expected<void> checked = check_arguments(arguments, steps_requested); !checked) {
+    return report(checked.error(), kUsageError);
   }
-  const auto steps = static_cast<std::int64_t>(steps_asked);
+  const auto steps = static_cast<std::int64_t>(steps_requested);
 
   const Expected<Scene> scene = Scene::load(arguments.scene);
-  if (!scene) return report(scene.error(), kWrongInput);
+  if (!scene) return report(scene.error(), kUsageError);
   Expected<Simulation> simulation = Simulation::make(*scene, options);
-  if (!simulation) return report(simulation.error(), kWrongInput);
+  if (!simulation) return report(simulation.error(), kUsageError);
   std::optional<RunCsv> csv;
   if (!arguments.csv.empty()) {
     const Expected<void> own = check_output_is_its_own(arguments.csv, {arguments.scene});
-    if (!own) return report(own.error(), kWrongInput);
+    if (!own) return report(own.error(), kUsageError);
     Expected<RunCsv> created = RunCsv::create(arguments.csv, arguments.csv_every);
-    if (!created) return report(created.error(), kFailed);
+    if (!created) return report(created.error(), kFailure);
     csv = std::move(*created);
   }
-  Expected<Asker> asker = make_asker(arguments, *scene);
-  if (!asker) return report(asker.error(), kFailed);
+  Expected<RequestClient> client = make_client(arguments, *scene);
+  if (!client) return report(client.error(), kFailure);
 
   RunSummary summary;
   const auto warn = [&summary](std::optional<Error> warning) {
@@ -192,17 +194,17 @@ int simulate(Arguments arguments) {
     summary.warnings.push_back(std::move(*warning));
   };
   warn(step_warning(*simulation));
-  warn(lateness_warning(*simulation, static_cast<double>(options.late_steps) * options.step));
-  LatenessWatch lateness;
+  warn(latency_warning(*simulation, static_cast<double>(options.delay_steps) * options.step));
+  LatencyMonitor latency;
 
   const Clock::time_point start = Clock::now();
-  Expected<RunEnd> end = RunEnd::kDone;
+  Expected<RunOutcome> end = RunOutcome::kCompleted;
   {
     ProgressBar progress("steps");
-    end = run(*simulation, *asker, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
+    end = run(*simulation, *client, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
       progress.update(now.step_number(), steps, now.step_number());
       if (arguments.rate) {
-        if (std::optional<Error> late = lateness.see(now)) {
+        if (std::optional<Error> late = latency.update(now)) {
           progress.clear();
           warn(std::move(late));
         }
@@ -212,25 +214,25 @@ int simulate(Arguments arguments) {
   }
   const double wall_time = std::chrono::duration<double>(Clock::now() - start).count();
   const Expected<void> closed = csv ? csv->close() : Expected<void>{};
-  if (!end) return report(end.error(), kFailed);
-  if (!closed) return report(closed.error(), kFailed);
+  if (!end) return report(end.error(), kFailure);
+  if (!closed) return report(closed.error(), kFailure);
 
   warn(energy_warning(*simulation));
   summary.steps = simulation->completed_steps();
-  summary.steps_asked = steps;
-  summary.interrupted = *end == RunEnd::kInterrupted;
+  summary.steps_requested = steps;
+  summary.interrupted = *end == RunOutcome::kInterrupted;
   summary.time = static_cast<double>(summary.steps) * options.step;
   summary.wall_time = wall_time;
   summary.options = options;
   for (const SimulatedBody& body : simulation->bodies()) {
     summary.bodies.push_back(summarize(body, simulation->water()));
   }
-  summary.asker = statistics(*asker);
+  summary.client = statistics(*client);
   const std::string text = arguments.json ? to_json(summary) : to_text(summary);
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    return report({"standard output", "cannot be written", "a place for the table", "", ""}, kFailed);
+    return report({"standard output", "cannot be written", "a place for the table", "", ""}, kFailure);
   }
-  return summary.interrupted ? kFailed : kDone;
+  return summary.interrupted ? kFailure : kSuccess;
 }
 
 int client_main(int argc, char** argv) {
@@ -247,7 +249,7 @@ int client_main(int argc, char** argv) {
       "the steps done), 2 wrong arguments, scene or mesh.",
       "buoyancy-client");
   Arguments arguments;
-  define_arguments(app, arguments);
+  add_options(app, arguments);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   return simulate(std::move(arguments));
 }

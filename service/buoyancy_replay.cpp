@@ -17,8 +17,8 @@ namespace {
 
 using namespace buoyancy;
 
-constexpr int kTroublesShown = 20;
-// The same in every replay: so are the bytes. "pose" in ASCII, which no asker draws by any likelihood.
+constexpr int kWarningsShown = 20;
+// The same in every replay: so are the bytes. "pose" in ASCII, which no client draws by any likelihood.
 constexpr std::int64_t kFirstPoseSession = 0x706f736500000000;
 
 // Of a program that a signal has ended nobody expects that it waits for a reader.
@@ -28,46 +28,46 @@ bool standard_output_has_room() {
   return ::poll(&writable, 1, kTimeoutMs) != 0;
 }
 
-int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
+int response_all(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of OUTPUT that goes away is a failed write, with its message
-  ProgressBar progress("questions");
-  int troubles = 0;
-  const ReplayListener listener{[&](const std::string& trouble) {
-                                  ++troubles;
-                                  if (troubles > kTroublesShown) return;
+  ProgressBar progress("requests");
+  int warnings = 0;
+  const ReplayListener listener{[&](const std::string& warning) {
+                                  ++warnings;
+                                  if (warnings > kWarningsShown) return;
                                   progress.clear();
-                                  print_error(app, options.input.string() + ": " + trouble);
-                                  if (troubles == kTroublesShown)
+                                  print_error(app, options.input.string() + ": " + warning);
+                                  if (warnings == kWarningsShown)
                                     print_error(app, "more of that is counted, not shown");
                                 },
-                                [&](std::int64_t done, std::int64_t total, std::int64_t questions) {
-                                  progress.update(done, total, questions);
+                                [&](std::int64_t done, std::int64_t total, std::int64_t requests) {
+                                  progress.update(done, total, requests);
                                 }};
   const Expected<ReplaySummary> summary = replay(task, signals, listener);
   progress.clear();
   signals.unblock();  // what follows may wait for a reader of the summary
   if (!summary) {
     print_error(app, summary.error());
-    return kFailed;
+    return kFailure;
   }
-  if (*summary->ended_by != '\0') {
-    print_error(app, std::string("ended by ") + summary->ended_by + "; " + options.output.string() +
+  if (*summary->stopped_by != '\0') {
+    print_error(app, std::string("ended by ") + summary->stopped_by + "; " + options.output.string() +
                          " holds what was answered until then");
   }
-  if (*summary->ended_by == '\0' && options.input.extension() == ".lcmlog") {
-    for (const std::string& channel : task.channels.never_seen()) {
+  if (*summary->stopped_by == '\0' && options.input.extension() == ".lcmlog") {
+    for (const std::string& channel : task.channels.unseen_channels()) {
       print_error(app, Error{"warning: channel " + channel, "no event of " + options.input.string(),
-                             "questions or poses to answer", "the log has another name for it",
+                             "requests or poses to answer", "the log has another name for it",
                              "See --states-channel and --pose"});
     }
   }
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
-  if (*summary->ended_by != '\0' && !standard_output_has_room()) return kFailed;
-  if (!print_output(app, text)) return kFailed;
+  if (*summary->stopped_by != '\0' && !standard_output_has_room()) return kFailure;
+  if (!print_output(app, text)) return kFailure;
   const bool agrees = task.comparison == nullptr || task.comparison->agrees();
-  return summary->complete() && agrees ? kDone : kFailed;
+  return summary->complete() && agrees ? kSuccess : kFailure;
 }
 
 }  // namespace
@@ -75,41 +75,42 @@ int answer_all(const CLI::App& app, const ReplayOptions& options, const ReplayTa
 int main(int argc, char** argv) {
   CLI::App app("", "buoyancy-replay");
   ReplayOptions options;
-  declare_options(app, options);
+  add_options(app, options);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   const auto refuse = [&app](const Error& error, ExitCode exit_code) {
     print_error(app, error);
     return exit_code;
   };
   const Expected<ReplayPlan> plan = plan_replay(options);
-  if (!plan) return refuse(plan.error(), kWrongInput);
+  if (!plan) return refuse(plan.error(), kUsageError);
   const Expected<Scene> scene =
       plan->single_mesh ? Scene::prepare(*plan->single_mesh) : Scene::load(options.scene);
-  if (!scene) return refuse(scene.error(), kWrongInput);
+  if (!scene) return refuse(scene.error(), kUsageError);
   Expected<ReplayRoutes> routes = plan_routes(options, *scene);
-  if (!routes) return refuse(routes.error(), kWrongInput);
+  if (!routes) return refuse(routes.error(), kUsageError);
   ReplayChannels& channels = routes->channels;
-  PoseQuestions poses(std::move(routes->poses), kFirstPoseSession);
+  PoseRequestAdapter poses(std::move(routes->poses), kFirstPoseSession);
   Expected<ReplayInput> input =
       ReplayInput::open(options.input, plan->input_format,
                         [&channels](std::string_view channel) { return channels.use_of(channel).any(); });
-  if (!input) return refuse(input.error(), kWrongInput);
-  std::optional<Comparison> comparison;
+  if (!input) return refuse(input.error(), kUsageError);
+  std::optional<ReplayComparison> comparison;
   if (!options.earlier.empty()) {
-    Expected<Comparison> opened =
-        Comparison::open(options.earlier, options.wrenches_channel, options.hydrostatics_channel, *scene);
-    if (!opened) return refuse(opened.error(), kWrongInput);
+    Expected<ReplayComparison> opened = ReplayComparison::open(options.earlier, options.wrenches_channel,
+                                                               options.hydrostatics_channel, *scene);
+    if (!opened) return refuse(opened.error(), kUsageError);
     comparison = *std::move(opened);
   }
   Expected<ReplayOutput> output = ReplayOutput::create(options.output, plan->output_format);
-  if (!output) return refuse(output.error(), kFailed);
-  return answer_all(app, options,
-                    {.scene = *scene,
-                     .input = *input,
-                     .channels = channels,
-                     .poses = poses,
-                     .output = *output,
-                     .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
-                     .comparison = comparison ? &*comparison : nullptr,
-                     .jobs = options.jobs});
+  if (!output) return refuse(output.error(), kFailure);
+  return response_all(
+      app, options,
+      {.scene = *scene,
+       .input = *input,
+       .channels = channels,
+       .poses = poses,
+       .output = *output,
+       .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
+       .comparison = comparison ? &*comparison : nullptr,
+       .jobs = options.jobs});
 }

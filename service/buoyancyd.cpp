@@ -20,24 +20,24 @@ namespace {
 using namespace buoyancy;
 
 int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseChannels poses,
-          BlockedSignals& reload) {
+          SignalFd& reload) {
   TerminationSignals termination;  // before the connection, whose thread must not get them
   Expected<LcmConnection> connection =
       LcmConnection::open(options.lcm_url, {.receive_own = false, .spin = !options.no_spin});
   if (!connection) {
     print_error(app, connection.error());
-    return kFailed;
+    return kFailure;
   }
   Daemon daemon(std::make_unique<const Scene>(std::move(scene)), std::move(*connection), options.mode,
                 options.channels, std::move(poses), options.threads);
-  ExitCode exit_code = kDone;
+  ExitCode exit_code = kSuccess;
   if (const Expected<void> ended = daemon.run(termination, reload); !ended) {
     print_error(app, ended.error());
-    exit_code = kFailed;
+    exit_code = kFailure;
   }
   // Nobody waits for a scene that nobody will be answered from: the load's thread ends with the process, and
   // the child that imports a mesh with the thread.
-  if (daemon.loading()) std::_Exit(exit_code);
+  if (daemon.is_loading()) std::_Exit(exit_code);
   return exit_code;
 }
 
@@ -46,31 +46,31 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseCh
 int main(int argc, char** argv) {
   CLI::App app("", "buoyancyd");
   DaemonOptions options;
-  declare_options(app, options);
+  add_options(app, options);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   if (const Expected<void> checked = check_options(options); !checked) {
     print_error(app, checked.error());
-    return kWrongInput;
+    return kUsageError;
   }
-  start_logging("buoyancyd", options.log_level);
+  init_logging("buoyancyd", options.log_level);
 
-  std::optional<BlockedSignals> reload;
+  std::optional<SignalFd> reload;
   if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // one that comes early waits
   Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
   if (!scene) {
     print_error(app, scene.error());
-    return kWrongInput;
+    return kUsageError;
   }
   const ChannelNames& channels = options.channels;
   Expected<PoseChannels> poses = pose_channels(
       options.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
   if (!poses) {
     print_error(app, poses.error());
-    return kWrongInput;
+    return kUsageError;
   }
   if (options.check) {
     const std::string report = options.json ? scene_report_json(*scene) + "\n" : scene_report_text(*scene);
-    return print_output(app, report) ? kDone : kFailed;
+    return print_output(app, report) ? kSuccess : kFailure;
   }
   return serve(app, options, std::move(*scene), std::move(*poses), *reload);
 }

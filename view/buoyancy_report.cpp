@@ -22,7 +22,7 @@ namespace {
 
 using namespace buoyancy;
 
-constexpr std::size_t kMostRows = 40'000;  // of all bodies: some 10 MB of page
+constexpr std::size_t kMaxRows = 40'000;  // of all bodies: some 10 MB of page
 
 struct ReportArguments {
   std::filesystem::path scene, run, output;
@@ -32,7 +32,7 @@ struct ReportArguments {
   std::string bodies;
 };
 
-void declare_options(CLI::App& app, ReportArguments& arguments) {
+void add_options(CLI::App& app, ReportArguments& arguments) {
   app.description(
       "Writes a recorded run as one HTML page that any browser shows without a network: the bodies in the\n"
       "water to be played back, plots, and what was skipped. RUN is the CSV of buoyancy-client, poses as\n"
@@ -42,14 +42,14 @@ void declare_options(CLI::App& app, ReportArguments& arguments) {
       "mesh or RUN.");
   app.set_version_flag("--version", "buoyancy-report " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "The scene file (TOML): water and bodies")->required();
-  app.add_option("--states-channel", arguments.file.states_channel, "Channel of the questions in an LCM log")
+  app.add_option("--states-channel", arguments.file.states_channel, "Channel of the requests in an LCM log")
       ->capture_default_str();
   app.add_option("--wrenches-channel", arguments.file.wrenches_channel,
-                 "Channel of the answers in an LCM log")
+                 "Channel of the responses in an LCM log")
       ->capture_default_str();
   app.add_option("--status-channel", arguments.file.status_channel, "Channel of the status in an LCM log")
       ->capture_default_str();
-  declare_options(app, arguments.poses);
+  add_options(app, arguments.poses);
   app.add_option(
       "--bodies", arguments.bodies,
       "Ids of the bodies to show, such as 1-50,900, at most 1,000. Default: the first 1,000 that RUN\n"
@@ -61,7 +61,7 @@ void declare_options(CLI::App& app, ReportArguments& arguments) {
 }
 
 Expected<void> write_page(const std::filesystem::path& path, const std::string& page) {
-  Expected<RecordFile> file = RecordFile::create(path);
+  Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
   const Bytes bytes{reinterpret_cast<const std::uint8_t*>(page.data()), page.size()};
   if (Expected<void> written = file->append(bytes); !written) return written;
@@ -93,27 +93,27 @@ std::string summary_of(const RecordedRun& run, const ReportArguments& arguments,
 int main(int argc, char** argv) {
   CLI::App app("", "buoyancy-report");
   ReportArguments arguments;
-  declare_options(app, arguments);
+  add_options(app, arguments);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   const auto refuse = [&app](const Error& error, ExitCode exit_code) {
     print_error(app, error);
     return exit_code;
   };
   const Expected<void> own = check_output_is_its_own(arguments.output, {arguments.run, arguments.scene});
-  if (!own) return refuse(own.error(), kWrongInput);
+  if (!own) return refuse(own.error(), kUsageError);
   const Expected<std::string> three = three_js(arguments.three);
-  if (!three) return refuse(three.error(), kFailed);
+  if (!three) return refuse(three.error(), kFailure);
   const Expected<Scene> scene = Scene::load(arguments.scene);
-  if (!scene) return refuse(scene.error(), kWrongInput);
+  if (!scene) return refuse(scene.error(), kUsageError);
   Expected<PoseChannels> poses = pose_channels(
       arguments.poses, *scene,
       {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.status_channel});
-  if (!poses) return refuse(poses.error(), kWrongInput);
+  if (!poses) return refuse(poses.error(), kUsageError);
   arguments.file.poses = *std::move(poses);
 
   if (!arguments.bodies.empty()) {
     Expected<std::vector<std::size_t>> bodies = body_list(arguments.bodies, *scene);
-    if (!bodies) return refuse(bodies.error(), kWrongInput);
+    if (!bodies) return refuse(bodies.error(), kUsageError);
     arguments.file.bodies = *std::move(bodies);
   }
 
@@ -124,14 +124,15 @@ int main(int argc, char** argv) {
     progress.update(done, total, rows);
     return !signals.pending();
   };
-  const Expected<RecordedRun> run = read_run(arguments.run, *scene, kMostRows, arguments.file);
+  const Expected<RecordedRun> run = read_run(arguments.run, *scene, kMaxRows, arguments.file);
   progress.clear();
-  if (!run) return refuse(run.error(), kWrongInput);
-  for (const std::string& trouble : run->troubles) print_error(app, arguments.run.string() + ": " + trouble);
-  if (run->more_troubles > 0) print_error(app, std::to_string(run->more_troubles) + " more of that");
-  const char* const ended_by = signals.take();
-  if (ended_by != nullptr) {
-    print_error(app, std::string("ended by ") + ended_by + "; the page shows what was read until then");
+  if (!run) return refuse(run.error(), kUsageError);
+  for (const std::string& warning : run->warnings) print_error(app, arguments.run.string() + ": " + warning);
+  if (run->suppressed_warnings > 0)
+    print_error(app, std::to_string(run->suppressed_warnings) + " more of that");
+  const char* const stopped_by = signals.consume();
+  if (stopped_by != nullptr) {
+    print_error(app, std::string("ended by ") + stopped_by + "; the page shows what was read until then");
   }
 
   const std::string page = report_page(report_data(*scene, *run,
@@ -140,8 +141,8 @@ int main(int argc, char** argv) {
                                                     .selected = !arguments.file.bodies.empty()}),
                                        *three);
   if (const Expected<void> written = write_page(arguments.output, page); !written) {
-    return refuse(written.error(), kFailed);
+    return refuse(written.error(), kFailure);
   }
-  if (!print_output(app, summary_of(*run, arguments, page.size()))) return kFailed;
-  return run->troubles.empty() && ended_by == nullptr ? kDone : kFailed;
+  if (!print_output(app, summary_of(*run, arguments, page.size()))) return kFailure;
+  return run->warnings.empty() && stopped_by == nullptr ? kSuccess : kFailure;
 }

@@ -1,4 +1,4 @@
-// buoyancy-view: shows in a browser what a buoyancy service and its askers say to each other. Exit codes: 0
+// buoyancy-view: shows in a browser what a buoyancy service and its clients say to each other. Exit codes: 0
 // ended by SIGINT or SIGTERM, 1 it ran and failed, 2 wrong arguments, scene or mesh.
 
 #include <string>
@@ -33,7 +33,7 @@ struct Arguments {
   PoseOptions poses;
 };
 
-void define_arguments(CLI::App& app, Arguments& arguments) {
+void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-view " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "Scene file: what the service loaded")->required();
   app.add_option("-l,--lcm-url", arguments.lcm_url, "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
@@ -52,21 +52,21 @@ void define_arguments(CLI::App& app, Arguments& arguments) {
          "for a machine that is never idle")
       ->check(CLI::IsMember({"idle", "normal"}))
       ->option_text("POLICY [idle]");
-  app.add_option("--states-channel", arguments.channels.states, "Channel of the questions")
+  app.add_option("--states-channel", arguments.channels.states, "Channel of the requests")
       ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.channels.wrenches, "Channel of the answers")
+  app.add_option("--wrenches-channel", arguments.channels.wrenches, "Channel of the responses")
       ->capture_default_str();
   app.add_option("--hydrostatics-channel", arguments.channels.hydrostatics, "Channel of the hydrostatics")
       ->capture_default_str();
   app.add_option("--status-channel", arguments.channels.status, "Channel of the service's status")
       ->capture_default_str();
-  declare_pose_channels(app, arguments.poses);
+  add_pose_channel_options(app, arguments.poses);
 }
 
 // What no single option shows.
 Expected<void> check_arguments(const Arguments& arguments) {
   const WatchedChannels& channels = arguments.channels;
-  if (Expected<void> checked = check_different_channels(
+  if (Expected<void> checked = check_channels_distinct(
           {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
       !checked) {
     return checked;
@@ -82,46 +82,47 @@ int report(const CLI::App& app, const Error& error, ExitCode exit_code) {
 
 int show(const CLI::App& app, const Arguments& arguments) {
   if (const Expected<void> checked = check_arguments(arguments); !checked) {
-    return report(app, checked.error(), kWrongInput);
+    return report(app, checked.error(), kUsageError);
   }
   const Expected<Scene> scene = Scene::load(arguments.scene);
-  if (!scene) return report(app, scene.error(), kWrongInput);
+  if (!scene) return report(app, scene.error(), kUsageError);
   WatchedChannels channels = arguments.channels;
   Expected<PoseChannels> poses = pose_channels(
       arguments.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
-  if (!poses) return report(app, poses.error(), kWrongInput);
+  if (!poses) return report(app, poses.error(), kUsageError);
   channels.poses = *std::move(poses);
-  Expected<std::vector<ServedText>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
-  if (!page) return report(app, page.error(), kFailed);
+  Expected<std::vector<StaticResource>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
+  if (!page) return report(app, page.error(), kFailure);
   TerminationSignals termination;  // before any thread is started, which must not get them
-  if (arguments.scheduling == "idle") give_way_to_others();
-  SnapshotHub hub;
+  if (arguments.scheduling == "idle") use_idle_scheduling();
+  SnapshotBroadcaster hub;
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, hub);
-  if (!view) return report(app, view.error(), kFailed);
+  if (!view) return report(app, view.error(), kFailure);
   const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), hub);
-  if (!server) return report(app, server.error(), kFailed);
+  if (!server) return report(app, server.error(), kFailure);
 
-  if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailed;
+  if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailure;
   view->run(termination, [&server] { return (*server)->serving(); });
   if (!(*server)->serving()) {
     return report(app,
                   {(*server)->url(), "the kernel gives no more connections", "a port that lasts",
                    "memory or file descriptors are at their end", "Start the view again"},
-                  kFailed);
+                  kFailure);
   }
-  return kDone;
+  return kSuccess;
 }
 
 int view_main(int argc, char** argv) {
   CLI::App app(
-      "Shows in a browser what a buoyancy service and its askers say to each other on LCM: the bodies in the "
+      "Shows in a browser what a buoyancy service and its clients say to each other on LCM: the bodies in "
+      "the "
       "water,\n"
       "latency, counters, losses. Only listens.\n"
       "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
       "mesh.",
       "buoyancy-view");
   Arguments arguments;
-  define_arguments(app, arguments);
+  add_options(app, arguments);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
   return show(app, arguments);
 }

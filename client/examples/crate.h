@@ -37,13 +37,13 @@ struct Arguments {
 };
 
 // Where the crate came to rest and how fast it got there. tilt_cosine: z of the crate's own z axis.
-inline void report(const buoyancy::AskerStatistics& asked, double height, double tilt_cosine,
+inline void report(const buoyancy::ClientStats& asked, double height, double tilt_cosine,
                    std::chrono::steady_clock::duration took) {
   const double seconds = std::chrono::duration<double>(took).count();
   std::printf("height %.6f m, tilt %.6f rad after %.3g s of simulated time\n", height,
               std::acos(std::fmin(tilt_cosine, 1.0)), kSimulatedTime);
-  std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld questions sent again\n",
-              static_cast<double>(asked.questions) / seconds, 1e6 * asked.round_trip.percentiles().p50,
+  std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld requests sent again\n",
+              static_cast<double>(asked.requests) / seconds, 1e6 * asked.round_trip.percentiles().p50,
               1e6 * asked.round_trip.percentiles().p99, static_cast<long long>(asked.retries));
 }
 
@@ -54,8 +54,8 @@ int float_crate(World& world, const Arguments& arguments) {
   const double step_size = arguments.step;
   const std::int64_t steps = std::llround(kSimulatedTime / step_size);
   buoyancy::ClientOptions options;
-  options.link.lcm_url = arguments.lcm_url;
-  options.patience.retries = arguments.retries;
+  options.channel.lcm_url = arguments.lcm_url;
+  options.retry_policy.max_retries = arguments.retries;
   buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open(options);
   if (!client) {
     std::fprintf(stderr, "%s\n", client.error().message().c_str());
@@ -68,16 +68,16 @@ int float_crate(World& world, const Arguments& arguments) {
     // Once per step, at the step's own pose: the engines then integrate semi-implicitly, which keeps energy
     // bounded.
     const std::array states{world.state()};
-    const auto answer = client->ask(utime, states);
-    if (!answer) {
-      std::fprintf(stderr, "%s\n", answer.error().message().c_str());
+    const auto response = client->request(utime, states);
+    if (!response) {
+      std::fprintf(stderr, "%s\n", response.error().message().c_str());
       return 1;
     }
-    if (const auto* wrong = buoyancy::first_not_ok(**answer)) {
-      std::fprintf(stderr, "body %d is answered with status %s\n", wrong->body_id, name(wrong->status));
+    if (const auto* wrong = buoyancy::find_failed_body(**response)) {
+      std::fprintf(stderr, "body %d is answered with status %s\n", wrong->body_id, to_string(wrong->status));
       return 1;
     }
-    world.step_with((*answer)->bodies[0], step_size);
+    world.step_with((*response)->bodies[0], step_size);
   }
   report(client->statistics(), world.height(), world.tilt_cosine(), std::chrono::steady_clock::now() - start);
   return 0;

@@ -22,7 +22,7 @@ STATES, WRENCHES = "BUOYANCY_STATES", "BUOYANCY_WRENCHES"
 
 
 class Client:
-    """One session in lock-step: a question is sent again until its answer is there."""
+    """One session in lock-step: a request is sent again until its response is there."""
 
     def __init__(self, group="239.255.76.67", port=7667, ttl=0, timeout=0.1, retries=50):
         self.address = (group, port)
@@ -40,18 +40,18 @@ class Client:
 
     def ask(self, utime, states, lead_time=0.0):
         """states: body_state_t's. Returns their body_wrench_t's, in the same order."""
-        question = buoyancy.body_states_t()
-        question.utime, question.session_id, question.seq = utime, self.session_id, self.seq
-        question.lead_time, question.num_bodies, question.bodies = lead_time, len(states), states
+        request = buoyancy.body_states_t()
+        request.utime, request.session_id, request.seq = utime, self.session_id, self.seq
+        request.lead_time, request.num_bodies, request.bodies = lead_time, len(states), states
         self.seq += 1
-        encoded = question.encode()
+        encoded = request.encode()
         for _ in range(1 + self.retries):
             self.publish(STATES, encoded)
-            answer = self.wait_for(question)
+            answer = self.wait_for(request)
             if answer is not None:
                 return answer.bodies
         raise TimeoutError(
-            f"no answer to question {question.seq} in {(1 + self.retries) * self.timeout:g} s: is buoyancyd running "
+            f"no response to request {request.seq} in {(1 + self.retries) * self.timeout:g} s: is buoyancyd running "
             f"on {self.address[0]}:{self.address[1]}?")
 
     def publish(self, channel, message):
@@ -59,8 +59,8 @@ class Client:
         self.datagrams = (self.datagrams + 1) & 0xFFFFFFFF
         self.socket.sendto(header + channel.encode() + b"\0" + message, self.address)
 
-    def wait_for(self, question):
-        """The answer with the question's session and number; None: not in time."""
+    def wait_for(self, request):
+        """The answer with the request's session and number; None: not in time."""
         deadline = time.monotonic() + self.timeout
         while (left := deadline - time.monotonic()) > 0:
             self.socket.settimeout(left)
@@ -75,7 +75,7 @@ class Client:
                 answer = buoyancy.body_wrenches_t.decode(message)
             except (ValueError, struct.error):
                 continue  # not ours
-            if (answer.session_id, answer.seq) == (question.session_id, question.seq):
+            if (answer.session_id, answer.seq) == (request.session_id, request.seq):
                 return answer
         return None
 

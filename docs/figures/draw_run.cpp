@@ -97,7 +97,7 @@ struct Layers {
   std::vector<std::pair<Vec3, Vec3>> waterline;
 };
 
-void add_facet(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c,
+void add_facet(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c,
                std::vector<Facet>& layer) {
   Facet facet{{a.y.vec3(), b.y.vec3(), c.y.vec3()}, 0.0};
   const Vec3 normal = (facet.corners[1] - facet.corners[0]).cross(facet.corners[2] - facet.corners[0]);
@@ -108,21 +108,21 @@ void add_facet(const Corner<double>& a, const Corner<double>& b, const Corner<do
 }
 
 // Adds the part of a triangle that is wet by its corners' heights; all of it, some or nothing.
-void add_wet_part(const std::array<Corner<double>, 3>& corner, std::vector<Facet>& layer) {
+void add_wet_part(const std::array<ClipVertex<double>, 3>& corner, std::vector<Facet>& layer) {
   const auto wet = std::count_if(corner.begin(), corner.end(), [](const auto& c) { return c.wet(); });
   if (wet == 3) add_facet(corner[0], corner[1], corner[2], layer);
   if (wet == 0 || wet == 3) return;
-  visit_wet_part(corner[0], corner[1], corner[2],
-                 [&](const auto& a, const auto& b, const auto& c) { add_facet(a, b, c, layer); });
+  for_each_wet_triangle(corner[0], corner[1], corner[2],
+                        [&](const auto& a, const auto& b, const auto& c) { add_facet(a, b, c, layer); });
 }
 
 void add_body(const Body& body, const Pose& pose, const Water& water, const Mat3& camera, Layers& layers) {
-  const HydrostaticMesh& mesh = body.prepared->mesh;
+  const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
   const Mat3 R = camera * pose.q_WB.normalized().toRotationMatrix();
   const Vec3 p = camera * pose.p_WB + R * mesh.center_B;
   for (const Triangle& triangle : mesh.surface.triangles) {
-    std::array<Corner<double>, 3> corner;
+    std::array<ClipVertex<double>, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 y = mesh.vertex(triangle[i]);
       corner[i] = {Point<double>::from(R * y + p), plane.height(y)};
@@ -130,12 +130,12 @@ void add_body(const Body& body, const Pose& pose, const Water& water, const Mat3
     add_wet_part(corner, layers.below);
     std::vector<Vec3> cut_points;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Corner<double>& from = corner[i];
-      const Corner<double>& to = corner[(i + 1) % 3];
+      const ClipVertex<double>& from = corner[i];
+      const ClipVertex<double>& to = corner[(i + 1) % 3];
       if (from.wet() != to.wet()) cut_points.push_back((from.wet() ? cut(from, to) : cut(to, from)).y.vec3());
     }
     if (cut_points.size() == 2) layers.waterline.emplace_back(cut_points[0], cut_points[1]);
-    for (Corner<double>& c : corner)
+    for (ClipVertex<double>& c : corner)
       c.z = -c.z;  // the part above the water is the wet part of the mirrored world
     add_wet_part(corner, layers.above);
   }
@@ -225,7 +225,7 @@ void draw_point(std::FILE* file, const Panel& panel, const Vec3& at, const char*
 void draw_balance(std::FILE* file, const Body& body, const Row& row, const Water& water, const View& view,
                   const Panel& panel, double metres_per_newton) {
   const auto state =
-      hydrostatics(body.prepared->mesh, row.pose, water, body.reference_B, body.center_of_mass_B);
+      hydrostatics(body.prepared_mesh->mesh, row.pose, water, body.reference_B, body.center_of_mass_B);
   if (!state || !body.center_of_mass_B) return;
   const Mat3 C = camera(view);
   const Vec3 buoyancy = C * (row.pose.p_WB + row.center_of_buoyancy_W);
@@ -271,7 +271,7 @@ void draw_panel(std::FILE* file, const Scene& scene, const std::map<std::int32_t
 double largest_width(const Scene& scene, const View& view) {
   double largest = 0.0;
   for (const Body& body : scene.bodies()) {
-    const HydrostaticMesh& mesh = body.prepared->mesh;
+    const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
     if (!view.from_ahead) {
       largest = std::max(largest, mesh.diagonal);
       continue;

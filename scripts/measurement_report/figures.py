@@ -71,7 +71,7 @@ def best_rows(rows, regime):
 
 @dataclass
 class Point:
-    """A method's answers on a mesh."""
+    """A method's responses on a mesh."""
     us: float
     error: float
     triangles: int

@@ -22,7 +22,7 @@ PAPER_TITLE = "Approximate and exact buoyancy calculation for real-time floating
 
 
 def network_card(part):
-    claim = "Over the network: question and answer between two processes"
+    claim = "Over the network: request and answer between two processes"
     if not part.measured():
         return card(claim, None, "", "", part)
     path = file_of(part, "report.md")
@@ -34,7 +34,7 @@ def network_card(part):
 
 
 def replay_card(part):
-    claim = "Replay: questions of a recorded log answered in a second"
+    claim = "Replay: requests of a recorded log answered in a second"
     if not part.measured():
         return card(claim, None, "", "", part)
     path = file_of(part, "section.md")
@@ -59,7 +59,7 @@ def report_section(part, name):
 
 def page(parts):
     commands = [p.facts["command"] for p in parts.values() if p.measured()]
-    quick = ('<p class="banner">A quick run: fewer meshes, fewer questions. Times of it are a first look.</p>'
+    quick = ('<p class="banner">A quick run: fewer meshes, fewer requests. Times of it are a first look.</p>'
              if any("--quick" in c for c in commands) else "")
     commits = sorted({p.facts["commit"] for p in parts.values() if p.measured()})
     mixed = (f'<p class="banner">These measurements were made at different commits: {escape(", ".join(commits))}.</p>'

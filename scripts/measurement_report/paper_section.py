@@ -73,7 +73,7 @@ def paper_table1_figure(compared, wide):
 
 
 def paper_card(part):
-    claim = "Beside the paper: its exact answer, on its largest model at hand"
+    claim = "Beside the paper: its exact response, on its largest model at hand"
     if not part.measured():
         return card(claim, None, "", "", part)
     compared = [r for r in compared_table1(part) if r[2] in ("exact", "hierarchical")]
@@ -144,7 +144,7 @@ def table1_table(compared):
     for model, triangles, method, paper_ms, us, error in compared:
         if paper_ms:
             ratio = f"{paper_ms * 1000 / us:.1f}"
-        else:  # a method of our own, beside the paper's exact one, whose question it answers
+        else:  # a method of our own, beside the paper's exact one, whose request it answers
             ratio = f"{exact[model, triangles] * 1000 / us:.1f} *"
         table.rows.append([model, grouped(triangles), f"`{method}`", f"{paper_ms:.2f}" if paper_ms else "", f"{us:.2f}",
                            ratio, error])
@@ -194,5 +194,5 @@ def table1_section(part):
         missing,
         details("The numbers: table 1 beside this run",
                 markdown.table_html(table1_table(compared), "the paper's table 1 beside this run")
-                + "<p>* Beside the paper's time for <code>exact</code>, which answers the same question.</p>"),
+                + "<p>* Beside the paper's time for <code>exact</code>, which answers the same request.</p>"),
         source_line(part)])

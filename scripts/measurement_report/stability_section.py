@@ -68,8 +68,8 @@ def stability_section(part, search):
         made.append(not_measured(part))
     made.append("<h3>Random search</h3>")
     if search.measured():
-        made.append("<p>Random meshes and questions aimed at trouble, judged by exact arithmetic: the largest errors "
-                    "beside what they are held to and beside the bounds that came with the answers. Of approximations, "
+        made.append("<p>Random meshes and requests aimed at trouble, judged by exact arithmetic: the largest errors "
+                    "beside what they are held to and beside the bounds that came with the responses. Of approximations, "
                     "and within a tolerance, the error may come as near to its bound as it likes. A broken bound ends "
                     "the search with an error.</p>")
         made.append(markdown.html(read_text(file_of(search, "report.md")), 4) + source_line(search))

@@ -6,56 +6,56 @@
 
 namespace buoyancy {
 
-std::vector<Trouble> troubles_between(const Counters& before, const Counters& now) {
+std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now) {
   struct Cause {
-    Rejection rejection;
-    std::int64_t Counters::*counter;
+    DecodeError rejection;
+    std::int64_t ServiceCounters::*counter;
   };
-  constexpr std::array kCauses{Cause{Rejection::kTruncated, &Counters::rejected_truncated},
-                               Cause{Rejection::kFingerprint, &Counters::rejected_fingerprint},
-                               Cause{Rejection::kCount, &Counters::rejected_count},
-                               Cause{Rejection::kLength, &Counters::rejected_length}};
-  std::vector<Trouble> troubles;
+  constexpr std::array kCauses{Cause{DecodeError::kTruncated, &ServiceCounters::rejected_truncated},
+                               Cause{DecodeError::kFingerprint, &ServiceCounters::rejected_fingerprint},
+                               Cause{DecodeError::kCount, &ServiceCounters::rejected_count},
+                               Cause{DecodeError::kLength, &ServiceCounters::rejected_length}};
+  std::vector<LogEvent> warnings;
   for (const Cause& cause : kCauses) {
     const std::int64_t grown = now.*cause.counter - before.*cause.counter;
     if (grown > 0) {
-      troubles.push_back({fmt::format("messages rejected, {}", describe(cause.rejection)), grown, {}});
+      warnings.push_back({fmt::format("messages rejected, {}", to_string(cause.rejection)), grown, {}});
     }
   }
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto status = static_cast<BodyStatus>(i);
     const std::int64_t grown = now.bodies[i] - before.bodies[i];
     if (status != BodyStatus::kOk && grown > 0) {
-      troubles.push_back({fmt::format("bodies answered with {}", name(status)), grown, {}});
+      warnings.push_back({fmt::format("bodies answered with {}", to_string(status)), grown, {}});
     }
   }
-  return troubles;
+  return warnings;
 }
 
-std::vector<Trouble> troubles_between(const ReceiveLosses& before, const ReceiveLosses& now) {
-  std::vector<Trouble> troubles;
+std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now) {
+  std::vector<LogEvent> warnings;
   if (now.packets > before.packets) {
-    troubles.push_back({"packets dropped by the kernel before they were read", now.packets - before.packets,
+    warnings.push_back({"packets dropped by the kernel before they were read", now.packets - before.packets,
                         "they came faster than they are read: sysctl -w net.core.rmem_max=4194304 and start "
                         "again, or a port that carries less else"});
   }
   if (now.fragments > before.fragments) {
-    troubles.push_back(
+    warnings.push_back(
         {"fragments of incomplete or contradictory messages dropped", now.fragments - before.fragments, {}});
   }
-  return troubles;
+  return warnings;
 }
 
-std::string describe_totals(const Counters& counters, const LatencyPercentiles& latency) {
+std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency) {
   std::int64_t bodies = 0;
   for (const std::int64_t count : counters.bodies) bodies += count;
   const std::int64_t ok = counters.bodies[static_cast<std::size_t>(BodyStatus::kOk)];
   constexpr double kMicrosecondsPerSecond = 1e6;
   return fmt::format(
-      "{} questions: {} answered, {} repeated, {} stale, {} overtaken, {} rejected; {} bodies, {} of them "
+      "{} requests: {} computed, {} retries, {} stale, {} superseded, {} rejected; {} bodies, {} of them "
       "OK; "
       "latency p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us",
-      counters.questions, counters.answered, counters.repeated, counters.stale, counters.overtaken,
+      counters.requests, counters.computed, counters.retries, counters.stale, counters.superseded,
       counters.rejected(), bodies, ok, latency.p50 * kMicrosecondsPerSecond,
       latency.p99 * kMicrosecondsPerSecond, latency.max * kMicrosecondsPerSecond);
 }

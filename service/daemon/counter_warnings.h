@@ -12,11 +12,11 @@ namespace buoyancy {
 
 // What went wrong between two readings: each cause of rejection, of loss, and each status other than OK whose
 // counter has grown.
-std::vector<Trouble> troubles_between(const Counters& before, const Counters& now);
+std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now);
 
-std::vector<Trouble> troubles_between(const ReceiveLosses& before, const ReceiveLosses& now);
+std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now);
 
-// One line of totals: "1200 questions, 1198 answered, ...".
-std::string describe_totals(const Counters& counters, const LatencyPercentiles& latency);
+// One line of totals: "1200 requests, 1198 answered, ...".
+std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency);
 
 }  // namespace buoyancy

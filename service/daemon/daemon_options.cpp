@@ -1,13 +1,13 @@
 #include "service/daemon/daemon_options.h"
 
-#include <map>
+#include <string>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
 namespace buoyancy {
 
-void declare_options(CLI::App& app, DaemonOptions& options) {
+void add_options(CLI::App& app, DaemonOptions& options) {
   app.description(
       "Answers body poses heard on LCM with the buoyant force and torque on each body.\n"
       "SIGHUP: reads the scene again, without dropping a session.\n"
@@ -18,27 +18,31 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
   app.add_option(
       "-l,--lcm-url", options.lcm_url,
       "LCM URL, for example udpm://239.255.76.67:7667?ttl=0; default: $LCM_DEFAULT_URL, then LCM's own");
-  app.add_option(
-         "--mode", options.mode,
-         "lockstep: answer every question; latest: answer the newest question of each session. A question "
-         "whose seq is lower than the newest by more than 64 is an asker that started over")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Mode>{{"lockstep", Mode::kLockstep}, {"latest", Mode::kLatest}}))
+  app.add_option_function<std::string>(
+         "--mode",
+         [&options](const std::string& mode) {
+           options.mode =
+               mode == to_string(ServiceMode::kLatest) ? ServiceMode::kLatest : ServiceMode::kLockstep;
+         },
+         "lockstep: answer every request; latest: answer the newest request of each session. A request "
+         "whose seq is lower than the newest by more than 64 is a client that started over")
+      ->check(CLI::IsMember(
+          {std::string(to_string(ServiceMode::kLockstep)), std::string(to_string(ServiceMode::kLatest))}))
       ->option_text("lockstep|latest [lockstep]");
-  app.add_option("--states-channel", options.channels.states, "Channel of the questions")
+  app.add_option("--states-channel", options.channels.states, "Channel of the requests")
       ->capture_default_str();
-  app.add_option("--wrenches-channel", options.channels.wrenches, "Channel of the answers")
+  app.add_option("--wrenches-channel", options.channels.wrenches, "Channel of the responses")
       ->capture_default_str();
   app.add_option("--hydrostatics-channel", options.channels.hydrostatics,
                  "Channel of the hydrostatics of bodies whose outputs in the scene name them")
       ->capture_default_str();
   app.add_option("--status-channel", options.channels.status, "Channel of the status, once a second")
       ->capture_default_str();
-  declare_options(app, options.poses);
+  add_options(app, options.poses);
   app.add_option(
          "--threads", options.threads,
-         "Threads among which a question's bodies are shared, where there is enough to do; 0: as many as the "
-         "processor runs at once. The answers do not depend on it")
+         "Threads among which a request's bodies are shared, where there is enough to do; 0: as many as the "
+         "processor runs at once. The responses do not depend on it")
       ->check(CLI::Range(0, 1024))
       ->option_text("N [0]");
   app.add_flag(
@@ -57,7 +61,7 @@ void declare_options(CLI::App& app, DaemonOptions& options) {
 
 Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
-  if (Expected<void> checked = check_different_channels(
+  if (Expected<void> checked = check_channels_distinct(
           {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
       !checked) {
     return checked;

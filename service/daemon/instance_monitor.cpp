@@ -5,7 +5,7 @@
 
 namespace buoyancy {
 
-void OtherInstances::hear(Bytes message) {
+void InstanceMonitor::observe(Bytes message) {
   if (known_.size() == kMost || decode(message, status_)) return;
   const std::int64_t id = status_.instance_id;
   if (id == own_ || std::ranges::find(known_, id) != known_.end()) return;
@@ -13,7 +13,7 @@ void OtherInstances::hear(Bytes message) {
   new_.push_back(id);
 }
 
-std::vector<std::int64_t> OtherInstances::take_new() {
+std::vector<std::int64_t> InstanceMonitor::take_new() {
   return std::exchange(new_, {});
 }
 

@@ -1,5 +1,5 @@
 // Other services on our bus, known by the status messages that they send as we do. Two that answer the same
-// channels answer every question twice, perhaps from different scenes, and nobody notices: so it is said.
+// channels answer every request twice, perhaps from different scenes, and nobody notices: so it is said.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace buoyancy {
 
-class OtherInstances {
+class InstanceMonitor {
  public:
   // Instances told apart; of more nothing is said, so that forged statuses fill neither memory nor log.
   static constexpr std::size_t kMost = 16;
 
-  explicit OtherInstances(std::int64_t own_instance_id) : own_(own_instance_id) {}
+  explicit InstanceMonitor(std::int64_t own_instance_id) : own_(own_instance_id) {}
 
   // A message on the status channel. Our own and what is no status are ignored.
-  void hear(Bytes message);
+  void observe(Bytes message);
 
   // The instance_id of each that was first heard since the last call.
   std::vector<std::int64_t> take_new();

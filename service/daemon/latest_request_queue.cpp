@@ -11,20 +11,20 @@ bool supersedes(std::int64_t later, std::int64_t earlier) {
   return static_cast<std::uint64_t>(earlier) - static_cast<std::uint64_t>(later) > kRestartGap;
 }
 
-LatestQuestions::LatestQuestions(std::size_t max_sessions) : max_sessions_(max_sessions) {
+LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions) : max_sessions_(max_sessions) {
   assert(max_sessions >= 1);
   sessions_.reserve(max_sessions);
   waiting_.reserve(max_sessions);
 }
 
-LatestQuestions::Fate LatestQuestions::offer(const QuestionKey& key, Bytes question, double arrival) {
+LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& key, Bytes request, double arrival) {
   Session* session = find(key.session_id);
   if (session != nullptr && !supersedes(key.seq, session->newest_seq) &&
-      arrival <= session->arrival + kRestartSilence) {
-    return Fate::kStale;
+      arrival <= session->arrival + kRestartIdleTime) {
+    return PushResult::kStale;
   }
   if (session == nullptr) session = place_for_new();
-  if (session == nullptr) return Fate::kNoRoom;
+  if (session == nullptr) return PushResult::kFull;
 
   const bool overtakes = session->waits;
   if (!overtakes) waiting_.push_back(static_cast<std::size_t>(session - sessions_.data()));
@@ -33,17 +33,17 @@ LatestQuestions::Fate LatestQuestions::offer(const QuestionKey& key, Bytes quest
   session->waits = true;
   session->arrival = arrival;
   session->last_use = ++use_;
-  session->question.assign(question.begin(), question.end());
-  return overtakes ? Fate::kOvertook : Fate::kWaits;
+  session->request.assign(request.begin(), request.end());
+  return overtakes ? PushResult::kReplaced : PushResult::kQueued;
 }
 
-LatestQuestions::Session* LatestQuestions::find(std::int64_t id) {
+LatestRequestQueue::Session* LatestRequestQueue::find(std::int64_t id) {
   const auto found = std::find_if(sessions_.begin(), sessions_.end(),
                                   [id](const Session& session) { return session.id == id; });
   return found == sessions_.end() ? nullptr : &*found;
 }
 
-LatestQuestions::Session* LatestQuestions::place_for_new() {
+LatestRequestQueue::Session* LatestRequestQueue::place_for_new() {
   if (sessions_.size() < max_sessions_) return &sessions_.emplace_back();
   Session* oldest = nullptr;
   for (Session& session : sessions_) {

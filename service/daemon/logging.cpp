@@ -44,10 +44,10 @@ class JournalPriority : public spdlog::custom_flag_formatter {
 
 }  // namespace
 
-void start_logging(const std::string& program, const std::string& level) {
+void init_logging(const std::string& program, const std::string& level) {
   spdlog::set_default_logger(spdlog::stderr_color_st(program));
   spdlog::set_level(spdlog::level::from_str(level));
-  if (!standard_error_is_the_journal()) return;
+  if (!stderr_is_journal()) return;
   auto lines = std::make_unique<spdlog::pattern_formatter>();
   lines->add_flag<JournalPriority>('*').set_pattern("%*%v");
   spdlog::set_formatter(std::move(lines));

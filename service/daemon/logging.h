@@ -8,6 +8,6 @@
 namespace buoyancy {
 
 // level: as spdlog names them.
-void start_logging(const std::string& program, const std::string& level);
+void init_logging(const std::string& program, const std::string& level);
 
 }  // namespace buoyancy

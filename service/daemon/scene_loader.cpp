@@ -15,9 +15,9 @@ SceneLoader::Loaded load(const std::filesystem::path& path) {
     if (!scene) return tl::unexpected(std::move(scene.error()));
     return std::make_unique<const Scene>(std::move(*scene));
   } catch (const std::bad_alloc&) {
-    return failure({path.string(), "memory ran out while it was loaded",
-                    "room for two scenes at a time: the old one answers until the new one is there", "",
-                    "Start the service again with the new scene, or give it more memory"});
+    return make_error({path.string(), "memory ran out while it was loaded",
+                       "room for two scenes at a time: the old one responses until the new one is there", "",
+                       "Start the service again with the new scene, or give it more memory"});
   }
 }
 
@@ -43,19 +43,19 @@ void SceneLoader::request() {
   work_.notify_one();
 }
 
-bool SceneLoader::busy() const {
+bool SceneLoader::is_loading() const {
   const std::lock_guard lock(mutex_);
   return requested_ || loading_;
 }
 
-std::optional<SceneLoader::Loaded> SceneLoader::take() {
+std::optional<SceneLoader::Loaded> SceneLoader::poll() {
   const std::lock_guard lock(mutex_);
   ::eventfd_t ends = 0;
   ::eventfd_read(ended_.value(), &ends);
   return std::exchange(loaded_, std::nullopt);
 }
 
-void SceneLoader::discard(std::unique_ptr<const Scene> scene) {
+void SceneLoader::release(std::unique_ptr<const Scene> scene) {
   {
     const std::lock_guard lock(mutex_);
     discarded_.swap(scene);

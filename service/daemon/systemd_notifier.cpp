@@ -31,25 +31,25 @@ std::string monotonic_microseconds() {
 
 }  // namespace
 
-void ServiceManager::ready() {
+void SystemdNotifier::ready() {
   notify("READY=1");
 }
 
-void ServiceManager::reloading() {
+void SystemdNotifier::reloading() {
   notify("RELOADING=1\nMONOTONIC_USEC=" + monotonic_microseconds());
 }
 
-void ServiceManager::stopping() {
+void SystemdNotifier::stopping() {
   notify("STOPPING=1");
 }
 
-void ServiceManager::status(const std::string& line) {
-  if (line == told_) return;
+void SystemdNotifier::status(const std::string& line) {
+  if (line == last_status_) return;
   notify("STATUS=" + line);
-  told_ = line;
+  last_status_ = line;
 }
 
-std::optional<std::chrono::microseconds> ServiceManager::watchdog_interval() {
+std::optional<std::chrono::microseconds> SystemdNotifier::watchdog_interval() {
 #ifdef BUOYANCY_WITH_SYSTEMD
   std::uint64_t microseconds = 0;
   if (::sd_watchdog_enabled(0, &microseconds) > 0) return std::chrono::microseconds(microseconds / 2);
@@ -57,7 +57,7 @@ std::optional<std::chrono::microseconds> ServiceManager::watchdog_interval() {
   return std::nullopt;
 }
 
-void ServiceManager::watchdog_beat() {
+void SystemdNotifier::ping_watchdog() {
   notify("WATCHDOG=1");
 }
 

@@ -10,21 +10,21 @@
 
 namespace buoyancy {
 
-class ServiceManager {
+class SystemdNotifier {
  public:
-  void ready();      // questions are answered from here on; ends what reloading() began
+  void ready();      // requests are answered from here on; ends what reloading() began
   void reloading();  // a new scene is being loaded
   void stopping();
   void status(const std::string& line);  // for `systemctl status`
 
-  // How often watchdog_beat() is wanted: half the time after which the manager takes us for hung
+  // How often ping_watchdog() is wanted: half the time after which the manager takes us for hung
   // ($WATCHDOG_USEC). nullopt: never.
   static std::optional<std::chrono::microseconds> watchdog_interval();
   // From the loop that does the work and from nowhere else: that it comes round is what is said.
-  void watchdog_beat();
+  void ping_watchdog();
 
  private:
-  std::string told_;  // the last status line, which is not said twice
+  std::string last_status_;  // the last status line, which is not said twice
 };
 
 }  // namespace buoyancy

@@ -22,28 +22,28 @@ struct Round {
 };
 
 void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch) {
-  // Of CSV, which has no channels, everything is a question.
-  const ReplayChannels::Use use = event.channel.empty() ? ReplayChannels::Use{.question = true, .pose = {}}
+  // Of CSV, which has no channels, everything is a request.
+  const ReplayChannels::Use use = event.channel.empty() ? ReplayChannels::Use{.request = true, .pose = {}}
                                                         : task.channels.use_of(event.channel);
   if (use.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
-  if (use.question) batch.add_question(event.timestamp, event.bytes, {});
+  if (use.request) batch.add_request(event.timestamp, event.bytes, {});
   if (!use.pose) return;
-  if (const auto question = task.poses.question(*use.pose, event.bytes)) {
-    batch.add_question(event.timestamp, *question, task.poses.channels()[*use.pose].force_torque_channel);
+  if (const auto request = task.poses.request(*use.pose, event.bytes)) {
+    batch.add_request(event.timestamp, *request, task.poses.channels()[*use.pose].force_torque_channel);
   } else {
-    batch.add_rejected_pose(event.timestamp, question.error());
+    batch.add_rejected_pose(event.timestamp, request.error());
   }
 }
 
 // False: the input has ended.
-bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& damages) {
+bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& corrupt_sections) {
   batch.clear();
   while (!batch.full()) {
-    InputItem item = task.input.next();
-    if (std::holds_alternative<EndOfInput>(item)) return false;
-    if (auto* damage = std::get_if<Damage>(&item)) {
-      ++damages;
-      batch.add_trouble(std::move(damage->description));
+    LogItem item = task.input.next();
+    if (std::holds_alternative<EndOfLog>(item)) return false;
+    if (auto* damage = std::get_if<CorruptSection>(&item)) {
+      ++corrupt_sections;
+      batch.add_warning(std::move(damage->description));
     } else {
       add_event(task, std::get<RecordedEvent>(item), batch);
     }
@@ -62,7 +62,7 @@ void read(const ReplayTask& task, const TerminationSignals& signals, Round& roun
     if (signals.pending()) {
       reading = Reading::kStopped;
     } else {
-      const bool more = fill(task, round.batches[round.filled++], summary.damages);
+      const bool more = fill(task, round.batches[round.filled++], summary.corrupt_sections);
       if (!more) reading = Reading::kAtEnd;
     }
   }
@@ -73,7 +73,7 @@ Expected<void> write(const ReplayTask& task, Round& round) {
     ReplayBatch& batch = round.batches[i];
     if (Expected<void> written = task.output.write(batch.records()); !written) return written;
     if (task.comparison != nullptr) {
-      batch.each_answer([&task](Bytes answer) { task.comparison->take(answer); });
+      batch.each_response([&task](Bytes response) { task.comparison->add(response); });
       batch.each_hydrostatics([&task](Bytes message) { task.comparison->take_hydrostatics(message); });
     }
   }
@@ -82,7 +82,7 @@ Expected<void> write(const ReplayTask& task, Round& round) {
 
 void tell(const Round& round, const ReplayListener& listener) {
   for (std::size_t i = 0; i < round.filled; ++i) {
-    for (const std::string& trouble : round.batches[i].troubles()) listener.on_trouble(trouble);
+    for (const std::string& warning : round.batches[i].warnings()) listener.on_input_error(warning);
   }
 }
 
@@ -92,8 +92,8 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
                                const ReplayListener& listener) {
   const auto start = std::chrono::steady_clock::now();
   ReplaySummary summary;
-  Workers workers(task.jobs);
-  const std::size_t count = workers.threads() == 1 ? 1 : kBatchesPerThread * workers.threads();
+  ThreadPool workers(task.jobs);
+  const std::size_t count = workers.thread_count() == 1 ? 1 : kBatchesPerThread * workers.thread_count();
   std::array<Round, 3> rounds;
   for (Round& round : rounds) {
     round.batches.reserve(count);
@@ -128,17 +128,17 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
       } else if (i == 1) {
         written = write(task, before);
       } else {
-        now.batches[i - 2].answer();
+        now.batches[i - 2].response();
       }
     });
     if (!written) return tl::unexpected(written.error());
-    listener.on_progress(task.input.offset(), task.input.size(), total().counters.questions);
+    listener.on_progress(task.input.offset(), task.input.size(), total().counters.requests);
   }
   Round& last = rounds[(number + 2) % 3];
   tell(last, listener);
   if (written = write(task, last); !written) return tl::unexpected(written.error());
   if (Expected<void> flushed = task.output.flush(); !flushed) return tl::unexpected(flushed.error());
-  if (reading == Reading::kStopped) summary.ended_by = signals.take();
+  if (reading == Reading::kStopped) summary.stopped_by = signals.consume();
   if (task.comparison != nullptr) task.comparison->finish();
   const ReplaySummary sum = total();
   summary.counters = sum.counters;

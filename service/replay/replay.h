@@ -1,5 +1,5 @@
-// The replay: every recorded question through the same Exchange as in the live service, offline, as fast as
-// it goes, on as many threads as there are. The same input gives the same output, byte for byte, whatever
+// The replay: every recorded request through the same RequestHandler as in the live service, offline, as fast
+// as it goes, on as many threads as there are. The same input gives the same output, byte for byte, whatever
 // their number.
 #pragma once
 
@@ -20,19 +20,19 @@
 namespace buoyancy {
 
 struct ReplaySummary {
-  Counters counters;
-  std::int64_t copied = 0;    // events
-  std::int64_t damages = 0;   // places of the input that could not be read
-  const char* ended_by = "";  // a signal's name; empty: the end of the input
+  ServiceCounters counters;
+  std::int64_t copied = 0;            // events
+  std::int64_t corrupt_sections = 0;  // places of the input that could not be read
+  const char* stopped_by = "";        // a signal's name; empty: the end of the input
   double seconds = 0.0;
 
-  // Has every question of the input its answer in the output?
-  bool complete() const { return damages == 0 && counters.rejected() == 0 && *ended_by == '\0'; }
+  // Has every request of the input its response in the output?
+  bool complete() const { return corrupt_sections == 0 && counters.rejected() == 0 && *stopped_by == '\0'; }
 };
 
 struct ReplayListener {
-  std::function<void(const std::string&)> on_trouble;  // what was damaged or rejected, one by one
-  std::function<void(std::int64_t offset, std::int64_t size, std::int64_t questions)> on_progress;
+  std::function<void(const std::string&)> on_input_error;  // what was damaged or rejected, one by one
+  std::function<void(std::int64_t offset, std::int64_t size, std::int64_t requests)> on_progress;
 };
 
 // What a replay works with; all outlive it.
@@ -40,15 +40,15 @@ struct ReplayTask {
   const Scene& scene;
   ReplayInput& input;
   ReplayChannels& channels;
-  PoseQuestions& poses;
+  PoseRequestAdapter& poses;
   ReplayOutput& output;
   OutputLayout layout;
-  Comparison* comparison = nullptr;  // nullptr: none
-  unsigned jobs = 0;                 // threads: 1 or more; 0: as many as the processor runs at once
+  ReplayComparison* comparison = nullptr;  // nullptr: none
+  unsigned jobs = 0;                       // threads: 1 or more; 0: as many as the processor runs at once
 };
 
-// Ends at the end of the input or, between two questions, after a signal. Memory: jobs times a bounded number
-// of questions. Errors: the output cannot be written; it is a pipe that nobody reads, after a signal.
+// Ends at the end of the input or, between two requests, after a signal. Memory: jobs times a bounded number
+// of requests. Errors: the output cannot be written; it is a pipe that nobody reads, after a signal.
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
                                const ReplayListener& listener);
 

@@ -4,15 +4,15 @@
 
 namespace buoyancy {
 
-ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_answers)
-    : exchange_(scene, {.threads = 1}), keep_answers_(keep_answers), records_(layout) {}
+ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
+    : handler_(scene, {.threads = 1}), keep_responses_(keep_responses), records_(layout) {}
 
 void ReplayBatch::clear() {
   items_.clear();
   bytes_.clear();
   records_.clear();
-  troubles_.clear();
-  answers_.clear();
+  warnings_.clear();
+  responses_.clear();
   hydrostatics_.clear();
 }
 
@@ -26,12 +26,11 @@ ReplayBatch::Item& ReplayBatch::add(Kind kind, std::int64_t timestamp, Bytes mes
   return item;
 }
 
-void ReplayBatch::add_question(std::int64_t timestamp, Bytes question,
-                               std::string_view force_torque_channel) {
-  add(Kind::kQuestion, timestamp, question).channel = force_torque_channel;
+void ReplayBatch::add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel) {
+  add(Kind::kRequest, timestamp, request).channel = force_torque_channel;
 }
 
-void ReplayBatch::add_rejected_pose(std::int64_t timestamp, Rejection cause) {
+void ReplayBatch::add_rejected_pose(std::int64_t timestamp, DecodeError cause) {
   add(Kind::kRejectedPose, timestamp, {}).cause = cause;
 }
 
@@ -39,51 +38,51 @@ void ReplayBatch::add_copy(std::int64_t timestamp, std::string_view channel, Byt
   add(Kind::kCopy, timestamp, bytes).text = channel;
 }
 
-void ReplayBatch::add_trouble(std::string trouble) {
-  add(Kind::kTrouble, 0, {}).text = std::move(trouble);
+void ReplayBatch::add_warning(std::string warning) {
+  add(Kind::kWarning, 0, {}).text = std::move(warning);
 }
 
-void ReplayBatch::answer() {
-  exchange_.begin_anew();
+void ReplayBatch::response() {
+  handler_.reset();
   for (Item& item : items_) {
     switch (item.kind) {
-      case Kind::kQuestion:
-        answer_question(item);
+      case Kind::kRequest:
+        response_request(item);
         break;
       case Kind::kRejectedPose:
-        exchange_.count_rejected(item.cause);
+        handler_.record_rejected(item.cause);
         reject(item, "pose", item.cause);
         break;
       case Kind::kCopy:
         records_.add_event(item.timestamp, item.text, message_of(item));
         ++copied_;
         break;
-      case Kind::kTrouble:
-        troubles_.push_back(std::move(item.text));
+      case Kind::kWarning:
+        warnings_.push_back(std::move(item.text));
         break;
     }
   }
 }
 
-void ReplayBatch::answer_question(const Item& item) {
-  const Bytes question = message_of(item);
-  const Bytes answer = exchange_.answer(question);
-  if (answer.empty()) {
-    reject(item, "question", peek_key(question).error());
+void ReplayBatch::response_request(const Item& item) {
+  const Bytes request = message_of(item);
+  const Bytes response = handler_.handle(request);
+  if (response.empty()) {
+    reject(item, "request", peek_request_id(request).error());
     return;
   }
-  records_.add_answer(item.timestamp, answer, exchange_.hydrostatics(), item.channel);
-  if (keep_answers_) {
-    answers_.add(answer);
-    if (const Bytes hydrostatics = exchange_.hydrostatics(); !hydrostatics.empty()) {
+  records_.add_response(item.timestamp, response, handler_.last_hydrostatics(), item.channel);
+  if (keep_responses_) {
+    responses_.add(response);
+    if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {
       hydrostatics_.add(hydrostatics);
     }
   }
 }
 
-void ReplayBatch::reject(const Item& item, const char* what, Rejection cause) {
-  troubles_.push_back("event at " + std::to_string(item.timestamp) + " us is no " + what + ": " +
-                      describe(cause));
+void ReplayBatch::reject(const Item& item, const char* what, DecodeError cause) {
+  warnings_.push_back("event at " + std::to_string(item.timestamp) + " us is no " + what + ": " +
+                      to_string(cause));
 }
 
 }  // namespace buoyancy

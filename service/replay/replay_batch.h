@@ -1,7 +1,7 @@
 // A stretch of a recording: filled in the recording's order, answered on any thread, then written in order.
 //
-// Each batch is answered by an exchange that begins anew, so that answers, and what is counted of them,
-// depend on the batch alone and not on who answered what before. (A repeat of a question in the batch before
+// Each batch is answered by an handler that begins anew, so that answers, and what is counted of them,
+// depend on the batch alone and not on who answered what before. (A repeat of a request in the batch before
 // is computed again: the same bytes, counted as answered.)
 #pragma once
 
@@ -19,48 +19,50 @@ namespace buoyancy {
 class ReplayBatch {
  public:
   // scene must outlive the batch. keep_answers: for answers().
-  ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_answers);
+  ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
   void clear();
-  // No further question should be added: enough to be worth a thread's while.
-  bool full() const { return items_.size() >= kMostItems || bytes_.size() >= kMostBytes; }
+  // No further request should be added: enough to be worth a thread's while.
+  bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
 
   // force_torque_channel: what it is answered as; empty: as body_wrenches_t. Outlives the batch.
-  void add_question(std::int64_t timestamp, Bytes question, std::string_view force_torque_channel);
-  void add_rejected_pose(std::int64_t timestamp, Rejection cause);
+  void add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel);
+  void add_rejected_pose(std::int64_t timestamp, DecodeError cause);
   void add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes);
-  void add_trouble(std::string trouble);
+  void add_warning(std::string warning);
 
-  void answer();
+  void response();
 
   // Of what answer() made.
   OutputRecords& records() { return records_; }
-  const std::vector<std::string>& troubles() const { return troubles_; }  // in the recording's order
-  // Calls see(bytes of a body_wrenches_t) for every answer in order, where answers were to be kept.
+  const std::vector<std::string>& warnings() const { return warnings_; }  // in the recording's order
+  // Calls see(bytes of a body_wrenches_t) for every response in order, where answers were to be kept.
   template <typename See>
-  void each_answer(See&& see) const {
-    answers_.each(see);
+  void each_response(See&& see) const {
+    responses_.each(see);
   }
   // The same of the bodies_hydrostatics_t that went with them.
   template <typename See>
   void each_hydrostatics(See&& see) const {
     hydrostatics_.each(see);
   }
-  const Counters& counters() const { return exchange_.counters(); }  // of all that this was ever filled with
-  std::int64_t copied() const { return copied_; }                    // likewise
+  const ServiceCounters& counters() const {
+    return handler_.counters();
+  }                                                // of all that this was ever filled with
+  std::int64_t copied() const { return copied_; }  // likewise
 
  private:
-  static constexpr std::size_t kMostItems = 1024;
-  static constexpr std::size_t kMostBytes = 262'144;
+  static constexpr std::size_t kMaxItems = 1024;
+  static constexpr std::size_t kMaxBytes = 262'144;
 
-  enum class Kind { kQuestion, kRejectedPose, kCopy, kTrouble };
+  enum class Kind { kRequest, kRejectedPose, kCopy, kWarning };
   struct Item {
-    Kind kind = Kind::kQuestion;
+    Kind kind = Kind::kRequest;
     std::int64_t timestamp = 0;
     std::size_t start = 0;     // of its message, in bytes_
     std::size_t size = 0;      // of its message
-    std::string_view channel;  // of a question: its force_torque_channel
-    Rejection cause{};         // of a rejected pose
+    std::string_view channel;  // of a request: its force_torque_channel
+    DecodeError cause{};       // of a rejected pose
     std::string text;          // of a copy: its channel; of trouble: what it is
   };
 
@@ -90,17 +92,17 @@ class ReplayBatch {
 
   Item& add(Kind kind, std::int64_t timestamp, Bytes message);
   Bytes message_of(const Item& item) const { return Bytes(bytes_).subspan(item.start, item.size); }
-  void answer_question(const Item& item);
-  void reject(const Item& item, const char* what, Rejection cause);
+  void response_request(const Item& item);
+  void reject(const Item& item, const char* what, DecodeError cause);
 
-  Exchange exchange_;
-  bool keep_answers_;
+  RequestHandler handler_;
+  bool keep_responses_;
   std::int64_t copied_ = 0;
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
   OutputRecords records_;
-  std::vector<std::string> troubles_;
-  Messages answers_;
+  std::vector<std::string> warnings_;
+  Messages responses_;
   Messages hydrostatics_;
 };
 

@@ -17,26 +17,26 @@ namespace buoyancy {
 class ReplayChannels {
  public:
   struct Use {
-    bool question = false;            // a body_states_t
-    std::optional<std::size_t> pose;  // of this channel of the PoseQuestions
+    bool request = false;             // a body_states_t
+    std::optional<std::size_t> pose;  // of this channel of the PoseRequestAdapter
     bool copied = false;
 
-    bool any() const { return question || pose || copied; }
+    bool any() const { return request || pose || copied; }
   };
 
   // copied: regular expressions, of which one has to match a whole name, as LCM's tools have it. answers: the
-  // channels that the replay itself writes, which are never copied: old and new answers could not be told
+  // channels that the replay itself writes, which are never copied: old and new responses could not be told
   // apart. Errors: not a regular expression.
   static Expected<ReplayChannels> make(std::string states_channel, const std::vector<PoseChannel>& poses,
                                        const std::vector<std::string>& copied,
-                                       std::vector<std::string> answers);
+                                       std::vector<std::string> responses);
 
   // O(1) for a name seen before.
   Use use_of(std::string_view channel);
 
-  // The channels that were named for questions and poses, and that use_of() was never asked about: misspelt,
-  // perhaps. That of the questions only where there are no poses.
-  std::vector<std::string> never_seen() const;
+  // The channels that were named for requests and poses, and that use_of() was never asked about: misspelt,
+  // perhaps. That of the requests only where there are no poses.
+  std::vector<std::string> unseen_channels() const;
 
  private:
   struct Hash : std::hash<std::string_view> {
@@ -44,7 +44,7 @@ class ReplayChannels {
   };
 
   ReplayChannels(std::string states_channel, const std::vector<PoseChannel>& poses,
-                 std::vector<std::regex> copied, std::vector<std::string> answers);
+                 std::vector<std::regex> copied, std::vector<std::string> responses);
   Use look_up(std::string_view channel) const;
 
   bool saw_states_ = false;
@@ -52,7 +52,7 @@ class ReplayChannels {
   std::string states_channel_;
   std::vector<std::string> poses_;
   std::vector<std::regex> copied_;
-  std::vector<std::string> answers_;
+  std::vector<std::string> responses_;
   std::unordered_map<std::string, Use, Hash, std::equal_to<>> known_;  // a bounded number
 };
 

@@ -8,7 +8,7 @@
 namespace buoyancy {
 namespace {
 
-bool same(const QuestionKey& a, const QuestionKey& b) {
+bool same(const RequestId& a, const RequestId& b) {
   return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
 }
 
@@ -45,7 +45,7 @@ double center_bound(const BodyWrench& wrench) {
 
 void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utime,
              BodyDifferences& differences) {
-  ++differences.answers;
+  ++differences.responses;
   if (now.status != earlier.status) ++differences.status_changes;
   const double force = distance(now.force, earlier.force);
   const double torque = distance(now.torque, earlier.torque);
@@ -123,8 +123,8 @@ void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const
   const double length = mesh.diagonal;
   const double area = kRounding * mesh.area;
   const double second_moment = 4.0 * area * length * length;
-  const double volume = 2.0 * mesh.volume_gate() + area * length;
-  const double point = kRounding * mesh.largest_lever(Vec3::Zero());
+  const double volume = 2.0 * mesh.volume_tolerance() + area * length;
+  const double point = kRounding * mesh.max_lever_arm(Vec3::Zero());
   const double smaller_volume = std::min(now.submerged_volume, earlier.submerged_volume);
   const double smaller_plane = std::min(now.waterplane_area, earlier.waterplane_area);
   const double center = 2.0 * volume * length / smaller_volume + point;
@@ -158,7 +158,7 @@ void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const
     fields.add_if_defined("metacentric_heights", now.metacentric_heights[i], earlier.metacentric_heights[i],
                           center + radius);
   }
-  const double lever = mesh.largest_lever(body.reference_B) + length;
+  const double lever = mesh.max_lever_arm(body.reference_B) + length;
   const double weight = water.density * water.gravity;  // N/m^3
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 6; ++column) {
@@ -178,24 +178,25 @@ const Body* body_of(const Scene& scene, std::int32_t id) {
 
 }  // namespace
 
-Expected<Comparison> Comparison::open(const std::filesystem::path& earlier,
-                                      const std::string& wrenches_channel,
-                                      const std::string& hydrostatics_channel, const Scene& scene) {
-  Expected<EventLogReader> answers = EventLogReader::open(earlier, only_channel(wrenches_channel));
-  if (!answers) return tl::unexpected(answers.error());
+Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& earlier,
+                                                  const std::string& wrenches_channel,
+                                                  const std::string& hydrostatics_channel,
+                                                  const Scene& scene) {
+  Expected<EventLogReader> responses = EventLogReader::open(earlier, only_channel(wrenches_channel));
+  if (!responses) return tl::unexpected(responses.error());
   Expected<EventLogReader> hydrostatics = EventLogReader::open(earlier, only_channel(hydrostatics_channel));
   if (!hydrostatics) return tl::unexpected(hydrostatics.error());
-  return Comparison(std::move(*answers), std::move(*hydrostatics), scene);
+  return ReplayComparison(std::move(*responses), std::move(*hydrostatics), scene);
 }
 
 template <typename Message>
-bool Comparison::Channel<Message>::read_one() {
+bool ReplayComparison::Channel<Message>::read_one() {
   while (true) {
-    const InputItem item = earlier.next();
-    if (std::holds_alternative<EndOfInput>(item)) return false;
+    const LogItem item = earlier.next();
+    if (std::holds_alternative<EndOfLog>(item)) return false;
     const auto* event = std::get_if<RecordedEvent>(&item);
     if (event == nullptr) {
-      ++damages;
+      ++corrupt_sections;
       continue;
     }
     if (!decode(event->bytes, ahead.emplace_back())) return true;
@@ -205,28 +206,28 @@ bool Comparison::Channel<Message>::read_one() {
 }
 
 template <typename Message>
-std::optional<Message> Comparison::Channel<Message>::find() {
-  for (std::size_t i = 0; i < kReach; ++i) {
+std::optional<Message> ReplayComparison::Channel<Message>::find() {
+  for (std::size_t i = 0; i < kMatchWindow; ++i) {
     if (i == ahead.size() && !read_one()) break;
     if (!same(ahead[i].key, now.key)) continue;
     std::optional<Message> found = std::move(ahead[i]);
-    only_earlier += static_cast<std::int64_t>(i);
+    unmatched_baseline += static_cast<std::int64_t>(i);
     ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     return found;
   }
-  ++only_now;
+  ++unmatched_new;
   return std::nullopt;
 }
 
 template <typename Message>
-void Comparison::Channel<Message>::finish() {
-  only_earlier += static_cast<std::int64_t>(ahead.size());
-  for (ahead.clear(); read_one(); ahead.clear()) ++only_earlier;
+void ReplayComparison::Channel<Message>::finish() {
+  unmatched_baseline += static_cast<std::int64_t>(ahead.size());
+  for (ahead.clear(); read_one(); ahead.clear()) ++unmatched_baseline;
 }
 
 // Calls compare_body for each body that both have in the same place.
 template <typename Message, typename CompareBody>
-void Comparison::take(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body) {
+void ReplayComparison::add(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body) {
   [[maybe_unused]] const auto rejected = decode(bytes, channel.now);
   assert(!rejected);  // we encoded it
   const std::optional<Message> earlier = channel.find();
@@ -242,36 +243,36 @@ void Comparison::take(Channel<Message>& channel, Bytes bytes, const CompareBody&
     }
   }
   if (same_bodies) return;
-  ++channel.only_now;
-  ++channel.only_earlier;
+  ++channel.unmatched_new;
+  ++channel.unmatched_baseline;
 }
 
-void Comparison::take(Bytes answer) {
-  take(answers_, answer,
-       [this](const BodyWrench& now, const BodyWrench& earlier, BodyDifferences& differences) {
-         compare(now, earlier, answers_.now.key.utime, differences);
-       });
+void ReplayComparison::add(Bytes response) {
+  add(responses_, response,
+      [this](const BodyWrench& now, const BodyWrench& earlier, BodyDifferences& differences) {
+        compare(now, earlier, responses_.now.key.utime, differences);
+      });
 }
 
-void Comparison::take_hydrostatics(Bytes hydrostatics) {
-  take(hydrostatics_, hydrostatics,
-       [this](const BodyHydrostatics& now, const BodyHydrostatics& earlier, BodyDifferences& differences) {
-         const Body* const body = body_of(*scene_, now.body_id);
-         if (now.status != earlier.status) {
-           ++differences.status_changes;
-         } else if (now.status == BodyStatus::kOk && body != nullptr) {
-           compare(now, earlier, *body, scene_->water(), differences);
-         }
-       });
+void ReplayComparison::take_hydrostatics(Bytes hydrostatics) {
+  add(hydrostatics_, hydrostatics,
+      [this](const BodyHydrostatics& now, const BodyHydrostatics& earlier, BodyDifferences& differences) {
+        const Body* const body = body_of(*scene_, now.body_id);
+        if (now.status != earlier.status) {
+          ++differences.status_changes;
+        } else if (now.status == BodyStatus::kOk && body != nullptr) {
+          compare(now, earlier, *body, scene_->water(), differences);
+        }
+      });
 }
 
-void Comparison::finish() {
-  answers_.finish();
+void ReplayComparison::finish() {
+  responses_.finish();
   hydrostatics_.finish();
 }
 
-bool Comparison::agrees() const {
-  return only_now() == 0 && only_earlier() == 0 && unreadable() == 0 &&
+bool ReplayComparison::agrees() const {
+  return unmatched_new() == 0 && unmatched_baseline() == 0 && unreadable() == 0 &&
          std::ranges::all_of(bodies_, [](const auto& body) { return body.second.within_bounds(); });
 }
 

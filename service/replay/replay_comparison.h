@@ -1,6 +1,6 @@
 // A replay's answers beside those of an earlier one: what changed since then, body by body.
 //
-// Every answer says how far it can be from the truth. Two right ones are never farther from each other than
+// Every response says how far it can be from the truth. Two right ones are never farther from each other than
 // both bounds together; so that is what a difference is held to, and no tolerance has to be chosen.
 // Hydrostatics carry no bounds: they are exact to rounding, and held to what rounding makes of the body's
 // size.
@@ -25,7 +25,7 @@ namespace buoyancy {
 
 // The largest differences of one body.
 struct BodyDifferences {
-  std::int64_t answers = 0;         // compared
+  std::int64_t responses = 0;       // compared
   std::int64_t status_changes = 0;  // of them, where one is OK and the other is not, or not in the same way
   double force = 0.0;               // N
   double torque = 0.0;              // N m
@@ -46,16 +46,17 @@ struct BodyDifferences {
   }
 };
 
-class Comparison {
+class ReplayComparison {
  public:
   // earlier: an LCM log with body_wrenches_t on wrenches_channel and bodies_hydrostatics_t on
   // hydrostatics_channel. scene: what the replay answers from; outlives the comparison. Errors: not readable.
-  static Expected<Comparison> open(const std::filesystem::path& earlier, const std::string& wrenches_channel,
-                                   const std::string& hydrostatics_channel, const Scene& scene);
+  static Expected<ReplayComparison> open(const std::filesystem::path& earlier,
+                                         const std::string& wrenches_channel,
+                                         const std::string& hydrostatics_channel, const Scene& scene);
 
-  // The replay's next answer: bytes of a body_wrenches_t. Its counterpart has the same utime, session_id and
-  // seq, and is looked for among the earlier log's next kReach answers.
-  void take(Bytes answer);
+  // The replay's next response: bytes of a body_wrenches_t. Its counterpart has the same utime, session_id
+  // and seq, and is looked for among the earlier log's next kMatchWindow answers.
+  void add(Bytes response);
   // The same of a bodies_hydrostatics_t.
   void take_hydrostatics(Bytes hydrostatics);
   // After the last one.
@@ -63,26 +64,28 @@ class Comparison {
 
   const std::map<std::int32_t, BodyDifferences>& bodies() const { return bodies_; }  // by id
   // Answers and hydrostatics without counterpart.
-  std::int64_t only_now() const { return answers_.only_now + hydrostatics_.only_now; }
-  std::int64_t only_earlier() const { return answers_.only_earlier + hydrostatics_.only_earlier; }
+  std::int64_t unmatched_new() const { return responses_.unmatched_new + hydrostatics_.unmatched_new; }
+  std::int64_t unmatched_baseline() const {
+    return responses_.unmatched_baseline + hydrostatics_.unmatched_baseline;
+  }
   std::int64_t unreadable() const {  // places and messages of the earlier log
-    return answers_.damages + answers_.unreadable + hydrostatics_.unreadable;
+    return responses_.corrupt_sections + responses_.unreadable + hydrostatics_.unreadable;
   }
   // Nothing lost, nothing new, and no body beyond its bounds.
   bool agrees() const;
 
  private:
-  static constexpr std::size_t kReach = 4096;
+  static constexpr std::size_t kMatchWindow = 4096;
 
   // One channel of the earlier log.
   template <typename Message>
   struct Channel {
     EventLogReader earlier;
-    std::deque<Message> ahead{};  // read, not yet matched; at most kReach
+    std::deque<Message> ahead{};  // read, not yet matched; at most kMatchWindow
     Message now{};                // reused
-    std::int64_t only_now = 0;
-    std::int64_t only_earlier = 0;
-    std::int64_t damages = 0;  // of the log: the same for each channel
+    std::int64_t unmatched_new = 0;
+    std::int64_t unmatched_baseline = 0;
+    std::int64_t corrupt_sections = 0;  // of the log: the same for each channel
     std::int64_t unreadable = 0;
 
     bool read_one();  // into ahead; false: the log has ended
@@ -91,13 +94,13 @@ class Comparison {
     void finish();
   };
 
-  Comparison(EventLogReader answers, EventLogReader hydrostatics, const Scene& scene)
-      : scene_(&scene), answers_{std::move(answers)}, hydrostatics_{std::move(hydrostatics)} {}
+  ReplayComparison(EventLogReader responses, EventLogReader hydrostatics, const Scene& scene)
+      : scene_(&scene), responses_{std::move(responses)}, hydrostatics_{std::move(hydrostatics)} {}
   template <typename Message, typename CompareBody>
-  void take(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body);
+  void add(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body);
 
   const Scene* scene_;
-  Channel<Answer> answers_;
+  Channel<WrenchResponse> responses_;
   Channel<BodiesHydrostatics> hydrostatics_;
   std::map<std::int32_t, BodyDifferences> bodies_;
 };

@@ -1,4 +1,4 @@
-// What a replay reads: recorded messages from an LCM log, or questions from CSV, and word of what could not
+// What a replay reads: recorded messages from an LCM log, or requests from CSV, and word of what could not
 // be read.
 #pragma once
 
@@ -21,7 +21,7 @@ class ReplayInput {
   static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
                                     ChannelFilter wanted);
 
-  InputItem next() {
+  LogItem next() {
     return std::visit([](auto& reader) { return reader.next(); }, reader_);
   }
   std::int64_t offset() const {

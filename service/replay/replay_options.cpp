@@ -18,7 +18,7 @@ std::string method_names() {
   std::string names;
   for (const Method method : kAllMethods) {
     if (!names.empty()) names += ' ';
-    names += name(method);
+    names += to_string(method);
   }
   return names;
 }
@@ -27,7 +27,7 @@ Expected<FileFormat> format_by_extension(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".csv") return FileFormat::kCsv;
   if (extension == ".lcmlog") return FileFormat::kLcmLog;
-  return failure({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
+  return make_error({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
 }
 
 // A device or a pipe (/dev/stdout, /dev/full) has no extension: what is written there is what was read.
@@ -41,35 +41,35 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
   const bool from_log = plan.input_format == FileFormat::kLcmLog;
   const bool to_log = plan.output_format == FileFormat::kLcmLog;
   if (!options.poses.poses.empty() && !from_log) {
-    return failure({"--pose", options.input.string(), "an .lcmlog as INPUT", "CSV has no channels", ""});
+    return make_error({"--pose", options.input.string(), "an .lcmlog as INPUT", "CSV has no channels", ""});
   }
   if (!options.poses.force_torques.empty() && !to_log) {
-    return failure({"--force-torque", options.output.string(), "an .lcmlog as OUTPUT", "", ""});
+    return make_error({"--force-torque", options.output.string(), "an .lcmlog as OUTPUT", "", ""});
   }
   if (!options.copied.empty() && !(from_log && to_log)) {
-    return failure({"--copy", options.input.string() + " to " + options.output.string(),
-                    "an .lcmlog as INPUT and as OUTPUT", "", ""});
+    return make_error({"--copy", options.input.string() + " to " + options.output.string(),
+                       "an .lcmlog as INPUT and as OUTPUT", "", ""});
   }
   if (!options.earlier.empty() && !options.poses.force_torques.empty()) {
-    return failure({"--compare", "together with --force-torque", "answers as body_wrenches_t",
-                    "a six_axis_force_torque_t has no error bound to compare by", ""});
+    return make_error({"--compare", "together with --force-torque", "answers as body_wrenches_t",
+                       "a six_axis_force_torque_t has no error bound to compare by", ""});
   }
   return {};
 }
 
 }  // namespace
 
-void declare_options(CLI::App& app, ReplayOptions& options) {
+void add_options(CLI::App& app, ReplayOptions& options) {
   app.description(
       "Answers recorded body poses with the buoyant force and torque on each body, as buoyancyd would.\n"
       "CSV in: utime,body_id,px,py,pz,qw,qx,qy,qz and, if they are there, vx,vy,vz,wx,wy,wz; a row per row "
       "comes\n"
-      "out; rows with the same utime are one question. LCM logs: the questions on one channel, and poses of "
+      "out; rows with the same utime are one request. LCM logs: the requests on one channel, and poses of "
       "single\n"
       "bodies on others (--pose); answers keep the timestamps of what they answer; other channels are copied "
       "on\n"
       "request (--copy).\n"
-      "Exit codes: 0 every question of INPUT has its answer in OUTPUT, 1 it ran and some have not, or they "
+      "Exit codes: 0 every request of INPUT has its response in OUTPUT, 1 it ran and some have not, or they "
       "do "
       "not\n"
       "agree with those compared with, 2 wrong arguments, scene, mesh or INPUT.");
@@ -82,7 +82,7 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
   from->require_option(1);
   app.add_option("--method", options.method, "With --mesh: " + method_names())
       ->needs(mesh)
-      ->option_text("METHOD [" + std::string(name(BodyDescription{}.method)) + "]");
+      ->option_text("METHOD [" + std::string(to_string(BodyDescription{}.method)) + "]");
   app.add_option("--tolerance", options.tolerance,
                  "With --mesh: error allowed, relative to the whole displacement's weight; 0: exact")
       ->needs(mesh)
@@ -95,16 +95,16 @@ void declare_options(CLI::App& app, ReplayOptions& options) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
       ->option_text("refuse|dry_boundary [refuse]");
-  app.add_option("--states-channel", options.states_channel, "Channel of the questions in an LCM log")
+  app.add_option("--states-channel", options.states_channel, "Channel of the requests in an LCM log")
       ->capture_default_str();
-  app.add_option("--wrenches-channel", options.wrenches_channel, "Channel of the answers in an LCM log")
+  app.add_option("--wrenches-channel", options.wrenches_channel, "Channel of the responses in an LCM log")
       ->capture_default_str();
   app.add_option(
          "--hydrostatics-channel", options.hydrostatics_channel,
          "Channel of the hydrostatics in an LCM log, of bodies whose outputs in the scene name them; a CSV "
          "file holds wrenches alone")
       ->capture_default_str();
-  declare_options(app, options.poses);
+  add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
          "Copies the events of channels whose whole name matches, of an LCM log to an LCM log; '.*' copies "
@@ -142,7 +142,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
       !checked) {
     return tl::unexpected(checked.error());
   }
-  if (const Expected<void> checked = check_different_channels(
+  if (const Expected<void> checked = check_channels_distinct(
           {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
       !checked) {
     return tl::unexpected(checked.error());
@@ -151,7 +151,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
     std::optional<Method> method = BodyDescription{}.method;
     if (!options.method.empty()) method = method_from_name(options.method);
     if (!method) {
-      return failure({"--method", "'" + options.method + "'", "one of: " + method_names(), "", ""});
+      return make_error({"--method", "'" + options.method + "'", "one of: " + method_names(), "", ""});
     }
     plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance, options.open);
   }
@@ -159,17 +159,17 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
 }
 
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {
-  std::vector<std::string> answers{options.wrenches_channel, options.hydrostatics_channel};
+  std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel};
   Expected<PoseChannels> poses = pose_channels(
       options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
   if (!poses) return tl::unexpected(poses.error());
   // Their sessions are counted from the first: the same whatever the order of the options.
   std::ranges::sort(poses->channels, {}, &PoseChannel::channel);
   for (const PoseChannel& pose : poses->channels) {
-    if (!pose.force_torque_channel.empty()) answers.push_back(pose.force_torque_channel);
+    if (!pose.force_torque_channel.empty()) responses.push_back(pose.force_torque_channel);
   }
   Expected<ReplayChannels> channels =
-      ReplayChannels::make(options.states_channel, poses->channels, options.copied, std::move(answers));
+      ReplayChannels::make(options.states_channel, poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }

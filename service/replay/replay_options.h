@@ -37,7 +37,7 @@ struct ReplayOptions {
 };
 
 // Declares the options on app; parsing fills options, which must live as long.
-void declare_options(CLI::App& app, ReplayOptions& options);
+void add_options(CLI::App& app, ReplayOptions& options);
 
 // What the options come to.
 struct ReplayPlan {

@@ -31,28 +31,28 @@ void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, 
   append(event_);
 }
 
-void OutputRecords::add_answer(std::int64_t timestamp, Bytes answer, Bytes hydrostatics,
-                               std::string_view force_torque_channel) {
+void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes hydrostatics,
+                                 std::string_view force_torque_channel) {
   if (layout_.format == FileFormat::kLcmLog) {
     if (force_torque_channel.empty()) {
-      add_event(timestamp, layout_.wrenches_channel, answer);
+      add_event(timestamp, layout_.wrenches_channel, response);
     } else {
-      force_torque_of(answer, answer_, message_);
+      encode_force_torque(response, response_, message_);
       add_event(timestamp, force_torque_channel, message_);
     }
     if (!hydrostatics.empty()) add_event(timestamp, layout_.hydrostatics_channel, hydrostatics);
     return;
   }
-  [[maybe_unused]] const auto rejected = decode(answer, answer_);
+  [[maybe_unused]] const auto rejected = decode(response, response_);
   assert(!rejected);  // we encoded it
-  for (const BodyWrench& wrench : answer_.bodies) {
-    format_wrench_row(answer_.key.utime, wrench, row_);
+  for (const BodyWrench& wrench : response_.bodies) {
+    format_wrench_row(response_.key.utime, wrench, row_);
     append(bytes_of(row_));
   }
 }
 
 Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format) {
-  Expected<RecordFile> file = RecordFile::create(path);
+  Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
   if (format == FileFormat::kCsv) {
     if (const Expected<void> written = file->append(bytes_of(kWrenchCsvHeader)); !written) {

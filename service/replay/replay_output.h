@@ -30,10 +30,10 @@ class OutputRecords {
 
   void clear();
   // timestamp: of the log's events; answer and hydrostatics as the service would publish them, of these
-  // nothing where they are empty. force_torque_channel: where, in a log, the answer goes as a
+  // nothing where they are empty. force_torque_channel: where, in a log, the response goes as a
   // six_axis_force_torque_t; empty: it goes as it is.
-  void add_answer(std::int64_t timestamp, Bytes answer, Bytes hydrostatics,
-                  std::string_view force_torque_channel);
+  void add_response(std::int64_t timestamp, Bytes response, Bytes hydrostatics,
+                    std::string_view force_torque_channel);
   // An event as it was. To a log only.
   void add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes);
 
@@ -47,16 +47,16 @@ class OutputRecords {
   std::vector<std::size_t> ends_;      // of the records, in bytes_
   std::vector<std::uint8_t> event_;    // reused
   std::vector<std::uint8_t> message_;  // reused
-  Answer answer_;                      // reused
+  WrenchResponse response_;            // reused
   std::string row_;                    // reused
 };
 
 class ReplayOutput {
  public:
-  // Creates or empties the file. Errors: as of RecordFile.
+  // Creates or empties the file. Errors: as of RecordWriter.
   static Expected<ReplayOutput> create(const std::filesystem::path& path, FileFormat format);
 
-  // As RecordFile has it.
+  // As RecordWriter has it.
   void give_up_after(int signal) { file_.give_up_after(signal); }
 
   // Numbers a log's events. Errors: disk full, given up.
@@ -64,9 +64,9 @@ class ReplayOutput {
   Expected<void> flush() { return file_.flush(); }
 
  private:
-  ReplayOutput(RecordFile file, FileFormat format) : file_(std::move(file)), format_(format) {}
+  ReplayOutput(RecordWriter file, FileFormat format) : file_(std::move(file)), format_(format) {}
 
-  RecordFile file_;
+  RecordWriter file_;
   FileFormat format_;
   std::int64_t events_ = 0;
 };

@@ -6,7 +6,7 @@
 namespace buoyancy {
 namespace {
 
-std::int64_t all_bodies(const Counters& counters) {
+std::int64_t all_bodies(const ServiceCounters& counters) {
   std::int64_t sum = 0;
   for (const std::int64_t count : counters.bodies) sum += count;
   return sum;
@@ -16,15 +16,15 @@ double per_second(std::int64_t count, double seconds) {
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
-std::string comparison_text(const Comparison& comparison) {
+std::string comparison_text(const ReplayComparison& comparison) {
   std::string text =
-      fmt::format("{:>8}{:>12}{:>14}{:>14}{:>14}{:>14}{:>18}{:>18}{:>18}{:>16}{:>18}\n", "body", "answers",
+      fmt::format("{:>8}{:>12}{:>14}{:>14}{:>14}{:>14}{:>18}{:>18}{:>18}{:>16}{:>18}\n", "body", "responses",
                   "force, N", "torque, N m", "volume, m^3", "centre, m", "force/bounds", "torque/bounds",
                   "centre/bounds", "status changed", "worst at, us");
   for (const auto& [id, body] : comparison.bodies()) {
     text += fmt::format(
         "{:>8}{:>12}{:>14.3g}{:>14.3g}{:>14.3g}{:>14.3g}{:>18.3g}{:>18.3g}{:>18.3g}{:>16}{:>18}\n", id,
-        body.answers, body.force, body.torque, body.volume, body.center, body.force_in_bounds,
+        body.responses, body.force, body.torque, body.volume, body.center, body.force_in_bounds,
         body.torque_in_bounds, body.center_in_bounds, body.status_changes, body.worst_utime);
   }
   for (const auto& [id, body] : comparison.bodies()) {
@@ -36,20 +36,21 @@ std::string comparison_text(const Comparison& comparison) {
   const auto line = [&text](const char* what, std::int64_t count) {
     if (count > 0) text += fmt::format("{:>12} {}\n", count, what);
   };
-  line("answers have no counterpart in the earlier log", comparison.only_now());
-  line("answers of the earlier log have no counterpart now", comparison.only_earlier());
+  line("answers have no counterpart in the earlier log", comparison.unmatched_new());
+  line("answers of the earlier log have no counterpart now", comparison.unmatched_baseline());
   line("places of the earlier log could not be read", comparison.unreadable());
-  text += comparison.agrees() ? "Force, torque, centre and status of every answer agree with the earlier one "
-                                "within their bounds.\n"
-                              : "The answers do NOT agree with the earlier ones within their bounds.\n";
+  text += comparison.agrees()
+              ? "Force, torque, centre and status of every response agree with the earlier one "
+                "within their bounds.\n"
+              : "The responses do NOT agree with the earlier ones within their bounds.\n";
   return text;
 }
 
-nlohmann::ordered_json comparison_json(const Comparison& comparison) {
+nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   for (const auto& [id, body] : comparison.bodies()) {
     bodies.push_back({{"body_id", id},
-                      {"answers", body.answers},
+                      {"responses", body.responses},
                       {"status_changes", body.status_changes},
                       {"force", body.force},
                       {"torque", body.torque},
@@ -64,47 +65,47 @@ nlohmann::ordered_json comparison_json(const Comparison& comparison) {
                       {"hydrostatics_worst_field", body.worst_field}});
   }
   return {{"agrees", comparison.agrees()},
-          {"only_now", comparison.only_now()},
-          {"only_earlier", comparison.only_earlier()},
+          {"unmatched_new", comparison.unmatched_new()},
+          {"unmatched_baseline", comparison.unmatched_baseline()},
           {"unreadable", comparison.unreadable()},
           {"bodies", bodies}};
 }
 
 }  // namespace
 
-std::string summary_text(const ReplaySummary& summary, const Comparison* comparison) {
-  const Counters& counters = summary.counters;
-  std::string text = fmt::format("{:<22}{:>12}\n", "questions", counters.questions);
+std::string summary_text(const ReplaySummary& summary, const ReplayComparison* comparison) {
+  const ServiceCounters& counters = summary.counters;
+  std::string text = fmt::format("{:<22}{:>12}\n", "requests", counters.requests);
   const auto line = [&text](std::string_view what, std::int64_t count) {
     text += fmt::format("  {:<20}{:>12}\n", what, count);
   };
-  line("answered", counters.answered);
-  line("repeated", counters.repeated);
+  line("computed", counters.computed);
+  line("retries", counters.retries);
   line("rejected", counters.rejected());
   text += fmt::format("{:<22}{:>12}\n", "bodies", all_bodies(counters));
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
-    if (i == 0 || counters.bodies[i] > 0) line(name(static_cast<BodyStatus>(i)), counters.bodies[i]);
+    if (i == 0 || counters.bodies[i] > 0) line(to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
   }
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
-  text += fmt::format("{:<22}{:>12}\n", "damaged places", summary.damages);
+  text += fmt::format("{:<22}{:>12}\n", "damaged places", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
-  text += fmt::format("{:<22}{:>12.0f}\n", "questions per second",
-                      per_second(counters.questions, summary.seconds));
+  text +=
+      fmt::format("{:<22}{:>12.0f}\n", "requests per second", per_second(counters.requests, summary.seconds));
   if (comparison != nullptr) text += comparison_text(*comparison);
   return text;
 }
 
-std::string summary_json(const ReplaySummary& summary, const Comparison* comparison) {
-  const Counters& counters = summary.counters;
+std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
+  const ServiceCounters& counters = summary.counters;
   nlohmann::ordered_json bodies;
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
-    bodies[name(static_cast<BodyStatus>(i))] = counters.bodies[i];
+    bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[i];
   }
   nlohmann::ordered_json json{{"complete", summary.complete()},
-                              {"ended_by", summary.ended_by},
-                              {"questions", counters.questions},
-                              {"answered", counters.answered},
-                              {"repeated", counters.repeated},
+                              {"stopped_by", summary.stopped_by},
+                              {"requests", counters.requests},
+                              {"computed", counters.computed},
+                              {"retries", counters.retries},
                               {"rejected",
                                {{"truncated", counters.rejected_truncated},
                                 {"fingerprint", counters.rejected_fingerprint},
@@ -112,9 +113,9 @@ std::string summary_json(const ReplaySummary& summary, const Comparison* compari
                                 {"length", counters.rejected_length}}},
                               {"bodies", bodies},
                               {"copied", summary.copied},
-                              {"damaged_places", summary.damages},
+                              {"damaged_places", summary.corrupt_sections},
                               {"seconds", summary.seconds},
-                              {"questions_per_second", per_second(counters.questions, summary.seconds)}};
+                              {"requests_per_second", per_second(counters.requests, summary.seconds)}};
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }

@@ -9,8 +9,8 @@
 namespace buoyancy {
 
 // comparison: nullptr where there was none. Lines for a terminal, with a final newline.
-std::string summary_text(const ReplaySummary& summary, const Comparison* comparison);
+std::string summary_text(const ReplaySummary& summary, const ReplayComparison* comparison);
 // One JSON object, with a final newline. A difference over bounds of 0 is null.
-std::string summary_json(const ReplaySummary& summary, const Comparison* comparison);
+std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison);
 
 }  // namespace buoyancy

@@ -3,9 +3,9 @@
 namespace buoyancy {
 
 std::string Error::message() const {
-  std::string line = subject + ": " + found + "; expected " + expectation + ".";
+  std::string line = subject + ": " + actual + "; expected " + expected + ".";
   if (!cause.empty()) line += " Likely cause: " + cause + ".";
-  if (!remedy.empty()) line += " " + remedy + ".";
+  if (!hint.empty()) line += " " + hint + ".";
   return line;
 }
 

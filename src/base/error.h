@@ -12,21 +12,21 @@
 namespace buoyancy {
 
 struct Error {
-  std::string subject;      // what was looked at: "duck.dae", "scene.toml:12: body 3, key 'mass'"
-  std::string found;        // the value found: "is a directory", "mass = -1"
-  std::string expectation;  // "a mesh file", "a number above 0 (kg)"
-  std::string cause;        // the likely cause; may be empty
-  std::string remedy;       // what to do; may be empty
+  std::string subject;   // what was looked at: "duck.dae", "scene.toml:12: body 3, key 'mass'"
+  std::string actual;    // the value found: "is a directory", "mass = -1"
+  std::string expected;  // "a mesh file", "a number above 0 (kg)"
+  std::string cause;     // the likely cause; may be empty
+  std::string hint;      // what to do; may be empty
 
-  // One line: "<subject>: <found>; expected <expectation>. Likely cause: <cause>. <remedy>."
+  // One line: "<subject>: <actual>; expected <expected>. Likely cause: <cause>. <hint>."
   std::string message() const;
 };
 
 template <typename T>
 using Expected = tl::expected<T, Error>;
 
-// For `return failure({...});` in functions that return Expected<T>.
-inline tl::unexpected<Error> failure(Error error) {
+// For `return make_error({...});` in functions that return Expected<T>.
+inline tl::unexpected<Error> make_error(Error error) {
   return tl::unexpected<Error>(std::move(error));
 }
 

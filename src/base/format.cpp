@@ -1,22 +1,29 @@
 #include "base/format.h"
 
 #include <array>
+#include <charconv>
 #include <cstdio>
 
 namespace buoyancy {
 
-std::string number_text(double value, int digits) {
+std::string format_number(double value, int digits) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.*g", digits, value);
   return text.data();
 }
 
-std::string vector_text(const Vec3& vector, int digits) {
-  return number_text(vector.x(), digits) + ", " + number_text(vector.y(), digits) + ", " +
-         number_text(vector.z(), digits);
+std::string format_shortest(double value) {
+  std::array<char, 32> text{};  // the longest, -1.2345678901234567e-123, has 24
+  const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
 }
 
-std::string counted(std::int64_t count, const std::string& singular, const std::string& plural) {
+std::string format_vector(const Vec3& vector, int digits) {
+  return format_number(vector.x(), digits) + ", " + format_number(vector.y(), digits) + ", " +
+         format_number(vector.z(), digits);
+}
+
+std::string pluralize(std::int64_t count, const std::string& singular, const std::string& plural) {
   return std::to_string(count) + " " + (count == 1 ? singular : plural);
 }
 

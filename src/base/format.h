@@ -1,4 +1,4 @@
-// Numbers, points and counts as words, for reports and errors that people read.
+// Formats numbers, vectors and counts for reports and error messages.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,15 @@
 namespace buoyancy {
 
 // "0.25", "1e+300", "nan": at most `digits` significant digits, 1 to 17.
-std::string number_text(double value, int digits = 9);
+std::string format_number(double value, int digits = 9);
+
+// The shortest text that reads back as the same number: "0.1", "1e-09", "nan".
+std::string format_shortest(double value);
 
 // "0.25, 1, -3"
-std::string vector_text(const Vec3& vector, int digits = 9);
+std::string format_vector(const Vec3& vector, int digits = 9);
 
 // "1 hole", "5 holes"
-std::string counted(std::int64_t count, const std::string& singular, const std::string& plural);
+std::string pluralize(std::int64_t count, const std::string& singular, const std::string& plural);
 
 }  // namespace buoyancy

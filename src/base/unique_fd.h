@@ -7,16 +7,16 @@
 
 namespace buoyancy {
 
-class FileDescriptor {
+class UniqueFd {
  public:
-  FileDescriptor() = default;
-  explicit FileDescriptor(int value) : value_(value) {}  // takes it over; negative: none
-  FileDescriptor(FileDescriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+  UniqueFd() = default;
+  explicit UniqueFd(int value) : value_(value) {}  // takes it over; negative: none
+  UniqueFd(UniqueFd&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  UniqueFd& operator=(UniqueFd&& other) noexcept {
     std::swap(value_, other.value_);
     return *this;
   }
-  ~FileDescriptor() {
+  ~UniqueFd() {
     if (value_ >= 0) ::close(value_);
   }
 

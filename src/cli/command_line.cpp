@@ -20,10 +20,10 @@ std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* 
   } catch (const CLI::ParseError& parse_error) {
     if (parse_error.get_exit_code() == 0) {  // --help, --version
       app.exit(parse_error, std::cout, std::cerr);
-      return kDone;
+      return kSuccess;
     }
     print_error(app, std::string(parse_error.what()) + "; see " + app.get_name() + " --help");
-    return kWrongInput;
+    return kUsageError;
   }
 }
 
@@ -32,15 +32,15 @@ Expected<void> check_output_is_its_own(const std::filesystem::path& output,
   for (const std::filesystem::path& file : read) {
     std::error_code no_such_file;
     if (std::filesystem::equivalent(file, output, no_such_file)) {
-      return failure({output.string(), "the same file as " + file.string(), "an output of its own",
-                      "it would overwrite what is read", ""});
+      return make_error({output.string(), "the same file as " + file.string(), "an output of its own",
+                         "it would overwrite what is read", ""});
     }
   }
   return {};
 }
 
 void print_error(const CLI::App& app, const std::string& message) {
-  const char* priority = standard_error_is_the_journal() ? "<3>" : "";
+  const char* priority = stderr_is_journal() ? "<3>" : "";
   std::fprintf(stderr, "%s%s: %s\n", priority, app.get_name().c_str(), message.c_str());
 }
 

@@ -13,13 +13,13 @@
 namespace buoyancy {
 
 enum ExitCode : int {
-  kDone = 0,
-  kFailed = 1,      // it ran and failed
-  kWrongInput = 2,  // wrong arguments, scene or mesh
+  kSuccess = 0,
+  kFailure = 1,     // it ran and failed
+  kUsageError = 2,  // wrong arguments, scene or mesh
 };
 
-// nullopt: parsed, go on. Else the exit code: kDone after --help and --version, kWrongInput after one line on
-// stderr.
+// nullopt: parsed, go on. Else the exit code: kSuccess after --help and --version, kUsageError after one line
+// on stderr.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
 // Errors: output, there already, is one of the files that are read. An empty path is none.

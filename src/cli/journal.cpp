@@ -9,7 +9,7 @@
 namespace buoyancy {
 
 // systemd gives the device and inode of what it connected to the journal: it may have been redirected since.
-bool standard_error_is_the_journal() {
+bool stderr_is_journal() {
   const char* stream = std::getenv("JOURNAL_STREAM");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   struct stat error {};
   if (stream == nullptr || ::fstat(STDERR_FILENO, &error) != 0) return false;

@@ -5,6 +5,6 @@ namespace buoyancy {
 
 // Is what is written to standard error read by the journal? It then wants a line's level in front ("<4>",
 // sd-daemon(3)) and has the time itself.
-bool standard_error_is_the_journal();
+bool stderr_is_journal();
 
 }  // namespace buoyancy

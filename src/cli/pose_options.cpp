@@ -33,7 +33,7 @@ Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::st
                                         const Scene& scene) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos) {
-    return failure({option, "'" + text + "'", "CHANNEL=BODY", "", ""});
+    return make_error({option, "'" + text + "'", "CHANNEL=BODY", "", ""});
   }
   ChannelOfBody named{text.substr(0, equals), 0};
   if (const Expected<void> checked = check_channel(named.channel); !checked) {
@@ -42,12 +42,12 @@ Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::st
   const std::string body = text.substr(equals + 1);
   const std::vector<std::int32_t> ids = bodies_named(body, scene);
   if (ids.empty()) {
-    return failure({option + " " + text, "body '" + body + "'",
-                    "the id or the name of a body in " + scene.name(), "", ""});
+    return make_error({option + " " + text, "body '" + body + "'",
+                       "the id or the name of a body in " + scene.name(), "", ""});
   }
   if (ids.size() > 1) {
-    return failure({option + " " + text, std::to_string(ids.size()) + " bodies are named '" + body + "'",
-                    "the name of one", "", "Say its id, such as " + std::to_string(ids.front())});
+    return make_error({option + " " + text, std::to_string(ids.size()) + " bodies are named '" + body + "'",
+                       "the name of one", "", "Say its id, such as " + std::to_string(ids.front())});
   }
   named.body_id = ids.front();
   return named;
@@ -55,10 +55,10 @@ Expected<ChannelOfBody> channel_of_body(const std::string& option, const std::st
 
 }  // namespace
 
-void declare_pose_channels(CLI::App& app, PoseOptions& options) {
+void add_pose_channel_options(CLI::App& app, PoseOptions& options) {
   app.add_option(
          "--pose", options.poses,
-         "Each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL is a question about BODY, an id "
+         "Each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL is a request about BODY, an id "
          "or a name of the scene; may be given again for other channels")
       ->allow_extra_args(false)
       ->option_text("CHANNEL=BODY");
@@ -70,8 +70,8 @@ void declare_pose_channels(CLI::App& app, PoseOptions& options) {
       ->option_text("CHANNEL=BODY");
 }
 
-void declare_options(CLI::App& app, PoseOptions& options) {
-  declare_pose_channels(app, options);
+void add_options(CLI::App& app, PoseOptions& options) {
+  add_pose_channel_options(app, options);
   app.add_option_function<std::string>(
          "--velocity-frame",
          [&options](const std::string& frame) {
@@ -92,7 +92,7 @@ Expected<PoseChannels> pose_channels(const PoseOptions& options, const Scene& sc
   std::set<std::string> used(taken.begin(), taken.end());
   const auto used_before = [&used](const std::string& channel) -> Expected<void> {
     if (used.insert(channel).second) return {};
-    return failure({"channel " + channel, "named for two things", "a name for each", "", ""});
+    return make_error({"channel " + channel, "named for two things", "a name for each", "", ""});
   };
   for (const std::string& text : options.poses) {
     const Expected<ChannelOfBody> named = channel_of_body("--pose", text, scene);
@@ -108,22 +108,23 @@ Expected<PoseChannels> pose_channels(const PoseOptions& options, const Scene& sc
     for (PoseChannel& pose : poses.channels) {
       if (pose.body_id != named->body_id) continue;
       if (!pose.force_torque_channel.empty()) {
-        return failure({"--force-torque " + text, "a second channel for this body", "one", "", ""});
+        return make_error({"--force-torque " + text, "a second channel for this body", "one", "", ""});
       }
       pose.force_torque_channel = named->channel;
       asked = true;
     }
     if (!asked) {
-      return failure({"--force-torque " + text, "a body of which no --pose is given",
-                      "--pose CHANNEL=BODY of it", "", ""});
+      return make_error({"--force-torque " + text, "a body of which no --pose is given",
+                         "--pose CHANNEL=BODY of it", "", ""});
     }
   }
   if (!std::isfinite(options.lead_time)) {
-    return failure({"--lead-time", std::to_string(options.lead_time), "a finite number of seconds", "", ""});
+    return make_error(
+        {"--lead-time", std::to_string(options.lead_time), "a finite number of seconds", "", ""});
   }
   if (options.lead_time != 0.0 && !options.velocity_frame) {
-    return failure({"--lead-time", "no --velocity-frame", "--velocity-frame world or body",
-                    "the same type is used for both, and the log does not say which", ""});
+    return make_error({"--lead-time", "no --velocity-frame", "--velocity-frame world or body",
+                       "the same type is used for both, and the log does not say which", ""});
   }
   poses.lead_time = options.lead_time;
   poses.velocity_frame = options.velocity_frame;

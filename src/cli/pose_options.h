@@ -22,9 +22,9 @@ struct PoseOptions {
 };
 
 // Declares the options on app; parsing fills options, which must live as long.
-void declare_options(CLI::App& app, PoseOptions& options);
+void add_options(CLI::App& app, PoseOptions& options);
 // Those that name channels alone, for whom velocities do not matter.
-void declare_pose_channels(CLI::App& app, PoseOptions& options);
+void add_pose_channel_options(CLI::App& app, PoseOptions& options);
 
 // What they come to in a scene. taken: channels that carry something else. Errors: not CHANNEL=BODY, a body
 // that the scene has not or has twice by that name, a channel that LCM cannot carry or that is named twice or

@@ -2,8 +2,8 @@
 
 namespace buoyancy {
 
-const char* TerminationSignals::take() {
-  const std::optional<int> signal = signals_.take();
+const char* TerminationSignals::consume() {
+  const std::optional<int> signal = signals_.consume();
   if (!signal) return nullptr;
   return *signal == SIGINT ? "SIGINT" : "SIGTERM";
 }

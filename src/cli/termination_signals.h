@@ -9,15 +9,15 @@ namespace buoyancy {
 
 class TerminationSignals {
  public:
-  TerminationSignals() : signals_({SIGINT, SIGTERM}) {}  // as BlockedSignals
+  TerminationSignals() : signals_({SIGINT, SIGTERM}) {}  // as SignalFd
 
   int fileno() const { return signals_.fileno(); }  // readable once a signal has come
   bool pending() const { return signals_.pending(); }
-  const char* take();                     // its name; nullptr: none has come
-  void unblock() { signals_.unblock(); }  // as BlockedSignals: they end the program at once again
+  const char* consume();                  // its name; nullptr: none has come
+  void unblock() { signals_.unblock(); }  // as SignalFd: they end the program at once again
 
  private:
-  BlockedSignals signals_;
+  SignalFd signals_;
 };
 
 }  // namespace buoyancy

@@ -1,15 +1,16 @@
-// The two ways in which a question gets its answer over LCM.
+// The two ways in which a request gets its response over LCM.
 //
-//   LockstepAsker     one question at a time: the same bytes are sent again after each timeout until the
-//                     answer with the question's (session_id, seq) is there. Whoever asks waits, so what the
+//   LockstepClient     one request at a time: the same bytes are sent again after each timeout until the
+//                     answer with the request's (session_id, seq) is there. Whoever asks waits, so what the
 //                     network loses or refuses costs time and changes no result.
-//   FreeRunningAsker  one question per interval of wall-clock time, answered with the newest answer that has
-//                     arrived before the interval is over: never waits longer, counts how late its answers
+//   FreeRunningClient  one request per interval of wall-clock time, answered with the newest response that
+//   has
+//                     arrived before the interval is over: never waits longer, counts how late its responses
 //                     are, and gives up when the service has been quiet for too long.
 //
-// What both promise: an answer holds as many bodies as its question, in the same order, and is valid until
-// the next call. Errors of both: no answer in time, the transport's (in lock-step: when patience is over), an
-// answer about other bodies than asked, stop raised while waiting.
+// What both promise: a response holds as many bodies as its request, in the same order, and is valid until
+// the next call. Errors of both: no response in time, the transport's (in lock-step: when retry_policy is
+// over), an answer about other bodies than asked, stop raised while waiting.
 #pragma once
 
 #include <cstdint>
@@ -20,45 +21,45 @@
 
 namespace buoyancy {
 
-struct AskerStatistics {
-  LatencyHistogram round_trip;  // s: from a question's first sending to its answer's arrival
-  std::int64_t questions = 0;   // repeats not counted
+struct ClientStats {
+  LatencyHistogram round_trip;  // s: from a request's first sending to its response's arrival
+  std::int64_t requests = 0;    // repeats not counted
   std::int64_t retries = 0;     // repeats
-  std::int64_t lost = 0;        // questions that never got their answer
-  std::int64_t late = 0;        // questions that were answered with the answer to an earlier one
-  std::int64_t latest = 0;      // largest number of questions by which an answer was late
+  std::int64_t unanswered = 0;  // requests that never got their response
+  std::int64_t late = 0;        // requests that were answered with the response to an earlier one
+  std::int64_t max_lag = 0;     // largest number of requests by which a response was late
 };
 
-// A question is sent at most 1 + retries times, `timeout` apart.
-struct Patience {
-  double timeout = 0.1;       // s, > 0
-  std::int64_t retries = 50;  // >= 0
+// A request is sent at most 1 + retries times, `timeout` apart.
+struct RetryPolicy {
+  double timeout = 0.1;           // s, > 0
+  std::int64_t max_retries = 50;  // >= 0
 
-  double total() const { return timeout * static_cast<double>(1 + retries); }  // s
+  double total_timeout() const { return timeout * static_cast<double>(1 + max_retries); }  // s
 };
 
-class LockstepAsker {
+class LockstepClient {
  public:
-  LockstepAsker(AnswerLink link, Patience patience);
+  LockstepClient(LcmRequestChannel channel, RetryPolicy retry_policy);
 
-  Expected<const Answer*> ask(const Question& question);
-  const AskerStatistics& statistics() const { return statistics_; }
+  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  const ClientStats& statistics() const { return statistics_; }
 
  private:
-  AnswerLink link_;
-  Patience patience_;
-  AskerStatistics statistics_;
+  LcmRequestChannel channel_;
+  RetryPolicy retry_policy_;
+  ClientStats statistics_;
 };
 
-class FreeRunningAsker {
+class FreeRunningClient {
  public:
   // interval: s, > 0.
-  FreeRunningAsker(AnswerLink link, Patience patience, double interval);
+  FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval);
 
-  // Waits for the question's turn, sends it and returns the newest answer when it is the question's own or
-  // the interval is over. The first question is asked in lock-step, since there is nothing older to use.
-  Expected<const Answer*> ask(const Question& question);
-  AskerStatistics statistics() const;
+  // Waits for the request's turn, sends it and returns the newest response when it is the request's own or
+  // the interval is over. The first request is asked in lock-step, since there is nothing older to use.
+  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  ClientStats statistics() const;
 
  private:
   struct Sent {
@@ -68,14 +69,14 @@ class FreeRunningAsker {
 
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
 
-  AnswerLink link_;
-  Patience patience_;
+  LcmRequestChannel channel_;
+  RetryPolicy retry_policy_;
   Clock::duration interval_;
   Clock::time_point next_turn_;
-  std::deque<Sent> unanswered_;    // ascending by seq, none older than the patience
-  Clock::time_point quiet_since_;  // when the first question after the last arrival was sent
-  bool quiet_ = false;             // a question was sent after the last arrival
-  AskerStatistics statistics_;
+  std::deque<Sent> unanswered_;    // ascending by seq, none older than the retry_policy
+  Clock::time_point quiet_since_;  // when the first request after the last arrival was sent
+  bool quiet_ = false;             // a request was sent after the last arrival
+  ClientStats statistics_;
 };
 
 }  // namespace buoyancy

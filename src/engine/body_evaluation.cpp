@@ -14,8 +14,8 @@ bool all_finite(const Pose& pose) {
   return pose.p_WB.allFinite() && pose.q_WB.coeffs().allFinite();
 }
 
-std::array<std::array<double, 3>, 2> as_arrays(const std::array<Vec3, 2>& pair) {
-  return {as_array(pair[0]), as_array(pair[1])};
+std::array<std::array<double, 3>, 2> to_arrays(const std::array<Vec3, 2>& pair) {
+  return {to_array(pair[0]), to_array(pair[1])};
 }
 
 // abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.
@@ -35,38 +35,38 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-// What goes beside the answer that the outcome now holds.
-void judge(const AskedPose& asked, BodyOutcome& outcome) {
-  outcome.status = as_body_status(outcome.answer.status);
-  outcome.quaternion_normalised = asked.quaternion_normalised;
+// What goes beside the response that the outcome now holds.
+void judge(const ValidatedPose& validated, BodyOutcome& outcome) {
+  outcome.status = as_body_status(outcome.response.status);
+  outcome.quaternion_normalised = validated.quaternion_normalised;
   outcome.unchanged = false;
 }
 
 }  // namespace
 
-AskedPose asked_pose(const BodyState& state, double lead_time) {
-  AskedPose asked;
-  asked.status = BodyStatus::kNonFinitePose;
-  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz)) return asked;
-  asked.status = BodyStatus::kBadQuaternion;
+ValidatedPose validate_pose(const BodyState& state, double lead_time) {
+  ValidatedPose validated;
+  validated.status = BodyStatus::kNonFinitePose;
+  if (!all_finite(state.position) || !all_finite(state.quaternion_wxyz)) return validated;
+  validated.status = BodyStatus::kBadQuaternion;
   const double defect = norm_defect(state.quaternion_wxyz);
-  if (defect > kQuaternionTolerance) return asked;
-  asked.quaternion_normalised = defect > kQuaternionNoteworthy;
-  asked.status = BodyStatus::kBadLeadTime;
-  if (!std::isfinite(lead_time)) return asked;
-  asked.status = BodyStatus::kNonFiniteTwist;
+  if (defect > kQuaternionTolerance) return validated;
+  validated.quaternion_normalised = defect > kQuaternionWarnTolerance;
+  validated.status = BodyStatus::kBadLeadTime;
+  if (!std::isfinite(lead_time)) return validated;
+  validated.status = BodyStatus::kNonFiniteTwist;
   if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity)))
-    return asked;
+    return validated;
   const auto& [w, x, y, z] = state.quaternion_wxyz;
-  asked.pose = {.p_WB = as_vec3(state.position), .q_WB = {w, x, y, z}};
+  validated.pose = {.p_WB = to_vec3(state.position), .q_WB = {w, x, y, z}};
   if (lead_time != 0.0) {
-    asked.status = BodyStatus::kOutOfRange;
-    asked.pose =
-        extrapolate(asked.pose, as_vec3(state.linear_velocity), as_vec3(state.angular_velocity), lead_time);
-    if (!all_finite(asked.pose)) return asked;
+    validated.status = BodyStatus::kOutOfRange;
+    validated.pose = extrapolate(validated.pose, to_vec3(state.linear_velocity),
+                                 to_vec3(state.angular_velocity), lead_time);
+    if (!all_finite(validated.pose)) return validated;
   }
-  asked.status = BodyStatus::kOk;
-  return asked;
+  validated.status = BodyStatus::kOk;
+  return validated;
 }
 
 PoseBits pose_bits(const Pose& pose) {
@@ -81,52 +81,53 @@ bool same(const PoseBits& a, const PoseBits& b) {
   return difference == 0;
 }
 
-void evaluate(const Body& body, const Water& water, const AskedPose& asked, BodyOutcome& outcome) {
-  outcome.answer = buoyancy(body.solver, asked.pose, water, body.reference_B);
-  judge(asked, outcome);
+void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome) {
+  outcome.response = buoyancy(body.solver, validated.pose, water, body.reference_B);
+  judge(validated, outcome);
 }
 
-bool evaluate_by_bounds(const Body& body, const WhollyWet& wet, const Water& water, const AskedPose& asked,
-                        BodyOutcome& outcome) {
-  if (!buoyancy_by_bounds(body.solver, wet, asked.pose, water, outcome.answer)) return false;
-  judge(asked, outcome);
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& wet, const Water& water,
+                              const ValidatedPose& validated, BodyOutcome& outcome) {
+  if (!try_buoyancy_from_bounds(body.solver, wet, validated.pose, water, outcome.response)) return false;
+  judge(validated, outcome);
   return true;
 }
 
-BodyWrench wrench_of(std::int32_t body_id, const BodyOutcome& outcome) {
-  const BuoyancyAnswer& answer = outcome.answer;
+BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {
+  const BuoyancyResult& response = outcome.response;
   return {.body_id = body_id,
           .status = outcome.status,
-          .force = as_array(answer.force_W),
-          .torque = as_array(answer.torque_W),
-          .submerged_volume = answer.volume,
-          .center_of_buoyancy = as_array(answer.center_of_buoyancy_W),
-          .force_error_bound = answer.force_error_bound,
-          .torque_error_bound = answer.torque_error_bound};
+          .force = to_array(response.force_W),
+          .torque = to_array(response.torque_W),
+          .submerged_volume = response.volume,
+          .center_of_buoyancy = to_array(response.center_of_buoyancy_W),
+          .force_error_bound = response.force_error_bound,
+          .torque_error_bound = response.torque_error_bound};
 }
 
-void count(const BodyOutcome& outcome, Counters& counters) {
+void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
   ++counters.bodies[static_cast<std::size_t>(outcome.status)];
   counters.quaternions_normalised += static_cast<std::int64_t>(outcome.quaternion_normalised);
   if (outcome.status != BodyStatus::kOk) return;
   counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
-  switch (outcome.answer.immersion) {
+  switch (outcome.response.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;
       break;
-    case Immersion::kWet:
+    case Immersion::kSubmerged:
       ++counters.bodies_wet;
       break;
-    case Immersion::kCrossing:
+    case Immersion::kPiercing:
       ++counters.bodies_crossing;
       break;
   }
-  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.answer.dropped_force);
-  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.answer.dropped_torque);
+  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.response.dropped_force);
+  counters.largest_dropped_torque =
+      std::max(counters.largest_dropped_torque, outcome.response.dropped_torque);
 }
 
 BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,
-                                      BodyStatus status, Counters& counters) {
+                                      BodyStatus status, ServiceCounters& counters) {
   BodyHydrostatics message;
   message.body_id = body.id;
   message.status = status;
@@ -139,14 +140,14 @@ BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, cons
   }
   ++counters.hydrostatics;
   message.submerged_volume = found->volume;
-  message.center_of_buoyancy = as_array(found->center_of_buoyancy_W);
+  message.center_of_buoyancy = to_array(found->center_of_buoyancy_W);
   message.wetted_area = found->wetted_area;
   message.waterplane_area = found->waterplane_area;
-  message.waterplane_centroid = as_array(found->waterplane_centroid_W);
+  message.waterplane_centroid = to_array(found->waterplane_centroid_W);
   message.waterplane_second_moments = found->waterplane_second_moments;
-  message.waterplane_axes = as_arrays(found->waterplane_axes_W);
+  message.waterplane_axes = to_arrays(found->waterplane_axes_W);
   message.metacentric_radii = found->metacentric_radii;
-  message.metacenters = as_arrays(found->metacenters_W);
+  message.metacenters = to_arrays(found->metacenters_W);
   message.metacentric_heights = found->metacentric_heights;
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 6; ++column) {

@@ -19,92 +19,94 @@ double expected_time(const Solver& solver) {
 
 }  // namespace
 
-void BodyAnswers::use(const Scene& scene) {
+void BodyEvaluator::set_scene(const Scene& scene) {
   scene_ = &scene;
-  remembered_.assign(scene.bodies().size(), {});
+  cached_.assign(scene.bodies().size(), {});
   pending_.clear();
   expected_time_.clear();
-  wholly_wet_.clear();
+  fully_submerged_.clear();
   expected_time_.reserve(scene.bodies().size());
-  wholly_wet_.reserve(scene.bodies().size());
+  fully_submerged_.reserve(scene.bodies().size());
   for (const Body& body : scene.bodies()) {
     expected_time_.push_back(expected_time(body.solver));
-    wholly_wet_.push_back(wholly_wet(body.solver.mesh(), scene.water(), body.reference_B));
+    fully_submerged_.push_back(fully_submerged(body.solver.mesh(), scene.water(), body.reference_B));
   }
 }
 
-void BodyAnswers::Remembered::evaluated_at(const Pose& at) {
+void BodyEvaluator::CachedResult::evaluated_at(const Pose& at) {
   valid = outcome.status == BodyStatus::kOk;
   pose = pose_bits(at);
 }
 
-void BodyAnswers::answer(const Question& question, std::vector<BodyWrench>& wrenches, Counters& counters) {
-  const std::size_t bodies = question.bodies.size();
+void BodyEvaluator::evaluate_all(const WrenchRequest& request, std::vector<BodyWrench>& wrenches,
+                                 ServiceCounters& counters) {
+  const std::size_t bodies = request.bodies.size();
   pending_.clear();
   wrenches.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) {
-    const BodyState& state = question.bodies[i];
-    if (const BodyOutcome* outcome = answer_or_postpone(state, question.lead_time, i)) {
-      wrenches[i] = wrench_of(state.body_id, *outcome);
-      count(*outcome, counters);
+    const BodyState& state = request.bodies[i];
+    if (const BodyOutcome* outcome = evaluate_or_defer(state, request.lead_time, i)) {
+      wrenches[i] = to_wrench(state.body_id, *outcome);
+      add_to_counters(*outcome, counters);
     }
   }
   compute_pending();
-  // In order: a question may name a body twice.
+  // In order: a request may name a body twice.
   for (const Pending& pending : pending_) {
-    wrenches[pending.state] = wrench_of(question.bodies[pending.state].body_id, pending.outcome);
-    count(pending.outcome, counters);
-    Remembered& last = remembered_[pending.body];
+    wrenches[pending.state] = to_wrench(request.bodies[pending.state].body_id, pending.outcome);
+    add_to_counters(pending.outcome, counters);
+    CachedResult& last = cached_[pending.body];
     last.outcome = pending.outcome;
-    last.evaluated_at(pending.asked.pose);
+    last.evaluated_at(pending.validated.pose);
   }
 }
 
-void BodyAnswers::forget() {
-  for (Remembered& last : remembered_) last.valid = false;
+void BodyEvaluator::clear_cache() {
+  for (CachedResult& last : cached_) last.valid = false;
 }
 
-std::optional<std::size_t> BodyAnswers::body_of(std::int32_t id, std::size_t i) const {
+std::optional<std::size_t> BodyEvaluator::body_of(std::int32_t id, std::size_t i) const {
   // Whoever asks about a whole scene tends to do so in its order.
   if (i < scene_->bodies().size() && scene_->bodies()[i].id == id) return i;
   return scene_->index_of(id);
 }
 
-const BodyOutcome* BodyAnswers::answer_or_postpone(const BodyState& state, double lead_time, std::size_t i) {
+const BodyOutcome* BodyEvaluator::evaluate_or_defer(const BodyState& state, double lead_time, std::size_t i) {
   const std::optional<std::size_t> index = body_of(state.body_id, i);
   if (!index) {
-    refused_ = {.status = BodyStatus::kUnknownBody, .answer = {}};
+    refused_ = {.status = BodyStatus::kUnknownBody, .response = {}};
     return &refused_;
   }
-  const AskedPose asked = asked_pose(state, lead_time);
-  if (asked.status != BodyStatus::kOk) {
-    refused_ = {.status = asked.status, .quaternion_normalised = asked.quaternion_normalised, .answer = {}};
+  const ValidatedPose validated = validate_pose(state, lead_time);
+  if (validated.status != BodyStatus::kOk) {
+    refused_ = {
+        .status = validated.status, .quaternion_normalised = validated.quaternion_normalised, .response = {}};
     return &refused_;
   }
-  Remembered& last = remembered_[*index];
-  if (last.valid && same(last.pose, pose_bits(asked.pose))) {
+  CachedResult& last = cached_[*index];
+  if (last.valid && same(last.pose, pose_bits(validated.pose))) {
     last.outcome.unchanged = true;
     return &last.outcome;
   }
-  if (evaluate_by_bounds(scene_->bodies()[*index], wholly_wet_[*index], scene_->water(), asked,
-                         last.outcome)) {
-    last.evaluated_at(asked.pose);
+  if (try_evaluate_from_bounds(scene_->bodies()[*index], fully_submerged_[*index], scene_->water(), validated,
+                               last.outcome)) {
+    last.evaluated_at(validated.pose);
     return &last.outcome;
   }
-  pending_.push_back({.state = i, .body = *index, .asked = asked, .outcome = {}});
+  pending_.push_back({.state = i, .body = *index, .validated = validated, .outcome = {}});
   return nullptr;
 }
 
-void BodyAnswers::compute_pending() {
+void BodyEvaluator::compute_pending() {
   double work = 0.0;
   for (const Pending& pending : pending_) work += expected_time_[pending.body];
   const auto compute = [this](std::size_t n) {
     Pending& pending = pending_[n];
-    evaluate(scene_->bodies()[pending.body], scene_->water(), pending.asked, pending.outcome);
+    evaluate(scene_->bodies()[pending.body], scene_->water(), pending.validated, pending.outcome);
   };
-  if (pending_.size() > 1 && work > kWorthSharing && workers_.threads() > 1) {
+  if (pending_.size() > 1 && work > kWorthSharing && thread_pool_.thread_count() > 1) {
     const double each = work / static_cast<double>(pending_.size());
-    workers_.run(pending_.size(), static_cast<std::size_t>(std::max(1.0, kShare / each)), compute);
+    thread_pool_.run(pending_.size(), static_cast<std::size_t>(std::max(1.0, kShare / each)), compute);
   } else {
     for (std::size_t n = 0; n < pending_.size(); ++n) compute(n);
   }

@@ -20,26 +20,26 @@ std::size_t places_for_hydrostatics(const Scene& scene) {
 
 }  // namespace
 
-Exchange::Exchange(const Scene& scene, const ExchangeOptions& options)
+RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& options)
     : scene_(&scene),
       max_sessions_(options.max_sessions),
-      body_answers_(scene, options.threads),
+      evaluator_(scene, options.threads),
       last_hydrostatics_(places_for_hydrostatics(scene)) {
   assert(max_sessions_ >= 1);
 }
 
-void Exchange::use(const Scene& scene) {
+void RequestHandler::set_scene(const Scene& scene) {
   scene_ = &scene;
-  body_answers_.use(scene);
+  evaluator_.set_scene(scene);
   last_hydrostatics_.assign(places_for_hydrostatics(scene), {});
 }
 
-Bytes Exchange::answer(Bytes question) {
-  ++counters_.questions;
+Bytes RequestHandler::handle(Bytes request) {
+  ++counters_.requests;
   answered_.reset();
-  const auto key = peek_key(question);
+  const auto key = peek_request_id(request);
   if (!key) {
-    count_rejection(key.error());
+    count_decode_error(key.error());
     return {};
   }
 
@@ -49,91 +49,91 @@ Bytes Exchange::answer(Bytes question) {
   session.last_use = ++use_;
   const auto place = static_cast<std::size_t>(&session - sessions_.data());
   if (!is_new) {
-    if (same_bytes(session.last_question, question)) {
-      ++counters_.repeated;
+    if (same_bytes(session.last_request, request)) {
+      ++counters_.retries;
       answered_ = place;
-      return session.last_answer;
+      return session.last_response;
     }
-    if (key->seq == session.last_seq) ++counters_.changed_repeats;
+    if (key->seq == session.last_seq) ++counters_.conflicting_retries;
     if (key->seq < session.newest_seq) ++counters_.stale;
   }
   session.last_seq = key->seq;
   session.newest_seq = std::max(session.newest_seq, key->seq);
-  compute(question, session);
-  ++counters_.answered;
+  compute(request, session);
+  ++counters_.computed;
   answered_ = place;
-  return session.last_answer;
+  return session.last_response;
 }
 
-void Exchange::begin_anew() {
+void RequestHandler::reset() {
   sessions_.clear();
   answered_.reset();
-  body_answers_.forget();
+  evaluator_.clear_cache();
   for (LastHydrostatics& last : last_hydrostatics_) last.valid = false;
 }
 
-std::optional<std::int64_t> Exchange::newest_seq(std::int64_t session_id) const {
+std::optional<std::int64_t> RequestHandler::newest_seq(std::int64_t session_id) const {
   const auto known = std::ranges::find(sessions_, session_id, &Session::id);
   if (known == sessions_.end()) return std::nullopt;
   return known->newest_seq;
 }
 
-void Exchange::count_rejection(Rejection rejection) {
+void RequestHandler::count_decode_error(DecodeError rejection) {
   switch (rejection) {
-    case Rejection::kTruncated:
+    case DecodeError::kTruncated:
       ++counters_.rejected_truncated;
       break;
-    case Rejection::kFingerprint:
+    case DecodeError::kFingerprint:
       ++counters_.rejected_fingerprint;
       break;
-    case Rejection::kCount:
+    case DecodeError::kCount:
       ++counters_.rejected_count;
       break;
-    case Rejection::kLength:
+    case DecodeError::kLength:
       ++counters_.rejected_length;
       break;
   }
 }
 
-Exchange::Session& Exchange::start_session(const QuestionKey& first) {
+RequestHandler::Session& RequestHandler::start_session(const RequestId& first) {
   Session* session = nullptr;
   if (sessions_.size() < max_sessions_) {
     session = &sessions_.emplace_back();
     counters_.sessions = static_cast<std::int64_t>(sessions_.size());
   } else {
     session = &*std::ranges::min_element(sessions_, {}, &Session::last_use);
-    ++counters_.sessions_forgotten;
+    ++counters_.sessions_evicted;
   }
   session->id = first.session_id;
   session->newest_seq = first.seq;
   return *session;
 }
 
-void Exchange::compute(Bytes question, Session& session) {
-  // No question is kept until its answer stands: should memory run out in between, a repeat of the old one
-  // would else be answered with what is left of the new answer.
-  session.last_question.clear();
-  [[maybe_unused]] const auto rejection = decode(question, question_);
-  assert(!rejection);  // peek_key() made the same checks
-  answer_.key = question_.key;
-  body_answers_.answer(question_, answer_.bodies, counters_);
+void RequestHandler::compute(Bytes request, Session& session) {
+  // No request is kept until its response stands: should memory run out in between, a repeat of the old one
+  // would else be answered with what is left of the new response.
+  session.last_request.clear();
+  [[maybe_unused]] const auto rejection = decode(request, request_);
+  assert(!rejection);  // peek_request_id() made the same checks
+  response_.key = request_.key;
+  evaluator_.evaluate_all(request_, response_.bodies, counters_);
   compute_hydrostatics();
-  encode(answer_, session.last_answer);
+  encode(response_, session.last_response);
   session.last_hydrostatics.clear();
   if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
-  session.last_question.assign(question.begin(), question.end());
+  session.last_request.assign(request.begin(), request.end());
 }
 
-void Exchange::compute_hydrostatics() {
-  hydrostatics_.key = question_.key;
+void RequestHandler::compute_hydrostatics() {
+  hydrostatics_.key = request_.key;
   hydrostatics_.bodies.clear();
-  for (std::size_t i = 0; scene_->any_hydrostatics() && i < question_.bodies.size(); ++i) {
-    const BodyState& state = question_.bodies[i];
+  for (std::size_t i = 0; scene_->any_hydrostatics() && i < request_.bodies.size(); ++i) {
+    const BodyState& state = request_.bodies[i];
     const std::optional<std::size_t> index = scene_->index_of(state.body_id);
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;
-    const BodyStatus status = answer_.bodies[i].status;
+    const BodyStatus status = response_.bodies[i].status;
     LastHydrostatics& last = last_hydrostatics_[*index];
-    const Pose pose = asked_pose(state, question_.lead_time).pose;
+    const Pose pose = validate_pose(state, request_.lead_time).pose;
     const PoseBits bits = pose_bits(pose);
     if (status != BodyStatus::kOk || !last.valid || !same(last.pose, bits)) {
       last.hydrostatics =

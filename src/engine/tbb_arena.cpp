@@ -14,13 +14,13 @@ namespace buoyancy {
 
 #ifdef BUOYANCY_WITH_TBB
 
-struct Arena::Threads {
+struct TbbArena::Threads {
   tbb::task_arena arena;
   // Where more are asked for than the processor runs at once, TBB would say so on standard error.
   std::optional<tbb::global_control> more_allowed;
 };
 
-Arena::Arena(unsigned threads)
+TbbArena::TbbArena(unsigned threads)
     : of_tbb_(new Threads{
           tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)), {}}) {
   if (threads > std::thread::hardware_concurrency()) {
@@ -28,11 +28,11 @@ Arena::Arena(unsigned threads)
   }
 }
 
-unsigned Arena::threads() const {
+unsigned TbbArena::thread_count() const {
   return static_cast<unsigned>(of_tbb_->arena.max_concurrency());
 }
 
-void Arena::run(std::size_t count, std::size_t grain, Task task, void* context) {
+void TbbArena::run(std::size_t count, std::size_t grain, Task task, void* context) {
   of_tbb_->arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
@@ -42,22 +42,22 @@ void Arena::run(std::size_t count, std::size_t grain, Task task, void* context) 
 
 #else
 
-struct Arena::Threads {};
+struct TbbArena::Threads {};
 
-Arena::Arena(unsigned /*threads*/) {}
+TbbArena::TbbArena(unsigned /*threads*/) {}
 
-unsigned Arena::threads() const {
+unsigned TbbArena::thread_count() const {
   return 1;
 }
 
-void Arena::run(std::size_t count, std::size_t /*grain*/, Task task, void* context) {
+void TbbArena::run(std::size_t count, std::size_t /*grain*/, Task task, void* context) {
   task(context, 0, count);
 }
 
 #endif
 
-Arena::Arena(Arena&&) noexcept = default;
-Arena& Arena::operator=(Arena&&) noexcept = default;
-Arena::~Arena() = default;
+TbbArena::TbbArena(TbbArena&&) noexcept = default;
+TbbArena& TbbArena::operator=(TbbArena&&) noexcept = default;
+TbbArena::~TbbArena() = default;
 
 }  // namespace buoyancy

@@ -4,9 +4,9 @@
 
 namespace buoyancy {
 
-void Workers::run(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& task) {
+void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& task) {
   // What was written before happens before the tasks, and they before what follows. The arena sees to that;
-  // the two flags say it once more, where ThreadSanitizer can see it (arena.h).
+  // the two flags say it once more, where ThreadSanitizer can see it (tbb_arena.h).
   struct Loop {
     const std::function<void(std::size_t)>& task;
     std::atomic<bool> handed_over{false};

@@ -8,19 +8,19 @@
 
 namespace buoyancy {
 
-class Workers {
+class ThreadPool {
  public:
   // threads: 1 or more; 0: as many as the processor runs at once. None is started before it is needed.
-  explicit Workers(unsigned threads) : arena_(threads) {}
+  explicit ThreadPool(unsigned threads) : arena_(threads) {}
 
-  unsigned threads() const { return arena_.threads(); }  // 1 without oneTBB
+  unsigned thread_count() const { return arena_.thread_count(); }  // 1 without oneTBB
 
   // Calls task(i) once for every i below count, in any order and on any of the threads, and returns when all
   // are done. grain: how many are worth handing over to another thread; >= 1. task throws nothing.
   void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& task);
 
  private:
-  Arena arena_;
+  TbbArena arena_;
 };
 
 }  // namespace buoyancy

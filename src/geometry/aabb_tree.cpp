@@ -17,7 +17,7 @@ BoundingBox empty_box() {
 
 }  // namespace
 
-BoxTree::BoxTree(std::vector<BoundingBox> boxes) : boxes_(std::move(boxes)), items_(boxes_.size()) {
+AabbTree::AabbTree(std::vector<BoundingBox> boxes) : boxes_(std::move(boxes)), items_(boxes_.size()) {
   std::iota(items_.begin(), items_.end(), 0);
   if (items_.empty()) return;
   nodes_.reserve(boxes_.size());
@@ -28,7 +28,7 @@ BoxTree::BoxTree(std::vector<BoundingBox> boxes) : boxes_(std::move(boxes)), ite
   boxes_ = std::move(in_order);
 }
 
-void BoxTree::build(std::int32_t begin, std::int32_t end) {
+void AabbTree::build(std::int32_t begin, std::int32_t end) {
   BoundingBox box = empty_box();
   BoundingBox middles = empty_box();  // twice the middles, which serve as well
   for (std::int32_t i = begin; i < end; ++i) {

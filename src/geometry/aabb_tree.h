@@ -12,9 +12,9 @@
 
 namespace buoyancy {
 
-class BoxTree {
+class AabbTree {
  public:
-  explicit BoxTree(std::vector<BoundingBox> boxes);
+  explicit AabbTree(std::vector<BoundingBox> boxes);
 
   // Calls visit(i) for every box i for which meets(box) is true; meets must be true for a box that holds one
   // for which it is.

@@ -46,19 +46,19 @@ Transform compose(const Transform& outer, const Transform& inner) {
 // pipe would never end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit RegularFiles(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
+  explicit RegularFiles(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
   bool Exists(const char* file) const override {
     std::error_code error;
     return std::filesystem::is_regular_file(file, error) &&
-           std::filesystem::file_size(file, error) <= most_bytes_ && !error;
+           std::filesystem::file_size(file, error) <= max_bytes_ && !error;
   }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
   }
 
  private:
-  std::uint64_t most_bytes_;
+  std::uint64_t max_bytes_;
 };
 
 // assimp goes on after errors that change geometry (an index out of range, a polygon it cannot split) and
@@ -197,9 +197,9 @@ Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits)
     if (triangles_here > 0) ++imported.source.nodes;
   }
   constexpr std::uint64_t kIndexable = 2'147'483'647;  // vertex indices are 32-bit
-  const std::uint64_t most_vertices = std::min(limits.vertices, kIndexable);
-  if (vertices > most_vertices) return failure(over_limit(vertices, "vertices", most_vertices, "vertices"));
-  if (triangles > limits.faces) return failure(over_limit(triangles, "triangles", limits.faces, "faces"));
+  const std::uint64_t max_vertices = std::min(limits.vertices, kIndexable);
+  if (vertices > max_vertices) return make_error(over_limit(vertices, "vertices", max_vertices, "vertices"));
+  if (triangles > limits.faces) return make_error(over_limit(triangles, "triangles", limits.faces, "faces"));
 
   imported.mesh.x.reserve(vertices);
   imported.mesh.y.reserve(vertices);
@@ -290,7 +290,7 @@ void note_fbx(const aiScene& scene, MeshSource& source) {
 
 void describe(const aiScene& scene, const std::filesystem::path& path, MeshFormat format,
               const LoggedErrors& logged, MeshSource& source) {
-  source.format = name_of(format);
+  source.format = to_string(format);
   source.up_axis = up_axis_of(scene, path, format);
   if (format == MeshFormat::kCollada) note_collada(scene, source);
   if (format == MeshFormat::k3ds) note_3ds(scene, source);
@@ -302,7 +302,7 @@ void describe(const aiScene& scene, const std::filesystem::path& path, MeshForma
 }
 
 Error unreadable(MeshFormat format, const std::string& complaint) {
-  const std::string name(name_of(format));
+  const std::string name(to_string(format));
   return {"", "not readable as " + name + (complaint.empty() ? "" : " (" + complaint + ")"),
           "a complete " + name + " file", "the file is cut short, damaged or of another format",
           "Open it in a mesh editor and export it anew"};
@@ -328,7 +328,7 @@ bool says_empty(const std::string& complaint) {
 
 Error no_mesh(MeshFormat format, const std::string& complaint) {
   return {"", "no mesh in it (" + complaint + ")",
-          "a " + std::string(name_of(format)) + " file of triangles or polygons",
+          "a " + std::string(to_string(format)) + " file of triangles or polygons",
           "an export of nothing, a header alone, or content of another format",
           "Export the surface as polygons"};
 }
@@ -340,7 +340,7 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
   const ErrorLogging logging;
   Assimp::Importer importer;
   importer.SetIOHandler(new RegularFiles(limits.mesh_bytes));  // the importer owns it
-  keep_only(importer, extension_of(path).substr(1));
+  keep_only(importer, lowercase_extension(path).substr(1));
   // Nothing that edits geometry: assimp's other steps delete small triangles and move vertices.
   const aiScene* scene =
       importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
@@ -354,17 +354,18 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
       }
     }
     const std::string complaint = importer.GetErrorString();
-    if (complaint.find("contains no faces") != std::string::npos) return failure(no_triangles(0));
-    return failure(says_empty(complaint) ? no_mesh(format, complaint) : unreadable(format, complaint));
+    if (complaint.find("contains no faces") != std::string::npos) return make_error(no_triangles(0));
+    return make_error(says_empty(complaint) ? no_mesh(format, complaint) : unreadable(format, complaint));
   }
   // The OFF importer logs a face it drops, a vertex it makes up or an index it bends, and calls it a success.
   if (format == MeshFormat::kOff && logging.errors().count > 0) {
-    return failure(unreadable(format, logging.errors().first));
+    return make_error(unreadable(format, logging.errors().first));
   }
-  if (scene->mRootNode == nullptr) return failure(unreadable(format, "no scene in it"));
+  if (scene->mRootNode == nullptr) return make_error(unreadable(format, "no scene in it"));
 
   Expected<ImportedMesh> imported = flatten(*scene, limits);
-  if (imported && imported->mesh.triangles.empty()) return failure(no_triangles(imported->source.left_out));
+  if (imported && imported->mesh.triangles.empty())
+    return make_error(no_triangles(imported->source.left_out));
   if (imported) describe(*scene, path, format, logging.errors(), imported->source);
   return imported;
 }

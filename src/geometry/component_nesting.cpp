@@ -37,7 +37,7 @@ bool holds(const BoundingBox& outer, const BoundingBox& inner) {
 // By component: those whose boxes hold its own, ascending.
 ComponentLists boxes_around(const std::vector<BoundingBox>& boxes) {
   ComponentLists around(boxes.size());
-  BoxTree(boxes).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
+  AabbTree(boxes).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
     const auto a = static_cast<std::size_t>(i);
     const auto b = static_cast<std::size_t>(j);
     if (holds(boxes[b], boxes[a])) around[a].push_back(j);
@@ -72,7 +72,8 @@ ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& top
 // On which side of the directed line uv the point lies in the plane seen along x, the point moved by (e, e^2)
 // for a vanishing e > 0, so that it lies on no line: a ray then meets faces, never edges. 0 only if u = v.
 int perturbed_side(const Vec3& u, const Vec3& v, const Vec3& point) {
-  const int side = orient_2d(seen_along(0, u), seen_along(0, v), seen_along(0, point));
+  const int side =
+      orient_2d(project_along_axis(0, u), project_along_axis(0, v), project_along_axis(0, point));
   if (side != 0) return side;
   if (u.z() != v.z()) return v.z() < u.z() ? 1 : -1;
   if (u.y() != v.y()) return v.y() > u.y() ? 1 : -1;
@@ -154,7 +155,7 @@ class RayCaster {
   const TriangleMesh& mesh_;
   const MeshTopology& topology_;
   std::vector<std::int32_t> faces_;
-  BoxTree tree_;
+  AabbTree tree_;
   std::vector<int> winding_;      // by component
   std::vector<bool> touched_;     // by component
   std::vector<std::size_t> met_;  // components for which these are set
@@ -162,8 +163,8 @@ class RayCaster {
 
 }  // namespace
 
-std::vector<std::vector<std::int32_t>> components_around(const TriangleMesh& mesh,
-                                                         const MeshTopology& topology) {
+std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
+                                                            const MeshTopology& topology) {
   ComponentLists around = boxes_around(component_boxes(mesh, topology));
   std::vector<bool> could_hold(around.size(), false);
   for (const auto& list : around) {

@@ -16,7 +16,7 @@
 namespace buoyancy {
 
 // By component: the components around it, ascending. Each must be closed or balanced.
-std::vector<std::vector<std::int32_t>> components_around(const TriangleMesh& mesh,
-                                                         const MeshTopology& topology);
+std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
+                                                            const MeshTopology& topology);
 
 }  // namespace buoyancy

@@ -174,7 +174,7 @@ int orient_2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::V
   return orient_2d_exactly(a, b, c);
 }
 
-int orient_3d_if_clear(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+int orient_3d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Estimate estimate = estimate_orient_3d(a, b, c, d);
   return std::abs(estimate.value) > estimate.error ? sign(estimate.value) : 0;
 }
@@ -187,7 +187,8 @@ int orient_3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (orient_2d(seen_along(axis, a), seen_along(axis, b), seen_along(axis, c)) != 0) return false;
+    if (orient_2d(project_along_axis(axis, a), project_along_axis(axis, b), project_along_axis(axis, c)) != 0)
+      return false;
   }
   return true;
 }

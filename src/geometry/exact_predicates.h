@@ -18,13 +18,13 @@ int orient_2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::V
 int orient_3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 // The same, but 0 also where plain doubles cannot tell: a cheap first look.
-int orient_3d_if_clear(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+int orient_3d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 // Whether a, b, c lie on one line.
 bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // The point seen along an axis: y, z along 0 (x); z, x along 1 (y); x, y along 2 (z).
-inline Eigen::Vector2d seen_along(int axis, const Vec3& point) {
+inline Eigen::Vector2d project_along_axis(int axis, const Vec3& point) {
   return {point((axis + 1) % 3), point((axis + 2) % 3)};
 }
 

@@ -27,7 +27,7 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header>);
 
-constexpr std::uint64_t kMostTextBytes = 4096;
+constexpr std::uint64_t kMaxTextBytes = 4096;
 
 bool send_bytes(int pipe, const void* data, std::size_t bytes) {
   const auto* next = static_cast<const std::byte*>(data);
@@ -78,7 +78,7 @@ class PipeReader {
   }
 
   bool read_text(std::string& text, std::uint64_t bytes) {
-    if (bytes > kMostTextBytes) return false;
+    if (bytes > kMaxTextBytes) return false;
     text.resize(bytes);
     if (!read(text.data(), text.size())) return false;
     for (char& c : text) {
@@ -87,7 +87,7 @@ class PipeReader {
     return true;
   }
 
-  NoImport why_not() const { return timed_out_ ? NoImport::kTimedOut : NoImport::kBroken; }
+  ImportFailure why_not() const { return timed_out_ ? ImportFailure::kTimedOut : ImportFailure::kBroken; }
 
  private:
   bool wait() {
@@ -132,10 +132,10 @@ bool send_import(int pipe, const Expected<ImportedMesh>& result) {
     header.vertices = result->mesh.vertex_count();
     header.triangles = result->mesh.triangles.size();
   } else {
-    texts = {result.error().found, result.error().expectation, result.error().cause, result.error().remedy};
+    texts = {result.error().actual, result.error().expected, result.error().cause, result.error().hint};
   }
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    texts[i].resize(std::min<std::size_t>(texts[i].size(), kMostTextBytes));
+    texts[i].resize(std::min<std::size_t>(texts[i].size(), kMaxTextBytes));
     header.text_bytes[i] = texts[i].size();
   }
   if (!send_bytes(pipe, &header, sizeof(header))) return false;
@@ -148,8 +148,8 @@ bool send_import(int pipe, const Expected<ImportedMesh>& result) {
          send_array(pipe, mesh.triangles);
 }
 
-std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
-                                                              ImportDeadline deadline) {
+std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
+                                                                   ImportDeadline deadline) {
   PipeReader reader(pipe, deadline);
   Header header;
   if (!reader.read(&header, sizeof(header))) return reader.why_not();
@@ -157,10 +157,10 @@ std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const Im
   for (std::size_t i = 0; i < texts.size(); ++i) {
     if (!reader.read_text(texts[i], header.text_bytes[i])) return reader.why_not();
   }
-  if (header.is_mesh != 1) return failure({"", texts[0], texts[1], texts[2], texts[3]});
+  if (header.is_mesh != 1) return make_error({"", texts[0], texts[1], texts[2], texts[3]});
   if (header.vertices > limits.vertices || header.triangles > limits.faces || header.triangles == 0 ||
       header.nodes < 0 || header.left_out < 0) {
-    return NoImport::kBroken;
+    return ImportFailure::kBroken;
   }
   ImportedMesh imported;
   imported.source = {texts[0], texts[1], texts[2], header.nodes, header.left_out};
@@ -169,8 +169,8 @@ std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const Im
       !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles)) {
     return reader.why_not();
   }
-  return indices_in_range(mesh) ? std::variant<NoImport, Expected<ImportedMesh>>(std::move(imported))
-                                : NoImport::kBroken;
+  return indices_in_range(mesh) ? std::variant<ImportFailure, Expected<ImportedMesh>>(std::move(imported))
+                                : ImportFailure::kBroken;
 }
 
 }  // namespace buoyancy

@@ -18,13 +18,13 @@ using ImportDeadline = std::chrono::steady_clock::time_point;
 // False if the other end has gone.
 bool send_import(int pipe, const Expected<ImportedMesh>& result);
 
-enum class NoImport {
+enum class ImportFailure {
   kTimedOut,  // the deadline passed first
   kBroken,    // the pipe ended early, or what came is no mesh and no error
 };
 
 // Waits for the whole result until the deadline. Throws std::bad_alloc where this process's memory ends.
-std::variant<NoImport, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
-                                                              ImportDeadline deadline);
+std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
+                                                                   ImportDeadline deadline);
 
 }  // namespace buoyancy

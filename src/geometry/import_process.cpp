@@ -25,7 +25,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "geometry/assimp_reader.h"
 #include "geometry/import_pipe.h"
 
@@ -173,19 +173,19 @@ class Child {
 };
 
 Error timed_out(const ImportLimits& limits) {
-  return {"", "the importer had not finished after " + number_text(limits.import_seconds) + " s",
+  return {"", "the importer had not finished after " + format_shortest(limits.import_seconds) + " s",
           "an import within that time (limit 'import_seconds')",
           "the file is damaged and keeps the importer busy for ever, or it is very large",
           "Export the file anew, or raise 'import_seconds' under [limits]"};
 }
 
 Error out_of_memory(const ImportLimits& limits) {
-  return {
-      "",
-      "the importer needed more than " + number_text(static_cast<double>(limits.memory_bytes) / 1e9) + " GB",
-      "a file that can be read within that memory",
-      "the file is damaged and claims more data than it holds, or it is very large",
-      "Export the file anew, or simplify the mesh"};
+  return {"",
+          "the importer needed more than " + format_shortest(static_cast<double>(limits.memory_bytes) / 1e9) +
+              " GB",
+          "a file that can be read within that memory",
+          "the file is damaged and claims more data than it holds, or it is very large",
+          "Export the file anew, or simplify the mesh"};
 }
 
 Error killed() {
@@ -208,7 +208,7 @@ Error system_failure(const char* call) {
 }
 
 Error explain(std::optional<int> status, const ImportLimits& limits) {
-  if (!status) return crashed("ended without an answer");
+  if (!status) return crashed("ended without an outcome");
   if (WIFSIGNALED(*status)) {
     const int signal = WTERMSIG(*status);
     if (signal == SIGXCPU) return timed_out(limits);
@@ -223,30 +223,30 @@ Error explain(std::optional<int> status, const ImportLimits& limits) {
 
 }  // namespace
 
-Expected<ImportedMesh> import_in_child(const std::filesystem::path& path, MeshFormat format,
-                                       const ImportLimits& limits) {
+Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
+                                               const ImportLimits& limits) {
   assert(limits.import_seconds > 0.0);
   constexpr double kLongest = 1e8;  // s, three years: what a clock's ticks can hold
   const std::chrono::duration<double> allowed(std::min(limits.import_seconds, kLongest));
   const ImportDeadline deadline =
       ImportDeadline::clock::now() + std::chrono::duration_cast<ImportDeadline::clock::duration>(allowed);
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure(system_failure("pipe"));
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return make_error(system_failure("pipe"));
   const Descriptor read_end(ends[0]);
   Descriptor write_end(ends[1]);
 
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
-  if (pid < 0) return failure(system_failure("fork"));
+  if (pid < 0) return make_error(system_failure("fork"));
   if (pid == 0) run_child(write_end.number(), parent, path, format, limits);
   Child child(pid);
   write_end.close();  // so that the pipe ends with the child
 
-  auto answer = receive_import(read_end.number(), limits, deadline);
-  if (auto* result = std::get_if<Expected<ImportedMesh>>(&answer)) return std::move(*result);
-  if (std::get<NoImport>(answer) == NoImport::kTimedOut) return failure(timed_out(limits));
+  auto outcome = receive_import(read_end.number(), limits, deadline);
+  if (auto* result = std::get_if<Expected<ImportedMesh>>(&outcome)) return std::move(*result);
+  if (std::get<ImportFailure>(outcome) == ImportFailure::kTimedOut) return make_error(timed_out(limits));
   // The pipe has ended; the child ends at once, unless it is so broken that it merely closed the pipe.
-  return failure(explain(
+  return make_error(explain(
       child.status_by(std::min(deadline, ImportDeadline::clock::now() + std::chrono::seconds(5))), limits));
 }
 

@@ -16,7 +16,7 @@ namespace buoyancy {
 // Returns after at most limits.import_seconds and a moment; the child is gone by then. Error::subject is left
 // to the caller. The memory limit does not hold in builds with AddressSanitizer or ThreadSanitizer, whose
 // shadow memory is address space too.
-Expected<ImportedMesh> import_in_child(const std::filesystem::path& path, MeshFormat format,
-                                       const ImportLimits& limits);
+Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
+                                               const ImportLimits& limits);
 
 }  // namespace buoyancy

@@ -14,31 +14,31 @@ namespace {
 constexpr int kDigits = 6;
 
 std::string number(double value) {
-  return number_text(value, kDigits);
+  return format_number(value, kDigits);
 }
 
 std::string point(const Vec3& point_B) {
   std::string text = "(";
-  text += vector_text(point_B, kDigits);
+  text += format_vector(point_B, kDigits);
   return text + ")";
 }
 
 std::string edges_of_kind(const TriangleMesh& mesh, const std::vector<Edge>& edges, const std::string& kind) {
-  return counted(static_cast<std::int64_t>(edges.size()), kind + " edge", kind + " edges") + " (one from " +
+  return pluralize(static_cast<std::int64_t>(edges.size()), kind + " edge", kind + " edges") + " (one from " +
          point(mesh.vertex(edges.front()[0])) + " to " + point(mesh.vertex(edges.front()[1])) + ")";
 }
 
 std::string holes_of(const MeshReport& report) {
   const HoleReport& largest = report.holes.front();
-  return counted(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
-         counted(static_cast<std::int64_t>(report.holes.size()), "hole", "holes") + " (" +
+  return pluralize(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
+         pluralize(static_cast<std::int64_t>(report.holes.size()), "hole", "holes") + " (" +
          (report.holes.size() == 1 ? "" : "the largest of " + std::to_string(largest.edges) + " edges, ") +
          "between " + point(largest.box.min_B) + " and " + point(largest.box.max_B) + ")";
 }
 
 }  // namespace
 
-std::optional<Error> refuse_non_finite(const TriangleMesh& mesh, const std::string& name) {
+std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& name) {
   for (const Triangle& face : mesh.triangles) {
     for (const std::int32_t v : face) {
       if (mesh.vertex(v).allFinite()) continue;
@@ -50,12 +50,12 @@ std::optional<Error> refuse_non_finite(const TriangleMesh& mesh, const std::stri
   return std::nullopt;
 }
 
-std::optional<Error> refuse_size(const MeshReport& report) {
+std::optional<Error> check_size(const MeshReport& report) {
   if (report.triangles == 0) {
     const std::string dropped =
-        report.dropped_faces == 0
-            ? "has no triangles"
-            : "has no triangles: " + counted(report.dropped_faces, "face", "faces") + " named a vertex twice";
+        report.dropped_faces == 0 ? "has no triangles"
+                                  : "has no triangles: " + pluralize(report.dropped_faces, "face", "faces") +
+                                        " named a vertex twice";
     return Error{report.name, dropped, "at least four triangles that enclose a volume",
                  "the file holds only points, lines or faces of no extent", "Export the mesh's surface"};
   }
@@ -77,8 +77,8 @@ std::optional<Error> refuse_size(const MeshReport& report) {
   return std::nullopt;
 }
 
-std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& topology,
-                                  const MeshReport& report, OpenPolicy open) {
+std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
+                                 const MeshReport& report, OpenPolicy open) {
   const bool only_open = topology.non_manifold.empty() && topology.misoriented.empty();
   if (topology.counts.all_matched() || (only_open && open == OpenPolicy::kDryBoundary)) return std::nullopt;
 
@@ -91,7 +91,7 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
   if (!topology.misoriented.empty()) {
     add(edges_of_kind(mesh, topology.misoriented, "misoriented") + " between faces of opposite winding");
   }
-  if (report.duplicate_faces > 0) add(counted(report.duplicate_faces, "duplicate face", "duplicate faces"));
+  if (report.duplicate_faces > 0) add(pluralize(report.duplicate_faces, "duplicate face", "duplicate faces"));
 
   std::string cause;
   std::string remedy;
@@ -112,7 +112,7 @@ std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& 
                remedy};
 }
 
-std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
+std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
   const double rounding_error = std::numeric_limits<double>::epsilon() *
                                 (64.0 * std::abs(volume) + report.diagonal * rounding_area(mesh));
   if (volume > rounding_error) return std::nullopt;

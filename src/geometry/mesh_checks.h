@@ -14,17 +14,17 @@ namespace buoyancy {
 // Each: the reason to refuse, if there is one. report: as far as it is filled in when the check can be made.
 
 // Vertices that faces use must be finite.
-std::optional<Error> refuse_non_finite(const TriangleMesh& mesh, const std::string& name);
+std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& name);
 
 // There must be faces, and their extent, area and volume must be numbers.
-std::optional<Error> refuse_size(const MeshReport& report);
+std::optional<Error> check_size(const MeshReport& report);
 
 // Every edge must have its partner, but for boundaries that `open` accepts.
-std::optional<Error> refuse_edges(const TriangleMesh& mesh, const MeshTopology& topology,
-                                  const MeshReport& report, OpenPolicy open);
+std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
+                                 const MeshReport& report, OpenPolicy open);
 
 // volume, m^3: that the mesh encloses, or would with its holes closed, cavities taken away; must be above its
 // own rounding error eps (64 |V| + L A), A the mesh's rounding_area().
-std::optional<Error> refuse_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);
+std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);
 
 }  // namespace buoyancy

@@ -21,7 +21,7 @@ constexpr std::array kAccepted{
 
 }  // namespace
 
-std::string_view name_of(MeshFormat format) {
+std::string_view to_string(MeshFormat format) {
   switch (format) {
     case MeshFormat::kObj:
       return "Wavefront OBJ";
@@ -43,7 +43,7 @@ std::string_view name_of(MeshFormat format) {
   return "";
 }
 
-std::string extension_of(const std::filesystem::path& path) {
+std::string lowercase_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');  // std::tolower would follow the locale
@@ -51,8 +51,8 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-std::optional<MeshFormat> format_of(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
+std::optional<MeshFormat> format_from_path(const std::filesystem::path& path) {
+  const std::string extension = lowercase_extension(path);
   for (const AcceptedExtension& accepted : kAccepted) {
     if (extension == accepted.extension) return accepted.format;
   }
@@ -68,10 +68,10 @@ std::string accepted_extensions() {
   return list;
 }
 
-std::optional<ContentGuess> guess_content(std::string_view first_bytes) {
+std::optional<SniffedFormat> sniff_format(std::string_view first_bytes) {
   struct Signature {
     std::string_view bytes;
-    ContentGuess guess;
+    SniffedFormat guess;
   };
   static constexpr std::array kSignatures{
       Signature{"ply\n", {"PLY", ".ply"}},
@@ -98,14 +98,14 @@ std::optional<ContentGuess> guess_content(std::string_view first_bytes) {
   for (const Signature& signature : kSignatures) {
     if (first_bytes.substr(0, signature.bytes.size()) == signature.bytes) return signature.guess;
   }
-  if (first_bytes.find("<COLLADA") != std::string_view::npos) return ContentGuess{"Collada", ".dae"};
+  if (first_bytes.find("<COLLADA") != std::string_view::npos) return SniffedFormat{"Collada", ".dae"};
   const std::size_t text_start = first_bytes.find_first_not_of(" \t\r\n");
   if (text_start != std::string_view::npos && first_bytes[text_start] == '{') {
-    return ContentGuess{"JSON (glTF)", ".gltf"};
+    return SniffedFormat{"JSON (glTF)", ".gltf"};
   }
   const std::string lines = std::string(first_bytes).insert(0, 1, '\n');
   if (lines.find("\nv ") != std::string::npos || lines.find("\nmtllib ") != std::string::npos) {
-    return ContentGuess{"Wavefront OBJ", ".obj"};
+    return SniffedFormat{"Wavefront OBJ", ".obj"};
   }
   return std::nullopt;
 }

@@ -14,23 +14,23 @@ namespace buoyancy {
 enum class MeshFormat { kObj, kStl, kPly, kOff, kCollada, kGltf, kFbx, k3ds };
 
 // "Wavefront OBJ", "STL", "PLY", "OFF", "Collada", "glTF", "FBX", "3DS".
-std::string_view name_of(MeshFormat format);
+std::string_view to_string(MeshFormat format);
 
 // By the path's last extension, upper or lower case; nothing for an extension that is not accepted.
-std::optional<MeshFormat> format_of(const std::filesystem::path& path);
+std::optional<MeshFormat> format_from_path(const std::filesystem::path& path);
 
 // The path's last extension in lower case, with its dot.
-std::string extension_of(const std::filesystem::path& path);
+std::string lowercase_extension(const std::filesystem::path& path);
 
 // ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds", for messages.
 std::string accepted_extensions();
 
 // What a file is by its first bytes, as far as they say so.
-struct ContentGuess {
+struct SniffedFormat {
   std::string_view name;       // "PLY", "a zip archive (3MF, ZAE and others)"
   std::string_view extension;  // ".ply"; empty if it is none of the accepted formats
 };
 
-std::optional<ContentGuess> guess_content(std::string_view first_bytes);
+std::optional<SniffedFormat> sniff_format(std::string_view first_bytes);
 
 }  // namespace buoyancy

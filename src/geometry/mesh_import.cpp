@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string_view name_of(fs::file_type type) {
+std::string_view to_string(fs::file_type type) {
   switch (type) {
     case fs::file_type::directory:
       return "a directory";
@@ -79,7 +79,7 @@ std::optional<std::string_view> only_content(std::ifstream& file) {
 
 struct AcceptedFile {
   MeshFormat format = MeshFormat::kObj;
-  std::optional<ContentGuess> content;
+  std::optional<SniffedFormat> content;
 };
 
 // All that can be told without running an importer.
@@ -88,39 +88,41 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
-    return failure({"", "no such file", mesh_file, "the name is misspelt, or relative to another directory",
-                    "It was looked for as " + fs::absolute(path, error).string()});
+    return make_error({"", "no such file", mesh_file,
+                       "the name is misspelt, or relative to another directory",
+                       "It was looked for as " + fs::absolute(path, error).string()});
   }
   if (status.type() == fs::file_type::none) {
-    return failure({"", "cannot be looked at: " + error.message(), mesh_file,
-                    "a directory on the way to it is closed to this user", "Mind the permissions"});
+    return make_error({"", "cannot be looked at: " + error.message(), mesh_file,
+                       "a directory on the way to it is closed to this user", "Mind the permissions"});
   }
   if (status.type() != fs::file_type::regular) {
-    return failure({"", "is " + std::string(name_of(status.type())), mesh_file,
-                    "the path names something else than the mesh", "Give the path of the mesh file itself"});
+    return make_error({"", "is " + std::string(to_string(status.type())), mesh_file,
+                       "the path names something else than the mesh",
+                       "Give the path of the mesh file itself"});
   }
 
-  const std::optional<MeshFormat> format = format_of(path);
+  const std::optional<MeshFormat> format = format_from_path(path);
   if (!format) {
     const std::string extension = path.extension().string();
-    return failure({"",
-                    extension.empty() ? "a file name without an extension"
-                                      : "format '" + extension + "' is not accepted",
-                    "one of " + accepted_extensions(), "the mesh was saved in another format",
-                    "Export it as one of these, for instance binary .stl or .ply"});
+    return make_error({"",
+                       extension.empty() ? "a file name without an extension"
+                                         : "format '" + extension + "' is not accepted",
+                       "one of " + accepted_extensions(), "the mesh was saved in another format",
+                       "Export it as one of these, for instance binary .stl or .ply"});
   }
 
   const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) return failure({"", "its size cannot be told: " + error.message(), mesh_file, "", ""});
+  if (error) return make_error({"", "its size cannot be told: " + error.message(), mesh_file, "", ""});
   if (bytes == 0) {
-    return failure({"", "the file is empty (0 bytes)", mesh_file, "an export or download that did not finish",
-                    "Export or fetch it anew"});
+    return make_error({"", "the file is empty (0 bytes)", mesh_file,
+                       "an export or download that did not finish", "Export or fetch it anew"});
   }
   if (bytes > limits.mesh_bytes) {
-    return failure({"", std::to_string(bytes) + " bytes",
-                    "at most " + std::to_string(limits.mesh_bytes) + " (limit 'mesh_bytes')",
-                    "the mesh is finer than this service is set up for",
-                    "Simplify the mesh, or raise 'mesh_bytes' under [limits]"});
+    return make_error({"", std::to_string(bytes) + " bytes",
+                       "at most " + std::to_string(limits.mesh_bytes) + " (limit 'mesh_bytes')",
+                       "the mesh is finer than this service is set up for",
+                       "Simplify the mesh, or raise 'mesh_bytes' under [limits]"});
   }
 
   errno = 0;
@@ -128,17 +130,17 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
   std::string first_bytes(512, '\0');
   file.read(first_bytes.data(), static_cast<std::streamsize>(first_bytes.size()));
   if (file.gcount() <= 0) {
-    return failure({"", "cannot be read: " + std::generic_category().message(errno), "a readable file",
-                    "its permissions, or the medium it is on", "Make it readable to this user"});
+    return make_error({"", "cannot be read: " + std::generic_category().message(errno), "a readable file",
+                       "its permissions, or the medium it is on", "Make it readable to this user"});
   }
   first_bytes.resize(static_cast<std::size_t>(file.gcount()));
   if (const auto only = only_content(file)) {
-    return failure({"", "nothing but " + std::string(*only) + " (" + std::to_string(bytes) + " bytes)",
-                    mesh_file, "an export or download that did not finish", "Export or fetch it anew"});
+    return make_error({"", "nothing but " + std::string(*only) + " (" + std::to_string(bytes) + " bytes)",
+                       mesh_file, "an export or download that did not finish", "Export or fetch it anew"});
   }
-  const std::optional<ContentGuess> content = guess_content(first_bytes);
+  const std::optional<SniffedFormat> content = sniff_format(first_bytes);
   if (content && content->extension == ".ply" && *format == MeshFormat::kPly) {
-    if (std::optional<Error> fault = fault_of_ply_header(file)) return failure(*std::move(fault));
+    if (std::optional<Error> fault = fault_of_ply_header(file)) return make_error(*std::move(fault));
   }
   return AcceptedFile{*format, content};
 }
@@ -148,9 +150,9 @@ Error explained_by_content(Error error, const AcceptedFile& file, const std::str
   if (!file.content || file.content->extension == extension) return error;
   error.cause = "the content looks like " + std::string(file.content->name) + ", which is not what " +
                 extension + " stands for";
-  error.remedy = file.content->extension.empty()
-                     ? "Export the mesh as one of " + accepted_extensions()
-                     : "If it is, give it the extension " + std::string(file.content->extension);
+  error.hint = file.content->extension.empty()
+                   ? "Export the mesh as one of " + accepted_extensions()
+                   : "If it is, give it the extension " + std::string(file.content->extension);
   return error;
 }
 
@@ -175,12 +177,12 @@ std::optional<Error> not_finite(const TriangleMesh& mesh) {
 
 Expected<ImportedMesh> import_unnamed(const fs::path& path, const ImportLimits& limits) {
   const Expected<AcceptedFile> file = check_file(path, limits);
-  if (!file) return failure(file.error());
-  Expected<ImportedMesh> imported = import_in_child(path, file->format, limits);
+  if (!file) return make_error(file.error());
+  Expected<ImportedMesh> imported = import_in_child_process(path, file->format, limits);
   if (imported) {
-    if (std::optional<Error> error = not_finite(imported->mesh)) imported = failure(*std::move(error));
+    if (std::optional<Error> error = not_finite(imported->mesh)) imported = make_error(*std::move(error));
   }
-  if (!imported) return failure(explained_by_content(imported.error(), *file, extension_of(path)));
+  if (!imported) return make_error(explained_by_content(imported.error(), *file, lowercase_extension(path)));
   return imported;
 }
 
@@ -191,8 +193,8 @@ Expected<ImportedMesh> import_mesh(const fs::path& path, const ImportLimits& lim
   if (!imported) imported.error().subject = path.string();
   return imported;
 } catch (const std::bad_alloc&) {
-  return failure({path.string(), "the mesh does not fit into this process's memory", "a smaller mesh",
-                  "the mesh is finer than this machine can hold", "Simplify the mesh"});
+  return make_error({path.string(), "the mesh does not fit into this process's memory", "a smaller mesh",
+                     "the mesh is finer than this machine can hold", "Simplify the mesh"});
 }
 
 }  // namespace buoyancy

@@ -115,7 +115,7 @@ std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const
 
 void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components) {
-  judge_components(components_around(mesh, topology), components);
+  judge_components(enclosing_components(mesh, topology), components);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (components[static_cast<std::size_t>(topology.component_of_face[f])].turned) {
       std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);

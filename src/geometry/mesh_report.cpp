@@ -46,7 +46,7 @@ std::string source_text(const MeshSource& source) {
   listing.add_if(!source.up_axis.empty(), "up axis " + source.up_axis);
   listing.add_if(source.nodes > 1, std::to_string(source.nodes) + " nodes");
   listing.add_if(source.left_out > 0,
-                 counted(source.left_out, "point or line left out", "points and lines left out"));
+                 pluralize(source.left_out, "point or line left out", "points and lines left out"));
   listing.add_if(!source.note.empty(), source.note);
   return listing.text("");
 }
@@ -55,7 +55,7 @@ std::string vertices_text(const MeshReport& report) {
   std::string text = std::to_string(report.vertices_stored) + " stored, " +
                      std::to_string(report.vertices_welded) + " after welding";
   if (report.weld == WeldKind::kTolerance) {
-    text += "; cracks closed by moving vertices up to " + number_text(report.weld_largest_move) + " m";
+    text += "; cracks closed by moving vertices up to " + format_number(report.weld_largest_move) + " m";
   }
   return text;
 }
@@ -83,13 +83,13 @@ std::string faces_text(const MeshReport& report) {
                  std::to_string(report.dropped_faces) + " dropped for naming a vertex twice");
   listing.add_if(report.degenerate_faces > 0, std::to_string(report.degenerate_faces) + " of zero area");
   listing.add_if(report.duplicate_faces > 0,
-                 counted(report.duplicate_faces, "duplicate", "duplicates") + " of an earlier face");
+                 pluralize(report.duplicate_faces, "duplicate", "duplicates") + " of an earlier face");
   return listing.text("");
 }
 
 std::string component_text(const ComponentReport& component) {
-  std::string text =
-      counted(component.triangles, "triangle", "triangles") + ", " + number_text(component.volume) + " m^3";
+  std::string text = pluralize(component.triangles, "triangle", "triangles") + ", " +
+                     format_number(component.volume) + " m^3";
   if (!component.closed) text += ", open";
   if (component.cavity) text += ", a cavity";
   if (component.nested) text += ", inside another: its volume counts twice";
@@ -98,8 +98,8 @@ std::string component_text(const ComponentReport& component) {
 }
 
 std::string hole_text(const HoleReport& hole) {
-  return counted(hole.edges, "edge", "edges") + ", from " + vector_text(hole.box.min_B) + " to " +
-         vector_text(hole.box.max_B);
+  return pluralize(hole.edges, "edge", "edges") + ", from " + format_vector(hole.box.min_B) + " to " +
+         format_vector(hole.box.max_B);
 }
 
 std::int64_t count_components(const MeshReport& report, bool ComponentReport::*flag) {
@@ -114,7 +114,7 @@ void add_components(const MeshReport& report, AlignedLines& lines) {
   const std::int64_t turned = count_components(report, &ComponentReport::turned);
   Listing listing;
   listing.add_if(true, std::to_string(report.components.size()));
-  listing.add_if(cavities > 0, counted(cavities, "cavity", "cavities"));
+  listing.add_if(cavities > 0, pluralize(cavities, "cavity", "cavities"));
   listing.add_if(nested > 0, std::to_string(nested) + " inside another");
   listing.add_if(turned > 0, std::to_string(turned) + " turned");
   lines.add("components", listing.text(""));
@@ -150,19 +150,19 @@ std::string to_text(const MeshReport& report) {
   if (!faces.empty()) lines.add("faces", faces);
   if (report.triangles == 0) return report.name + "\n" + lines.text();
   lines.add("edges", edges_text(report));
-  lines.add("box", "from " + vector_text(report.box.min_B) + " to " + vector_text(report.box.max_B) +
-                       " m, diagonal " + number_text(report.diagonal) + " m");
-  lines.add("area", number_text(report.area) + " m^2");
+  lines.add("box", "from " + format_vector(report.box.min_B) + " to " + format_vector(report.box.max_B) +
+                       " m, diagonal " + format_number(report.diagonal) + " m");
+  lines.add("area", format_number(report.area) + " m^2");
   lines.add("volume",
-            number_text(report.volume) + " m^3" +
+            format_number(report.volume) + " m^3" +
                 (report.closed() ? "" : " about the box's centre, which means nothing while it is open"));
-  lines.add("", "from x, y, z: " + vector_text(report.volume_by_axis) + " m^3");
-  lines.add("", "integral of n dA: " + vector_text(report.area_vector) + " m^2");
+  lines.add("", "from x, y, z: " + format_vector(report.volume_by_axis) + " m^3");
+  lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
   add_components(report, lines);
   add_holes(report, lines);
   if (report.intersecting_pairs) {
     lines.add("intersecting",
-              counted(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
+              pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
                   (*report.intersecting_pairs == 0 ? "" : ": what overlaps there counts twice"));
   }
   if (report.turned) lines.add("turned", "was inside out: all faces have been turned");

@@ -98,7 +98,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report.name = name;
   report.source = imported.source;
   report.vertices_stored = static_cast<std::int64_t>(imported.mesh.vertex_count());
-  validation.refusal = refuse_non_finite(imported.mesh, name);
+  validation.refusal = check_finite(imported.mesh, name);
   if (validation.refusal) return validation;
 
   WeldedMesh welded = weld(imported.mesh);
@@ -110,8 +110,8 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report_topology(topology, holes, report);
   std::vector<ComponentReport> components = describe_components(mesh, topology);
 
-  validation.refusal = refuse_size(report);
-  if (!validation.refusal) validation.refusal = refuse_edges(mesh, topology, report, options.open);
+  validation.refusal = check_size(report);
+  if (!validation.refusal) validation.refusal = check_edges(mesh, topology, report, options.open);
   if (!validation.refusal) {
     double volume = 0.0;
     if (holes.empty()) {
@@ -122,7 +122,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
       volume = orient_open(mesh, holes, components);
       report_surface(mesh, report);
     }
-    validation.refusal = refuse_volume(mesh, volume, report);
+    validation.refusal = check_volume(mesh, volume, report);
   }
   report_components(std::move(components), report);
   if (options.count_intersecting_pairs) report.intersecting_pairs = count_intersecting_pairs(mesh);

@@ -24,7 +24,7 @@ struct ValidationOptions {
   bool count_intersecting_pairs = false;  // O(n log n), several times the rest of the validation
 };
 
-// A mesh that may be asked hydrostatic questions: welded, finite, oriented, closed or balanced except for the
+// A mesh that may be asked hydrostatic requests: welded, finite, oriented, closed or balanced except for the
 // boundary that OpenPolicy::kDryBoundary accepted.
 struct ValidatedMesh {
   TriangleMesh mesh;

@@ -11,11 +11,11 @@ std::uint64_t PlyHeader::count_of(std::string_view name) const {
 }
 
 std::optional<PlyHeader> read_ply_header(std::istream& file) {
-  constexpr std::streamoff kMostHeaderBytes = 1'000'000;
+  constexpr std::streamoff kMaxHeaderBytes = 1'000'000;
   file.clear();
   file.seekg(0);
   PlyHeader header;
-  for (std::string line; file.tellg() < kMostHeaderBytes && std::getline(file, line);) {
+  for (std::string line; file.tellg() < kMaxHeaderBytes && std::getline(file, line);) {
     if (line.starts_with("end_header")) {
       header.data_follows = (file >> std::ws).peek() != std::istream::traits_type::eof();
       return header;

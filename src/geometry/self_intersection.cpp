@@ -22,7 +22,7 @@ int turn_of(const Corners2& t) {
 }
 
 Corners2 corners_seen_along(int axis, const Corners& t) {
-  return {seen_along(axis, t[0]), seen_along(axis, t[1]), seen_along(axis, t[2])};
+  return {project_along_axis(axis, t[0]), project_along_axis(axis, t[1]), project_along_axis(axis, t[2])};
 }
 
 // The axis along which a triangle of non-zero area is seen largest, or at least not edge-on.
@@ -87,9 +87,9 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
   if (side_p == 0 || side_q == 0) {
     const int axis = axis_of(t);
     const Corners2 flat = corners_seen_along(axis, t);
-    if (side_q != 0) return point_in_triangle(seen_along(axis, p), flat);
-    if (side_p != 0) return point_in_triangle(seen_along(axis, q), flat);
-    return segment_meets_triangle_in_plane(seen_along(axis, p), seen_along(axis, q), flat);
+    if (side_q != 0) return point_in_triangle(project_along_axis(axis, p), flat);
+    if (side_p != 0) return point_in_triangle(project_along_axis(axis, q), flat);
+    return segment_meets_triangle_in_plane(project_along_axis(axis, p), project_along_axis(axis, q), flat);
   }
   const int first = orient_3d(p, q, t[0], t[1]);
   const int second = orient_3d(p, q, t[1], t[2]);
@@ -98,8 +98,8 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
 }
 
 bool all_clearly_on_one_side(const Corners& plane, const Vec3& p, const Vec3& q) {
-  const int side = orient_3d_if_clear(plane[0], plane[1], plane[2], p);
-  return side != 0 && orient_3d_if_clear(plane[0], plane[1], plane[2], q) == side;
+  const int side = orient_3d_filtered(plane[0], plane[1], plane[2], p);
+  return side != 0 && orient_3d_filtered(plane[0], plane[1], plane[2], q) == side;
 }
 
 // Seen along the axis along which s is not edge-on, one edge of either has the other wholly beyond it.
@@ -164,10 +164,10 @@ bool meet_beyond_common_vertex(const Corners& s, const Corners& t) {
 
 // s[0] = t[0], s[1] = t[1]. They have more points in common only if one is folded flat onto the other.
 bool meet_beyond_common_edge(const Corners& s, const Corners& t) {
-  if (orient_3d_if_clear(s[0], s[1], s[2], t[2]) != 0) return false;
+  if (orient_3d_filtered(s[0], s[1], s[2], t[2]) != 0) return false;
   const int axis = axis_of(s);
   const Corners2 flat = corners_seen_along(axis, s);
-  if (orient_2d(flat[0], flat[1], seen_along(axis, t[2])) != turn_of(flat)) return false;
+  if (orient_2d(flat[0], flat[1], project_along_axis(axis, t[2])) != turn_of(flat)) return false;
   return orient_3d(s[0], s[1], s[2], t[2]) == 0;
 }
 
@@ -215,7 +215,7 @@ std::int64_t count_intersecting_pairs(const TriangleMesh& mesh) {
     boxes.push_back(box_of_face(mesh, face));
   }
   std::int64_t pairs = 0;
-  BoxTree(std::move(boxes)).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
+  AabbTree(std::move(boxes)).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
     if (intersect(mesh, faces[static_cast<std::size_t>(i)], faces[static_cast<std::size_t>(j)])) ++pairs;
   });
   return pairs;

@@ -6,18 +6,18 @@
 #include <string>
 #include <utility>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "geometry/shape_generators.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kSmallestSize = 1e-9;  // m
-constexpr double kLargestSize = 1e9;    // m
-constexpr std::int32_t kLargestCount = 100'000;
-constexpr std::int64_t kLargestTriangleCount = 20'000'000;
-constexpr double kLargestRoughness = 0.6;
-constexpr std::int32_t kLargestWinding = 32;
+constexpr double kMinSize = 1e-9;  // m
+constexpr double kMaxSize = 1e9;   // m
+constexpr std::int32_t kMaxCount = 100'000;
+constexpr std::int64_t kMaxTriangleCount = 20'000'000;
+constexpr double kMaxRoughness = 0.6;
+constexpr std::int32_t kMaxWinding = 32;
 constexpr std::int32_t kStepsPerWinding = 12;
 
 // Collects the first thing that is wrong with a shape.
@@ -26,13 +26,13 @@ class Check {
   explicit Check(std::string_view type) : subject_(std::string(type) + " shape") {}
 
   Check& size(const char* key, double value) {
-    if (!(value >= kSmallestSize && value <= kLargestSize)) {
-      fail(std::string(key) + " = " + number_text(value),
-           "a length from " + number_text(kSmallestSize) + " to " + number_text(kLargestSize) + " (m)");
+    if (!(value >= kMinSize && value <= kMaxSize)) {
+      fail(std::string(key) + " = " + format_shortest(value),
+           "a length from " + format_shortest(kMinSize) + " to " + format_shortest(kMaxSize) + " (m)");
     }
     return *this;
   }
-  Check& count(const char* key, std::int32_t value, std::int32_t least, std::int32_t most = kLargestCount) {
+  Check& count(const char* key, std::int32_t value, std::int32_t least, std::int32_t most = kMaxCount) {
     if (value < least || value > most) {
       fail(std::string(key) + " = " + std::to_string(value),
            "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
@@ -40,8 +40,8 @@ class Check {
     return *this;
   }
   Check& triangles(std::int64_t count) {
-    if (count > kLargestTriangleCount) {
-      fail(std::to_string(count) + " triangles", "at most " + std::to_string(kLargestTriangleCount),
+    if (count > kMaxTriangleCount) {
+      fail(std::to_string(count) + " triangles", "at most " + std::to_string(kMaxTriangleCount),
            "the subdivision is too fine");
     }
     return *this;
@@ -104,7 +104,7 @@ std::optional<Error> fault(const ConeShape& cone) {
 std::optional<Error> fault(const TorusKnotShape& knot) {
   Check check("torus_knot");
   check.size("radius", knot.radius).size("tube", knot.tube);
-  check.count("p", knot.p, 1, kLargestWinding).count("q", knot.q, 1, kLargestWinding);
+  check.count("p", knot.p, 1, kMaxWinding).count("q", knot.q, 1, kMaxWinding);
   check.count("radial", knot.radial, 3);
   if (check.passed()) {
     check.that(std::gcd(knot.p, knot.q) == 1,
@@ -116,8 +116,8 @@ std::optional<Error> fault(const TorusKnotShape& knot) {
   if (check.passed()) check.triangles(2 * std::int64_t{knot.tubular} * knot.radial);
   if (check.passed()) {
     const double largest = 0.9 * largest_tube(knot);
-    check.that(knot.tube <= largest, "tube = " + number_text(knot.tube),
-               "at most " + number_text(largest) + " (m) for this radius, p and q",
+    check.that(knot.tube <= largest, "tube = " + format_shortest(knot.tube),
+               "at most " + format_shortest(largest) + " (m) for this radius, p and q",
                "the tube is wider than the knot's strands are apart");
   }
   return std::move(check).error();
@@ -139,9 +139,9 @@ std::optional<Error> fault(const WigleyShape& hull) {
 std::optional<Error> fault(const RockShape& rock) {
   Check check("rock");
   check.size("radius", rock.radius).count("frequency", rock.frequency, 1);
-  check.that(rock.roughness >= 0.0 && rock.roughness <= kLargestRoughness,
-             "roughness = " + number_text(rock.roughness),
-             "a number from 0 to " + number_text(kLargestRoughness));
+  check.that(rock.roughness >= 0.0 && rock.roughness <= kMaxRoughness,
+             "roughness = " + format_shortest(rock.roughness),
+             "a number from 0 to " + format_shortest(kMaxRoughness));
   if (check.passed()) check.triangles(20 * std::int64_t{rock.frequency} * rock.frequency);
   return std::move(check).error();
 }
@@ -156,7 +156,7 @@ std::string_view type_name(const Shape& shape) {
 
 Expected<Shape> check_shape(const Shape& shape) {
   std::optional<Error> error = std::visit([](const auto& s) { return fault(s); }, shape);
-  if (error) return failure(*std::move(error));
+  if (error) return make_error(*std::move(error));
   return shape;
 }
 

@@ -88,7 +88,7 @@ struct Cell {
   std::vector<std::int32_t> vertices;  // ascending
 };
 constexpr double kCellsPerTolerance = 1.7321;  // just above the square root of 3
-constexpr std::int32_t kReach = 2;             // pairs within tolerance are at most this many cells apart
+constexpr std::int32_t kMatchWindow = 2;       // pairs within tolerance are at most this many cells apart
 
 // Occupied cells in the order of their places.
 std::vector<Cell> sort_into_cells(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
@@ -134,13 +134,13 @@ DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<st
   for (const Cell& cell : cells) {
     for (const std::int32_t v : cell.vertices) clusters.unite(cell.vertices.front(), v);
   }
-  for (std::int32_t ahead_z = 0; ahead_z <= kReach; ++ahead_z) {
-    for (std::int32_t ahead_y = ahead_z == 0 ? 0 : -kReach; ahead_y <= kReach; ++ahead_y) {
+  for (std::int32_t ahead_z = 0; ahead_z <= kMatchWindow; ++ahead_z) {
+    for (std::int32_t ahead_y = ahead_z == 0 ? 0 : -kMatchWindow; ahead_y <= kMatchWindow; ++ahead_y) {
       std::size_t window = 0;
       for (const Cell& cell : cells) {
         const auto& [z, y, x] = cell.place;
-        const std::array<std::int32_t, 3> begin{z + ahead_z, y + ahead_y, x - kReach};
-        const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kReach};
+        const std::array<std::int32_t, 3> begin{z + ahead_z, y + ahead_y, x - kMatchWindow};
+        const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kMatchWindow};
         while (window < cells.size() && cells[window].place < begin) ++window;
         for (std::size_t i = window; i < cells.size() && cells[i].place <= end; ++i) {
           unite_cells(mesh, cell, cells[i], tolerance, clusters);

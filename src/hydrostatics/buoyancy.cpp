@@ -14,11 +14,11 @@ bool boundary_is_dry(const HydrostaticMesh& mesh, const WaterPlane& plane) {
 }
 
 // Without a branch for each number: infinity less itself is no number.
-bool finite(const BuoyancyAnswer& answer) {
+bool finite(const BuoyancyResult& result) {
   const auto none = [](double value) { return value - value; };
   const auto nothing = [none](const Vec3& v) { return none(v.x()) + none(v.y()) + none(v.z()); };
-  return nothing(answer.force_W) + nothing(answer.torque_W) + nothing(answer.center_of_buoyancy_W) +
-             none(answer.volume) + none(answer.force_error_bound) + none(answer.torque_error_bound) ==
+  return nothing(result.force_W) + nothing(result.torque_W) + nothing(result.center_of_buoyancy_W) +
+             none(result.volume) + none(result.force_error_bound) + none(result.torque_error_bound) ==
          0.0;
 }
 
@@ -55,7 +55,7 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Di
   // Of bodies of less than 1e-162 m the diagonal underflows, and all else with it.
   const double per_metre = mesh.diagonal > 0.0 ? near / mesh.diagonal : 0.0;
   const double rounding = near + kGrowth * far_reach(solver, plane) * per_metre + displaced.rounding;
-  double lever = mesh.largest_lever(reference_B);
+  double lever = mesh.max_lever_arm(reference_B);
   if (displaced.left_out_reach > 0.0) {
     lever = std::max(lever, displaced.left_out_reach + (reference_B - mesh.center_B).norm());
   }
@@ -73,7 +73,8 @@ Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, co
 }
 
 // The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
-void answer_wholly_wet(const WhollyWet& wet, const Pose& pose, const Water& water, BuoyancyAnswer& answer) {
+void result_wholly_wet(const FullySubmerged& wet, const Pose& pose, const Water& water,
+                       BuoyancyResult& result) {
   const Eigen::Quaterniond& q = pose.q_WB;
   const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   const auto up = Point<double>::from(water.up_W);
@@ -82,8 +83,8 @@ void answer_wholly_wet(const WhollyWet& wet, const Pose& pose, const Water& wate
       wet.lever_B == wet.centroid_B ? lever_W : rotate(q, two_by_norm_squared, wet.centroid_B);
   const Point<double> torque_W = wet.lift * cross(lever_W, up);
   // Every field, so that none is left from what stood there before.
-  answer = {.status = BuoyancyStatus::kOk,
-            .immersion = Immersion::kWet,
+  result = {.status = BuoyancyStatus::kOk,
+            .immersion = Immersion::kSubmerged,
             .force_W = wet.force_W,
             .torque_W = (torque_W - dot(up, torque_W) * up).vec3(),
             .volume = wet.volume,
@@ -95,8 +96,8 @@ void answer_wholly_wet(const WhollyWet& wet, const Pose& pose, const Water& wate
 }
 
 // What the body displaces, as forces in the world.
-void answer_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
-                              const Water& water, const Vec3& reference_B, BuoyancyAnswer& answer) {
+void result_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
+                              const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const HydrostaticMesh& mesh = solver.mesh();
   const Displacement displaced = solver.displacement(plane);
   const double weight = water.density * water.gravity;  // N/m^3
@@ -104,58 +105,58 @@ void answer_from_displacement(const Solver& solver, const WaterPlane& plane, con
   const Vec3& k = plane.up_B;
   const Vec3 lever = mesh.center_B - reference_B;  // m, B
 
-  answer.volume = displaced.volume;
+  result.volume = displaced.volume;
   if (is_exact(solver.method())) {
     const double twist = k.dot(displaced.torque);
     if (mesh.volume > 0.0) {
-      answer.dropped_force = (displaced.force - k.dot(displaced.force) * k).norm() / mesh.volume;
-      answer.dropped_torque = std::abs(twist) / mesh.volume / mesh.diagonal;
+      result.dropped_force = (displaced.force - k.dot(displaced.force) * k).norm() / mesh.volume;
+      result.dropped_torque = std::abs(twist) / mesh.volume / mesh.diagonal;
     }
-    answer.force_W = (weight * displaced.volume) * water.up_W;
+    result.force_W = (weight * displaced.volume) * water.up_W;
     const Vec3 torque_W = R_WB * (displaced.torque - twist * k + lever.cross(displaced.volume * k));
-    answer.torque_W = weight * (torque_W - water.up_W.dot(torque_W) * water.up_W);
+    result.torque_W = weight * (torque_W - water.up_W.dot(torque_W) * water.up_W);
   } else {
-    answer.force_W = weight * (R_WB * displaced.force);
-    answer.torque_W = weight * (R_WB * (displaced.torque + lever.cross(displaced.force)));
+    result.force_W = weight * (R_WB * displaced.force);
+    result.torque_W = weight * (R_WB * (displaced.torque + lever.cross(displaced.force)));
   }
 
   const ErrorBounds bounds = error_bounds(solver, plane, displaced, reference_B);
-  answer.force_error_bound = weight * bounds.force;
-  answer.torque_error_bound = weight * bounds.torque;
-  const double smallest_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_gate();
+  result.force_error_bound = weight * bounds.force;
+  result.torque_error_bound = weight * bounds.torque;
+  const double smallest_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_tolerance();
   if (std::abs(displaced.volume) > smallest_volume) {
-    answer.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
+    result.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
   }
 }
 
-BuoyancyAnswer not_answered(BuoyancyStatus status, Immersion where) {
-  BuoyancyAnswer answer;
-  answer.status = status;
-  answer.immersion = where;
-  return answer;
+BuoyancyResult not_answered(BuoyancyStatus status, Immersion where) {
+  BuoyancyResult result;
+  result.status = status;
+  result.immersion = where;
+  return result;
 }
 
-// True where immersion says enough for an answer: a dry body, or a wholly wet one with `hierarchical`.
+// True where immersion says enough for a result: a dry body, or a wholly wet one with `hierarchical`.
 bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
   return immersion == Immersion::kDry ||
-         (immersion == Immersion::kWet && solver.method() == Method::kHierarchical);
+         (immersion == Immersion::kSubmerged && solver.method() == Method::kHierarchical);
 }
 
 // Of such a body.
-void answer_by_bounds(const WhollyWet& wet, Immersion immersion, const Pose& pose, const Water& water,
-                      BuoyancyAnswer& answer) {
+void result_by_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose, const Water& water,
+                      BuoyancyResult& result) {
   if (immersion == Immersion::kDry) {  // nothing to sum: every method says zero, exactly
-    answer = {};
-    answer.immersion = immersion;
+    result = {};
+    result.immersion = immersion;
     return;
   }
-  answer_wholly_wet(wet, pose, water, answer);
-  if (!finite(answer)) answer = not_answered(BuoyancyStatus::kOutOfRange, immersion);
+  result_wholly_wet(wet, pose, water, result);
+  if (!finite(result)) result = not_answered(BuoyancyStatus::kOutOfRange, immersion);
 }
 
 }  // namespace
 
-WhollyWet wholly_wet(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
+FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
   const double weight = water.density * water.gravity;  // N/m^3
   const double force_error_bound = weight * mesh.rounding_bound();
   const double lift = weight * mesh.volume;
@@ -166,39 +167,39 @@ WhollyWet wholly_wet(const HydrostaticMesh& mesh, const Water& water, const Vec3
           .lever_B = (mesh.center_B - reference_B) + mesh.centroid,
           .centroid_B = mesh.center_B + mesh.centroid,
           .force_error_bound = force_error_bound,
-          .torque_error_bound = force_error_bound * mesh.largest_lever(reference_B)};
+          .torque_error_bound = force_error_bound * mesh.max_lever_arm(reference_B)};
 }
 
-bool buoyancy_by_bounds(const Solver& solver, const WhollyWet& wet, const Pose& pose, const Water& water,
-                        BuoyancyAnswer& answer) {
-  const Immersion glance = immersion_at_a_glance(solver.mesh(), pose, water);
+bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
+                              const Water& water, BuoyancyResult& result) {
+  const Immersion glance = quick_immersion(solver.mesh(), pose, water);
   if (!is_answered_by_bounds(solver, glance)) return false;
-  answer_by_bounds(wet, glance, pose, water, answer);
+  result_by_bounds(wet, glance, pose, water, result);
   return true;
 }
 
-BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
+BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();
-  BuoyancyAnswer answer;
+  BuoyancyResult result;
   const auto by_bounds = [&](Immersion immersion) {
-    answer_by_bounds(wholly_wet(mesh, water, reference_B), immersion, pose, water, answer);
-    return answer;
+    result_by_bounds(fully_submerged(mesh, water, reference_B), immersion, pose, water, result);
+    return result;
   };
-  const Immersion glance = immersion_at_a_glance(mesh, pose, water);
+  const Immersion glance = quick_immersion(mesh, pose, water);
   if (is_answered_by_bounds(solver, glance)) return by_bounds(glance);
   const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
-    return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kCrossing);
+    return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
   const Immersion where = immersion(mesh, plane);
-  if (where != Immersion::kDry && mesh.open() && !boundary_is_dry(mesh, plane)) {
+  if (where != Immersion::kDry && mesh.is_open() && !boundary_is_dry(mesh, plane)) {
     return not_answered(BuoyancyStatus::kOpenEdgeWet, where);
   }
   if (is_answered_by_bounds(solver, where)) return by_bounds(where);
-  answer.immersion = where;
-  answer_from_displacement(solver, plane, pose, water, reference_B, answer);
-  if (!finite(answer)) return not_answered(BuoyancyStatus::kOutOfRange, where);
-  return answer;
+  result.immersion = where;
+  result_from_displacement(solver, plane, pose, water, reference_B, result);
+  if (!finite(result)) return not_answered(BuoyancyStatus::kOutOfRange, where);
+  return result;
 }
 
 }  // namespace buoyancy

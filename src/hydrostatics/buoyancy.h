@@ -9,9 +9,9 @@ namespace buoyancy {
 
 enum class BuoyancyStatus { kOk, kOpenEdgeWet, kOutOfRange };
 
-struct BuoyancyAnswer {
+struct BuoyancyResult {
   BuoyancyStatus status = BuoyancyStatus::kOk;
-  Immersion immersion = Immersion::kCrossing;
+  Immersion immersion = Immersion::kPiercing;
   Vec3 force_W = Vec3::Zero();   // N
   Vec3 torque_W = Vec3::Zero();  // N m, about the reference point
   double volume = 0.0;           // m^3, submerged
@@ -33,10 +33,10 @@ struct BuoyancyAnswer {
 // `exact` and `exact_surface` times 1 + 3 depth/L; of slender bodies and thin faces with what the cut faces
 // add. Those of the approximations, and of `hierarchical` within a tolerance, add what was left out
 // (docs/mathematics.md, "Error bounds").
-BuoyancyAnswer buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
+BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
-// What no pose changes in the answer of a wholly wet body.
-struct WhollyWet {
+// What no pose changes in the result of a wholly wet body.
+struct FullySubmerged {
   double volume = 0.0;              // m^3
   double lift = 0.0;                // N
   Vec3 force_W = Vec3::Zero();      // N
@@ -46,12 +46,12 @@ struct WhollyWet {
   double torque_error_bound = 0.0;  // N m
 };
 
-WhollyWet wholly_wet(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
+FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
 
-// What buoyancy() answers, where immersion_at_a_glance() says enough for it: of a dry body, and with
+// What buoyancy() answers, where quick_immersion() says enough for it: of a dry body, and with
 // `hierarchical` of a wholly wet one. False: it takes more, and answer is as it was. O(1).
 // wet: of the solver's mesh in this water, about the point that torque is about.
-bool buoyancy_by_bounds(const Solver& solver, const WhollyWet& wet, const Pose& pose, const Water& water,
-                        BuoyancyAnswer& answer);
+bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
+                              const Water& water, BuoyancyResult& result);
 
 }  // namespace buoyancy

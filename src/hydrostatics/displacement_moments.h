@@ -16,7 +16,7 @@ namespace buoyancy {
 
 // About a point o, in any frame's axes; y = x - o.
 template <typename T>
-struct FloatingMoments {
+struct DisplacementMoments {
   T volume = T(0);                                        // m^3: V
   Vec3T<T> moment = Vec3T<T>::Constant(T(0));             // m^4: M, integral of y over the displaced volume
   T waterplane_area = T(0);                               // m^2: A
@@ -24,8 +24,8 @@ struct FloatingMoments {
   Mat3T<T> waterplane_second_moments = Mat3T<T>::Constant(T(0));  // m^4: J, integral of y y^T likewise
 
   // About o + t.
-  FloatingMoments moved(const Vec3T<T>& t) const {
-    FloatingMoments result = *this;
+  DisplacementMoments moved(const Vec3T<T>& t) const {
+    DisplacementMoments result = *this;
     result.moment -= volume * t;
     result.waterplane_moment -= waterplane_area * t;
     result.waterplane_second_moments -= t * waterplane_moment.transpose();
@@ -34,7 +34,7 @@ struct FloatingMoments {
   }
 
   // In the axes that R leads to.
-  FloatingMoments rotated(const Mat3T<T>& R) const {
+  DisplacementMoments rotated(const Mat3T<T>& R) const {
     return {volume, R * moment, waterplane_area, R * waterplane_moment,
             R * waterplane_second_moments * R.transpose()};
   }
@@ -42,7 +42,8 @@ struct FloatingMoments {
 
 // wet: of the wet surface, about o; height: of o over the water; up: unit.
 template <typename T>
-FloatingMoments<T> read_out(const SurfaceMoments<T>& wet, const T& height, const Vec3T<T>& up) {
+DisplacementMoments<T> displacement_moments(const SurfaceMoments<T>& wet, const T& height,
+                                            const Vec3T<T>& up) {
   const Vec3T<T>& k = up;
   const T k_S = k.dot(wet.S);
   const Vec3T<T> N_k = wet.N * k;
@@ -56,7 +57,7 @@ FloatingMoments<T> read_out(const SurfaceMoments<T>& wet, const T& height, const
   const Vec3T<T> k_P_k = P_k * k;
   const T twice_H = k.dot(k_P_k) + height * (T(2) * k_N_k + height * k_S);
 
-  FloatingMoments<T> result;
+  DisplacementMoments<T> result;
   result.volume = k_N_k + height * k_S;
   result.moment = k_P_k + height * N_k - (twice_H / T(2)) * k;
   result.waterplane_area = -k_S;
@@ -78,7 +79,7 @@ Mat3T<T> cross_matrix(const Vec3T<T>& v) {  // times x: v x x
 // Not symmetric where the centre of buoyancy does not lie over or under o, since turning about k then turns
 // tau along.
 template <typename T>
-Eigen::Matrix<T, 6, 6> stiffness(const FloatingMoments<T>& about_o, const Vec3T<T>& up) {
+Eigen::Matrix<T, 6, 6> stiffness(const DisplacementMoments<T>& about_o, const Vec3T<T>& up) {
   const Vec3T<T> b = about_o.waterplane_moment.cross(up);
   const Mat3T<T> k = cross_matrix(up);
   Eigen::Matrix<T, 6, 6> result;

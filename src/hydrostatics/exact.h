@@ -11,7 +11,7 @@
 
 namespace buoyancy {
 
-// O(vertices + triangles); no heap once the thread has seen a mesh as large (wet_surface.h).
+// O(vertices + triangles); no heap once the thread has seen a mesh as large (wetted_surface.h).
 Displacement exact(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 }  // namespace buoyancy

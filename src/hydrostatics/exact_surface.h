@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-// O(vertices + triangles); no heap once the thread has seen a mesh as large (wet_surface.h).
+// O(vertices + triangles); no heap once the thread has seen a mesh as large (wetted_surface.h).
 Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 }  // namespace buoyancy

@@ -52,7 +52,7 @@ Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPla
   result.left_out = total.left_out;
   if (total.wet_triangles < mesh.surface.triangles.size()) {
     // The cone over the waterplane, whose area is at most that of the wet surface and that of the dry one.
-    const double waterplane_area = mesh.open() ? mesh.area : 0.5 * mesh.area;
+    const double waterplane_area = mesh.is_open() ? mesh.area : 0.5 * mesh.area;
     result.left_out += std::abs(plane.height(-mesh.center_B)) * waterplane_area / 3.0;
   }
   result.left_out_reach = mesh.center_B.norm();

@@ -64,8 +64,8 @@ double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }
 
-Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
-                      const HydrostaticMesh& mesh) {
+Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
+                                  const HydrostaticMesh& mesh) {
   const Vec3& k = plane.up_B;
   const double z_c = -plane.h_c;
   const auto a = static_cast<int>(query.axes[0]);
@@ -86,7 +86,7 @@ Displacement read_out(const WetTreeSum& sum, const TreeQuery& query, const Water
     wet.height += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
     result.left_out = rest.error;
   }
-  if (!mesh.holds_gate()) result.rounding = kEpsilon * sum.rounding;
+  if (!mesh.meets_volume_tolerance()) result.rounding = kEpsilon * sum.rounding;
 
   // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;
   // k . M = H - z_c V.
@@ -109,10 +109,10 @@ double budget(const HydrostaticMesh& mesh, double tolerance) {
 
 }  // namespace
 
-double plane_error_within(const HydrostaticMesh& mesh, double tolerance) {
+double allowed_plane_error(const HydrostaticMesh& mesh, double tolerance) {
   constexpr double kShare = 0.01;
   // Whether an open edge is wet is asked of the plane itself.
-  if (!(tolerance > 0.0) || mesh.open()) return 0.0;
+  if (!(tolerance > 0.0) || mesh.is_open()) return 0.0;
   return kShare * budget(mesh, tolerance) / sensitivity(mesh);
 }
 
@@ -121,16 +121,16 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
   switch (immersion(mesh, plane)) {
     case Immersion::kDry:
       return {};
-    case Immersion::kWet:
+    case Immersion::kSubmerged:
       return displacement_of_volume(mesh.volume, mesh.volume * mesh.centroid, plane);
-    case Immersion::kCrossing:
+    case Immersion::kPiercing:
       break;
   }
   TreeQuery query = make_tree_query(tree, plane);
   const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // m^3
   if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
   query.half_diagonal = 0.5 * mesh.diagonal;
-  Displacement result = read_out(sum_wet_tree(tree, query), query, plane, mesh);
+  Displacement result = displacement_moments(sum_wet_tree(tree, query), query, plane, mesh);
   result.left_out += from_plane;
   return result;
 }

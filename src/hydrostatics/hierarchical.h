@@ -8,12 +8,12 @@
 //   k . M = H - z_c V,  F/(rho g) = V k,  torque_c/(rho g) = M x k,   z = k . y + z_c,  z_c = -h_c.
 // A body above the water or below it is answered from its bounds and its constants.
 //
-// Error: within G_V and G_V L_r (HydrostaticMesh::volume_gate) at every depth. A leaf's heights are rounded
-// relative to the leaf's size, its centre's height being taken from an exact product: a cap of 1e-6 V_T keeps
-// 9 digits. Complexity: O(triangles the water cuts + log n); no heap.
+// Error: within G_V and G_V L_r (HydrostaticMesh::volume_tolerance) at every depth. A leaf's heights are
+// rounded relative to the leaf's size, its centre's height being taken from an exact product: a cap of 1e-6
+// V_T keeps 9 digits. Complexity: O(triangles the water cuts + log n); no heap.
 //
 // With a tolerance the descent stops where what is undecided cannot change volume by more than tolerance V_T,
-// or torque/(rho g) by more than that times L_r (undecided_node.h); the bound that was reached is in the
+// or torque/(rho g) by more than that times L_r (pruned_node.h); the bound that was reached is in the
 // answer. The cost then follows the tolerance, and n hardly.
 #pragma once
 
@@ -29,6 +29,6 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
 
 // m: how far the plane's heights over the body may be off (WaterPlane::error) so that this costs a hundredth
 // of the tolerance at most; 0 where it has to be exact. It is counted in the bound.
-double plane_error_within(const HydrostaticMesh& mesh, double tolerance);
+double allowed_plane_error(const HydrostaticMesh& mesh, double tolerance);
 
 }  // namespace buoyancy

@@ -56,11 +56,11 @@ double rounding(double volume, double diagonal, double area) {
 
 }  // namespace
 
-double HydrostaticMesh::volume_gate() const {
+double HydrostaticMesh::volume_tolerance() const {
   return rounding(volume, diagonal, area);
 }
 
-bool HydrostaticMesh::holds_gate() const {
+bool HydrostaticMesh::meets_volume_tolerance() const {
   return area >= diagonal * diagonal / 8.0 && rounding_area <= 4.0 / 3.0 * area;
 }
 
@@ -69,10 +69,10 @@ double HydrostaticMesh::rounding_bound() const {
 }
 
 double HydrostaticMesh::largest_rounding_bound() const {
-  return rounding_bound() + (holds_gate() ? 0.0 : kEpsilon * tree->rounding);
+  return rounding_bound() + (meets_volume_tolerance() ? 0.0 : kEpsilon * tree->rounding);
 }
 
-double HydrostaticMesh::largest_lever(const Vec3& reference_B) const {
+double HydrostaticMesh::max_lever_arm(const Vec3& reference_B) const {
   const Vec3 reference = reference_B - center_B;
   return (box_min - reference).cwiseAbs().cwiseMax((box_max - reference).cwiseAbs()).norm();
 }
@@ -116,7 +116,7 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   mesh.area = 0.5 * totals.twice_area;
   mesh.rounding_area = 0.5 * totals.twice_rounding_area;
   mesh.volume = totals.elements.volume();
-  const bool has_centroid = !mesh.open() && std::abs(mesh.volume) > mesh.volume_gate();
+  const bool has_centroid = !mesh.is_open() && std::abs(mesh.volume) > mesh.volume_tolerance();
   mesh.centroid = has_centroid ? Vec3(totals.elements.moment(Vec3::Zero()) / mesh.volume)
                                : Vec3(0.5 * (mesh.box_min + mesh.box_max));
   if (with_tree == WithTree::kYes) mesh.tree = build_moment_tree(mesh.surface);

@@ -35,7 +35,7 @@ struct HydrostaticMesh {
   double volume = 0.0;           // m^3: V_T; of an open mesh the sum about c, a scale and no more
   Vec3 centroid = Vec3::Zero();  // m, about c: centroid of the enclosed volume; box centre for open meshes
 
-  bool open() const { return !boundary_vertices.empty(); }
+  bool is_open() const { return !boundary_vertices.empty(); }
 
   Vec3 vertex(std::int32_t i) const { return surface.vertex(i); }
   Point<double> point(std::int32_t i) const {
@@ -44,10 +44,10 @@ struct HydrostaticMesh {
   }
 
   // The accuracy that the exact solvers hold in volume and force/(rho g), m^3: G_V = eps (64 V_T + L A_s).
-  double volume_gate() const;
+  double volume_tolerance() const;
   // Where G_V is promised: bodies neither slender nor made of thin faces, A_s >= L^2/8 and A_r <= 4/3 A_s. A
   // body thinner than some 1 : 50 across the axes is known less well by as much.
-  bool holds_gate() const;
+  bool meets_volume_tolerance() const;
   // What is published as a bound on rounding, m^3: 2 eps (64 V_T + L A_r), less than 4 G_V where that is
   // promised; elsewhere the exact methods add to it for what is cut (Displacement::rounding).
   double rounding_bound() const;
@@ -56,7 +56,7 @@ struct HydrostaticMesh {
   double largest_rounding_bound() const;
   // Largest distance from a reference point to a corner of the bounding box, m: L_r. Torque is held to G_V
   // L_r.
-  double largest_lever(const Vec3& reference_B) const;
+  double max_lever_arm(const Vec3& reference_B) const;
 };
 
 enum class WithTree { kNo, kYes };

@@ -13,7 +13,7 @@ namespace {
 
 // The displaced volume and the waterplane about a point of the body, B axes.
 struct Immersed {
-  FloatingMoments<double> moments;
+  DisplacementMoments<double> moments;
   Vec3 point = Vec3::Zero();  // m, from c
   double wetted_area = 0.0;   // m^2
 };
@@ -23,14 +23,14 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   switch (immersion(mesh, plane)) {
     case Immersion::kDry:
       break;
-    case Immersion::kWet:
+    case Immersion::kSubmerged:
       part.moments.volume = mesh.volume;
       part.point = mesh.centroid;
       part.wetted_area = mesh.area;
       break;
-    case Immersion::kCrossing: {
+    case Immersion::kPiercing: {
       const WetMoments wet = wet_moments(*mesh.tree, plane);
-      part.moments = read_out(wet.moments, wet.height, plane.up_B);
+      part.moments = displacement_moments(wet.moments, wet.height, plane.up_B);
       part.point = wet.point;
       part.wetted_area = wet.area;
       const double area_gate = 64.0 * std::numeric_limits<double>::epsilon() * mesh.area;
@@ -65,7 +65,7 @@ void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydro
 }
 
 // moments_W: about a point, point_W from p_WB.
-void add_waterplane(const FloatingMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
+void add_waterplane(const DisplacementMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
                     Hydrostatics& result) {
   result.waterplane_area = moments_W.waterplane_area;
   if (!(result.waterplane_area > 0.0)) return;
@@ -75,7 +75,7 @@ void add_waterplane(const FloatingMoments<double>& moments_W, const Vec3& point_
 }
 
 // The same; mass_to_point_W: from the centre of mass, if it is known. To be called after add_waterplane.
-void add_metacenters(const FloatingMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
+void add_metacenters(const DisplacementMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
                      const std::optional<Vec3>& mass_to_point_W, Hydrostatics& result) {
   const Vec3 to_buoyancy_W = moments_W.moment / moments_W.volume;
   result.center_of_buoyancy_W = point_W + to_buoyancy_W;
@@ -103,14 +103,14 @@ std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
   const Immersed part = immersed_part(mesh, plane);
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
-  const FloatingMoments<double> moments_W = part.moments.rotated(R_WB);
+  const DisplacementMoments<double> moments_W = part.moments.rotated(R_WB);
   const Vec3 point_W = R_WB * (mesh.center_B + part.point);  // from p_WB
 
   Hydrostatics result;
   result.volume = moments_W.volume;
   result.wetted_area = part.wetted_area;
   add_waterplane(moments_W, point_W, water.up_W, result);
-  if (result.volume > mesh.volume_gate()) {
+  if (result.volume > mesh.volume_tolerance()) {
     std::optional<Vec3> mass_to_point_W;
     if (center_of_mass_B) mass_to_point_W = R_WB * ((mesh.center_B - *center_of_mass_B) + part.point);
     add_metacenters(moments_W, point_W, water.up_W, mass_to_point_W, result);

@@ -16,22 +16,22 @@ Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const double highest = at_min.cwiseMax(at_max).sum() - plane.h_c;
   const double margin = plane.error + 8.0 * kEpsilon * (mesh.diagonal + std::abs(plane.h_c));
   if (lowest > margin) return Immersion::kDry;
-  if (highest < -margin && !mesh.open()) return Immersion::kWet;
-  return Immersion::kCrossing;
+  if (highest < -margin && !mesh.is_open()) return Immersion::kSubmerged;
+  return Immersion::kPiercing;
 }
 
-Immersion immersion_at_a_glance(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
+Immersion quick_immersion(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
   const RoughWaterPlane plane = rough_water_plane_in_body(pose, water, mesh.center_B, mesh.diagonal);
   // Where the squares overflow no comparison holds; where they underflow their error would not be one.
-  if (!(plane.norm_squared > 1e-100)) return Immersion::kCrossing;
+  if (!(plane.norm_squared > 1e-100)) return Immersion::kPiercing;
   const auto box_min = Point<double>::from(mesh.box_min);
   const auto box_max = Point<double>::from(mesh.box_max);
   const Point<double>& up = plane.up_B;
   const double height = dot(up, 0.5 * (box_min + box_max)) - plane.h_c;
   const double reach = dot({std::abs(up.x), std::abs(up.y), std::abs(up.z)}, 0.5 * (box_max - box_min));
   if (height - reach > plane.error) return Immersion::kDry;
-  if (height + reach < -plane.error && !mesh.open()) return Immersion::kWet;
-  return Immersion::kCrossing;
+  if (height + reach < -plane.error && !mesh.is_open()) return Immersion::kSubmerged;
+  return Immersion::kPiercing;
 }
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
 // The SIMD kernels for the leaves of the moment tree: the wet part of their triangles, many at a time.
-// Included once per instruction set (wet_tree_sum.cpp), after highway.h.
+// Included once per instruction set (wetted_tree_sum.cpp), after highway.h.
 #if defined(BUOYANCY_LEAF_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_LEAF_KERNELS_INL_H
 #undef BUOYANCY_LEAF_KERNELS_INL_H
@@ -41,9 +41,9 @@ class LeafBatch {
     const std::uint32_t wet = find_heights(leaf, query.k, z_high + z_low, heights_[size_].values) & vertices;
     leaf_[size_] = &leaf;
     wet_[size_] = wet;
-    const bool wholly_wet = wet == vertices;
-    size_ += static_cast<std::size_t>(wet != 0) - static_cast<std::size_t>(wholly_wet);
-    return wholly_wet;
+    const bool fully_submerged = wet == vertices;
+    size_ += static_cast<std::size_t>(wet != 0) - static_cast<std::size_t>(fully_submerged);
+    return fully_submerged;
   }
 
   // True: what there is to compute makes the wet part together with the leaf's moments, which the caller
@@ -117,7 +117,7 @@ class LeafSums {
     cut_height24_ = hn::Add(cut_height24_, cut.cut_height24_);
   }
 
-  HWY_INLINE void finish(WetTreeSum& sum) const {
+  HWY_INLINE void finish(WettedTreeSum& sum) const {
     const Reals d;
     sum.rounding = rounding_;
     sum.volume6 = hn::GetLane(hn::SumOfLanes(d, volume6_));

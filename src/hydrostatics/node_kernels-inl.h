@@ -1,6 +1,6 @@
 // The SIMD kernels for the inner nodes of the moment tree: children tested eight at once, node moments
-// summed, and what stays undecided chosen and summed. Included once per instruction set (wet_tree_sum.cpp),
-// after highway.h.
+// summed, and what stays undecided chosen and summed. Included once per instruction set
+// (wetted_tree_sum.cpp), after highway.h.
 #if defined(BUOYANCY_NODE_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_NODE_KERNELS_INL_H
 #undef BUOYANCY_NODE_KERNELS_INL_H
@@ -162,7 +162,7 @@ HWY_INLINE hn::Vec<D> load_upper_halves(D d, const std::array<std::uint16_t, kTr
                      hn::ShiftLeft<16>(hn::PromoteTo(words, hn::LoadU(half_words, halves.data() + first))));
 }
 
-// The line's error and the parabola's, m: undecided_node.h. radius: m.
+// The line's error and the parabola's, m: pruned_node.h. radius: m.
 template <class D>
 struct FitErrors {
   hn::Vec<D> line, curved;

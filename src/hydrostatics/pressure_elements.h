@@ -27,7 +27,7 @@ struct PressureElements {
     return *this;
   }
 
-  void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c,
+  void add(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c,
            const Point<double>& up_B) {
     const Point<double> twice_area = cross(b.y - a.y, c.y - a.y);
     const double z_sum = a.z + b.z + c.z;

@@ -8,7 +8,7 @@
 
 namespace buoyancy {
 
-std::string_view name(Method method) {
+std::string_view to_string(Method method) {
   switch (method) {
     case Method::kFast:
       return "fast";
@@ -28,7 +28,7 @@ std::string_view name(Method method) {
 
 std::optional<Method> method_from_name(std::string_view text) {
   for (const Method method : kAllMethods) {
-    if (name(method) == text) return method;
+    if (to_string(method) == text) return method;
   }
   return std::nullopt;
 }
@@ -40,7 +40,7 @@ bool is_exact(Method method) {
 Solver::Solver(const HydrostaticMesh& mesh, Method method, double tolerance)
     : mesh_(&mesh), method_(method), tolerance_(tolerance) {
   if (method == Method::kFast) fast_.emplace(mesh);
-  if (method == Method::kHierarchical) plane_error_ = plane_error_within(mesh, tolerance);
+  if (method == Method::kHierarchical) plane_error_ = allowed_plane_error(mesh, tolerance);
 }
 
 WaterPlane Solver::plane_in_body(const Pose& pose, const Water& water) const {

@@ -33,7 +33,7 @@ enum class Method { kFast, kImproved, kExact, kFastSurface, kExactSurface, kHier
 inline constexpr std::array kAllMethods{Method::kFast,        Method::kImproved,     Method::kExact,
                                         Method::kFastSurface, Method::kExactSurface, Method::kHierarchical};
 
-std::string_view name(Method method);                           // "exact_surface"
+std::string_view to_string(Method method);                      // "exact_surface"
 std::optional<Method> method_from_name(std::string_view name);  // nullopt: no such method
 bool is_exact(Method method);  // exact to rounding in volume, force and torque
 

@@ -16,7 +16,7 @@ namespace buoyancy {
 
 // A point of the surface about the mesh's centre, and its signed height over the water.
 template <typename T>
-struct Corner {
+struct ClipVertex {
   Point<T> y;  // m
   T z;         // m
 
@@ -25,29 +25,30 @@ struct Corner {
 
 // Where the edge from a wet to a dry corner meets the water.
 template <typename T>
-Corner<T> cut(const Corner<T>& wet, const Corner<T>& dry) {
+ClipVertex<T> cut(const ClipVertex<T>& wet, const ClipVertex<T>& dry) {
   const T share = wet.z / (wet.z - dry.z);
   return {wet.y + share * (dry.y - wet.y), T(0)};
 }
 
 // Calls visit(a, b, c) for the one or two wet triangles of a triangle that has both wet and dry corners.
 template <typename T, typename Visit>
-void visit_wet_part(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c, Visit&& visit) {
+void for_each_wet_triangle(const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c,
+                           Visit&& visit) {
   // Rotate so that p is the corner that differs from the two others: looked up, since which one it is cannot
   // be predicted.
   constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
   const auto mask = static_cast<unsigned>(a.wet()) + 2 * static_cast<unsigned>(b.wet()) +
                     4 * static_cast<unsigned>(c.wet());
-  const std::array<const Corner<T>*, 5> corners{&a, &b, &c, &a, &b};
+  const std::array<const ClipVertex<T>*, 5> corners{&a, &b, &c, &a, &b};
   const std::size_t first = kOddOneOut[mask];
-  const Corner<T>& p = *corners[first];
-  const Corner<T>& q = *corners[first + 1];
-  const Corner<T>& r = *corners[first + 2];
+  const ClipVertex<T>& p = *corners[first];
+  const ClipVertex<T>& q = *corners[first + 1];
+  const ClipVertex<T>& r = *corners[first + 2];
   if (p.wet()) {
     visit(p, cut(p, q), cut(p, r));
   } else {
-    const Corner<T> on_pq = cut(q, p);
-    const Corner<T> on_rp = cut(r, p);
+    const ClipVertex<T> on_pq = cut(q, p);
+    const ClipVertex<T> on_rp = cut(r, p);
     visit(on_pq, q, r);
     visit(on_pq, r, on_rp);
   }

@@ -96,17 +96,17 @@ class WetSurfaceWalk {
 
     const Vec3 from_point = center - *point_;
     const auto corner = [&](std::uint8_t i) {
-      return Corner<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
+      return ClipVertex<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
     };
     for (std::size_t t = 0; t < leaf.triangles; ++t) {
-      const Corner<double> a = corner(leaf.a[t]);
-      const Corner<double> b = corner(leaf.b[t]);
-      const Corner<double> c = corner(leaf.c[t]);
+      const ClipVertex<double> a = corner(leaf.a[t]);
+      const ClipVertex<double> b = corner(leaf.b[t]);
+      const ClipVertex<double> c = corner(leaf.c[t]);
       const int wet_corners =
           static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
       if (wet_corners == 3) add(a, b, c);
       if (wet_corners == 1 || wet_corners == 2) {
-        visit_wet_part(a, b, c, [this](const auto& p, const auto& q, const auto& r) { add(p, q, r); });
+        for_each_wet_triangle(a, b, c, [this](const auto& p, const auto& q, const auto& r) { add(p, q, r); });
       }
     }
   }
@@ -116,7 +116,7 @@ class WetSurfaceWalk {
     wet_nodes_.add({node.moments(), node.area()});
   }
 
-  void add(const Corner<double>& a, const Corner<double>& b, const Corner<double>& c) {
+  void add(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c) {
     Patch patch{moments_of_triangle<double>(a.y.vec3(), b.y.vec3(), c.y.vec3()), 0.0};
     patch.area = patch.moments.S.norm();
     clipped_.add(patch);

@@ -26,7 +26,7 @@ VertexHeights vertex_heights(const TriangleMesh& surface, const WaterPlane& plan
 }
 
 double rounding_of_cut_faces(const HydrostaticMesh& mesh, const WaterPlane& plane) {
-  if (mesh.holds_gate()) return 0.0;
+  if (mesh.meets_volume_tolerance()) return 0.0;
   // The longest edge of HydrostaticMesh's triangles lies opposite their first corner.
   const auto edges_squared = sum_over_wet_surface<double>(
       mesh, plane, [](double&, const auto&, const auto&, const auto&) {},

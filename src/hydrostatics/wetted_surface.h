@@ -64,7 +64,7 @@ Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, c
   return total.total();
 }
 
-// add_wet(sum, a, b, c) adds one wet triangle with corners Corner<double>, add_cut(sum, a, b, c) what the
+// add_wet(sum, a, b, c) adds one wet triangle with corners ClipVertex<double>, add_cut(sum, a, b, c) what the
 // method makes of one that the water cuts. O(vertices + triangles).
 template <typename Sum, typename AddWet, typename AddCut>
 Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const AddWet& add_wet,
@@ -73,7 +73,9 @@ Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, c
   const double* const y = mesh.surface.y.data();
   const double* const z = mesh.surface.z.data();
   const VertexHeights heights = vertex_heights(mesh.surface, plane);
-  const auto corner = [=](std::int32_t i) { return Corner<double>{{x[i], y[i], z[i]}, heights.height[i]}; };
+  const auto corner = [=](std::int32_t i) {
+    return ClipVertex<double>{{x[i], y[i], z[i]}, heights.height[i]};
+  };
   return sum_over_blocks<Sum>(mesh.surface, heights, [&](Sum& sum, TriangleList wet, TriangleList cut) {
     for (const std::uint32_t i : wet) {
       const Triangle& triangle = mesh.surface.triangles[i];
@@ -91,7 +93,8 @@ template <typename Sum, typename Add>
 Sum sum_over_whole_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Add& add) {
   return sum_over_wet_surface<Sum>(
       mesh, plane, add, [&](Sum& sum, const auto& a, const auto& b, const auto& c) {
-        visit_wet_part(a, b, c, [&](const auto& p, const auto& q, const auto& r) { add(sum, p, q, r); });
+        for_each_wet_triangle(a, b, c,
+                              [&](const auto& p, const auto& q, const auto& r) { add(sum, p, q, r); });
       });
 }
 

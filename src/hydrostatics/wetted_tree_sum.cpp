@@ -36,7 +36,7 @@ HWY_INLINE void prefetch_node(const TreeNode& node, std::size_t bytes) {
 // fetched for many at once.
 class Descent {
  public:
-  HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum)
+  HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum)
       : tree_(tree),
         query_(query),
         sum_(sum),
@@ -141,7 +141,7 @@ class Descent {
 
   const MomentTree& tree_;
   const TreeQuery& query_;
-  WetTreeSum& sum_;
+  WettedTreeSum& sum_;
   BoundsQuery bounds_;
   LeafBatch batch_;
   LeafSums leaf_sums_;
@@ -177,7 +177,7 @@ HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nod
   }
 }
 
-void sum_exactly(const MomentTree& tree, const TreeQuery& query, WetTreeSum& sum) {
+void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum) {
   Descent descent(tree, query, sum);
   const std::uint32_t root = 0;
   descend_exactly(tree, &root, 1, descent);
@@ -212,7 +212,8 @@ HWY_INLINE double keep_within(float limit, UndecidedNodes& open, std::uint32_t* 
 // Level by level: as soon as all that is undecided fits into what is left of the budget, it stays so. Until
 // then some nodes do (limit_to_errors), and the others are looked into. What can stay undecided is only asked
 // where there is hope: from a level to the next all errors together fall about eightfold.
-void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists, WetTreeSum& sum) {
+void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists,
+                       WettedTreeSum& sum) {
   constexpr double kFall = 8.0;
   constexpr double kHopeless = 6.0;  // times what is left: too few would stay undecided
   Descent descent(tree, query, sum);
@@ -277,8 +278,8 @@ namespace buoyancy {
 HWY_EXPORT(sum_exactly);
 HWY_EXPORT(sum_within_budget);
 
-WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query) {
-  WetTreeSum sum;
+WettedTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query) {
+  WettedTreeSum sum;
   if (query.budget > 0.0) {
     thread_local BudgetLists lists;
     lists.make_room(tree);

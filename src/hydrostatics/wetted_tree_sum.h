@@ -29,8 +29,8 @@ struct TreeQuery {
   double half_diagonal;  // m: L / 2; read where budget > 0
 };
 
-// What undecided nodes (undecided_node.h) add besides their slopes times their moments, which are among
-// WetTreeSum::nodes.
+// What undecided nodes (pruned_node.h) add besides their slopes times their moments, which are among
+// WettedTreeSum::nodes.
 struct UndecidedSum {
   AxisMoments offsets;         // m times moments: offset times S and N; the rest is unused
   double volume = 0.0;         // m^3: int (p2 - p1) n_a dA
@@ -39,7 +39,7 @@ struct UndecidedSum {
 };
 
 // Integrals over the wet surface with n_a dA, in two parts that the read-out adds.
-struct WetTreeSum {
+struct WettedTreeSum {
   AxisMoments nodes;  // about c, of the wholly wet nodes
 
   // Of the triangles of crossing leaves, with z the height and y about c:
@@ -57,7 +57,7 @@ struct WetTreeSum {
 
 // Descends from the root. undecided.error <= budget. With budget 0 nothing is left undecided, and there is no
 // heap; else none once the thread has seen a tree as large.
-WetTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query);
+WettedTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query);
 
 std::vector<std::string>
 simd_targets();             // that this processor can run, the best first; "SCALAR" is always among them

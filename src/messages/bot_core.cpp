@@ -23,15 +23,16 @@ constexpr std::array<double, 3> unknown() {
 
 }  // namespace
 
-tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes) {
+tl::expected<BotPose, DecodeError> decode_bot_pose(Bytes bytes) {
   std::uint64_t fingerprint = 0;
-  if (bytes.size() < sizeof fingerprint) return tl::unexpected(Rejection::kTruncated);
+  if (bytes.size() < sizeof fingerprint) return tl::unexpected(DecodeError::kTruncated);
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
-  if (fingerprint != kPose && fingerprint != kRigidTransform) return tl::unexpected(Rejection::kFingerprint);
+  if (fingerprint != kPose && fingerprint != kRigidTransform)
+    return tl::unexpected(DecodeError::kFingerprint);
   const std::size_t size = fingerprint == kPose ? kPoseSize : kRigidTransformSize;
-  if (bytes.size() < size) return tl::unexpected(Rejection::kTruncated);
-  if (bytes.size() > size) return tl::unexpected(Rejection::kLength);
+  if (bytes.size() < size) return tl::unexpected(DecodeError::kTruncated);
+  if (bytes.size() > size) return tl::unexpected(DecodeError::kLength);
   BotPose pose;
   if (fingerprint == kPose) {
     reader(pose.utime, pose.position, pose.velocity, pose.quaternion_wxyz, pose.rotation_rate);
@@ -43,14 +44,14 @@ tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes) {
   return pose;
 }
 
-tl::expected<BotForceTorque, Rejection> decode_six_axis_force_torque(Bytes bytes) {
+tl::expected<BotForceTorque, DecodeError> decode_six_axis_force_torque(Bytes bytes) {
   std::uint64_t fingerprint = 0;
-  if (bytes.size() < sizeof fingerprint) return tl::unexpected(Rejection::kTruncated);
+  if (bytes.size() < sizeof fingerprint) return tl::unexpected(DecodeError::kTruncated);
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
-  if (fingerprint != kSixAxisForceTorque) return tl::unexpected(Rejection::kFingerprint);
-  if (bytes.size() < kSixAxisForceTorqueSize) return tl::unexpected(Rejection::kTruncated);
-  if (bytes.size() > kSixAxisForceTorqueSize) return tl::unexpected(Rejection::kLength);
+  if (fingerprint != kSixAxisForceTorque) return tl::unexpected(DecodeError::kFingerprint);
+  if (bytes.size() < kSixAxisForceTorqueSize) return tl::unexpected(DecodeError::kTruncated);
+  if (bytes.size() > kSixAxisForceTorqueSize) return tl::unexpected(DecodeError::kLength);
   BotForceTorque message;
   reader(message.utime, message.force, message.torque);
   return message;

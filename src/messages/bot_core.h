@@ -37,10 +37,10 @@ struct BotForceTorque {
 
 // A pose_t or a rigid_transform_t, of exactly its length. Values are not judged. Causes: kTruncated,
 // kFingerprint, kLength. O(1).
-tl::expected<BotPose, Rejection> decode_bot_pose(Bytes bytes);
+tl::expected<BotPose, DecodeError> decode_bot_pose(Bytes bytes);
 
 // A six_axis_force_torque_t of exactly its length; else as decode_bot_pose().
-tl::expected<BotForceTorque, Rejection> decode_six_axis_force_torque(Bytes bytes);
+tl::expected<BotForceTorque, DecodeError> decode_six_axis_force_torque(Bytes bytes);
 
 // Replaces bytes by a six_axis_force_torque_t. utime: us; force: N; torque: N m.
 void encode_six_axis_force_torque(std::int64_t utime, const std::array<double, 3>& force,

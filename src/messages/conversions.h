@@ -16,11 +16,11 @@ bool all_finite(const std::array<double, kSize>& values) {
   return sum == 0.0;
 }
 
-inline Vec3 as_vec3(const std::array<double, 3>& values) {
+inline Vec3 to_vec3(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
 }
 
-inline std::array<double, 3> as_array(const Vec3& v) {
+inline std::array<double, 3> to_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 

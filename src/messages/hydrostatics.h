@@ -27,7 +27,7 @@ struct BodyHydrostatics {
 };
 
 struct BodiesHydrostatics {
-  QuestionKey key;
+  RequestId key;
   std::vector<BodyHydrostatics> bodies;
 };
 

@@ -2,7 +2,7 @@
 
 namespace buoyancy {
 
-const char* name(BodyStatus status) {
+const char* to_string(BodyStatus status) {
   switch (status) {
     case BodyStatus::kOk:
       return "OK";

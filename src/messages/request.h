@@ -1,4 +1,4 @@
-// Core types of a question and its answer: what body_states_t and body_wrenches_t say, without LCM.
+// Core types of a request and its response: what body_states_t and body_wrenches_t say, without LCM.
 #pragma once
 
 #include <array>
@@ -15,15 +15,15 @@ struct BodyState {
   std::array<double, 3> angular_velocity{};  // rad/s, W
 };
 
-// What ties an answer to its question.
-struct QuestionKey {
+// What ties a response to its request.
+struct RequestId {
   std::int64_t utime = 0;  // us
   std::int64_t session_id = 0;
   std::int64_t seq = 0;
 };
 
-struct Question {
-  QuestionKey key;
+struct WrenchRequest {
+  RequestId key;
   double lead_time = 0.0;  // s
   std::vector<BodyState> bodies;
 };
@@ -41,7 +41,7 @@ enum class BodyStatus : std::int32_t {
 };
 inline constexpr int kBodyStatusCount = 8;
 // "UNKNOWN_BODY", as in the message definition; "UNKNOWN_STATUS" for a value of a later version.
-const char* name(BodyStatus status);
+const char* to_string(BodyStatus status);
 
 struct BodyWrench {
   std::int32_t body_id = 0;
@@ -54,8 +54,8 @@ struct BodyWrench {
   double torque_error_bound = 0.0;             // N m
 };
 
-struct Answer {
-  QuestionKey key;
+struct WrenchResponse {
+  RequestId key;
   std::vector<BodyWrench> bodies;
 };
 

@@ -20,26 +20,26 @@ constexpr std::size_t kEmptyString = sizeof(std::int32_t) + 1;
 FixedSizes fixed_sizes(const ServiceStatus& status) {
   LayoutSize before;
   before(std::int64_t{});
-  visit_head(status, before);
+  visit_header(status, before);
   std::size_t strings = 0;
   visit_strings(status, [&strings](const std::string& /*text*/) { strings += kEmptyString; });
   LayoutSize after;
-  visit_tail(status, after);
+  visit_trailer(status, after);
   return {before.size(), strings, after.size()};
 }
 
 // Takes a string off the front of bytes: its characters, or what is wrong with it.
-tl::expected<std::string_view, Rejection> take_string(Bytes& bytes) {
+tl::expected<std::string_view, DecodeError> take_string(Bytes& bytes) {
   std::int32_t size = 0;  // with the final NUL
-  if (bytes.size() < kEmptyString) return tl::unexpected(Rejection::kLength);
+  if (bytes.size() < kEmptyString) return tl::unexpected(DecodeError::kLength);
   BigEndianReader{bytes.data()}(size);
   bytes = bytes.subspan(sizeof(size));
-  if (size < 1) return tl::unexpected(Rejection::kCount);
-  if (static_cast<std::size_t>(size) > bytes.size()) return tl::unexpected(Rejection::kLength);
+  if (size < 1) return tl::unexpected(DecodeError::kCount);
+  if (static_cast<std::size_t>(size) > bytes.size()) return tl::unexpected(DecodeError::kLength);
   const Bytes text = bytes.first(static_cast<std::size_t>(size));
   bytes = bytes.subspan(text.size());
   const auto first_nul = std::find(text.begin(), text.end(), std::uint8_t{0});
-  if (first_nul != text.end() - 1) return tl::unexpected(Rejection::kLength);
+  if (first_nul != text.end() - 1) return tl::unexpected(DecodeError::kLength);
   return std::string_view(reinterpret_cast<const char*>(text.data()), text.size() - 1);
 }
 
@@ -55,7 +55,7 @@ struct AddCounter {
 
 }  // namespace
 
-Counters& Counters::operator+=(const Counters& other) {
+ServiceCounters& ServiceCounters::operator+=(const ServiceCounters& other) {
   visit_counters(AddCounter{}, *this, other);
   return *this;
 }
@@ -77,39 +77,40 @@ void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes) {
   bytes.resize(sizes.before_strings + sizes.strings + characters + sizes.after_strings);
   BigEndianWriter writer(bytes.data());
   writer(service_status_t::getHash());
-  visit_head(status, writer);
+  visit_header(status, writer);
   visit_strings(status, [&writer](const std::string& text) {
     const std::size_t size = text.size() + 1;
     writer(static_cast<std::int32_t>(size));
     std::memcpy(writer.position(), text.c_str(), size);
     writer.skip(size);
   });
-  visit_tail(status, writer);
+  visit_trailer(status, writer);
 }
 
-std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status) {
+std::optional<DecodeError> decode(Bytes bytes, ServiceStatus& status) {
   const FixedSizes sizes = fixed_sizes(status);
-  if (bytes.size() < sizes.before_strings + sizes.strings + sizes.after_strings) return Rejection::kTruncated;
+  if (bytes.size() < sizes.before_strings + sizes.strings + sizes.after_strings)
+    return DecodeError::kTruncated;
   std::int64_t fingerprint = 0;
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
-  if (fingerprint != service_status_t::getHash()) return Rejection::kFingerprint;
+  if (fingerprint != service_status_t::getHash()) return DecodeError::kFingerprint;
   const Bytes strings =
       bytes.subspan(sizes.before_strings, bytes.size() - sizes.before_strings - sizes.after_strings);
   Bytes left = strings;
-  std::optional<Rejection> rejection;
+  std::optional<DecodeError> rejection;
   visit_strings(status, [&](const std::string& /*text*/) {
     if (rejection) return;
     if (const auto text = take_string(left); !text) rejection = text.error();
   });
-  if (!rejection && !left.empty()) rejection = Rejection::kLength;
+  if (!rejection && !left.empty()) rejection = DecodeError::kLength;
   if (rejection) return rejection;
 
-  visit_head(status, reader);
+  visit_header(status, reader);
   left = strings;
   visit_strings(status, [&left](std::string& text) { text.assign(*take_string(left)); });
   reader.skip(strings.size());
-  visit_tail(status, reader);
+  visit_trailer(status, reader);
   return std::nullopt;
 }
 

@@ -13,15 +13,15 @@
 namespace buoyancy {
 
 // Totals since the start; one field per counter of service_status_t.lcm, where each is explained.
-struct Counters {
-  std::int64_t questions = 0;
-  std::int64_t answered = 0;
-  std::int64_t repeated = 0;
-  std::int64_t changed_repeats = 0;
+struct ServiceCounters {
+  std::int64_t requests = 0;
+  std::int64_t computed = 0;
+  std::int64_t retries = 0;
+  std::int64_t conflicting_retries = 0;
   std::int64_t stale = 0;
-  std::int64_t overtaken = 0;
+  std::int64_t superseded = 0;
   std::int64_t sessions = 0;
-  std::int64_t sessions_forgotten = 0;
+  std::int64_t sessions_evicted = 0;
   std::int64_t rejected_truncated = 0;
   std::int64_t rejected_fingerprint = 0;
   std::int64_t rejected_count = 0;
@@ -40,7 +40,7 @@ struct Counters {
     return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length;
   }
   // Totals add up, of the largest the larger stays.
-  Counters& operator+=(const Counters& other);
+  ServiceCounters& operator+=(const ServiceCounters& other);
 };
 
 struct LatencyPercentiles {  // s
@@ -57,12 +57,12 @@ enum class SimdTarget : std::int32_t {
   kAvx3 = 5,
   kNeon = 6,
 };
-// By the name that hydrostatics gives it (wet_tree_sum.h); kOther for a name that has no value here.
+// By the name that hydrostatics gives it (wetted_tree_sum.h); kOther for a name that has no value here.
 SimdTarget simd_target_from_name(std::string_view name);
 
-// How questions are answered: all in order of arrival, or the newest of each session. Values as in
+// How requests are answered: all in order of arrival, or the newest of each session. Values as in
 // service_status_t.lcm.
-enum class Mode : std::int32_t { kLockstep = 0, kLatest = 1 };
+enum class ServiceMode : std::int32_t { kLockstep = 0, kLatest = 1 };
 
 // Fields as in service_status_t.lcm, where each is explained.
 struct ServiceStatus {
@@ -71,23 +71,23 @@ struct ServiceStatus {
   std::string version;
   std::string scene;
   double uptime = 0.0;  // s
-  Mode mode = Mode::kLockstep;
+  ServiceMode mode = ServiceMode::kLockstep;
   SimdTarget simd_target = SimdTarget::kOther;
   std::int32_t threads = 1;
   std::int32_t scene_bodies = 0;
   std::int64_t reloads = 0;
   std::int64_t reloads_failed = 0;
-  std::int64_t not_sent = 0;
+  std::int64_t send_failures = 0;
   std::int64_t packets_dropped = 0;
   std::int64_t fragments_dropped = 0;
-  Counters counters;
+  ServiceCounters counters;
   LatencyPercentiles latency;
   double queue_wait = 0.0;  // s
 };
 
 // Encodes into bytes, which is resized. The strings hold no NUL.
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
-// Checks as for a question, and each string's length and final NUL. On rejection status is unchanged.
-std::optional<Rejection> decode(Bytes bytes, ServiceStatus& status);
+// Checks as for a request, and each string's length and final NUL. On rejection status is unchanged.
+std::optional<DecodeError> decode(Bytes bytes, ServiceStatus& status);
 
 }  // namespace buoyancy

@@ -16,8 +16,8 @@ namespace {
 // Taken from the generated types, so that it follows the .lcm files.
 template <typename Message>
 std::int64_t fingerprint() {
-  if constexpr (std::is_same_v<Message, Question>) return body_states_t::getHash();
-  if constexpr (std::is_same_v<Message, Answer>) return body_wrenches_t::getHash();
+  if constexpr (std::is_same_v<Message, WrenchRequest>) return body_states_t::getHash();
+  if constexpr (std::is_same_v<Message, WrenchResponse>) return body_wrenches_t::getHash();
   if constexpr (std::is_same_v<Message, BodiesHydrostatics>) return bodies_hydrostatics_t::getHash();
 }
 
@@ -27,7 +27,7 @@ std::size_t fixed_size() {
   const Message message;
   LayoutSize layout;
   layout(std::int64_t{}, std::int32_t{});
-  visit_head(message, layout);
+  visit_header(message, layout);
   return layout.size();
 }
 
@@ -41,29 +41,29 @@ std::size_t body_size() {
 
 // The number of bodies, or what is wrong.
 template <typename Message>
-tl::expected<std::size_t, Rejection> validate(Bytes bytes) {
+tl::expected<std::size_t, DecodeError> validate(Bytes bytes) {
   const std::size_t fixed = fixed_size<Message>();
-  if (bytes.size() < fixed) return tl::unexpected(Rejection::kTruncated);
+  if (bytes.size() < fixed) return tl::unexpected(DecodeError::kTruncated);
   std::int64_t found_fingerprint = 0;
   BigEndianReader{bytes.data()}(found_fingerprint);
-  if (found_fingerprint != fingerprint<Message>()) return tl::unexpected(Rejection::kFingerprint);
+  if (found_fingerprint != fingerprint<Message>()) return tl::unexpected(DecodeError::kFingerprint);
   std::int32_t count = 0;
   BigEndianReader{bytes.data() + fixed - sizeof(count)}(count);
-  if (count < 0) return tl::unexpected(Rejection::kCount);
+  if (count < 0) return tl::unexpected(DecodeError::kCount);
   const auto bodies = static_cast<std::size_t>(count);
   const std::size_t rest = bytes.size() - fixed;
   if (rest % body_size<Message>() != 0 || rest / body_size<Message>() != bodies) {
-    return tl::unexpected(Rejection::kLength);
+    return tl::unexpected(DecodeError::kLength);
   }
   return bodies;
 }
 
 template <typename Message>
-std::optional<Rejection> decode_message(Bytes bytes, Message& message) {
+std::optional<DecodeError> decode_message(Bytes bytes, Message& message) {
   const auto bodies = validate<Message>(bytes);
   if (!bodies) return bodies.error();
   BigEndianReader reader(bytes.data() + sizeof(std::int64_t));
-  visit_head(message, reader);
+  visit_header(message, reader);
   reader.skip(sizeof(std::int32_t));
   message.bodies.resize(*bodies);
   for (auto& body : message.bodies) visit_fields(body, reader);
@@ -76,51 +76,51 @@ void encode_message(const Message& message, std::vector<std::uint8_t>& bytes) {
   bytes.resize(fixed_size<Message>() + message.bodies.size() * body_size<Message>());
   BigEndianWriter writer(bytes.data());
   writer(fingerprint<Message>());
-  visit_head(message, writer);
+  visit_header(message, writer);
   writer(static_cast<std::int32_t>(message.bodies.size()));
   for (const auto& body : message.bodies) visit_fields(body, writer);
 }
 
 }  // namespace
 
-const char* describe(Rejection rejection) {
+const char* to_string(DecodeError rejection) {
   switch (rejection) {
-    case Rejection::kTruncated:
+    case DecodeError::kTruncated:
       return "shorter than the fixed fields";
-    case Rejection::kFingerprint:
+    case DecodeError::kFingerprint:
       return "fingerprint of another type or version";
-    case Rejection::kCount:
+    case DecodeError::kCount:
       return "negative count";
-    case Rejection::kLength:
+    case DecodeError::kLength:
       return "length does not fit the count";
   }
   return "unknown reason";
 }
 
-std::optional<Rejection> decode(Bytes bytes, Question& question) {
-  return decode_message(bytes, question);
+std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request) {
+  return decode_message(bytes, request);
 }
-std::optional<Rejection> decode(Bytes bytes, Answer& answer) {
-  return decode_message(bytes, answer);
+std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response) {
+  return decode_message(bytes, response);
 }
-std::optional<Rejection> decode(Bytes bytes, BodiesHydrostatics& hydrostatics) {
+std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics) {
   return decode_message(bytes, hydrostatics);
 }
 
-tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes) {
-  const auto bodies = validate<Question>(bytes);
+tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes) {
+  const auto bodies = validate<WrenchRequest>(bytes);
   if (!bodies) return tl::unexpected(bodies.error());
-  QuestionKey key;
+  RequestId key;
   BigEndianReader reader(bytes.data() + sizeof(std::int64_t));
   visit_fields(key, reader);
   return key;
 }
 
-void encode(const Question& question, std::vector<std::uint8_t>& bytes) {
-  encode_message(question, bytes);
+void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes) {
+  encode_message(request, bytes);
 }
-void encode(const Answer& answer, std::vector<std::uint8_t>& bytes) {
-  encode_message(answer, bytes);
+void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes) {
+  encode_message(response, bytes);
 }
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes) {
   encode_message(hydrostatics, bytes);

@@ -23,27 +23,27 @@ inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 using Bytes = std::span<const std::uint8_t>;
 
 // Why bytes are not a message of ours: the first of these that holds.
-enum class Rejection {
+enum class DecodeError {
   kTruncated,    // shorter than the fixed fields
   kFingerprint,  // of another type, or of another version of the type
   kCount,        // the number of bodies is negative, or a string is shorter than its final NUL
   kLength,       // too short or too long for the count, or a string that ends elsewhere than its length says
 };
-const char* describe(Rejection rejection);  // for logs: "shorter than the fixed fields"
+const char* to_string(DecodeError rejection);  // for logs: "shorter than the fixed fields"
 
-// Decodes into question, whose vector is reused: no heap once it is as large as the largest message.
-// On rejection question is unchanged. The same of the others. Values are not judged: numbers may be NaN, an
+// Decodes into request, whose vector is reused: no heap once it is as large as the largest message.
+// On rejection request is unchanged. The same of the others. Values are not judged: numbers may be NaN, an
 // answer's status may be one that this version does not know. O(length).
-std::optional<Rejection> decode(Bytes bytes, Question& question);
-std::optional<Rejection> decode(Bytes bytes, Answer& answer);
-std::optional<Rejection> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
+std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request);
+std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response);
+std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
 
-// A question's key alone, after the same checks; O(1).
-tl::expected<QuestionKey, Rejection> peek_key(Bytes bytes);
+// A request's key alone, after the same checks; O(1).
+tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 
 // Encodes into bytes, which is resized: no heap once it is as large as the largest message.
-void encode(const Question& question, std::vector<std::uint8_t>& bytes);
-void encode(const Answer& answer, std::vector<std::uint8_t>& bytes);
+void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);
+void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);
 
 }  // namespace buoyancy

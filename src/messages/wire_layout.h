@@ -21,7 +21,7 @@ namespace buoyancy {
 template <typename T, typename Plain>
 concept MaybeConst = std::same_as<std::remove_const_t<T>, Plain>;
 
-template <MaybeConst<QuestionKey> Key, typename Visitor>
+template <MaybeConst<RequestId> Key, typename Visitor>
 void visit_fields(Key& key, Visitor& visitor) {
   visitor(key.utime, key.session_id, key.seq);
 }
@@ -47,25 +47,25 @@ void visit_fields(Body& body, Visitor& visitor) {
 }
 
 // What stands before the number of bodies.
-template <MaybeConst<Question> Q, typename Visitor>
-void visit_head(Q& question, Visitor& visitor) {
-  visit_fields(question.key, visitor);
-  visitor(question.lead_time);
+template <MaybeConst<WrenchRequest> Q, typename Visitor>
+void visit_header(Q& request, Visitor& visitor) {
+  visit_fields(request.key, visitor);
+  visitor(request.lead_time);
 }
 
-template <MaybeConst<Answer> A, typename Visitor>
-void visit_head(A& answer, Visitor& visitor) {
-  visit_fields(answer.key, visitor);
+template <MaybeConst<WrenchResponse> A, typename Visitor>
+void visit_header(A& response, Visitor& visitor) {
+  visit_fields(response.key, visitor);
 }
 
 template <MaybeConst<BodiesHydrostatics> H, typename Visitor>
-void visit_head(H& hydrostatics, Visitor& visitor) {
+void visit_header(H& hydrostatics, Visitor& visitor) {
   visit_fields(hydrostatics.key, visitor);
 }
 
 // What stands before the strings, the strings, and what stands after them.
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
-void visit_head(Status& status, Visitor& visitor) {
+void visit_header(Status& status, Visitor& visitor) {
   visitor(status.utime, status.instance_id);
 }
 
@@ -76,16 +76,16 @@ void visit_strings(Status& status, Visitor&& visitor) {
 }
 
 // Each counter of one or several, the same one of all of them at a time.
-template <typename Visitor, MaybeConst<Counters>... C>
+template <typename Visitor, MaybeConst<ServiceCounters>... C>
 void visit_counters(Visitor&& visitor, C&... c) {
-  visitor(c.questions...);
-  visitor(c.answered...);
-  visitor(c.repeated...);
-  visitor(c.changed_repeats...);
+  visitor(c.requests...);
+  visitor(c.computed...);
+  visitor(c.retries...);
+  visitor(c.conflicting_retries...);
   visitor(c.stale...);
-  visitor(c.overtaken...);
+  visitor(c.superseded...);
   visitor(c.sessions...);
-  visitor(c.sessions_forgotten...);
+  visitor(c.sessions_evicted...);
   visitor(c.rejected_truncated...);
   visitor(c.rejected_fingerprint...);
   visitor(c.rejected_count...);
@@ -102,9 +102,9 @@ void visit_counters(Visitor&& visitor, C&... c) {
 }
 
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
-void visit_tail(Status& status, Visitor& visitor) {
+void visit_trailer(Status& status, Visitor& visitor) {
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
-  visitor(status.reloads, status.reloads_failed, status.not_sent);
+  visitor(status.reloads, status.reloads_failed, status.send_failures);
   visitor(status.packets_dropped, status.fragments_dropped);
   visit_counters(visitor, status.counters);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::size_t kHeaderSize = 28;
-constexpr std::int32_t kLongestChannel = 999;             // liblcm's own bound for logs
-constexpr std::int32_t kLargestMessage = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
+constexpr std::int32_t kLongestChannel = 999;              // liblcm's own bound for logs
+constexpr std::int32_t kMaxMessageBytes = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
 
 bool starts_with_magic(Bytes bytes) {
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
@@ -23,8 +23,8 @@ std::string_view as_text(Bytes bytes) {
 }
 
 // Whole by itself, whatever follows it.
-bool is_question_or_pose(Bytes data) {
-  return peek_key(data).has_value() || decode_bot_pose(data).has_value();
+bool is_request_or_pose(Bytes data) {
+  return peek_request_id(data).has_value() || decode_bot_pose(data).has_value();
 }
 
 // A message that lost bytes may have its length all the same, filled with the next event's beginning.
@@ -39,15 +39,15 @@ ChannelFilter only_channel(std::string channel) {
 }
 
 Expected<EventLogReader> EventLogReader::open(const std::filesystem::path& path, ChannelFilter wanted) {
-  Expected<InputWindow> file = InputWindow::open(path);
+  Expected<FileWindow> file = FileWindow::open(path);
   if (!file) return tl::unexpected(file.error());
   return EventLogReader(std::move(*file), std::move(wanted));
 }
 
-EventLogReader::EventLogReader(InputWindow file, ChannelFilter wanted)
+EventLogReader::EventLogReader(FileWindow file, ChannelFilter wanted)
     : file_(std::move(file)), wanted_(std::move(wanted)) {}
 
-InputItem EventLogReader::next() {
+LogItem EventLogReader::next() {
   while (offset_ < size()) {
     const tl::expected<Frame, std::string> frame = frame_at(offset_);
     if (!frame) return skip_damage(frame.error());
@@ -62,7 +62,7 @@ InputItem EventLogReader::next() {
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    if (!followed && (is_torn(data) || !is_question_or_pose(data))) {
+    if (!followed && (is_torn(data) || !is_request_or_pose(data))) {
       return skip_damage("no event follows where one should");
     }
     offset_ = frame->next;
@@ -71,10 +71,10 @@ InputItem EventLogReader::next() {
   }
   if (file_.read_error()) {
     offset_ = size();
-    const Damage damage{file_.read_error()->message()};
+    const CorruptSection damage{file_.read_error()->message()};
     return damage;
   }
-  return EndOfInput{};
+  return EndOfLog{};
 }
 
 tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::int64_t offset) {
@@ -100,7 +100,7 @@ tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::i
                   " bytes are missing");
   }
   frame.wanted = wanted_(as_text(header.subspan(kHeaderSize, static_cast<std::size_t>(channel_size))));
-  if (frame.wanted && data_size > kLargestMessage) {
+  if (frame.wanted && data_size > kMaxMessageBytes) {
     return Reason("a message of " + std::to_string(data_size) + " bytes");
   }
   return frame;
@@ -110,7 +110,7 @@ bool EventLogReader::header_or_end_at(std::int64_t offset) {
   return offset == size() || starts_with_magic(file_.at(offset, kMagic.size()));
 }
 
-Damage EventLogReader::skip_damage(const std::string& reason) {
+CorruptSection EventLogReader::skip_damage(const std::string& reason) {
   const std::int64_t start = offset_;
   for (++offset_; offset_ < size();) {
     const Bytes window = file_.at(offset_, kMagic.size());

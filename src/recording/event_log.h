@@ -5,7 +5,7 @@
 // Read here and not through liblcm, whose reader loses the good event before a damage, takes a damaged length
 // for an order to allocate and to skip the rest of the file, and cannot tell the end from a damage. The law
 // here: an event counts if it is followed by another one's header or by the end of the file, or if it is a
-// valid question or pose; whatever else stands in the file is skipped up to the next such event and reported.
+// valid request or pose; whatever else stands in the file is skipped up to the next such event and reported.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class EventLogReader {
   // Reads the events on the channels that are wanted; others are passed over.
   static Expected<EventLogReader> open(const std::filesystem::path& path, ChannelFilter wanted);
 
-  InputItem next();
+  LogItem next();
   std::int64_t offset() const { return offset_; }  // bytes read
   std::int64_t size() const { return file_.size(); }
 
@@ -44,12 +44,12 @@ class EventLogReader {
     std::int64_t next = 0;  // the file's offset after the event
   };
 
-  EventLogReader(InputWindow file, ChannelFilter wanted);
+  EventLogReader(FileWindow file, ChannelFilter wanted);
   tl::expected<Frame, std::string> frame_at(std::int64_t offset);  // or what is wrong with it
   bool header_or_end_at(std::int64_t offset);
-  Damage skip_damage(const std::string& reason);
+  CorruptSection skip_damage(const std::string& reason);
 
-  InputWindow file_;
+  FileWindow file_;
   ChannelFilter wanted_;
   std::int64_t offset_ = 0;
 };

@@ -14,27 +14,27 @@ namespace {
 constexpr std::size_t kReadAhead = 1'048'576;
 
 tl::unexpected<Error> unreadable(const std::filesystem::path& path, int error) {
-  return failure({path.string(), std::generic_category().message(error), "a readable file", "", ""});
+  return make_error({path.string(), std::generic_category().message(error), "a readable file", "", ""});
 }
 
 }  // namespace
 
-Expected<InputWindow> InputWindow::open(const std::filesystem::path& path) {
-  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+Expected<FileWindow> FileWindow::open(const std::filesystem::path& path) {
+  UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid()) return unreadable(path, errno);
   struct stat status {};
   if (::fstat(file.value(), &status) != 0) return unreadable(path, errno);
   if (!S_ISREG(status.st_mode)) {
-    return failure({path.string(), S_ISDIR(status.st_mode) ? "is a directory" : "is not a regular file",
-                    "a regular file", "", ""});
+    return make_error({path.string(), S_ISDIR(status.st_mode) ? "is a directory" : "is not a regular file",
+                       "a regular file", "", ""});
   }
-  return InputWindow(path, std::move(file), status.st_size);
+  return FileWindow(path, std::move(file), status.st_size);
 }
 
-InputWindow::InputWindow(std::filesystem::path path, FileDescriptor file, std::int64_t size)
+FileWindow::FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size)
     : path_(std::move(path)), file_(std::move(file)), size_(size) {}
 
-Bytes InputWindow::at(std::int64_t offset, std::size_t count) {
+Bytes FileWindow::at(std::int64_t offset, std::size_t count) {
   assert(offset >= 0);
   if (offset >= size_) return {};
   const auto left = static_cast<std::uint64_t>(size_ - offset);

@@ -12,10 +12,10 @@
 
 namespace buoyancy {
 
-class InputWindow {
+class FileWindow {
  public:
   // Errors: no such file, not a regular file, not readable.
-  static Expected<InputWindow> open(const std::filesystem::path& path);
+  static Expected<FileWindow> open(const std::filesystem::path& path);
 
   // The bytes from offset on: at least `count`, or all that are left of the file. Valid until the next call.
   // Memory: the largest count asked for, or 1 MB.
@@ -27,10 +27,10 @@ class InputWindow {
   const std::optional<Error>& read_error() const { return read_error_; }  // at() then returned too little
 
  private:
-  InputWindow(std::filesystem::path path, FileDescriptor file, std::int64_t size);
+  FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size);
 
   std::filesystem::path path_;
-  FileDescriptor file_;
+  UniqueFd file_;
   std::int64_t size_;
   std::int64_t start_ = 0;  // the window's offset in the file
   std::vector<std::uint8_t> window_;

@@ -20,19 +20,19 @@ tl::unexpected<Error> not_written(const std::filesystem::path& path, int error) 
   std::string cause;
   if (error == ENOSPC || error == EDQUOT) cause = "the disk is full";
   if (error == ENOENT) cause = "the directory does not exist";
-  return failure({path.string(), "could not be written (" + std::generic_category().message(error) + ")",
-                  "a writable file", std::move(cause), ""});
+  return make_error({path.string(), "could not be written (" + std::generic_category().message(error) + ")",
+                     "a writable file", std::move(cause), ""});
 }
 
 tl::unexpected<Error> given_up(const std::filesystem::path& path) {
-  return failure({path.string(), "is full, and nobody has read from it since the signal to end",
-                  "a reader that makes room", "", ""});
+  return make_error({path.string(), "is full, and nobody has read from it since the signal to end",
+                     "a reader that makes room", "", ""});
 }
 
 }  // namespace
 
-Expected<RecordFile> RecordFile::create(const std::filesystem::path& path) {
-  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
+Expected<RecordWriter> RecordWriter::create(const std::filesystem::path& path) {
+  UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
   if (!file.valid()) return not_written(path, errno);
   struct stat status {};
   if (::fstat(file.value(), &status) != 0) return not_written(path, errno);
@@ -41,13 +41,13 @@ Expected<RecordFile> RecordFile::create(const std::filesystem::path& path) {
   if (!S_ISREG(status.st_mode) && ::fcntl(file.value(), F_SETFL, O_NONBLOCK) != 0) {
     return not_written(path, errno);
   }
-  return RecordFile(path, std::move(file), S_ISFIFO(status.st_mode));
+  return RecordWriter(path, std::move(file), S_ISFIFO(status.st_mode));
 }
 
-RecordFile::RecordFile(std::filesystem::path path, FileDescriptor file, bool is_pipe)
+RecordWriter::RecordWriter(std::filesystem::path path, UniqueFd file, bool is_pipe)
     : path_(std::move(path)), file_(std::move(file)), is_pipe_(is_pipe) {}
 
-Expected<void> RecordFile::append(Bytes record) {
+Expected<void> RecordWriter::append(Bytes record) {
   if (buffer_.size() + record.size() > kBufferBytes && !buffer_.empty()) {
     if (Expected<void> flushed = flush(); !flushed) return flushed;
   }
@@ -56,7 +56,7 @@ Expected<void> RecordFile::append(Bytes record) {
   return {};
 }
 
-Expected<void> RecordFile::flush() {
+Expected<void> RecordWriter::flush() {
   std::size_t done = 0;
   while (done < buffer_.size()) {
     const ssize_t wrote = ::write(file_.value(), buffer_.data() + done, end_of_write(done) - done);
@@ -83,7 +83,7 @@ Expected<void> RecordFile::flush() {
 
 // A pipe takes up to PIPE_BUF bytes whole or not at all: so many whole records are written at once, and of a
 // larger one as much as there is room for.
-std::size_t RecordFile::end_of_write(std::size_t begin) const {
+std::size_t RecordWriter::end_of_write(std::size_t begin) const {
   if (!is_pipe_) return buffer_.size();
   const auto too_far = std::upper_bound(record_ends_.begin(), record_ends_.end(), begin + PIPE_BUF);
   const std::size_t whole = too_far == record_ends_.begin() ? 0 : *(too_far - 1);
@@ -91,7 +91,7 @@ std::size_t RecordFile::end_of_write(std::size_t begin) const {
 }
 
 // False: given up.
-bool RecordFile::wait_for_room() {
+bool RecordWriter::wait_for_room() {
   while (true) {
     std::array<pollfd, 2> waiting{pollfd{file_.value(), POLLOUT, 0}, pollfd{signal_, POLLIN, 0}};
     int timeout_ms = -1;

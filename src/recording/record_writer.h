@@ -14,13 +14,13 @@
 
 namespace buoyancy {
 
-class RecordFile {
+class RecordWriter {
  public:
   // How long a reader that reads nothing is waited for after the signal of give_up_after().
   static constexpr std::chrono::seconds kGrace{1};
 
   // Creates or empties the file. Waits for the reader of a named pipe. Errors: it cannot be written.
-  static Expected<RecordFile> create(const std::filesystem::path& path);
+  static Expected<RecordWriter> create(const std::filesystem::path& path);
 
   // signal: a descriptor that becomes readable, such as a signalfd. From kGrace after that on, counted from
   // the first time that there was no room in a pipe or terminal, nobody waits for its reader any more.
@@ -36,12 +36,12 @@ class RecordFile {
  private:
   using Clock = std::chrono::steady_clock;
 
-  RecordFile(std::filesystem::path path, FileDescriptor file, bool is_pipe);
+  RecordWriter(std::filesystem::path path, UniqueFd file, bool is_pipe);
   std::size_t end_of_write(std::size_t begin) const;
   bool wait_for_room();
 
   std::filesystem::path path_;
-  FileDescriptor file_;
+  UniqueFd file_;
   bool is_pipe_;
   int signal_ = -1;                            // of give_up_after(); -1: none
   std::optional<Clock::time_point> deadline_;  // once it was seen

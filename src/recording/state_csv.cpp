@@ -41,7 +41,7 @@ bool parse_number(std::string_view text, Number& number) {
 }  // namespace
 
 Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path) {
-  Expected<InputWindow> file = InputWindow::open(path);
+  Expected<FileWindow> file = FileWindow::open(path);
   if (!file) return tl::unexpected(file.error());
   StateCsvReader reader(std::move(*file));
   const std::optional<std::string_view> header = reader.line();
@@ -60,25 +60,25 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
   }
   if (names == kPoseHeader) return kPoseColumns;
   if (names == kTwistHeader) return kTwistColumns;
-  return failure({path.string() + ":1", "header " + shown(text),
-                  "'" + std::string(kPoseHeader) + "', where ',vx,vy,vz,wx,wy,wz' may follow",
-                  "the file has no header, or its columns are in another order", ""});
+  return make_error({path.string() + ":1", "header " + shown(text),
+                     "'" + std::string(kPoseHeader) + "', where ',vx,vy,vz,wx,wy,wz' may follow",
+                     "the file has no header, or its columns are in another order", ""});
 }
 
-InputItem StateCsvReader::next() {
+LogItem StateCsvReader::next() {
   if (damage_) {
-    Damage damage = std::move(*damage_);
+    CorruptSection damage = std::move(*damage_);
     damage_.reset();
     return damage;
   }
-  question_.bodies.clear();
+  request_.bodies.clear();
   const auto take = [this](const Row& row) {
-    question_.key.utime = row.utime;
-    question_.bodies.push_back(row.state);
+    request_.key.utime = row.utime;
+    request_.bodies.push_back(row.state);
   };
   if (pending_) take(*pending_);
   pending_.reset();
-  while (question_.bodies.size() < kMostRowsPerQuestion) {
+  while (request_.bodies.size() < kMaxRowsPerRequest) {
     const std::optional<std::string_view> text = line();
     if (!text) break;
     if (trimmed(*text).empty() && !line_too_long_) continue;
@@ -87,23 +87,23 @@ InputItem StateCsvReader::next() {
       damage_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; left out"};
       break;
     }
-    if (!question_.bodies.empty() && row->utime != question_.key.utime) {
+    if (!request_.bodies.empty() && row->utime != request_.key.utime) {
       pending_ = *row;
       break;
     }
     take(*row);
   }
-  if (!question_.bodies.empty()) {
-    encode(question_, bytes_);
-    ++question_.key.seq;
-    return RecordedEvent{question_.key.utime, {}, bytes_};
+  if (!request_.bodies.empty()) {
+    encode(request_, bytes_);
+    ++request_.key.seq;
+    return RecordedEvent{request_.key.utime, {}, bytes_};
   }
   if (damage_) return next();
   if (file_.read_error() && offset_ < size()) {
     offset_ = size();
-    return Damage{file_.read_error()->message()};
+    return CorruptSection{file_.read_error()->message()};
   }
-  return EndOfInput{};
+  return EndOfLog{};
 }
 
 std::optional<std::string_view> StateCsvReader::line() {

@@ -1,10 +1,10 @@
-// Recorded poses as CSV, turned into questions. The first line is the header, exactly
+// Recorded poses as CSV, turned into requests. The first line is the header, exactly
 //   utime,body_id,px,py,pz,qw,qx,qy,qz     or the same with     ,vx,vy,vz,wx,wy,wz     after it,
 // each further line one body's state: utime (us) and body_id whole numbers, the rest numbers (nan and inf
 // are numbers: the service has a status for them). Blank lines are passed over, a malformed one is reported
 // with its number and left out.
 //
-// Rows that follow each other with equal utime, up to kMostRowsPerQuestion, are one question; its session is
+// Rows that follow each other with equal utime, up to kMaxRowsPerRequest, are one request; its session is
 // 0, its seq counts from 0, its lead_time is 0.
 #pragma once
 
@@ -21,14 +21,14 @@
 
 namespace buoyancy {
 
-inline constexpr std::size_t kMostRowsPerQuestion = 65'536;
+inline constexpr std::size_t kMaxRowsPerRequest = 65'536;
 
 class StateCsvReader {
  public:
   // Errors: not readable, a first line that is no such header. An empty file is one without rows.
   static Expected<StateCsvReader> open(const std::filesystem::path& path);
 
-  InputItem next();
+  LogItem next();
   std::int64_t offset() const { return offset_; }  // bytes read
   std::int64_t size() const { return file_.size(); }
 
@@ -38,21 +38,21 @@ class StateCsvReader {
     BodyState state;
   };
 
-  explicit StateCsvReader(InputWindow file) : file_(std::move(file)) {}
+  explicit StateCsvReader(FileWindow file) : file_(std::move(file)) {}
   std::optional<std::string_view> line();  // without its newline; nullopt: end of the file
   void skip_to_newline();
   Expected<std::size_t> parse_header(std::string_view text, const std::filesystem::path& path);
   tl::expected<Row, std::string> parse_row(std::string_view text) const;  // or what is wrong with it
 
-  InputWindow file_;
+  FileWindow file_;
   std::int64_t offset_ = 0;
   std::int64_t line_number_ = 0;  // of the line last read; the header's is 1
   bool line_too_long_ = false;
   std::size_t columns_ = 0;
-  std::optional<Row> pending_;       // read ahead: the next question's first
-  std::optional<Damage> damage_;     // found behind the question that was returned
-  Question question_;                // reused
-  std::vector<std::uint8_t> bytes_;  // reused
+  std::optional<Row> pending_;            // read ahead: the next request's first
+  std::optional<CorruptSection> damage_;  // found behind the request that was returned
+  WrenchRequest request_;                 // reused
+  std::vector<std::uint8_t> bytes_;       // reused
 };
 
 }  // namespace buoyancy

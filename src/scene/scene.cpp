@@ -30,8 +30,8 @@ MeshKey key_of(const BodyDescription& body) {
 }
 
 Error about(const BodyDescription& body, Error error) {
-  if (!body.where.empty()) {
-    error.subject = body.where + ": body " + std::to_string(body.id) + ", " + error.subject;
+  if (!body.source_location.empty()) {
+    error.subject = body.source_location + ": body " + std::to_string(body.id) + ", " + error.subject;
   }
   return error;
 }
@@ -59,23 +59,23 @@ void apply_scale(TriangleMesh& mesh, double scale) {
 Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body, const ImportLimits& limits,
                                                      const PrepareOptions& options) {
   Expected<ImportedMesh> imported = read_source(body, limits);
-  if (!imported) return failure(about(body, std::move(imported.error())));
+  if (!imported) return make_error(about(body, std::move(imported.error())));
   apply_scale(imported->mesh, body.scale);
 
   MeshValidation validation =
       validate_mesh(*imported, source_name(body), {body.open, options.count_intersecting_pairs});
   if (!validation.mesh) {
     assert(validation.refusal);
-    return failure(about(body, *std::move(validation.refusal)));
+    return make_error(about(body, *std::move(validation.refusal)));
   }
   return std::make_unique<PreparedMesh>(PreparedMesh{std::move(validation.report),
                                                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo),
                                                      mass_properties(validation.mesh->mesh)});
 }
 
-std::optional<Vec3> center_of_mass(const ClientSpec& client, const PreparedMesh& prepared) {
+std::optional<Vec3> center_of_mass(const DynamicsSpec& client, const PreparedMesh& prepared) {
   if (client.center_of_mass_B) return client.center_of_mass_B;
-  if (prepared.mesh.open() || !(client.mass || client.density)) return std::nullopt;
+  if (prepared.mesh.is_open() || !(client.mass || client.density)) return std::nullopt;
   return prepared.mass_properties.centroid_B;
 }
 
@@ -92,7 +92,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     const auto place = static_cast<std::size_t>(known - keys.begin());
     if (known == keys.end()) {
       Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_mesh(body, description.limits, options);
-      if (!prepared) return failure(std::move(prepared.error()));
+      if (!prepared) return make_error(std::move(prepared.error()));
       scene.meshes_.push_back(*std::move(prepared));
       keys.push_back(std::move(key));
     }
@@ -111,7 +111,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
 
 Expected<Scene> Scene::load(const std::filesystem::path& path, const PrepareOptions& options) {
   Expected<SceneDescription> description = read_scene_file(path);
-  if (!description) return failure(std::move(description.error()));
+  if (!description) return make_error(std::move(description.error()));
   return prepare(*description, options);
 }
 

@@ -32,14 +32,14 @@ struct PreparedMesh {
 struct Body {
   std::int32_t id = 0;
   std::string name;
-  const PreparedMesh* prepared = nullptr;  // owned by the scene
+  const PreparedMesh* prepared_mesh = nullptr;  // owned by the scene
   Solver solver;
   Vec3 reference_B = Vec3::Zero();  // m
   bool hydrostatics = false;        // asked for; the mesh then has its tree
   // m: where [body.client] says how the mass lies (mass, density or center_of_mass) and the centre is known:
   // an open mesh has none but what it is given.
   std::optional<Vec3> center_of_mass_B;
-  ClientSpec client;
+  DynamicsSpec client;
 };
 
 class Scene {

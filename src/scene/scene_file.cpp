@@ -17,7 +17,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::uintmax_t kLargestSceneFile = 64'000'000;  // bytes
+constexpr std::uintmax_t kMaxSceneFile = 64'000'000;  // bytes
 
 void read_world(TomlTable table, Water& water) {
   table.read("gravity", water.gravity, NumberRange::from_zero("m/s^2"));
@@ -58,7 +58,7 @@ void check_inertia(TomlTable& table, const Mat3& inertia_B) {
   if (scale > 0.0) {
     principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_B / scale, Eigen::EigenvaluesOnly).eigenvalues();
   }
-  const std::string here = " (here they are " + vector_text(scale * principal, 4) + " kg m^2)";
+  const std::string here = " (here they are " + format_vector(scale * principal, 4) + " kg m^2)";
   const std::string other_order = "another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz)";
   const std::string remedy =
       "Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] about the centre of mass, or leave inertia "
@@ -79,7 +79,7 @@ void check_inertia(TomlTable& table, const Mat3& inertia_B) {
   }
 }
 
-void read_inertia(TomlTable& table, ClientSpec& client) {
+void read_inertia(TomlTable& table, DynamicsSpec& client) {
   constexpr std::array<std::size_t, 2> kCounts{3, 6};
   std::vector<double> numbers = table.numbers("inertia", kCounts, "kg m^2");
   if (numbers.empty()) return;
@@ -92,7 +92,7 @@ void read_inertia(TomlTable& table, ClientSpec& client) {
   client.inertia_B = inertia_B;
 }
 
-void read_client(TomlTable table, ClientSpec& client) {
+void read_client(TomlTable table, DynamicsSpec& client) {
   client.given = true;
   table.read("mass", client.mass, NumberRange::above_zero("kg"));
   table.read("density", client.density, NumberRange::above_zero("kg/m^3"));
@@ -131,7 +131,7 @@ void read_client(TomlTable table, ClientSpec& client) {
 
 void read_method(TomlTable& table, Method& method) {
   std::array<std::string_view, kAllMethods.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = name(kAllMethods[i]);
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = to_string(kAllMethods[i]);
   if (const auto chosen = table.choice("method", names)) method = kAllMethods[*chosen];
 }
 
@@ -141,7 +141,7 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
   if (const auto chosen = table.choice("open", names)) open = kOpenPolicyNames[*chosen].second;
 }
 
-// Wrenches are what every question is answered with, so that only hydrostatics are kept.
+// Wrenches are what every request is answered with, so that only hydrostatics are kept.
 void read_outputs(TomlTable& table, bool& hydrostatics) {
   constexpr std::string_view kExpected = "[\"wrench\"] or [\"wrench\", \"hydrostatics\"]";
   constexpr std::array<std::string_view, 2> kWords{"wrench", "hydrostatics"};
@@ -167,14 +167,14 @@ void read_outputs(TomlTable& table, bool& hydrostatics) {
   }
   if (named[0] == 0) {
     return table.fail_at("outputs", std::string(kExpected),
-                         "wrenches are what every question is answered with",
+                         "wrenches are what every request is answered with",
                          "Write outputs = [\"wrench\", \"hydrostatics\"]");
   }
   hydrostatics = named[1] == 1;
 }
 
 void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
-                 SceneReading& reading) {
+                 SceneParseContext& reading) {
   std::string mesh;
   table.read("mesh", mesh);
   table.read("scale", body.scale, NumberRange::above_zero(""));
@@ -189,19 +189,19 @@ void read_source(TomlTable& table, BodyDescription& body, const std::filesystem:
   if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};
   if (const toml::table* shape = table.table("shape")) {
     TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", reading);
-    if (std::optional<Shape> read = read_shape(shape_table)) body.source = *read;
+    if (std::optional<Shape> read = parse_shape(shape_table)) body.source = *read;
   }
 }
 
 BodyDescription read_body(const toml::table& toml, std::size_t number, const std::filesystem::path& directory,
-                          SceneReading& reading) {
+                          SceneParseContext& reading) {
   TomlTable table(toml, "[[body]] number " + std::to_string(number), reading);
   BodyDescription body;
   table.read("id", body.id);
   const bool has_id = table.has("id");
   if (has_id) table.rename("body " + std::to_string(body.id));
   body.name = "body " + std::to_string(body.id);
-  body.where = reading.at(toml.source());
+  body.source_location = reading.at(toml.source());
 
   table.read("name", body.name);
   read_source(table, body, directory, reading);
@@ -227,7 +227,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
 }
 
 void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem::path& directory,
-                 SceneReading& reading) {
+                 SceneParseContext& reading) {
   const toml::node* bodies = top.node("body");
   if (bodies == nullptr) return;
   const toml::array* array = bodies->as_array();
@@ -242,7 +242,7 @@ void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem:
     const toml::table& toml = *element.as_table();
     scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, directory, reading));
     const BodyDescription& body = scene.bodies.back();
-    if (const auto [earlier, is_new] = places.emplace(body.id, body.where); !is_new) {
+    if (const auto [earlier, is_new] = places.emplace(body.id, body.source_location); !is_new) {
       TomlTable(toml, "body " + std::to_string(body.id), reading)
           .fail("id = " + std::to_string(body.id), "an id of its own for each body",
                 "the body at " + earlier->second + " has the same id");
@@ -260,14 +260,14 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     const toml::source_position& place = error.source().begin;
-    return failure({name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column),
-                    printable(std::string(error.description())),
-                    "TOML (https://toml.io)",
-                    {},
-                    {}});
+    return make_error({name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column),
+                       printable(std::string(error.description())),
+                       "TOML (https://toml.io)",
+                       {},
+                       {}});
   }
 
-  SceneReading reading{name, std::nullopt};
+  SceneParseContext reading{name, std::nullopt};
   SceneDescription scene;
   scene.name = name;
   TomlTable top(root, "the scene", reading);
@@ -278,7 +278,7 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
   read_bodies(top, scene, directory, reading);
   top.finish();
   if (scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
-  if (reading.error) return failure(*std::move(reading.error));
+  if (reading.error) return make_error(*std::move(reading.error));
   return scene;
 }
 
@@ -288,25 +288,25 @@ Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) {
-    return failure({name, "no such file", expectation, {}, "Check the path"});
+    return make_error({name, "no such file", expectation, {}, "Check the path"});
   }
   if (!std::filesystem::is_regular_file(status)) {
     const bool directory = std::filesystem::is_directory(status);
-    return failure({name, directory ? "is a directory" : "is not a regular file", expectation, {}, {}});
+    return make_error({name, directory ? "is a directory" : "is not a regular file", expectation, {}, {}});
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path, code);
-  if (!code && bytes > kLargestSceneFile) {
-    return failure({name,
-                    std::to_string(bytes) + " bytes",
-                    "a scene file of at most " + std::to_string(kLargestSceneFile) + " bytes",
-                    "this is another kind of file",
-                    {}});
+  if (!code && bytes > kMaxSceneFile) {
+    return make_error({name,
+                       std::to_string(bytes) + " bytes",
+                       "a scene file of at most " + std::to_string(kMaxSceneFile) + " bytes",
+                       "this is another kind of file",
+                       {}});
   }
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
   if (!file) {
-    return failure({name, "cannot be read", expectation, "no permission to read it", {}});
+    return make_error({name, "cannot be read", expectation, "no permission to read it", {}});
   }
   return parse_scene(text.str(), name, path.parent_path());
 }

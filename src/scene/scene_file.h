@@ -25,7 +25,7 @@ namespace buoyancy {
 
 // What only a simulator needs to know of a body: [body.client]. Of mass and density one is given, or neither
 // (density then is half the water's).
-struct ClientSpec {
+struct DynamicsSpec {
   bool given = false;                    // there is a [body.client]
   std::optional<double> mass;            // kg, > 0
   std::optional<double> density;         // kg/m^3, > 0: mass = density * enclosed volume
@@ -57,8 +57,8 @@ struct BodyDescription {
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // m
   bool hydrostatics = false;        // outputs names them, beside the wrench
-  ClientSpec client;
-  std::string where;  // "scene.toml:12", for errors; empty where there is no scene file
+  DynamicsSpec client;
+  std::string source_location;  // "scene.toml:12", for errors; empty where there is no scene file
 };
 
 // As the scene file's `open` and buoyancy-replay's --open name them.

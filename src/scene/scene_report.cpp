@@ -16,21 +16,21 @@ using Json = nlohmann::ordered_json;
 // What the simulator will use; nothing where it cannot know: an open mesh encloses no volume.
 std::optional<double> mass_of(const Body& body, const Water& water) {
   if (body.client.mass) return body.client.mass;
-  if (body.prepared->mesh.open()) return std::nullopt;
-  return body.client.density.value_or(0.5 * water.density) * body.prepared->mass_properties.volume;
+  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
+  return body.client.density.value_or(0.5 * water.density) * body.prepared_mesh->mass_properties.volume;
 }
 
 std::optional<double> density_of(const Body& body, const Water& water) {
   if (body.client.density) return body.client.density;
   if (!body.client.mass) return 0.5 * water.density;
-  if (body.prepared->mesh.open()) return std::nullopt;
-  return *body.client.mass / body.prepared->mass_properties.volume;
+  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
+  return *body.client.mass / body.prepared_mesh->mass_properties.volume;
 }
 
 std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {
   std::vector<const Body*> users;
   for (const Body& body : scene.bodies()) {
-    if (body.prepared == &mesh) users.push_back(&body);
+    if (body.prepared_mesh == &mesh) users.push_back(&body);
   }
   return users;
 }
@@ -47,7 +47,7 @@ std::string number(double value) {
   return text.data();
 }
 
-std::string vector_text(const Vec3& v) {
+std::string format_vector(const Vec3& v) {
   std::string text = "[";
   text += number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + "]";
   return text;
@@ -55,10 +55,10 @@ std::string vector_text(const Vec3& v) {
 
 std::string body_text(const Body& body, const Scene& scene) {
   std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
-  text += "  mesh          " + body.prepared->report.name + "\n";
-  text += "  method        " + std::string(name(body.solver.method())) + ", tolerance " +
+  text += "  mesh          " + body.prepared_mesh->report.name + "\n";
+  text += "  method        " + std::string(to_string(body.solver.method())) + ", tolerance " +
           number(body.solver.tolerance()) + "\n";
-  text += "  torque about  " + vector_text(body.reference_B) + " m\n";
+  text += "  torque about  " + format_vector(body.reference_B) + " m\n";
   text += "  outputs       wrench" + std::string(body.hydrostatics ? ", hydrostatics" : "") + "\n";
   const std::optional<double> mass = mass_of(body, scene.water());
   const std::optional<double> density = density_of(body, scene.water());
@@ -141,8 +141,8 @@ Json json_of(const MeshReport& report) {
 Json json_of(const Body& body, const Scene& scene) {
   return {{"id", body.id},
           {"name", body.name},
-          {"mesh", number_of(*body.prepared, scene)},
-          {"method", name(body.solver.method())},
+          {"mesh", number_of(*body.prepared_mesh, scene)},
+          {"method", to_string(body.solver.method())},
           {"tolerance", body.solver.tolerance()},
           {"reference_point", json_of(body.reference_B)},
           {"outputs", body.hydrostatics ? Json{"wrench", "hydrostatics"} : Json{"wrench"}},
@@ -155,7 +155,7 @@ Json json_of(const Body& body, const Scene& scene) {
 std::string scene_report_text(const Scene& scene) {
   const Water& water = scene.water();
   std::string text = scene.name() + "\n";
-  text += "  water         up . x < " + number(water.level) + " m, up " + vector_text(water.up_W) + ", " +
+  text += "  water         up . x < " + number(water.level) + " m, up " + format_vector(water.up_W) + ", " +
           number(water.density) + " kg/m^3, gravity " + number(water.gravity) + " m/s^2\n";
   text += "  instructions  " + simd_target() + "\n";
   for (const Body& body : scene.bodies()) {

@@ -63,7 +63,7 @@ std::array<Shape, kShapeCount> all_shapes(std::index_sequence<kIndices...>) {
 
 }  // namespace
 
-std::optional<Shape> read_shape(TomlTable& table) {
+std::optional<Shape> parse_shape(TomlTable& table) {
   std::array<Shape, kShapeCount> shapes = all_shapes(std::make_index_sequence<kShapeCount>());
   std::array<std::string_view, kShapeCount> names;
   for (std::size_t i = 0; i < kShapeCount; ++i) names[i] = type_name(shapes[i]);
@@ -81,7 +81,7 @@ std::optional<Shape> read_shape(TomlTable& table) {
   Expected<Shape> checked = check_shape(shape);
   if (!checked) {
     const Error& error = checked.error();
-    table.fail(error.found, error.expectation, error.cause, error.remedy);
+    table.fail(error.actual, error.expected, error.cause, error.hint);
     return std::nullopt;
   }
   return *std::move(checked);

@@ -10,6 +10,6 @@ namespace buoyancy {
 
 // Reads `type` and that type's keys, which are the fields of its struct (shapes.h), and checks the shape;
 // nullopt: wrong, the table's reading says how.
-std::optional<Shape> read_shape(TomlTable& table);
+std::optional<Shape> parse_shape(TomlTable& table);
 
 }  // namespace buoyancy

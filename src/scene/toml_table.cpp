@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "base/spelling_suggestion.h"
 
 namespace buoyancy {
@@ -28,7 +28,7 @@ std::string quoted(std::string_view word) {
 // A value as the file may have it.
 std::string written(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) {
-    const std::string text = number_text(number->get());
+    const std::string text = format_shortest(number->get());
     // A whole number written as 1.0 stays one that is not whole.
     return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
   }
@@ -98,20 +98,20 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string SceneReading::at(const toml::source_region& place) const {
+std::string SceneParseContext::at(const toml::source_region& place) const {
   return file + ":" + std::to_string(place.begin.line);
 }
 
 bool NumberRange::contains(double value) const {
-  return std::isfinite(value) && value <= most && (least_allowed ? value >= least : value > least);
+  return std::isfinite(value) && value <= max && (min_inclusive ? value >= min : value > min);
 }
 
 std::string NumberRange::describe() const {
   std::string text = "a finite number";
-  if (std::isfinite(least) && std::isfinite(most)) {
-    text = "a number from " + number_text(least) + " to " + number_text(most);
-  } else if (std::isfinite(least)) {
-    text = (least_allowed ? "a finite number of at least " : "a finite number above ") + number_text(least);
+  if (std::isfinite(min) && std::isfinite(max)) {
+    text = "a number from " + format_shortest(min) + " to " + format_shortest(max);
+  } else if (std::isfinite(min)) {
+    text = (min_inclusive ? "a finite number of at least " : "a finite number above ") + format_shortest(min);
   }
   return text + in_unit(unit);
 }
@@ -192,14 +192,14 @@ void TomlTable::read(std::string_view key, std::int32_t& value) {
   }
 }
 
-void TomlTable::read(std::string_view key, std::uint64_t& value, std::uint64_t least) {
+void TomlTable::read(std::string_view key, std::uint64_t& value, std::uint64_t min) {
   const toml::node* found = node(key);
   if (found == nullptr) return;
   const auto* whole = found->as_integer();
-  if (whole != nullptr && std::cmp_greater_equal(whole->get(), least)) {
+  if (whole != nullptr && std::cmp_greater_equal(whole->get(), min)) {
     value = static_cast<std::uint64_t>(whole->get());
   } else {
-    fail_at(key, "a whole number of at least " + std::to_string(least));
+    fail_at(key, "a whole number of at least " + std::to_string(min));
   }
 }
 

@@ -1,5 +1,5 @@
 // One table of a scene file, read key by key; what is wrong with it becomes an Error that names file, line,
-// key, value and range. For scene_file.cpp and shape_table.cpp only.
+// key, value and range. For scene_file.cpp and shape_toml.cpp only.
 //
 // A key that is read is a known key; finish() reports the ones nobody asked for. The first error stands, and
 // reading goes on with defaults: callers look at the error once, at the end.
@@ -25,7 +25,7 @@ namespace buoyancy {
 std::string printable(std::string text);
 
 // The file being read, and the first thing found wrong with it.
-struct SceneReading {
+struct SceneParseContext {
   std::string file;
   std::optional<Error> error;
 
@@ -33,9 +33,9 @@ struct SceneReading {
 };
 
 struct NumberRange {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool least_allowed = true;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_inclusive = true;
   std::string_view unit;  // "kg"; empty for pure numbers
 
   static NumberRange any(std::string_view unit) {
@@ -45,17 +45,17 @@ struct NumberRange {
   }
   static NumberRange from_zero(std::string_view unit) {
     NumberRange range = any(unit);
-    range.least = 0.0;
+    range.min = 0.0;
     return range;
   }
   static NumberRange above_zero(std::string_view unit) {
     NumberRange range = from_zero(unit);
-    range.least_allowed = false;
+    range.min_inclusive = false;
     return range;
   }
-  static NumberRange from_zero_to(double most) {
+  static NumberRange from_zero_to(double max) {
     NumberRange range = from_zero("");
-    range.most = most;
+    range.max = max;
     return range;
   }
 
@@ -66,7 +66,7 @@ struct NumberRange {
 class TomlTable {
  public:
   // what: as errors call the table, "body 3", "[water]". table and reading must outlive this.
-  TomlTable(const toml::table& table, std::string what, SceneReading& reading)
+  TomlTable(const toml::table& table, std::string what, SceneParseContext& reading)
       : table_(&table), what_(std::move(what)), reading_(&reading) {}
 
   void rename(std::string what) { what_ = std::move(what); }
@@ -79,7 +79,7 @@ class TomlTable {
   void read(std::string_view key, std::span<double> values, std::string_view unit);
   void read(std::string_view key, std::span<std::int32_t> values);
   void read(std::string_view key, std::int32_t& value);
-  void read(std::string_view key, std::uint64_t& value, std::uint64_t least);
+  void read(std::string_view key, std::uint64_t& value, std::uint64_t min);
   void read(std::string_view key, std::string& value);
 
   // As many finite numbers as one of `counts` says; empty: absent or wrong.
@@ -107,7 +107,7 @@ class TomlTable {
 
   const toml::table* table_;
   std::string what_;
-  SceneReading* reading_;
+  SceneParseContext* reading_;
   std::vector<std::string_view> known_;  // each once, in the order asked
 };
 

@@ -19,7 +19,7 @@ void kick(const RigidBody& body, const Load& load, double time, RigidBodyState& 
 
 void drift(const RigidBody& body, double time, RigidBodyState& state) {
   state.center_W += time * state.velocity_W;
-  rotate_freely(body, time, state);
+  integrate_free_rotation(body, time, state);
 }
 
 // The integral of s over `time` for ds/dt = -(linear + quadratic s) s / inertia from s = speed: what a
@@ -58,18 +58,18 @@ void damp_rotation(const RigidBody& body, double time, RigidBodyState& state) {
 
 }  // namespace
 
-std::string_view name(Integrator integrator) {
+std::string_view to_string(Integrator integrator) {
   return integrator == Integrator::kSemiImplicitEuler ? "semi_implicit_euler" : "velocity_verlet";
 }
 
 std::optional<Integrator> integrator_from_name(std::string_view text) {
   for (const Integrator integrator : {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet}) {
-    if (name(integrator) == text) return integrator;
+    if (to_string(integrator) == text) return integrator;
   }
   return std::nullopt;
 }
 
-void rotate_freely(const RigidBody& body, double time, RigidBodyState& state) {
+void integrate_free_rotation(const RigidBody& body, double time, RigidBodyState& state) {
   // With the middle inertia I_1: L.L/(2 I_1) + L_0^2/2 (1/I_0 - 1/I_1) + L_2^2/2 (1/I_2 - 1/I_1). The first
   // is a rotation about L and commutes with the others, each a rotation about its axis; the second or the
   // third vanishes where two inertias are equal.

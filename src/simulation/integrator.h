@@ -29,7 +29,7 @@ namespace buoyancy {
 
 enum class Integrator { kSemiImplicitEuler, kVelocityVerlet };
 
-std::string_view name(Integrator integrator);  // "velocity_verlet"
+std::string_view to_string(Integrator integrator);  // "velocity_verlet"
 std::optional<Integrator> integrator_from_name(std::string_view name);
 
 // From t to the pose at t + h, given the load at t. step: s, > 0.
@@ -40,7 +40,7 @@ void finish_step(Integrator integrator, const RigidBody& body, const Load& load,
                  RigidBodyState& state);
 
 // The drift's rotation alone, for a body on which no torque acts.
-void rotate_freely(const RigidBody& body, double time, RigidBodyState& state);
+void integrate_free_rotation(const RigidBody& body, double time, RigidBodyState& state);
 // Damping alone.
 void damp(const RigidBody& body, double time, RigidBodyState& state);
 

@@ -133,25 +133,25 @@ Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const V
 
 }  // namespace
 
-double frequency_bound(const Body& body, const RigidBody& rigid, const Water& water) {
+double natural_frequency_bound(const Body& body, const RigidBody& rigid, const Water& water) {
   // The parts of K are the waterplane's, which scaled have the trace rho g A (1/m + l^2/I) at most, and the
   // buoyancy's lever, at most rho g V l / I. No waterplane is larger than the whole surface A, and
   // V <= A l / 3.
-  const HydrostaticMesh& mesh = body.prepared->mesh;
-  const double lever = mesh.largest_lever(rigid.center_of_mass_B);
+  const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
+  const double lever = mesh.max_lever_arm(rigid.center_of_mass_B);
   const double levers = 4.0 / 3.0 * lever * lever / rigid.principal_inertia[0];
   return std::sqrt(water.density * water.gravity * mesh.area * (1.0 / rigid.mass + levers));
 }
 
-FastestMotion fastest_motion(const Body& body, const RigidBody& rigid, const RigidBodyState& state,
-                             const Water& water) {
-  const TreeOf tree(body.prepared->mesh);
+HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidBody& rigid,
+                                                  const RigidBodyState& state, const Water& water) {
+  const TreeOf tree(body.prepared_mesh->mesh);
   const HydrostaticMesh& mesh = tree.mesh();
   const Solver solver(mesh, Method::kHierarchical);
   const std::optional<double> energy = mechanical_energy(rigid, state, solver, water);
   if (!energy) return {};
 
-  FastestMotion fastest;
+  HighestNaturalFrequency fastest;
   const auto consider = [&](const RigidBodyState& candidate, double draft) {
     const double frequency = frequency_at(mesh, rigid, candidate, water);
     if (frequency > fastest.frequency) fastest = {frequency, draft};

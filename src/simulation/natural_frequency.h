@@ -14,16 +14,16 @@
 
 namespace buoyancy {
 
-struct FastestMotion {
+struct HighestNaturalFrequency {
   double frequency = 0.0;  // rad/s; 0: no pose within reach has a stiffness
   double draft = 0.0;      // m: depth of the lowest vertex at the pose that has it
 };
 
-// rad/s, never below fastest_motion's: from areas and lengths alone, several times too high. O(1).
-double frequency_bound(const Body& body, const RigidBody& rigid, const Water& water);
+// rad/s, never below highest_natural_frequency's: from areas and lengths alone, several times too high. O(1).
+double natural_frequency_bound(const Body& body, const RigidBody& rigid, const Water& water);
 
 // O(levels x directions) hydrostatic queries; a mesh without a tree is copied and gets one first.
-FastestMotion fastest_motion(const Body& body, const RigidBody& rigid, const RigidBodyState& state,
-                             const Water& water);
+HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidBody& rigid,
+                                                  const RigidBodyState& state, const Water& water);
 
 }  // namespace buoyancy

@@ -5,22 +5,22 @@
 
 namespace buoyancy {
 
-Expected<const Answer*> EmbeddedAsker::ask(const Question& question) {
+Expected<const WrenchResponse*> InProcessClient::request(const WrenchRequest& request) {
   const Clock::time_point asked_at = Clock::now();
-  encode(question, bytes_);
-  [[maybe_unused]] const auto rejection = decode(exchange_.answer(bytes_), answer_);
-  assert(!rejection);  // what we encode, the exchange answers
-  ++statistics_.questions;
+  encode(request, bytes_);
+  [[maybe_unused]] const auto rejection = decode(handler_.handle(bytes_), response_);
+  assert(!rejection);  // what we encode, the handler answers
+  ++statistics_.requests;
   statistics_.round_trip.add(std::chrono::duration<double>(Clock::now() - asked_at).count());
-  return &answer_;
+  return &response_;
 }
 
-Expected<const Answer*> ask(Asker& asker, const Question& question) {
-  return std::visit([&](auto& a) { return a.ask(question); }, asker);
+Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request) {
+  return std::visit([&](auto& a) { return a.request(request); }, client);
 }
 
-AskerStatistics statistics(const Asker& asker) {
-  return std::visit([](const auto& a) -> AskerStatistics { return a.statistics(); }, asker);
+ClientStats statistics(const RequestClient& client) {
+  return std::visit([](const auto& a) -> ClientStats { return a.statistics(); }, client);
 }
 
 }  // namespace buoyancy

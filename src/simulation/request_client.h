@@ -1,4 +1,4 @@
-// How the simulator gets an answer to its question: over LCM (client/lockstep_client.h), or from the exchange
+// How the simulator gets a response to its request: over LCM (client/lockstep_client.h), or from the handler
 // itself in this process, for machines without a network.
 #pragma once
 
@@ -11,25 +11,25 @@
 
 namespace buoyancy {
 
-class EmbeddedAsker {
+class InProcessClient {
  public:
-  explicit EmbeddedAsker(const Scene& scene) : exchange_(scene) {}  // scene must outlive the asker
+  explicit InProcessClient(const Scene& scene) : handler_(scene) {}  // scene must outlive the client
 
-  Expected<const Answer*> ask(const Question& question);
-  const AskerStatistics& statistics() const { return statistics_; }
+  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  const ClientStats& statistics() const { return statistics_; }
 
  private:
-  Exchange exchange_;
+  RequestHandler handler_;
   std::vector<std::uint8_t> bytes_;
-  Answer answer_;
-  AskerStatistics statistics_;
+  WrenchResponse response_;
+  ClientStats statistics_;
 };
 
-using Asker = std::variant<EmbeddedAsker, LockstepAsker, FreeRunningAsker>;
+using RequestClient = std::variant<InProcessClient, LockstepClient, FreeRunningClient>;
 
-// The answer holds as many bodies as the question, in the same order, and is valid until the next call.
-// Errors: the asker's.
-Expected<const Answer*> ask(Asker& asker, const Question& question);
-AskerStatistics statistics(const Asker& asker);
+// The response holds as many bodies as the request, in the same order, and is valid until the next call.
+// Errors: the client's.
+Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request);
+ClientStats statistics(const RequestClient& client);
 
 }  // namespace buoyancy

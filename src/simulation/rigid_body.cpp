@@ -28,21 +28,21 @@ Error open_mesh_error(const std::string& subject) {
 }  // namespace
 
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
-  const ClientSpec& spec = body.client;
-  const MassProperties& enclosed = body.prepared->mass_properties;
+  const DynamicsSpec& spec = body.client;
+  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
   const std::string subject = "body " + std::to_string(body.id) + " (" + body.name + ")";
-  if (body.prepared->mesh.open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {
-    return failure(open_mesh_error(subject));
+  if (body.prepared_mesh->mesh.is_open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {
+    return make_error(open_mesh_error(subject));
   }
 
   RigidBody rigid;
   const double density = spec.density.value_or(0.5 * water.density);
   rigid.mass = spec.mass.value_or(density * enclosed.volume);
   if (!(rigid.mass > 0.0) || !std::isfinite(rigid.mass)) {
-    return failure({subject, "mass = " + number(rigid.mass) + " kg", "a mass above 0",
-                    "a density of " + number(density) + " kg/m^3 times an enclosed volume of " +
-                        number(enclosed.volume) + " m^3",
-                    "Give mass or density in [body.client]"});
+    return make_error({subject, "mass = " + number(rigid.mass) + " kg", "a mass above 0",
+                       "a density of " + number(density) + " kg/m^3 times an enclosed volume of " +
+                           number(enclosed.volume) + " m^3",
+                       "Give mass or density in [body.client]"});
   }
 
   rigid.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
@@ -56,14 +56,14 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
   rigid.principal_inertia = principal.eigenvalues();
   rigid.principal_axes_B = principal.eigenvectors();
   if (!(rigid.principal_inertia.minCoeff() > 0.0) || !rigid.principal_inertia.allFinite()) {
-    return failure({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),
-                    "an inertia matrix whose principal values are all above 0 (kg m^2)", "",
-                    "Correct or give inertia in [body.client]"});
+    return make_error({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),
+                       "an inertia matrix whose principal values are all above 0 (kg m^2)", "",
+                       "Correct or give inertia in [body.client]"});
   }
   return rigid;
 }
 
-RigidBodyState initial_state(const RigidBody& body, const ClientSpec& spec) {
+RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec) {
   RigidBodyState state;
   state.q_WB = spec.orientation.normalized();
   const Vec3 center_from_origin_W = state.q_WB * body.center_of_mass_B;
@@ -85,24 +85,24 @@ Pose pose_of(const RigidBody& body, const RigidBodyState& state) {
   return {state.center_W - state.q_WB * body.center_of_mass_B, state.q_WB};
 }
 
-BodyState message_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state) {
+BodyState to_body_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state) {
   const Pose pose = pose_of(body, state);
   const Vec3 w_W = angular_velocity_W(body, state);
   BodyState message;
   message.body_id = body_id;
-  message.position = as_array(pose.p_WB);
+  message.position = to_array(pose.p_WB);
   message.quaternion_wxyz = {pose.q_WB.w(), pose.q_WB.x(), pose.q_WB.y(), pose.q_WB.z()};
-  message.linear_velocity = as_array(state.velocity_W - w_W.cross(state.q_WB * body.center_of_mass_B));
-  message.angular_velocity = as_array(w_W);
+  message.linear_velocity = to_array(state.velocity_W - w_W.cross(state.q_WB * body.center_of_mass_B));
+  message.angular_velocity = to_array(w_W);
   return message;
 }
 
-Load load_on(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
-             const Water& water) {
-  const Vec3 buoyancy_W = as_vec3(wrench.force);
+Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
+                const Water& water) {
+  const Vec3 buoyancy_W = to_vec3(wrench.force);
   const Vec3 reference_from_center_W = state.q_WB * Vec3(body.reference_B - body.center_of_mass_B);
   return {buoyancy_W - body.mass * water.gravity * water.up_W,
-          as_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
+          to_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
 }
 
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
@@ -113,7 +113,7 @@ double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water) {
   const double center_height = water.up_W.dot(state.center_W) - water.level;
-  const Vec3 center_of_buoyancy_W = pose_of(body, state).p_WB + as_vec3(wrench.center_of_buoyancy);
+  const Vec3 center_of_buoyancy_W = pose_of(body, state).p_WB + to_vec3(wrench.center_of_buoyancy);
   const double buoyancy_height = water.up_W.dot(center_of_buoyancy_W) - water.level;
   return kinetic_energy(body, state) + body.mass * water.gravity * center_height -
          water.density * water.gravity * wrench.submerged_volume * buoyancy_height;
@@ -121,11 +121,11 @@ double mechanical_energy(const RigidBody& body, const RigidBodyState& state, con
 
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water) {
-  const BuoyancyAnswer answer = buoyancy(solver, pose_of(body, state), water, body.reference_B);
-  if (answer.status != BuoyancyStatus::kOk) return std::nullopt;
+  const BuoyancyResult response = buoyancy(solver, pose_of(body, state), water, body.reference_B);
+  if (response.status != BuoyancyStatus::kOk) return std::nullopt;
   BodyWrench wrench;
-  wrench.submerged_volume = answer.volume;
-  wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
+  wrench.submerged_volume = response.volume;
+  wrench.center_of_buoyancy = to_array(response.center_of_buoyancy_W);
   return mechanical_energy(body, state, wrench, water);
 }
 

@@ -55,15 +55,15 @@ struct Load {
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water);
 
 // At the start, as [body.client] says it of B's origin.
-RigidBodyState initial_state(const RigidBody& body, const ClientSpec& spec);
+RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec);
 
 Vec3 angular_velocity_W(const RigidBody& body, const RigidBodyState& state);  // rad/s
 Pose pose_of(const RigidBody& body, const RigidBodyState& state);             // of B
-BodyState message_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state);
+BodyState to_body_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state);
 
-// The wrench of an answer and the body's weight. The wrench is taken to belong to the state's pose.
-Load load_on(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
-             const Water& water);
+// The wrench of a response and the body's weight. The wrench is taken to belong to the state's pose.
+Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
+                const Water& water);
 
 // J: 1/2 m v^2 + 1/2 L . w.
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state);
@@ -73,7 +73,7 @@ double kinetic_energy(const RigidBody& body, const RigidBodyState& state);
 // The last term is the buoyancy's potential: bringing dV to the depth d below the surface takes rho g d dV.
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water);
-// The same where no wrench belongs to the state's pose: asks the solver. nullopt: it has no answer there.
+// The same where no wrench belongs to the state's pose: asks the solver. nullopt: it has no response there.
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water);
 

@@ -29,7 +29,7 @@ void append(std::string& row, const std::array<double, kSize>& values) {
 }
 
 void append_row(std::string& rows, std::int64_t utime, const SimulatedBody& body) {
-  const BodyState state = message_state(body.body->id, body.rigid, body.state);
+  const BodyState state = to_body_state(body.body->id, body.rigid, body.state);
   append(rows, utime);
   rows += ',';
   append(rows, std::int64_t{state.body_id});
@@ -72,8 +72,8 @@ Expected<void> RunCsv::close() {
 }
 
 tl::unexpected<Error> RunCsv::write_error() const {
-  return failure({path_.string(), std::generic_category().message(errno), "a file that can be written",
-                  "a missing directory, missing permission or a full disk", ""});
+  return make_error({path_.string(), std::generic_category().message(errno), "a file that can be written",
+                     "a missing directory, missing permission or a full disk", ""});
 }
 
 }  // namespace buoyancy

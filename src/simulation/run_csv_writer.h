@@ -5,7 +5,7 @@
 // Columns: utime (us), body_id, px,py,pz (m, W: B's origin), qw,qx,qy,qz (q_WB), vx,vy,vz (m/s, W: of B's
 // origin), wx,wy,wz (rad/s, W), status, fx,fy,fz (N, W), tx,ty,tz (N m, W, about the reference point), volume
 // (m^3), bx,by,bz (m, W axes, from B's origin to the centre of buoyancy), energy (J, see rigid_body.h). State
-// and wrench of a row belong together: the wrench is the answer about the row's pose (free-running: the
+// and wrench of a row belong together: the wrench is the response about the row's pose (free-running: the
 // newest one there was).
 #pragma once
 

@@ -29,7 +29,7 @@ double steps_per_second(const RunSummary& summary) {
 }  // namespace
 
 BodySummary summarize(const SimulatedBody& body, const Water& water) {
-  const HydrostaticMesh& mesh = body.body->prepared->mesh;
+  const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
   const WaterPlane plane = water_plane_in_body(pose_of(body.rigid, body.state), water, mesh.center_B);
   double lowest = std::numeric_limits<double>::infinity();
   for (const Triangle& triangle : mesh.surface.triangles) {
@@ -45,10 +45,10 @@ BodySummary summarize(const SimulatedBody& body, const Water& water) {
   const Vec3& up_B = plane.up_B;
   summary.roll = std::atan2(up_B.y(), up_B.z());
   summary.pitch = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
-  const EnergyRecord& energy = body.energy;
-  if (energy.greatest_kinetic > 0.0) {
-    summary.energy_drift = (energy.current - energy.initial) / energy.greatest_kinetic;
-    summary.energy_range = (energy.greatest - energy.least) / energy.greatest_kinetic;
+  const EnergyStats& energy = body.energy;
+  if (energy.max_kinetic > 0.0) {
+    summary.energy_drift = (energy.current - energy.initial) / energy.max_kinetic;
+    summary.energy_range = (energy.max - energy.min) / energy.max_kinetic;
   }
   return summary;
 }
@@ -62,17 +62,17 @@ std::string to_text(const RunSummary& summary) {
                 body.name.c_str(), body.mass, body.draft, body.heave, body.roll * kDegrees,
                 body.pitch * kDegrees, body.energy_drift, body.energy_range);
   }
-  const LatencyPercentiles round_trip = summary.asker.round_trip.percentiles();
+  const LatencyPercentiles round_trip = summary.client.round_trip.percentiles();
   append_line(text, "steps       %lld of %lld (%.6g s simulated in %.3g s, %.0f steps/s)%s",
-              static_cast<long long>(summary.steps), static_cast<long long>(summary.steps_asked),
+              static_cast<long long>(summary.steps), static_cast<long long>(summary.steps_requested),
               summary.time, summary.wall_time, steps_per_second(summary),
               summary.interrupted ? ", interrupted" : "");
   append_line(text, "round trip  p50 %.1f us, p99 %.1f us, p99.9 %.1f us, max %.1f us", 1e6 * round_trip.p50,
               1e6 * round_trip.p99, 1e6 * round_trip.p999, 1e6 * round_trip.max);
-  append_line(text, "questions   %lld, retries %lld, lost %lld, late %lld (by at most %lld)",
-              static_cast<long long>(summary.asker.questions), static_cast<long long>(summary.asker.retries),
-              static_cast<long long>(summary.asker.lost), static_cast<long long>(summary.asker.late),
-              static_cast<long long>(summary.asker.latest));
+  append_line(text, "requests   %lld, retries %lld, unanswered %lld, late %lld (by at most %lld)",
+              static_cast<long long>(summary.client.requests), static_cast<long long>(summary.client.retries),
+              static_cast<long long>(summary.client.unanswered), static_cast<long long>(summary.client.late),
+              static_cast<long long>(summary.client.max_lag));
   for (const Error& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
   return text;
 }
@@ -92,14 +92,14 @@ std::string to_json(const RunSummary& summary) {
   }
   nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
   for (const Error& warning : summary.warnings) warnings.push_back(warning.message());
-  const LatencyPercentiles round_trip = summary.asker.round_trip.percentiles();
-  const nlohmann::ordered_json json = {{"integrator", name(summary.options.integrator)},
+  const LatencyPercentiles round_trip = summary.client.round_trip.percentiles();
+  const nlohmann::ordered_json json = {{"integrator", to_string(summary.options.integrator)},
                                        {"step", summary.options.step},
                                        {"lead_time", summary.options.lead_time},
-                                       {"late_steps", summary.options.late_steps},
+                                       {"delay_steps", summary.options.delay_steps},
                                        {"session_id", summary.options.session_id},
                                        {"steps", summary.steps},
-                                       {"steps_asked", summary.steps_asked},
+                                       {"steps_requested", summary.steps_requested},
                                        {"interrupted", summary.interrupted},
                                        {"time", summary.time},
                                        {"wall_time", summary.wall_time},
@@ -109,11 +109,11 @@ std::string to_json(const RunSummary& summary) {
                                          {"p99", round_trip.p99},
                                          {"p999", round_trip.p999},
                                          {"max", round_trip.max}}},
-                                       {"questions", summary.asker.questions},
-                                       {"retries", summary.asker.retries},
-                                       {"lost", summary.asker.lost},
-                                       {"late", summary.asker.late},
-                                       {"late_by_at_most", summary.asker.latest},
+                                       {"requests", summary.client.requests},
+                                       {"retries", summary.client.retries},
+                                       {"unanswered", summary.client.unanswered},
+                                       {"late", summary.client.late},
+                                       {"max_lag", summary.client.max_lag},
                                        {"warnings", warnings}};
   // A name from the scene file that is no UTF-8 must not make dump() throw.
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

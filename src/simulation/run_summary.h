@@ -1,4 +1,5 @@
-// What a run ended with: where and how the bodies float, how well energy was kept, and how the answers came.
+// What a run ended with: where and how the bodies float, how well energy was kept, and how the responses
+// came.
 //
 // Attitude without heading: with k = R_WB^T up, the up direction in B's axes,
 //   roll = atan2(k_y, k_z) about B's x, pitch = atan2(-k_x, hypot(k_y, k_z)) about B's y:
@@ -27,13 +28,13 @@ struct BodySummary {
 
 struct RunSummary {
   std::int64_t steps = 0;  // done
-  std::int64_t steps_asked = 0;
+  std::int64_t steps_requested = 0;
   bool interrupted = false;
   double time = 0.0;       // s, simulated
   double wall_time = 0.0;  // s
   SimulationOptions options;
   std::vector<BodySummary> bodies;
-  AskerStatistics asker;
+  ClientStats client;
   std::vector<Error> warnings;
 };
 

@@ -30,7 +30,7 @@ std::string rounded_down(double value) {
 
 struct Worst {
   const SimulatedBody* body = nullptr;
-  FastestMotion motion;
+  HighestNaturalFrequency motion;
   int others = 0;  // bodies beyond the limit, too
 };
 
@@ -38,8 +38,9 @@ struct Worst {
 Worst worst_above(const Simulation& simulation, double limit) {
   Worst worst;
   for (const SimulatedBody& body : simulation.bodies()) {
-    if (!(frequency_bound(*body.body, body.rigid, simulation.water()) > limit)) continue;
-    const FastestMotion motion = fastest_motion(*body.body, body.rigid, body.state, simulation.water());
+    if (!(natural_frequency_bound(*body.body, body.rigid, simulation.water()) > limit)) continue;
+    const HighestNaturalFrequency motion =
+        highest_natural_frequency(*body.body, body.rigid, body.state, simulation.water());
     if (!(motion.frequency > limit)) continue;
     if (worst.body != nullptr) ++worst.others;
     if (motion.frequency > worst.motion.frequency) {
@@ -66,55 +67,55 @@ std::string swing(const Worst& worst) {
 std::optional<Error> step_warning(const Simulation& simulation) {
   const SimulationOptions& options = simulation.options();
   const double step = options.step;
-  const double late = static_cast<double>(options.late_steps) * step;
+  const double late = static_cast<double>(options.delay_steps) * step;
   const double lead = (options.integrator == Integrator::kVelocityVerlet ? 2.0 : 1.0) *
                       std::max(options.lead_time - late, 0.0);
   const double effective_step = std::sqrt(step * (step + 2.0 * lead));
-  const Worst worst = worst_above(simulation, kAccurateSwing / effective_step);
+  const Worst worst = worst_above(simulation, kAccuracyLimit / effective_step);
   if (worst.body == nullptr) return std::nullopt;
 
   const double frequency = worst.motion.frequency;
-  const double good = kAccurateSwing / frequency;
+  const double good = kAccuracyLimit / frequency;
   const double good_step = good * good / (std::sqrt(lead * lead + good * good) + lead);
   const double value = effective_step * frequency;
   Error warning;
   warning.subject = subject(*worst.body, worst.others);
-  warning.found = "step x frequency = " + number(effective_step) + " s x " + number(frequency) +
-                  " rad/s = " + number(value);
+  warning.actual = "step x frequency = " + number(effective_step) + " s x " + number(frequency) +
+                   " rad/s = " + number(value);
   if (lead > 0.0)
-    warning.found += " (with the lead time, which makes the step of " + number(step) + " s worse)";
-  warning.found += value < kStableSwing ? ", stable but inaccurate" : ", which blows up";
-  warning.expectation = "at most " + number(kAccurateSwing) + "; from " + number(kStableSwing) +
-                        " on the motion grows without bound";
+    warning.actual += " (with the lead time, which makes the step of " + number(step) + " s worse)";
+  warning.actual += value < kStabilityLimit ? ", stable but inaccurate" : ", which blows up";
+  warning.expected = "at most " + number(kAccuracyLimit) + "; from " + number(kStabilityLimit) +
+                     " on the motion grows without bound";
   warning.cause = swing(worst);
-  warning.remedy = "Take --step " + rounded_down(good_step) + " or less";
+  warning.hint = "Take --step " + rounded_down(good_step) + " or less";
   return warning;
 }
 
-std::optional<Error> lateness_warning(const Simulation& simulation, double delay) {
+std::optional<Error> latency_warning(const Simulation& simulation, double delay) {
   if (!(delay > 0.0)) return std::nullopt;
-  const Worst worst = worst_above(simulation, kLateSwing / delay);
+  const Worst worst = worst_above(simulation, kLatencyLimit / delay);
   if (worst.body == nullptr) return std::nullopt;
 
   const double frequency = worst.motion.frequency;
   Error warning;
   warning.subject = subject(*worst.body, worst.others);
-  warning.found = "delay of the answers x frequency = " + number(delay) + " s x " + number(frequency) +
-                  " rad/s = " + number(delay * frequency);
-  warning.expectation = "at most " + number(kLateSwing) + ", with --lead-time set to the delay (it is " +
-                        number(simulation.options().lead_time) + " s)";
+  warning.actual = "delay of the responses x frequency = " + number(delay) + " s x " + number(frequency) +
+                   " rad/s = " + number(delay * frequency);
+  warning.expected = "at most " + number(kLatencyLimit) + ", with --lead-time set to the delay (it is " +
+                     number(simulation.options().lead_time) + " s)";
   warning.cause = "wrenches this late give the body energy, with a lead time too: " + swing(worst);
-  warning.remedy = "Have answers come within " + rounded_down(kLateSwing / frequency) +
-                   " s, or wait for each of them, without --rate or --late";
+  warning.hint = "Have answers come within " + rounded_down(kLatencyLimit / frequency) +
+                 " s, or wait for each of them, without --rate or --late";
   return warning;
 }
 
-std::optional<Error> LatenessWatch::see(const Simulation& simulation) {
+std::optional<Error> LatencyMonitor::update(const Simulation& simulation) {
   sum_ += simulation.delay();
   ++steps_;
   const double window = std::max(1.0, 10.0 * simulation.options().step);
   if (warned_ || static_cast<double>(steps_) * simulation.options().step < window) return std::nullopt;
-  std::optional<Error> warning = lateness_warning(simulation, sum_ / static_cast<double>(steps_));
+  std::optional<Error> warning = latency_warning(simulation, sum_ / static_cast<double>(steps_));
   warned_ = warning.has_value();
   sum_ = 0.0;
   steps_ = 0;
@@ -126,29 +127,29 @@ std::optional<Error> energy_warning(const Simulation& simulation) {
   double worst_rise = 0.0;  // of the largest kinetic energy
   int bodies = 0;
   for (const SimulatedBody& body : simulation.bodies()) {
-    const EnergyRecord& energy = body.energy;
-    const double rise = energy.greatest - energy.initial;
+    const EnergyStats& energy = body.energy;
+    const double rise = energy.max - energy.initial;
     const double noise =
-        kNoise * body.rigid.mass * simulation.water().gravity * body.body->prepared->mesh.diagonal;
-    if (!(rise > std::max(kDoubled * energy.greatest_kinetic, noise))) continue;
+        kNoise * body.rigid.mass * simulation.water().gravity * body.body->prepared_mesh->mesh.diagonal;
+    if (!(rise > std::max(kDoubled * energy.max_kinetic, noise))) continue;
     ++bodies;
-    if (worst == nullptr || rise / energy.greatest_kinetic > worst_rise) {
+    if (worst == nullptr || rise / energy.max_kinetic > worst_rise) {
       worst = &body;
-      worst_rise = rise / energy.greatest_kinetic;
+      worst_rise = rise / energy.max_kinetic;
     }
   }
   if (worst == nullptr) return std::nullopt;
 
-  const EnergyRecord& energy = worst->energy;
+  const EnergyStats& energy = worst->energy;
   Error warning;
   warning.subject = subject(*worst, bodies - 1);
-  warning.found = "mechanical energy rose by " + number(energy.greatest - energy.initial) +
-                  " J, of a largest kinetic energy of " + number(energy.greatest_kinetic) + " J";
-  warning.expectation = "an energy that never rises but for the step's error: nothing in the scene gives any";
+  warning.actual = "mechanical energy rose by " + number(energy.max - energy.initial) +
+                   " J, of a largest kinetic energy of " + number(energy.max_kinetic) + " J";
+  warning.expected = "an energy that never rises but for the step's error: nothing in the scene gives any";
   warning.cause =
       "a step too large for the body, answers that came late without a --lead-time, or a method that "
       "approximates";
-  warning.remedy = "Do not trust this run; take a smaller --step, lock-step, or an exact method";
+  warning.hint = "Do not trust this run; take a smaller --step, lock-step, or an exact method";
   return warning;
 }
 

@@ -1,9 +1,9 @@
-// The simulator: the bodies of a scene that have a [body.client], moved step by step by the answers to the
-// questions they ask.
+// The simulator: the bodies of a scene that have a [body.client], moved step by step by the responses to the
+// requests they ask.
 //
-// One question per step, about the pose at the step's end; its answer finishes the step and begins the next.
+// One request per step, about the pose at the step's end; its response finishes the step and begins the next.
 // Step n stands at the time n h exactly (no sum that drifts), utime is that in microseconds, seq is n:
-// nothing in a question comes from a clock, so the same scene gives the same bytes in every run.
+// nothing in a request comes from a clock, so the same scene gives the same bytes in every run.
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,19 @@ namespace buoyancy {
 struct SimulationOptions {
   double step = 1e-3;  // s, > 0
   Integrator integrator = Integrator::kVelocityVerlet;
-  double lead_time = 0.0;       // s, sent with every question
-  std::int64_t late_steps = 0;  // every answer is used so many steps late, >= 0; the first one till then
+  double lead_time = 0.0;        // s, sent with every request
+  std::int64_t delay_steps = 0;  // every response is used so many steps late, >= 0; the first one till then
   std::int64_t session_id = 0;
 };
 
 // Mechanical energy over the run, J (rigid_body.h), of the poses as they are, however late their wrenches
 // are. It is conserved only without damping and with wrenches that are not late.
-struct EnergyRecord {
+struct EnergyStats {
   double initial = 0.0;
   double current = 0.0;
-  double least = 0.0;
-  double greatest = 0.0;
-  double greatest_kinetic = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+  double max_kinetic = 0.0;
 };
 
 struct SimulatedBody {
@@ -39,7 +39,7 @@ struct SimulatedBody {
   RigidBody rigid;
   RigidBodyState state;
   BodyWrench wrench;  // that moves it
-  EnergyRecord energy;
+  EnergyStats energy;
 };
 
 class Simulation {
@@ -48,10 +48,10 @@ class Simulation {
   static Expected<Simulation> make(const Scene& scene, const SimulationOptions& options);
 
   // About the current poses, with the velocities as far as they are known: velocity_verlet's are those that
-  // the last answer's load leads to. Valid until the next call.
-  const Question& question();
+  // the last response's load leads to. Valid until the next call.
+  const WrenchRequest& request();
   // Takes the wrenches and completes the velocities. answer: one wrench per body, in order.
-  void accept(const Answer& answer);
+  void accept(const WrenchResponse& response);
   // Moves the poses to the next step. After accept.
   void advance();
 
@@ -73,25 +73,26 @@ class Simulation {
  private:
   Simulation(const Water& water, const SimulationOptions& options);
 
-  const Answer& exchange_for_late(const Answer& newest);
+  const WrenchResponse& delayed_response(const WrenchResponse& newest);
 
   Water water_;
   SimulationOptions options_;
   std::vector<SimulatedBody> bodies_;
   std::int64_t step_number_ = 0;
-  bool in_step_ = false;  // between advance and accept
-  Question question_;     // reused
+  bool in_step_ = false;   // between advance and accept
+  WrenchRequest request_;  // reused
   double delay_ = 0.0;
-  // The last late_steps + 1 answers, that to step n at n modulo their number; empty if none is to be late.
-  std::vector<Answer> held_;
+  // The last delay_steps + 1 answers, that to step n at n modulo their number; empty if none is to be late.
+  std::vector<WrenchResponse> delay_line_;
 };
 
-enum class RunEnd { kDone, kInterrupted };
+enum class RunOutcome { kCompleted, kInterrupted };
 
 // Runs `steps` steps, or until stop becomes true. after_step sees the simulation at its start and after every
 // step, also the one whose wrenches end the run, but nothing that is not finite beside a wrench that is OK;
 // an error of it ends the run.
-Expected<RunEnd> run(Simulation& simulation, Asker& asker, std::int64_t steps, const std::atomic<bool>& stop,
-                     const std::function<Expected<void>(const Simulation&)>& after_step);
+Expected<RunOutcome> run(Simulation& simulation, RequestClient& client, std::int64_t steps,
+                         const std::atomic<bool>& stop,
+                         const std::function<Expected<void>(const Simulation&)>& after_step);
 
 }  // namespace buoyancy

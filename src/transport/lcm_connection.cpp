@@ -27,7 +27,7 @@ constexpr std::size_t kLongestChannel = 63;                // LCM's own limit
 constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's own, for messages that mean nothing
 
 // Looked at by one handle_one(), so that a flood on other channels cannot hold up whoever calls it.
-constexpr int kMostForeignPackets = 1'000;
+constexpr int kMaxForeignPackets = 1'000;
 
 bool is_memq(const std::string& url) {
   return url.starts_with("memq://");
@@ -76,7 +76,7 @@ std::int64_t utime_now() {
       .count();
 }
 
-std::string effective_lcm_url(const std::string& url) {
+std::string resolve_lcm_url(const std::string& url) {
   if (!url.empty()) return url;
   const char* from_environment =
       std::getenv("LCM_DEFAULT_URL");  // NOLINT(concurrency-mt-unsafe): nobody sets it
@@ -84,7 +84,7 @@ std::string effective_lcm_url(const std::string& url) {
 }
 
 Expected<void> check_lcm_url(const std::string& url) {
-  const std::string shown = effective_lcm_url(url);
+  const std::string shown = resolve_lcm_url(url);
   if (is_memq(shown)) return {};
   const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
   if (!parsed) return tl::unexpected(parsed.error());
@@ -93,20 +93,20 @@ Expected<void> check_lcm_url(const std::string& url) {
 
 Expected<void> check_channel(const std::string& channel) {
   if (channel.empty() || channel.size() > kLongestChannel) {
-    return failure({"LCM channel '" + channel + "'", std::to_string(channel.size()) + " characters",
-                    "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
+    return make_error({"LCM channel '" + channel + "'", std::to_string(channel.size()) + " characters",
+                       "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
   }
   return {};
 }
 
-Expected<void> check_different_channels(const std::vector<std::string>& channels) {
+Expected<void> check_channels_distinct(const std::vector<std::string>& channels) {
   std::string names;
   for (const std::string& channel : channels) {
     if (Expected<void> checked = check_channel(channel); !checked) return checked;
     names += (names.empty() ? "" : ", ") + channel;
   }
   if (std::set<std::string>(channels.begin(), channels.end()).size() == channels.size()) return {};
-  return failure({"channels " + names, "two are the same", "different names", "", ""});
+  return make_error({"channels " + names, "two are the same", "different names", "", ""});
 }
 
 struct LcmConnection::Impl {
@@ -119,7 +119,7 @@ struct LcmConnection::Impl {
   lcm_t* lcm;                            // sends, and is all of memq://
   std::optional<UdpmReceiver> receiver;  // not with memq://
   bool spin;
-  QuickWait quick_wait;
+  AdaptiveSpin spin_policy;
   std::int64_t asleep_since = 0;  // us since 1970: when a wait found nothing that has not ended. 0: none
   std::int64_t received_utime = 0;
   // By the receiver's numbers of the channels. With memq:// liblcm holds their addresses.
@@ -139,21 +139,21 @@ LcmConnection& LcmConnection::operator=(LcmConnection&&) noexcept = default;
 LcmConnection::~LcmConnection() = default;
 
 Expected<LcmConnection> LcmConnection::open(const std::string& url, const ConnectionOptions& options) {
-  std::string shown = effective_lcm_url(url);
+  std::string shown = resolve_lcm_url(url);
   std::optional<UdpmReceiver> receiver;
   if (!is_memq(shown)) {
     const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
     if (!parsed) return tl::unexpected(parsed.error());
     if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
-    shown = text_of(*parsed);
+    shown = to_string(*parsed);
     Expected<UdpmReceiver> opened = UdpmReceiver::open(*parsed);
     if (!opened) return tl::unexpected(opened.error());
     receiver = std::move(*opened);
   }
   lcm_t* lcm = lcm_create(shown.c_str());
   if (lcm == nullptr) {
-    return failure({"LCM URL '" + shown + "'", "LCM could not open it", "a working LCM connection",
-                    "what LCM itself printed above", ""});
+    return make_error({"LCM URL '" + shown + "'", "LCM could not open it", "a working LCM connection",
+                       "what LCM itself printed above", ""});
   }
   if (receiver && !options.receive_own) leave_out_own(lcm, *receiver);
   return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver), options.spin), shown);
@@ -172,7 +172,7 @@ Expected<void> LcmConnection::subscribe(const std::string& channel, Handler hand
       lcm_subscribe(impl_->lcm, literal(channel).c_str(), buoyancy_lcm_dispatch, subscription.get());
   constexpr int kUnbounded = 0;
   if (made == nullptr || lcm_subscription_set_queue_capacity(made, kUnbounded) != 0) {
-    return failure(
+    return make_error(
         {"LCM channel '" + channel + "'", "LCM refused the subscription", "a channel's name", "", ""});
   }
   return {};
@@ -182,10 +182,10 @@ Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
   if (Expected<void> checked = check_channel(channel); !checked) return checked;
   errno = 0;
   if (lcm_publish(impl_->lcm, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
-    return failure({"LCM channel '" + channel + "'",
-                    "a message of " + std::to_string(bytes.size()) + " bytes was not sent (" +
-                        std::generic_category().message(errno) + ")",
-                    "the network to take it", "the multicast route is gone", ""});
+    return make_error({"LCM channel '" + channel + "'",
+                       "a message of " + std::to_string(bytes.size()) + " bytes was not sent (" +
+                           std::generic_category().message(errno) + ")",
+                       "the network to take it", "the multicast route is gone", ""});
   }
   return {};
 }
@@ -198,8 +198,8 @@ std::int64_t LcmConnection::received_utime() const {
   return impl_->received_utime;
 }
 
-ReceiveLosses LcmConnection::losses() const {
-  return impl_->receiver ? impl_->receiver->losses() : ReceiveLosses{};
+DropCounts LcmConnection::drop_counts() const {
+  return impl_->receiver ? impl_->receiver->drop_counts() : DropCounts{};
 }
 
 bool LcmConnection::handle_one() {
@@ -207,34 +207,34 @@ bool LcmConnection::handle_one() {
     pollfd waiting{fileno(), POLLIN, 0};
     return ::poll(&waiting, 1, 0) > 0 && lcm_handle(impl_->lcm) == 0;
   }
-  const auto message = impl_->receiver->take(kMostForeignPackets);
+  const auto message = impl_->receiver->receive(kMaxForeignPackets);
   if (!message) return false;
   if (const std::int64_t asleep_since = std::exchange(impl_->asleep_since, 0); asleep_since != 0) {
-    impl_->quick_wait.slept(std::chrono::microseconds(message->arrived - asleep_since));
+    impl_->spin_policy.record_sleep(std::chrono::microseconds(message->arrived - asleep_since));
   }
   impl_->dispatch(*message);
   return true;
 }
 
-bool LcmConnection::handle_one_soon(std::chrono::nanoseconds most) {
+bool LcmConnection::handle_one_spinning(std::chrono::nanoseconds most) {
   using Clock = std::chrono::steady_clock;
   if (handle_one()) return true;
   if (!impl_->spin || !impl_->receiver || impl_->asleep_since != 0) return false;
-  const QuickWait::Duration longest = std::min(most, impl_->quick_wait.begin());
-  if (longest > QuickWait::Duration::zero()) {
+  const AdaptiveSpin::Duration longest = std::min(most, impl_->spin_policy.begin());
+  if (longest > AdaptiveSpin::Duration::zero()) {
     const Clock::time_point start = Clock::now();
-    QuickWait::Duration took{0};
+    AdaptiveSpin::Duration took{0};
     while (took < longest) {
       // Where sender and receiver share a processor, it is the sender's turn.
       ::sched_yield();
-      const auto message = impl_->receiver->take(kMostForeignPackets);
+      const auto message = impl_->receiver->receive(kMaxForeignPackets);
       took = Clock::now() - start;
       if (!message) continue;
-      impl_->quick_wait.looked(took, true);
+      impl_->spin_policy.record_spin(took, true);
       impl_->dispatch(*message);
       return true;
     }
-    impl_->quick_wait.looked(took, false);
+    impl_->spin_policy.record_spin(took, false);
   }
   impl_->asleep_since = utime_now();
   return false;

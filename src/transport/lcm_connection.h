@@ -22,16 +22,16 @@
 namespace buoyancy {
 
 // The URL that LCM's own tools would use: url if not empty, else $LCM_DEFAULT_URL, else LCM's default.
-std::string effective_lcm_url(const std::string& url);
+std::string resolve_lcm_url(const std::string& url);
 
-// Is url (after effective_lcm_url) one that LcmConnection::open takes? Opens nothing.
+// Is url (after resolve_lcm_url) one that LcmConnection::open takes? Opens nothing.
 Expected<void> check_lcm_url(const std::string& url);
 
 // Is channel a name that LCM can carry: 1 to 63 characters?
 Expected<void> check_channel(const std::string& channel);
 
 // The same of each, and that no two are the same.
-Expected<void> check_different_channels(const std::vector<std::string>& channels);
+Expected<void> check_channels_distinct(const std::vector<std::string>& channels);
 
 // us since 1970, by the clock that messages are stamped with.
 std::int64_t utime_now();
@@ -41,7 +41,7 @@ struct ConnectionOptions {
   // they take next to no room in its receive buffer, which those of others then have for themselves. Other
   // connections, of this process too, receive them in any case.
   bool receive_own = true;
-  // May handle_one_soon() look for a message for a moment, which costs processor time?
+  // May handle_one_spinning() look for a message for a moment, which costs processor time?
   bool spin = true;
 };
 
@@ -68,15 +68,15 @@ class LcmConnection {
 
   int fileno() const;  // for poll(): readable when something waits, though perhaps of other channels
   bool handle_one();   // dispatches one message that has come; false: none was there
-  // The same, but looks for it for a moment (QuickWait), up to `most`, where that pays and the options allow
-  // it: for whoever goes to sleep where it says false.
-  bool handle_one_soon(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
+  // The same, but looks for it for a moment (AdaptiveSpin), up to `most`, where that pays and the options
+  // allow it: for whoever goes to sleep where it says false.
+  bool handle_one_spinning(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
 
   // us since 1970: when the message came in that was handled last; what lies between is the time that it
   // waited for handle_one(). 0: none has been handled.
   std::int64_t received_utime() const;
   // What did not become a message; of memq:// nothing.
-  ReceiveLosses losses() const;
+  DropCounts drop_counts() const;
   const std::string& url() const { return url_; }
 
  private:

@@ -20,12 +20,12 @@ Number take_number(Bytes& bytes) {
 
 }  // namespace
 
-std::optional<std::size_t> LcmPackets::add_channel(const std::string& name) {
+std::optional<std::size_t> LcmReassembler::add_channel(const std::string& name) {
   const auto [place, is_new] = channels_.emplace(name, channels_.size());
   return is_new ? std::optional(place->second) : std::nullopt;
 }
 
-std::optional<LcmPackets::Message> LcmPackets::take(Bytes packet, std::uint64_t sender) {
+std::optional<LcmReassembler::Message> LcmReassembler::push(Bytes packet, std::uint64_t sender) {
   constexpr std::size_t kHead = 8;
   if (packet.size() < kHead) return std::nullopt;
   Bytes rest = packet;
@@ -38,7 +38,7 @@ std::optional<LcmPackets::Message> LcmPackets::take(Bytes packet, std::uint64_t 
   return Message{*channel, rest};
 }
 
-std::optional<std::size_t> LcmPackets::take_channel(Bytes& rest) const {
+std::optional<std::size_t> LcmReassembler::take_channel(Bytes& rest) const {
   const auto end = std::ranges::find(rest, std::uint8_t{0});
   if (end == rest.end()) return std::nullopt;
   const std::string_view name(reinterpret_cast<const char*>(rest.data()),
@@ -49,7 +49,7 @@ std::optional<std::size_t> LcmPackets::take_channel(Bytes& rest) const {
   return found->second;
 }
 
-std::optional<LcmPackets::Message> LcmPackets::take_fragment(Bytes rest, std::uint64_t sender) {
+std::optional<LcmReassembler::Message> LcmReassembler::take_fragment(Bytes rest, std::uint64_t sender) {
   constexpr std::size_t kHead = 16;
   if (rest.size() < kHead) return std::nullopt;
   const auto number = take_number<std::uint32_t>(rest);
@@ -65,12 +65,12 @@ std::optional<LcmPackets::Message> LcmPackets::take_fragment(Bytes rest, std::ui
   if (fragment == 0) {
     const std::optional<std::size_t> channel = take_channel(rest);
     if (!channel) return std::nullopt;
-    if (size > kLargestMessage) {
+    if (size > kMaxMessageBytes) {
       ++fragments_dropped_;
       return std::nullopt;
     }
     if (message == nullptr) {
-      message = &place_for_another(sender);
+      message = &claim_slot(sender);
       message->sender = sender;
       message->number = number;
       message->channel = *channel;
@@ -85,7 +85,7 @@ std::optional<LcmPackets::Message> LcmPackets::take_fragment(Bytes rest, std::ui
                            size != message->size || offset > size || rest.size() > size - offset;
   if (contradicts) {
     ++fragments_dropped_;
-    give_up(*message);
+    discard(*message);
     return std::nullopt;
   }
   Part& part = message->parts[fragment];
@@ -93,8 +93,8 @@ std::optional<LcmPackets::Message> LcmPackets::take_fragment(Bytes rest, std::ui
   part = {offset, offset + rest.size(), true};
   std::ranges::copy(rest, message->payload.begin() + static_cast<std::ptrdiff_t>(offset));
   if (++message->received < message->parts.size()) return std::nullopt;
-  if (!message->fits_together()) {
-    give_up(*message);
+  if (!message->is_consistent()) {
+    discard(*message);
     return std::nullopt;
   }
   message->received = 0;
@@ -102,7 +102,7 @@ std::optional<LcmPackets::Message> LcmPackets::take_fragment(Bytes rest, std::ui
 }
 
 // One fragment begins where the one before it ends: no byte is left over from an older message.
-bool LcmPackets::Incomplete::fits_together() const {
+bool LcmReassembler::Incomplete::is_consistent() const {
   std::size_t end = 0;
   for (const Part& part : parts) {
     if (part.begin != end) return false;
@@ -111,7 +111,7 @@ bool LcmPackets::Incomplete::fits_together() const {
   return end == size;
 }
 
-LcmPackets::Incomplete& LcmPackets::place_for_another(std::uint64_t sender) {
+LcmReassembler::Incomplete& LcmReassembler::claim_slot(std::uint64_t sender) {
   // Who sends another message has sent the last one: what is missing of it, is lost.
   auto place = std::ranges::find_if(incomplete_, [&](const Incomplete& one) { return one.sender == sender; });
   if (place == incomplete_.end()) {
@@ -119,13 +119,13 @@ LcmPackets::Incomplete& LcmPackets::place_for_another(std::uint64_t sender) {
   }
   if (place == incomplete_.end()) {
     place = incomplete_.begin() +
-            static_cast<std::ptrdiff_t>(std::exchange(oldest_, (oldest_ + 1) % kMostIncomplete));
+            static_cast<std::ptrdiff_t>(std::exchange(oldest_, (oldest_ + 1) % kMaxPartialMessages));
   }
-  give_up(*place);
+  discard(*place);
   return *place;
 }
 
-void LcmPackets::give_up(Incomplete& message) {
+void LcmReassembler::discard(Incomplete& message) {
   fragments_dropped_ += static_cast<std::int64_t>(std::exchange(message.received, 0));
 }
 

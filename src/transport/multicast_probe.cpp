@@ -51,8 +51,8 @@ std::string subject(const UdpmUrl& url) {
 }
 
 tl::unexpected<Error> socket_failed(const UdpmUrl& url, const std::string& what, int error) {
-  return failure({subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
-                  "another program holds the port alone, or sockets are forbidden to this one", ""});
+  return make_error({subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
+                     "another program holds the port alone, or sockets are forbidden to this one", ""});
 }
 
 // An LCM message that no other probe sends: "LC02", a sequence number, the channel, the payload.
@@ -88,9 +88,9 @@ bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in&
 }  // namespace
 
 tl::unexpected<Error> no_multicast_route(const UdpmUrl& url, int error) {
-  return failure({subject(url), "no multicast route (" + reason(error) + ")",
-                  "a network interface that LCM's UDP multicast can use",
-                  "this machine is on no network, or on none that has a route for multicast", kRemedy});
+  return make_error({subject(url), "no multicast route (" + reason(error) + ")",
+                     "a network interface that LCM's UDP multicast can use",
+                     "this machine is on no network, or on none that has a route for multicast", kRemedy});
 }
 
 Expected<void> probe_multicast(const UdpmUrl& url) {
@@ -121,7 +121,7 @@ Expected<void> probe_multicast(const UdpmUrl& url) {
   }
 
   if (!comes_back(sender, receiver, group)) {
-    return failure(
+    return make_error(
         {subject(url),
          "packets sent do not come back within " + std::to_string(kMulticastProbeMilliseconds) + " ms",
          "multicast packets to be looped back on this machine",

@@ -24,10 +24,10 @@ namespace {
 
 // Holds 5,000 small messages; the kernel's default holds 270.
 constexpr std::int32_t kReceiveBufferBytes = 4'194'304;
-constexpr std::size_t kLargestPacket = 65'536;
+constexpr std::size_t kMaxPacket = 65'536;
 
 template <typename T>
-bool set(const FileDescriptor& socket, int level, int option, const T& value) {
+bool set(const UniqueFd& socket, int level, int option, const T& value) {
   return ::setsockopt(socket.value(), level, option, &value, sizeof value) == 0;
 }
 
@@ -40,16 +40,16 @@ T data_of(cmsghdr* message) {
 
 }  // namespace
 
-UdpmReceiver::UdpmReceiver(FileDescriptor socket) : socket_(std::move(socket)), packet_(kLargestPacket) {}
+UdpmReceiver::UdpmReceiver(UniqueFd socket) : socket_(std::move(socket)), packet_(kMaxPacket) {}
 
 Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
-  const Expected<UdpmUrl> parsed = parse_udpm_url(effective_lcm_url(url));
+  const Expected<UdpmUrl> parsed = parse_udpm_url(resolve_lcm_url(url));
   if (!parsed) return tl::unexpected(parsed.error());
   return open(*parsed);
 }
 
 Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
-  FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  UniqueFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in group{};
   group.sin_family = AF_INET;
   group.sin_port = htons(url.port);
@@ -68,9 +68,9 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
       set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
   if (!listens) {
-    return failure({text_of(url), std::generic_category().message(errno),
-                    "a UDP socket that may listen to the group",
-                    "another program holds the port alone, or sockets are forbidden to this one", ""});
+    return make_error({to_string(url), std::generic_category().message(errno),
+                       "a UDP socket that may listen to the group",
+                       "another program holds the port alone, or sockets are forbidden to this one", ""});
   }
   if (!set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
   return UdpmReceiver(std::move(socket));
@@ -78,9 +78,10 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
 
 Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
   if (Expected<void> checked = check_channel(channel); !checked) return tl::unexpected(checked.error());
-  const std::optional<std::size_t> number = packets_.add_channel(channel);
+  const std::optional<std::size_t> number = reassembler_.add_channel(channel);
   if (!number) {
-    return failure({"LCM channel '" + channel + "'", "is subscribed to twice", "one subscription", "", ""});
+    return make_error(
+        {"LCM channel '" + channel + "'", "is subscribed to twice", "one subscription", "", ""});
   }
   return *number;
 }
@@ -113,15 +114,15 @@ std::optional<UdpmReceiver::Packet> UdpmReceiver::read_packet() {
                 std::int64_t{arrived.tv_sec} * 1'000'000 + arrived.tv_nsec / 1'000};
 }
 
-std::optional<UdpmReceiver::Message> UdpmReceiver::take(int most_packets) {
-  for (int i = 0; i < most_packets; ++i) {
+std::optional<UdpmReceiver::Message> UdpmReceiver::receive(int max_packets) {
+  for (int i = 0; i < max_packets; ++i) {
     const std::optional<Packet> packet = read_packet();
     if (!packet) {
       if (errno == EINTR) continue;
       return std::nullopt;
     }
     const std::uint64_t from = std::uint64_t{packet->sender.address} << 16U | packet->sender.port;
-    if (const auto message = packets_.take(packet->bytes, from)) {
+    if (const auto message = reassembler_.push(packet->bytes, from)) {
       return Message{message->channel, message->payload, packet->arrived};
     }
   }

@@ -24,7 +24,7 @@
 namespace buoyancy {
 
 // Packets and fragments that came for this socket and did not become messages, since it was opened.
-struct ReceiveLosses {
+struct DropCounts {
   std::int64_t packets = 0;    // dropped by the kernel: they came faster than they were taken. Of any channel
   std::int64_t fragments = 0;  // of messages of our channels that lost others of theirs, or made no sense
 };
@@ -33,7 +33,7 @@ class UdpmReceiver {
  public:
   struct Message {
     std::size_t channel;   // as subscribe() numbered it
-    Bytes payload;         // valid until the next take()
+    Bytes payload;         // valid until the next receive()
     std::int64_t arrived;  // us since 1970
   };
 
@@ -48,8 +48,8 @@ class UdpmReceiver {
   // that is subscribed to.
   Expected<std::size_t> subscribe(const std::string& channel);
 
-  // The next message of our channels among at most `most_packets` that wait. nullopt: there is none.
-  std::optional<Message> take(int most_packets);
+  // The next message of our channels among at most `max_packets` that wait. nullopt: there is none.
+  std::optional<Message> receive(int max_packets);
 
   // Whose packets: both numbers in network byte order.
   struct Sender {
@@ -67,7 +67,7 @@ class UdpmReceiver {
   bool empty_packets_of(const Sender& sender);
 
   int fileno() const { return socket_.value(); }  // readable when a packet waits, of any channel
-  ReceiveLosses losses() const { return {packets_dropped_, packets_.fragments_dropped()}; }
+  DropCounts drop_counts() const { return {packets_dropped_, reassembler_.fragments_dropped()}; }
 
  private:
   struct Packet {
@@ -76,12 +76,12 @@ class UdpmReceiver {
     std::int64_t arrived = 0;  // us since 1970
   };
 
-  explicit UdpmReceiver(FileDescriptor socket);
+  explicit UdpmReceiver(UniqueFd socket);
   // nullopt: none waits, or a signal came in between (errno EINTR). Counts what the kernel dropped.
   std::optional<Packet> read_packet();
 
-  FileDescriptor socket_;
-  LcmPackets packets_;
+  UniqueFd socket_;
+  LcmReassembler reassembler_;
   std::vector<std::uint8_t> packet_;  // reused
   std::int64_t packets_dropped_ = 0;
   std::uint32_t kernel_drops_ = 0;  // as the kernel said last; it wraps around

@@ -26,7 +26,7 @@ bool is_multicast(const std::string& address) {
 }
 
 tl::unexpected<Error> refused(const std::string& url, std::string found, std::string expectation) {
-  return failure({"LCM URL '" + url + "'", std::move(found), std::move(expectation), "", ""});
+  return make_error({"LCM URL '" + url + "'", std::move(found), std::move(expectation), "", ""});
 }
 
 }  // namespace
@@ -37,9 +37,9 @@ Expected<UdpmUrl> parse_udpm_url(const std::string& url) {
   rest.remove_prefix(kScheme.size());
 
   UdpmUrl parsed;
-  const std::size_t question_mark = rest.find('?');
-  std::string_view network = rest.substr(0, question_mark);
-  std::string_view options = question_mark == rest.npos ? "" : rest.substr(question_mark + 1);
+  const std::size_t request_mark = rest.find('?');
+  std::string_view network = rest.substr(0, request_mark);
+  std::string_view options = request_mark == rest.npos ? "" : rest.substr(request_mark + 1);
 
   const std::size_t colon = network.find(':');
   if (const std::string_view group = network.substr(0, colon); !group.empty()) parsed.group = group;
@@ -77,7 +77,7 @@ Expected<UdpmUrl> parse_udpm_url(const std::string& url) {
   return parsed;
 }
 
-std::string text_of(const UdpmUrl& url) {
+std::string to_string(const UdpmUrl& url) {
   std::string text =
       std::string(kScheme) + url.group + ":" + std::to_string(url.port) + "?ttl=" + std::to_string(url.ttl);
   if (url.recv_buf_size) text += "&recv_buf_size=" + std::to_string(*url.recv_buf_size);

@@ -23,6 +23,6 @@ struct UdpmUrl {
 Expected<UdpmUrl> parse_udpm_url(const std::string& url);
 
 // As liblcm has to be told, which takes port 0 where a URL names none.
-std::string text_of(const UdpmUrl& url);
+std::string to_string(const UdpmUrl& url);
 
 }  // namespace buoyancy

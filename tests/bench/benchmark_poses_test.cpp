@@ -56,9 +56,9 @@ TEST(FloatingPose, IsInBalance) {
   for (const BenchmarkMesh& model : {rock(16), torus_knot()}) {
     const Solver solver(model.mesh, Method::kExact);
     const Vec3 centroid_B = model.mesh.center_B + model.mesh.centroid;
-    const BuoyancyAnswer answer = buoyancy(solver, floating_pose(solver), kUnitWater, centroid_B);
-    EXPECT_NEAR(answer.force_W.z() / model.mesh.volume, 0.5, 1e-9) << model.name;
-    EXPECT_LE(answer.torque_W.norm(), 1e-8 * model.mesh.volume * model.mesh.diagonal) << model.name;
+    const BuoyancyResult response = buoyancy(solver, floating_pose(solver), kUnitWater, centroid_B);
+    EXPECT_NEAR(response.force_W.z() / model.mesh.volume, 0.5, 1e-9) << model.name;
+    EXPECT_LE(response.torque_W.norm(), 1e-8 * model.mesh.volume * model.mesh.diagonal) << model.name;
   }
 }
 

@@ -14,21 +14,21 @@ namespace {
 constexpr std::size_t kPoses = 12;
 
 PoseSet sweep_with_truth(const BenchmarkMesh& model) {
-  return with_true_answers("independent", sweep_of_poses(model.source, kPoses), model.source);
+  return with_reference_results("independent", sweep_of_poses(model.source, kPoses), model.source);
 }
 
 TEST(CheckedErrors, AreWithinTheBoundOfEveryExactMethod) {
   const BenchmarkMesh model = rock(8);
   const PoseSet set = sweep_with_truth(model);
   for (const Method method : kAllMethods) {
-    const auto errors = checked_errors(model, Solver(model.mesh, method), set);
+    const auto errors = measure_errors(model, Solver(model.mesh, method), set);
     ASSERT_TRUE(errors) << errors.error().message();
     if (is_exact(method)) {
-      EXPECT_LE(errors->force, errors->bound) << name(method);
-      EXPECT_LT(errors->bound, 1e-12) << name(method);
+      EXPECT_LE(errors->force, errors->bound) << to_string(method);
+      EXPECT_LT(errors->bound, 1e-12) << to_string(method);
     } else {
-      EXPECT_GT(errors->force, 1e-6) << name(method);
-      EXPECT_LE(errors->force, errors->bound) << name(method);
+      EXPECT_GT(errors->force, 1e-6) << to_string(method);
+      EXPECT_LE(errors->force, errors->bound) << to_string(method);
     }
   }
 }
@@ -37,20 +37,20 @@ TEST(CheckedErrors, NameMeshMethodAndPoseOfAnAnswerThatBreaksItsBound) {
   const BenchmarkMesh model = rock(8);
   PoseSet set = sweep_with_truth(model);
   set.truth[7].force_W.z() += 2e-13 * model.mesh.volume;
-  const auto force = checked_errors(model, Solver(model.mesh, Method::kExact), set);
+  const auto force = measure_errors(model, Solver(model.mesh, Method::kExact), set);
   ASSERT_FALSE(force);
   EXPECT_NE(force.error().message().find("rock of 1280 triangles, exact, independent pose 7"),
             std::string::npos)
       << force.error().message();
-  EXPECT_NE(force.error().found.find("force is off by"), std::string::npos);
+  EXPECT_NE(force.error().actual.find("force is off by"), std::string::npos);
 
   set = sweep_with_truth(model);
   set.truth[3].torque_W.x() += 2e-13 * model.mesh.volume * model.mesh.diagonal;
-  const auto torque = checked_errors(model, Solver(model.mesh, Method::kHierarchical), set);
+  const auto torque = measure_errors(model, Solver(model.mesh, Method::kHierarchical), set);
   ASSERT_FALSE(torque);
   EXPECT_NE(torque.error().message().find("hierarchical at tolerance 0 on "), std::string::npos)
       << torque.error().message();
-  EXPECT_NE(torque.error().found.find("torque is off by"), std::string::npos);
+  EXPECT_NE(torque.error().actual.find("torque is off by"), std::string::npos);
 }
 
 TEST(ReadVerticesAndIndices, SeesEveryCoordinateAndEveryIndex) {

@@ -37,7 +37,7 @@ CsvRow parse(const std::string& line) {
 }
 
 TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string csv = directory.path("rows.csv");
   const FinishedProcess program =
       run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);

@@ -14,10 +14,10 @@
 namespace buoyancy {
 namespace {
 
-const Patience kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
+const RetryPolicy kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
 
 Client open_client(ClientOptions options = {}) {
-  options.patience = kPatient;
+  options.retry_policy = kPatient;
   return value_or_die(Client::open(options));
 }
 
@@ -37,53 +37,53 @@ std::array<BodyState, 2> two_states() {
 }
 
 TEST(Client, SendsTheStatesAsTheyAreAndCountsItsQuestions) {
-  std::vector<Question> heard;
+  std::vector<WrenchRequest> heard;
   {
-    const Peer peer([&](const Question& question) {
-      heard.push_back(question);
-      return Replies{bytes_of(answer_to(question, static_cast<double>(question.key.seq)))};
+    const Peer peer([&](const WrenchRequest& request) {
+      heard.push_back(request);
+      return Replies{bytes_of(response_to(request, static_cast<double>(request.key.seq)))};
     });
     ClientOptions options;
     options.session_id = 42;
     Client client = open_client(options);
     for (std::int64_t step = 0; step < 3; ++step) {
-      const Expected<const Answer*> answer = client.ask(1000 * step, two_states(), 0.25);
-      ASSERT_TRUE(answer) << answer.error().message();
-      EXPECT_EQ((*answer)->key.utime, 1000 * step);
-      EXPECT_EQ((*answer)->bodies.at(1).body_id, 6);
-      EXPECT_EQ((*answer)->bodies.at(1).force[2], static_cast<double>(step));
+      const Expected<const WrenchResponse*> response = client.request(1000 * step, two_states(), 0.25);
+      ASSERT_TRUE(response) << response.error().message();
+      EXPECT_EQ((*response)->key.utime, 1000 * step);
+      EXPECT_EQ((*response)->bodies.at(1).body_id, 6);
+      EXPECT_EQ((*response)->bodies.at(1).force[2], static_cast<double>(step));
     }
-    EXPECT_EQ(client.statistics().questions, 3);
+    EXPECT_EQ(client.statistics().requests, 3);
   }
   std::int64_t expected_seq = 0;
-  for (const Question& question : heard) {
-    if (question.key.seq < expected_seq) continue;  // sent again on a busy machine
-    EXPECT_EQ(question.key.session_id, 42);
-    EXPECT_EQ(question.key.seq, expected_seq++);
-    EXPECT_EQ(question.lead_time, 0.25);
-    ASSERT_EQ(question.bodies.size(), 2U);
-    EXPECT_EQ(question.bodies[0].position, two_states()[0].position);
-    EXPECT_EQ(question.bodies[0].linear_velocity, two_states()[0].linear_velocity);
-    EXPECT_EQ(question.bodies[0].angular_velocity, two_states()[0].angular_velocity);
-    EXPECT_EQ(question.bodies[1].quaternion_wxyz, two_states()[1].quaternion_wxyz);
+  for (const WrenchRequest& request : heard) {
+    if (request.key.seq < expected_seq) continue;  // sent again on a busy machine
+    EXPECT_EQ(request.key.session_id, 42);
+    EXPECT_EQ(request.key.seq, expected_seq++);
+    EXPECT_EQ(request.lead_time, 0.25);
+    ASSERT_EQ(request.bodies.size(), 2U);
+    EXPECT_EQ(request.bodies[0].position, two_states()[0].position);
+    EXPECT_EQ(request.bodies[0].linear_velocity, two_states()[0].linear_velocity);
+    EXPECT_EQ(request.bodies[0].angular_velocity, two_states()[0].angular_velocity);
+    EXPECT_EQ(request.bodies[1].quaternion_wxyz, two_states()[1].quaternion_wxyz);
   }
   EXPECT_EQ(expected_seq, 3);
 }
 
 TEST(Client, DrawsASessionOfItsOwnSoThatTwoDoNotHearEachOther) {
   std::atomic<std::int64_t> newest_session{-1};
-  const Peer peer([&](const Question& question) {
-    newest_session = question.key.session_id;
-    return Replies{bytes_of(answer_to(question, question.bodies[0].position[0]))};
+  const Peer peer([&](const WrenchRequest& request) {
+    newest_session = request.key.session_id;
+    return Replies{bytes_of(response_to(request, request.bodies[0].position[0]))};
   });
   std::array<Client, 2> clients{open_client(), open_client()};
   std::array<std::int64_t, 2> sessions{};
   for (std::size_t n = 0; n < clients.size(); ++n) {
     std::array<BodyState, 2> states = two_states();
     states[0].position[0] = static_cast<double>(n);
-    const Expected<const Answer*> answer = clients.at(n).ask(0, states);
-    ASSERT_TRUE(answer) << answer.error().message();
-    EXPECT_EQ((*answer)->bodies.at(0).force[2], static_cast<double>(n));
+    const Expected<const WrenchResponse*> response = clients.at(n).request(0, states);
+    ASSERT_TRUE(response) << response.error().message();
+    EXPECT_EQ((*response)->bodies.at(0).force[2], static_cast<double>(n));
     sessions.at(n) = newest_session;
     EXPECT_GE(newest_session, 0);
   }
@@ -91,33 +91,33 @@ TEST(Client, DrawsASessionOfItsOwnSoThatTwoDoNotHearEachOther) {
 }
 
 TEST(Client, TakesTheNewestAnswerThereIsWhereItHasAnIntervalToKeep) {
-  // The first question is answered and no other.
-  const Peer peer([](const Question& question) {
-    return question.key.seq == 0 ? Replies{bytes_of(answer_to(question, 7.0))} : Replies{};
+  // The first request is answered and no other.
+  const Peer peer([](const WrenchRequest& request) {
+    return request.key.seq == 0 ? Replies{bytes_of(response_to(request, 7.0))} : Replies{};
   });
   ClientOptions options;
   options.interval = 0.02;
   Client client = open_client(options);
   for (std::int64_t step = 0; step < 5; ++step) {
-    const Expected<const Answer*> answer = client.ask(step, two_states());
-    ASSERT_TRUE(answer) << answer.error().message();
-    EXPECT_EQ((*answer)->key.utime, 0);
+    const Expected<const WrenchResponse*> response = client.request(step, two_states());
+    ASSERT_TRUE(response) << response.error().message();
+    EXPECT_EQ((*response)->key.utime, 0);
   }
   EXPECT_EQ(client.statistics().late, 4);
 }
 
 TEST(Client, FindsTheFirstBodyThatIsNotAnswered) {
-  Answer answer;
-  answer.bodies.resize(3);
-  EXPECT_EQ(first_not_ok(answer), nullptr);
-  answer.bodies[1].status = BodyStatus::kUnknownBody;
-  answer.bodies[2].status = BodyStatus::kBadQuaternion;
-  EXPECT_EQ(first_not_ok(answer), &answer.bodies[1]);
+  WrenchResponse response;
+  response.bodies.resize(3);
+  EXPECT_EQ(find_failed_body(response), nullptr);
+  response.bodies[1].status = BodyStatus::kUnknownBody;
+  response.bodies[2].status = BodyStatus::kBadQuaternion;
+  EXPECT_EQ(find_failed_body(response), &response.bodies[1]);
 }
 
 TEST(Client, SaysWhatIsWrongWithAUrl) {
   ClientOptions options;
-  options.link.lcm_url = "tcpq://localhost";
+  options.channel.lcm_url = "tcpq://localhost";
   const Expected<Client> client = Client::open(options);
   ASSERT_FALSE(client);
   EXPECT_NE(client.error().message().find("tcpq://localhost"), std::string::npos) << client.error().message();

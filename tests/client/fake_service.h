@@ -20,7 +20,7 @@
 namespace buoyancy {
 
 using Replies = std::vector<std::vector<std::uint8_t>>;
-using Reply = std::function<Replies(const Question& question)>;
+using Reply = std::function<Replies(const WrenchRequest& request)>;
 
 template <typename T>
 T value_or_die(Expected<T> expected) {
@@ -31,17 +31,17 @@ T value_or_die(Expected<T> expected) {
   return std::move(*expected);
 }
 
-// Publishes what `reply` makes of every question, from a thread of its own.
+// Publishes what `reply` makes of every request, from a thread of its own.
 class Peer {
  public:
   explicit Peer(Reply reply) : connection_(value_or_die(LcmConnection::open(""))), reply_(std::move(reply)) {
     const Expected<void> subscribed =
         connection_.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
-          Question question;
-          if (decode(bytes, question)) return;
-          ++questions_;
-          for (const auto& answer : reply_(question)) {
-            EXPECT_TRUE(connection_.publish(std::string(kWrenchesChannel), answer));
+          WrenchRequest request;
+          if (decode(bytes, request)) return;
+          ++requests_;
+          for (const auto& response : reply_(request)) {
+            EXPECT_TRUE(connection_.publish(std::string(kWrenchesChannel), response));
           }
         });
     EXPECT_TRUE(subscribed);
@@ -59,31 +59,31 @@ class Peer {
     thread_.join();
   }
 
-  int questions() const { return questions_; }
+  int requests() const { return requests_; }
 
  private:
   LcmConnection connection_;
   Reply reply_;
   std::atomic<bool> stop_{false};
-  std::atomic<int> questions_{0};
+  std::atomic<int> requests_{0};
   std::thread thread_;
 };
 
-inline Answer answer_to(const Question& question, double force) {
-  Answer answer;
-  answer.key = question.key;
-  for (const BodyState& body : question.bodies) {
+inline WrenchResponse response_to(const WrenchRequest& request, double force) {
+  WrenchResponse response;
+  response.key = request.key;
+  for (const BodyState& body : request.bodies) {
     BodyWrench wrench;
     wrench.body_id = body.body_id;
     wrench.force = {0, 0, force};
-    answer.bodies.push_back(wrench);
+    response.bodies.push_back(wrench);
   }
-  return answer;
+  return response;
 }
 
-inline std::vector<std::uint8_t> bytes_of(const Answer& answer) {
+inline std::vector<std::uint8_t> bytes_of(const WrenchResponse& response) {
   std::vector<std::uint8_t> bytes;
-  encode(answer, bytes);
+  encode(response, bytes);
   return bytes;
 }
 

@@ -22,7 +22,7 @@ class ClientProgram : public testing::Test {
     return run_to_end(client_command(scene_, options), kRunTimeout);
   }
 
-  TemporaryDirectory directory_;
+  TempDir directory_;
   std::string scene_ = directory_.write("crate.toml", crate());
 };
 
@@ -31,7 +31,7 @@ TEST_F(ClientProgram, PrintsATableWithEveryFigure) {
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
   EXPECT_EQ(finished.standard_error, "") << "a progress bar belongs on terminals only";
   for (const char* word : {"crate", "draft", "heave", "roll", "pitch", "energy drift", "100 of 100", "p50",
-                           "p99", "p99.9", "max", "retries 0", "lost 0", "late 0"}) {
+                           "p99", "p99.9", "max", "retries 0", "unanswered 0", "late 0"}) {
     EXPECT_NE(finished.standard_output.find(word), std::string::npos) << word << "\n"
                                                                       << finished.standard_output;
   }
@@ -245,7 +245,7 @@ TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForI
     return simulate_with_warnings(bob, more);
   };
   const nlohmann::json led = with({"--late", "1", "--lead-time", "0.001"});
-  EXPECT_EQ(led["late_steps"], 1);
+  EXPECT_EQ(led["delay_steps"], 1);
   EXPECT_EQ(led["warnings"].size(), 0U) << led["warnings"];
   EXPECT_LT(double{body(led, 1)["energy_range"]}, 1e-3);
   const nlohmann::json late = with({"--late", "1"});
@@ -253,7 +253,7 @@ TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForI
   EXPECT_NE(std::string(late["warnings"][0]).find("energy rose"), std::string::npos);
   const nlohmann::json too_late = with({"--late", "20", "--lead-time", "0.02"});
   ASSERT_FALSE(too_late["warnings"].empty());
-  EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the answers"), std::string::npos);
+  EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the responses"), std::string::npos);
 }
 
 TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {

@@ -23,28 +23,6 @@ ChildCommand command(const char* program, const std::string& scene, const Option
 
 }  // namespace
 
-TemporaryDirectory::TemporaryDirectory() {
-  std::string name = (std::filesystem::temp_directory_path() / "buoyancy_XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) std::abort();
-  path_ = name;
-}
-
-TemporaryDirectory::~TemporaryDirectory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string TemporaryDirectory::write(const std::string& name, const std::string& contents) const {
-  std::ofstream(path(name)) << contents;
-  return path(name);
-}
-
-std::string read_file(const std::filesystem::path& path) {
-  std::ostringstream contents;
-  contents << std::ifstream(path, std::ios::binary).rdbuf();
-  return contents.str();
-}
-
 ChildCommand client_command(const std::string& scene, const Options& options) {
   return command(BUOYANCY_CLIENT, scene, options);
 }
@@ -100,7 +78,7 @@ nlohmann::json interrupt(ChildProcess& client) {
   return summary;
 }
 
-std::string embedded_csv(const TemporaryDirectory& directory, const std::string& scene, std::int64_t steps,
+std::string embedded_csv(const TempDir& directory, const std::string& scene, std::int64_t steps,
                          const std::string& step) {
   const std::string csv = directory.path("embedded.csv");
   const double duration = static_cast<double>(steps) * std::stod(step);

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 
@@ -19,22 +20,6 @@ namespace buoyancy {
 inline constexpr const char* kServiceUrl = "udpm://239.255.76.67:7667?ttl=0";
 inline constexpr const char* kClientUrl = "udpm://239.255.76.67:7668?ttl=0";
 
-class TemporaryDirectory {
- public:
-  TemporaryDirectory();
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  ~TemporaryDirectory();
-
-  // Writes the file and returns its path.
-  std::string write(const std::string& name, const std::string& contents) const;
-  std::string path(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_file(const std::filesystem::path& path);
 std::uintmax_t size_of(const std::filesystem::path& path);  // 0 where there is no such file yet
 
 // Waits until the file that the program writes has so many bytes; false where the program ends before, or
@@ -57,7 +42,7 @@ nlohmann::json simulate(const std::string& scene, const Options& options);
 nlohmann::json interrupt(ChildProcess& client);
 
 // What a run of so many steps, in one process and without a network, writes into its CSV.
-std::string embedded_csv(const TemporaryDirectory& directory, const std::string& scene, std::int64_t steps,
+std::string embedded_csv(const TempDir& directory, const std::string& scene, std::int64_t steps,
                          const std::string& step);
 
 // The run's table: the body with this id.

@@ -28,7 +28,7 @@ nlohmann::json simulate_with_service(const std::string& scene, Options options) 
 }
 
 TEST(ClosedLoop, BoxCylinderAndSphereSettleAtTheirDrafts) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string path = directory.write("drafts.toml", R"(
 [water]
 level = 0.7
@@ -77,14 +77,14 @@ angular_damping_quadratic = 20
   const Expected<Scene> scene = Scene::load(path);
   ASSERT_TRUE(scene) << scene.error().message();
   const Body& sphere = *scene->find(3);
-  const double displaced = 400.0 / 1000.0 * sphere.prepared->mass_properties.volume;
+  const double displaced = 400.0 / 1000.0 * sphere.prepared_mesh->mass_properties.volume;
   double deep = -0.5;
   double high = 0.5;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (deep + high);
     const Pose pose{{0, 0, scene->water().level + middle}, Eigen::Quaterniond::Identity()};
-    const BuoyancyAnswer answer = buoyancy(sphere.solver, pose, scene->water(), Vec3::Zero());
-    (answer.volume > displaced ? deep : high) = middle;
+    const BuoyancyResult response = buoyancy(sphere.solver, pose, scene->water(), Vec3::Zero());
+    (response.volume > displaced ? deep : high) = middle;
   }
   EXPECT_NEAR(body(summary, 3)["draft"], 0.5 - deep, 1e-6 * std::sqrt(3.0));
   EXPECT_NEAR(body(summary, 3)["pitch_deg"], 0.0, 1e-4);
@@ -100,7 +100,7 @@ std::string bar(int id, double relative_density) {
 }
 
 TEST(ClosedLoop, LongSquareBarSettlesAtItsAngleOfLoll) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string path = directory.write("bars.toml", "[water]\ndensity = 1000\n" + bar(19, 0.19) +
                                                             bar(22, 0.22) + bar(23, 0.23) + bar(24, 0.24));
   const nlohmann::json summary = simulate(path, {"--embedded", "--duration", "40", "--step", "0.01"});
@@ -140,7 +140,7 @@ double mean_period(const std::vector<double>& heights, double step) {
 // `run` simulates so many steps of 0.01 s with the options it is given.
 template <typename Run>
 void expect_the_period_and_the_energy_of_the_bob(std::int64_t steps, int csv_every, const Run& run) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string path = directory.write("bob.toml", kBob);
   const std::string csv = directory.path("bob.csv");
   const double step = 0.01;

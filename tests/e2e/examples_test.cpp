@@ -65,7 +65,7 @@ TEST(Examples, SayWhatIsWrongWhereNothingAnswers) {
 
 TEST(Examples, PythonGetsTheForceOfAHalfSubmergedBox) {
   if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;
-  const TemporaryDirectory directory;
+  const TempDir directory;
   std::vector<std::string> generate{LCM_GEN, "-p", "--ppath", directory.path("")};
   for (const auto& entry : std::filesystem::directory_iterator(kSources + "/lcmtypes")) {
     if (entry.path().extension() == ".lcm") generate.push_back(entry.path());

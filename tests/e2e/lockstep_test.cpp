@@ -45,7 +45,7 @@ class Lockstep : public testing::Test {
     return read_file(csv);
   }
 
-  TemporaryDirectory directory_;
+  TempDir directory_;
   std::string scene_ = directory_.write("scene.toml", kScene);
   nlohmann::json summary_;
 };
@@ -60,10 +60,10 @@ TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLos
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
   const Options impatient = {"-l", kClientUrl, "--duration", "4", "--timeout", "0.005", "--retries", "10000"};
   EXPECT_TRUE(csv_of_run("lossy.csv", impatient) == embedded);
-  EXPECT_GT(relay.lost_questions(), 50);
-  EXPECT_GT(relay.lost_answers(), 50);
-  EXPECT_GE(summary_["retries"], relay.lost_questions() + relay.lost_answers());
-  EXPECT_EQ(summary_["lost"], 0);
+  EXPECT_GT(relay.lost_requests(), 50);
+  EXPECT_GT(relay.lost_responses(), 50);
+  EXPECT_GE(summary_["retries"], relay.lost_requests() + relay.lost_responses());
+  EXPECT_EQ(summary_["unanswered"], 0);
 }
 
 TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
@@ -90,7 +90,7 @@ TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
   for (const char* word :
-       {"question 0", "no answer", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
+       {"request 0", "no response", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
     EXPECT_NE(finished.standard_error.find(word), std::string::npos)
         << word << ": " << finished.standard_error;
   }
@@ -147,14 +147,14 @@ TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
   ASSERT_TRUE(summary.is_object());
   EXPECT_EQ(summary["step"], 0.005);
   EXPECT_EQ(summary["steps"], 200);
-  EXPECT_EQ(summary["questions"], 201);
+  EXPECT_EQ(summary["requests"], 201);
   EXPECT_GE(summary["late"], 150);
-  EXPECT_GE(summary["late_by_at_most"], 8);
+  EXPECT_GE(summary["max_lag"], 8);
   EXPECT_GE(summary["round_trip"]["p50"], 0.04);
   EXPECT_GE(summary["wall_time"], 0.9);
   // The crate swings at 5 rad/s or more: a radian's fifth and more per delay.
   ASSERT_FALSE(summary["warnings"].empty());
-  EXPECT_NE(std::string(summary["warnings"][0]).find("delay of the answers"), std::string::npos)
+  EXPECT_NE(std::string(summary["warnings"][0]).find("delay of the responses"), std::string::npos)
       << summary["warnings"];
 }
 
@@ -167,8 +167,8 @@ TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
       simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "1"});
   ASSERT_TRUE(summary.is_object());
   EXPECT_EQ(summary["steps"], 500);
-  EXPECT_GE(summary["lost"], 50);
-  EXPECT_GE(summary["late"], summary["lost"]);
+  EXPECT_GE(summary["unanswered"], 50);
+  EXPECT_GE(summary["late"], summary["unanswered"]);
 }
 
 TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
@@ -180,7 +180,7 @@ TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
   ASSERT_TRUE(grows_to(csv, 20'000, client)) << client.standard_error();
   service.send_signal(SIGKILL);
   EXPECT_EQ(client.wait(kWaitTimeout), 1);
-  EXPECT_NE(client.standard_error().find("no answer for"), std::string::npos) << client.standard_error();
+  EXPECT_NE(client.standard_error().find("no response for"), std::string::npos) << client.standard_error();
 }
 
 }  // namespace

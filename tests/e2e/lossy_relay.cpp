@@ -36,7 +36,7 @@ void require(const Expected<void>& done) {
 
 LcmConnection open(const std::string& url) {
   Expected<LcmConnection> connection = LcmConnection::open(url);
-  if (!connection) require(failure(connection.error()));
+  if (!connection) require(make_error(connection.error()));
   return std::move(*connection);
 }
 
@@ -50,10 +50,10 @@ struct LossyRelay::Carrier {
         service_side(open(given.service_url)),
         random(given.seed) {
     require(client_side.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
-      carry(Toward::kService, bytes, relay.lost_questions_);
+      carry(Toward::kService, bytes, relay.lost_requests_);
     }));
     require(service_side.subscribe(std::string(kWrenchesChannel), [this](Bytes bytes, std::string_view) {
-      carry(Toward::kClient, bytes, relay.lost_answers_);
+      carry(Toward::kClient, bytes, relay.lost_responses_);
     }));
   }
 
@@ -77,7 +77,7 @@ struct LossyRelay::Carrier {
     Clock::duration delay{0};
     if (toward == Toward::kClient) {
       delay =
-          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.answer_delay));
+          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.response_delay));
     }
     if (happens(options.duplication, relay.duplicated_)) pass_on_after(delay, toward, bytes);
     if (happens(options.reordering, relay.reordered_)) delay += kReorderedBy;

@@ -48,25 +48,25 @@ std::vector<BodyState> states_of(std::initializer_list<int> ids, int step) {
 // A service and its client, who alone are on their channels.
 class Share {
  public:
-  Share(const TemporaryDirectory& directory, const std::string& name, std::initializer_list<int> ids)
+  Share(const TempDir& directory, const std::string& name, std::initializer_list<int> ids)
       : service_(service_command(
             directory.write(name + ".toml", scene_of(ids)),
             {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
              "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
     if (!service_.wait_for_text("ready", kWaitTimeout)) throw std::runtime_error(service_.standard_error());
     ClientOptions options;
-    options.link.states_channel = name + "_STATES";
-    options.link.wrenches_channel = name + "_WRENCHES";
-    options.patience.retries = 10'000;  // as long as the test may take
+    options.channel.states_channel = name + "_STATES";
+    options.channel.wrenches_channel = name + "_WRENCHES";
+    options.retry_policy.max_retries = 10'000;  // as long as the test may take
     Expected<Client> client = Client::open(options);
     if (!client) throw std::runtime_error(client.error().message());
     client_.emplace(std::move(*client));
   }
 
-  std::vector<BodyWrench> ask(int step, const std::vector<BodyState>& states) {
-    const auto answer = client_->ask(step, states);
-    if (!answer) throw std::runtime_error(answer.error().message());
-    return (*answer)->bodies;
+  std::vector<BodyWrench> request(int step, const std::vector<BodyState>& states) {
+    const auto response = client_->request(step, states);
+    if (!response) throw std::runtime_error(response.error().message());
+    return (*response)->bodies;
   }
 
   std::string log() const { return service_.standard_error(); }
@@ -78,22 +78,24 @@ class Share {
 
 std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
   std::vector<std::uint8_t> bytes;
-  encode(Answer{.key = {}, .bodies = wrenches}, bytes);
+  encode(WrenchResponse{.key = {}, .bodies = wrenches}, bytes);
   return bytes;
 }
 
 TEST(ScaleOut, TwoServicesWithHalfTheBodiesEachSayTogetherWhatOneSaysBitForBit) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   Share all(directory, "ALL", {1, 2, 3, 4, 5, 6});
   Share odd(directory, "ODD", {1, 3, 5});
   Share even(directory, "EVEN", {2, 4, 6});
   for (int step = 0; step < kSteps; ++step) {
     // Both at once: the step takes as long as the slower of the two.
-    auto of_odd = std::async(std::launch::async, [&] { return odd.ask(step, states_of({1, 3, 5}, step)); });
-    std::vector<BodyWrench> parts = even.ask(step, states_of({2, 4, 6}, step));
+    auto of_odd = std::async(std::launch::async, [&] {
+      return odd.request(step, states_of({1, 3, 5}, step));
+    });
+    std::vector<BodyWrench> parts = even.request(step, states_of({2, 4, 6}, step));
     const std::vector<BodyWrench> others = of_odd.get();
     parts.insert(parts.end(), others.begin(), others.end());
-    const std::vector<BodyWrench> whole = all.ask(step, states_of({2, 4, 6, 1, 3, 5}, step));
+    const std::vector<BodyWrench> whole = all.request(step, states_of({2, 4, 6, 1, 3, 5}, step));
     ASSERT_EQ(bytes_of(parts), bytes_of(whole)) << step;
     for (const BodyWrench& wrench : whole) {
       EXPECT_EQ(wrench.status, BodyStatus::kOk);
@@ -106,10 +108,10 @@ TEST(ScaleOut, TwoServicesWithHalfTheBodiesEachSayTogetherWhatOneSaysBitForBit) 
 }
 
 TEST(ScaleOut, AServiceAskedForABodyOfTheOthersSharesSaysThatItDoesNotKnowIt) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   Share odd(directory, "ODD", {1, 3, 5});
   Share even(directory, "EVEN", {2, 4, 6});
-  const std::vector<BodyWrench> wrenches = odd.ask(0, states_of({1, 2}, 0));
+  const std::vector<BodyWrench> wrenches = odd.request(0, states_of({1, 2}, 0));
   EXPECT_EQ(wrenches[0].status, BodyStatus::kOk);
   EXPECT_EQ(wrenches[1].status, BodyStatus::kUnknownBody);
 }

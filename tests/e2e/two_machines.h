@@ -22,7 +22,7 @@ class TwoMachines {
 
   // What kept it from being set up: no right to make namespaces, a kernel without veth or bridge. Later: a
   // command of those below that failed.
-  const std::optional<std::string>& trouble() const { return trouble_; }
+  const std::optional<std::string>& warning() const { return warning_; }
 
   // The same command on the service's machine.
   ChildCommand on_the_services(ChildCommand command) const;
@@ -42,7 +42,7 @@ class TwoMachines {
 
   ChildProcess switch_;
   ChildProcess service_;
-  std::optional<std::string> trouble_;
+  std::optional<std::string> warning_;
   bool set_up_ = false;
 };
 

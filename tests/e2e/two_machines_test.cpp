@@ -42,7 +42,7 @@ class TwoMachinesTest : public testing::Test {
  protected:
   void SetUp() override {
     // Network namespaces are root's, and not every container's kernel lets even root make them.
-    if (machines_.trouble()) GTEST_SKIP() << "network: " << *machines_.trouble();
+    if (machines_.warning()) GTEST_SKIP() << "network: " << *machines_.warning();
   }
 
   std::string embedded(std::int64_t steps) const { return embedded_csv(directory_, scene_, steps, kStep); }
@@ -71,7 +71,7 @@ class TwoMachinesTest : public testing::Test {
   }
 
   TwoMachines machines_;
-  TemporaryDirectory directory_;
+  TempDir directory_;
   std::string csv_ = directory_.path("run.csv");
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
@@ -90,7 +90,7 @@ TEST_F(TwoMachinesTest, WithTtlZeroTheyDoNotHearEachOther) {
   const FinishedProcess finished = run_to_end(
       client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.05", "--retries", "3"}), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("no answer"), std::string::npos) << finished.standard_error;
+  EXPECT_NE(finished.standard_error.find("no response"), std::string::npos) << finished.standard_error;
 }
 
 TEST_F(TwoMachinesTest, LossDuplicationAndReorderingOnTheWayChangeNoByte) {
@@ -104,18 +104,18 @@ TEST_F(TwoMachinesTest, LossDuplicationAndReorderingOnTheWayChangeNoByte) {
   const nlohmann::json summary = simulate(scene_, {"-l", kClientUrl, "--duration", kDuration, "--csv", csv,
                                                    "--timeout", "0.005", "--retries", "10000"});
   EXPECT_TRUE(read_file(csv) == embedded(kSteps));
-  EXPECT_GT(relay.lost_questions() + relay.lost_answers(), 50);
+  EXPECT_GT(relay.lost_requests() + relay.lost_responses(), 50);
   EXPECT_GT(relay.duplicated(), 100);
   EXPECT_GT(relay.reordered(), 100);
-  EXPECT_EQ(summary["lost"], 0);
+  EXPECT_EQ(summary["unanswered"], 0);
 }
 
-// Waits until the same request has come so often that the client is known to wait for an answer.
+// Waits until the same request has come so often that the client is known to wait for a response.
 bool repeats_its_request(LcmConnection& bus, int times) {
   std::int64_t seq = -1;
   int heard = 0;
   bus.subscribe(std::string(kStatesChannel), [&](Bytes bytes, std::string_view) {
-    Question request;
+    WrenchRequest request;
     if (decode(bytes, request)) return;
     heard = request.key.seq == seq ? heard + 1 : 1;
     seq = request.key.seq;
@@ -143,13 +143,13 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   ASSERT_EQ(client.wait(cut_seconds()), std::nullopt) << client.standard_error();
   EXPECT_EQ(size_of(csv_), at_the_cut) << "the cable was not out";
   machines_.plug_cable();
-  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
+  EXPECT_FALSE(machines_.warning()) << *machines_.warning();
   ASSERT_TRUE(advances(client));
   const nlohmann::json summary = ends_with_the_bytes_of_an_embedded_run(client);
   ASSERT_TRUE(summary.is_object());
   EXPECT_GE(summary["round_trip"]["max"], cut_seconds());
   EXPECT_GE(summary["retries"], 3);
-  EXPECT_EQ(summary["lost"], 0);
+  EXPECT_EQ(summary["unanswered"], 0);
 }
 
 TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
@@ -161,7 +161,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
   // Ten timeouts in which no request can be sent. Nothing outside the client shows that it tries.
   EXPECT_EQ(client.wait(0.5), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
-  EXPECT_FALSE(machines_.trouble()) << *machines_.trouble();
+  EXPECT_FALSE(machines_.warning()) << *machines_.warning();
   ASSERT_TRUE(advances(client));
   ends_with_the_bytes_of_an_embedded_run(client);
 }

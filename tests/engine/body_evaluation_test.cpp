@@ -26,9 +26,9 @@ const Scene& scene() {
   return the_scene;
 }
 
-BodyWrench answer(const BodyState& state, double lead_time = 0.0) {
-  Counters counters;
-  return answer_alone(scene(), state, lead_time, counters);
+BodyWrench response(const BodyState& state, double lead_time = 0.0) {
+  ServiceCounters counters;
+  return response_alone(scene(), state, lead_time, counters);
 }
 
 void expect_zeros(const BodyWrench& wrench) {
@@ -41,11 +41,11 @@ void expect_zeros(const BodyWrench& wrench) {
   EXPECT_EQ(wrench.torque_error_bound, 0.0);
 }
 
-std::int64_t count(const Counters& counters, BodyStatus status) {
+std::int64_t count(const ServiceCounters& counters, BodyStatus status) {
   return counters.bodies[static_cast<std::size_t>(status)];
 }
 
-std::int64_t total(const Counters& counters) {
+std::int64_t total(const ServiceCounters& counters) {
   std::int64_t sum = 0;
   for (const std::int64_t bodies : counters.bodies) sum += bodies;
   return sum;
@@ -55,7 +55,7 @@ class HalfSubmergedBox : public testing::TestWithParam<std::int32_t> {};
 INSTANTIATE_TEST_SUITE_P(BodyExchange, HalfSubmergedBox, testing::Values(kBox, kHierarchicalBox));
 
 TEST_P(HalfSubmergedBox, DisplacesHalfACubicMetre) {
-  const BodyWrench wrench = answer(upright(GetParam(), 0.0));
+  const BodyWrench wrench = response(upright(GetParam(), 0.0));
   EXPECT_EQ(wrench.body_id, GetParam());
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_GT(wrench.force_error_bound, 0.0);
@@ -75,7 +75,7 @@ TEST(BodyExchange, TorqueIsAboutTheBodysReferencePoint) {
   // the lever to the centre of buoyancy is (0.5, -0.5, 0.25), and torque = lever x (0, 0, F).
   BodyState state = upright(kOffsetBox, 0.0);
   state.quaternion_wxyz = {std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)};
-  const BodyWrench wrench = answer(state);
+  const BodyWrench wrench = response(state);
   const double force = 0.5 * kWeight;
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_NEAR(wrench.torque[0], -0.5 * force, 1e-9);
@@ -84,7 +84,7 @@ TEST(BodyExchange, TorqueIsAboutTheBodysReferencePoint) {
 }
 
 TEST(BodyExchange, AnApproximateMethodSaysHowFarItMayBeOff) {
-  const BodyWrench wrench = answer(upright(kFastBox, 0.0));
+  const BodyWrench wrench = response(upright(kFastBox, 0.0));
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   const double error = std::abs(wrench.force[2] - 0.5 * kWeight);
   EXPECT_GT(error, 0.0);
@@ -94,10 +94,10 @@ TEST(BodyExchange, AnApproximateMethodSaysHowFarItMayBeOff) {
 }
 
 TEST(BodyExchange, CountsHowBodiesLieInTheWater) {
-  Counters counters;
-  EXPECT_EQ(answer_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
-  for (int i = 0; i < 2; ++i) answer_alone(scene(), upright(kBox, -10.0), 0.0, counters);
-  for (int i = 0; i < 3; ++i) answer_alone(scene(), upright(kBox, 0.2), 0.0, counters);
+  ServiceCounters counters;
+  EXPECT_EQ(response_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
+  for (int i = 0; i < 2; ++i) response_alone(scene(), upright(kBox, -10.0), 0.0, counters);
+  for (int i = 0; i < 3; ++i) response_alone(scene(), upright(kBox, 0.2), 0.0, counters);
   EXPECT_EQ(counters.bodies_dry, 1);
   EXPECT_EQ(counters.bodies_wet, 2);
   EXPECT_EQ(counters.bodies_crossing, 3);
@@ -106,19 +106,19 @@ TEST(BodyExchange, CountsHowBodiesLieInTheWater) {
 }
 
 TEST(BodyExchange, KeepsTheLargestPartThatAnExactMethodDropped) {
-  Counters counters;
+  ServiceCounters counters;
   BodyState tilted = upright(kBox, 0.1);
   tilted.quaternion_wxyz = {0.9, 0.3, 0.3, 0.1};
   for (int i = 0; i < 20; ++i) {
     tilted.position[2] = -0.5 + 0.05 * i;
-    answer_alone(scene(), tilted, 0.0, counters);
+    response_alone(scene(), tilted, 0.0, counters);
   }
   EXPECT_EQ(count(counters, BodyStatus::kOk), 20);
   EXPECT_GT(counters.largest_dropped_force + counters.largest_dropped_torque, 0.0);
   EXPECT_LT(counters.largest_dropped_force, 1e-13);
   EXPECT_LT(counters.largest_dropped_torque, 1e-13);
-  const Counters before = counters;
-  answer_alone(scene(), upright(kBox, 10.0), 0.0, counters);
+  const ServiceCounters before = counters;
+  response_alone(scene(), upright(kBox, 10.0), 0.0, counters);
   EXPECT_EQ(counters.largest_dropped_force, before.largest_dropped_force);
   EXPECT_EQ(counters.largest_dropped_torque, before.largest_dropped_torque);
 }
@@ -198,10 +198,10 @@ TEST(BodyExchange, GivesEveryBadStateItsStatusAndZeros) {
     SCOPED_TRACE(bad.name);
     BodyState state = upright(kBox, 0.0);
     bad.spoil(state);
-    Counters counters;
-    const BodyWrench wrench = answer_alone(scene(), state, bad.lead_time, counters);
+    ServiceCounters counters;
+    const BodyWrench wrench = response_alone(scene(), state, bad.lead_time, counters);
     EXPECT_EQ(wrench.body_id, state.body_id);
-    EXPECT_STREQ(name(wrench.status), name(bad.expected));
+    EXPECT_STREQ(to_string(wrench.status), to_string(bad.expected));
     expect_zeros(wrench);
     EXPECT_EQ(count(counters, bad.expected), 1);
     EXPECT_EQ(total(counters), 1);
@@ -214,25 +214,25 @@ TEST(BodyExchange, ReportsTheFirstOfSeveralFaults) {
   BodyState state = upright(kNoBody, kNaN);
   state.quaternion_wxyz = {0, 0, 0, 0};
   state.linear_velocity[0] = kNaN;
-  EXPECT_EQ(answer(state, kNaN).status, BodyStatus::kUnknownBody);
+  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kUnknownBody);
   state.body_id = kBox;
-  EXPECT_EQ(answer(state, kNaN).status, BodyStatus::kNonFinitePose);
+  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kNonFinitePose);
   state.position[2] = 0.0;
-  EXPECT_EQ(answer(state, kNaN).status, BodyStatus::kBadQuaternion);
+  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kBadQuaternion);
   state.quaternion_wxyz[0] = 1.0;
-  EXPECT_EQ(answer(state, kNaN).status, BodyStatus::kBadLeadTime);
-  EXPECT_EQ(answer(state, 1.0).status, BodyStatus::kNonFiniteTwist);
+  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kBadLeadTime);
+  EXPECT_EQ(response(state, 1.0).status, BodyStatus::kNonFiniteTwist);
   state.linear_velocity[0] = 0.0;
-  EXPECT_EQ(answer(state, 1.0).status, BodyStatus::kOk);
+  EXPECT_EQ(response(state, 1.0).status, BodyStatus::kOk);
 }
 
 TEST(BodyExchange, IgnoresVelocitiesWithoutLeadTime) {
   BodyState state = upright(kBox, 0.1);
-  const BodyWrench at_rest = answer(state);
+  const BodyWrench at_rest = response(state);
   state.linear_velocity = {kNaN, kInfinity, -kInfinity};
   state.angular_velocity = {kNaN, kNaN, 1e300};
   for (const double lead_time : {0.0, -0.0}) {
-    const BodyWrench wrench = answer(state, lead_time);
+    const BodyWrench wrench = response(state, lead_time);
     EXPECT_EQ(wrench.status, BodyStatus::kOk);
     EXPECT_EQ(wrench.force, at_rest.force);
     EXPECT_EQ(wrench.torque, at_rest.torque);
@@ -241,10 +241,10 @@ TEST(BodyExchange, IgnoresVelocitiesWithoutLeadTime) {
 
 TEST(BodyExchange, AcceptsDenormalsInAPose) {
   BodyState state = upright(kBox, 0.0);
-  const BodyWrench plain = answer(state);
+  const BodyWrench plain = response(state);
   state.position = {kDenormal, -kDenormal, kDenormal};
   state.quaternion_wxyz = {1.0, kDenormal, -kDenormal, kDenormal};
-  const BodyWrench wrench = answer(state);
+  const BodyWrench wrench = response(state);
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_NEAR(wrench.force[2], plain.force[2], 2.0 * plain.force_error_bound);
 }
@@ -263,10 +263,10 @@ TEST(BodyExchange, NormalisesQuaternionsUpToTheToleranceAndCountsNoteworthyOnes)
     SCOPED_TRACE(c.norm);
     BodyState state = upright(kBox, 0.1);
     state.quaternion_wxyz = {0.8, 0.0, 0.6, 0.0};
-    const BodyWrench unit = answer(state);
+    const BodyWrench unit = response(state);
     for (double& component : state.quaternion_wxyz) component *= c.norm;
-    Counters counters;
-    const BodyWrench wrench = answer_alone(scene(), state, 0.0, counters);
+    ServiceCounters counters;
+    const BodyWrench wrench = response_alone(scene(), state, 0.0, counters);
     EXPECT_EQ(wrench.status, c.expected);
     EXPECT_EQ(counters.quaternions_normalised, c.normalised);
     if (c.expected != BodyStatus::kOk) continue;
@@ -284,7 +284,7 @@ TEST(BodyExchange, NeverAnswersOkWithSomethingThatIsNotFinite) {
         for (const std::int32_t id : {kBox, kOffsetBox, kFastBox, kHierarchicalBox}) {
           BodyState state = upright(id, 0.0);
           state.position[axis] = sign * far;
-          const BodyWrench wrench = answer(state);
+          const BodyWrench wrench = response(state);
           if (wrench.status == BodyStatus::kOk) {
             for (const double value : wrench.force) EXPECT_TRUE(std::isfinite(value));
             for (const double value : wrench.torque) EXPECT_TRUE(std::isfinite(value));
@@ -319,11 +319,11 @@ TEST(BodyExchange, AnOpenHullIsAnsweredWhileItsEdgeIsDry) {
     open = "dry_boundary"
   )",
                              directory);
-  Counters counters;
-  const BodyWrench afloat = answer_alone(tub, upright(1, 0.5), 0.0, counters);
+  ServiceCounters counters;
+  const BodyWrench afloat = response_alone(tub, upright(1, 0.5), 0.0, counters);
   EXPECT_EQ(afloat.status, BodyStatus::kOk);
   EXPECT_NEAR(afloat.submerged_volume, 2.0, 1e-12);
-  const BodyWrench sunk = answer_alone(tub, upright(1, -1.5), 0.0, counters);
+  const BodyWrench sunk = response_alone(tub, upright(1, -1.5), 0.0, counters);
   EXPECT_EQ(sunk.status, BodyStatus::kOpenEdgeWet);
   expect_zeros(sunk);
   EXPECT_EQ(count(counters, BodyStatus::kOpenEdgeWet), 1);
@@ -340,12 +340,12 @@ TEST(BodyExchange, LeadTimeAnswersForTheExtrapolatedPose) {
   BodyState there = upright(kBox, 0.0);
   there.position = {later.p_WB.x(), later.p_WB.y(), later.p_WB.z()};
   there.quaternion_wxyz = {later.q_WB.w(), later.q_WB.x(), later.q_WB.y(), later.q_WB.z()};
-  const BodyWrench led = answer(moving, lead_time);
-  const BodyWrench sent = answer(there);
+  const BodyWrench led = response(moving, lead_time);
+  const BodyWrench sent = response(there);
   EXPECT_EQ(led.status, BodyStatus::kOk);
   EXPECT_EQ(led.force, sent.force);
   EXPECT_EQ(led.torque, sent.torque);
-  EXPECT_NE(led.force, answer(moving).force);
+  EXPECT_NE(led.force, response(moving).force);
 }
 
 TEST(Extrapolation, MovesByTheVelocityOfTheOrigin) {

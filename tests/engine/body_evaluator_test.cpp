@@ -24,7 +24,7 @@ BodyState placed(std::int32_t id, double height, double tilt = 0.0) {
   return state;
 }
 
-Question about(std::vector<BodyState> bodies, double lead_time = 0.0) {
+WrenchRequest about(std::vector<BodyState> bodies, double lead_time = 0.0) {
   return {.key = {}, .lead_time = lead_time, .bodies = std::move(bodies)};
 }
 
@@ -43,22 +43,22 @@ bool same(const BodyWrench& a, const BodyWrench& b) {
          a.submerged_volume == b.submerged_volume && a.center_of_buoyancy == b.center_of_buoyancy;
 }
 
-TEST(BodyAnswers, AreThoseOfEachBodyByItself) {
+TEST(BodyEvaluator, AreThoseOfEachBodyByItself) {
   const Scene scene = box_scene();
-  BodyAnswers answers(scene, 1);
+  BodyEvaluator evaluator(scene, 1);
   std::vector<BodyState> bodies;
   for (const std::int32_t id : {kBox, kNoBody, kFastBox, kHierarchicalBox, kOffsetBox, kBox}) {
     for (const double height : {-3.0, 0.1, 3.0, std::numeric_limits<double>::infinity()}) {
       bodies.push_back(placed(id, height, 0.3));
     }
   }
-  Counters counters;
+  ServiceCounters counters;
   std::vector<BodyWrench> wrenches;
-  answers.answer(about(bodies), wrenches, counters);
-  Counters expected;
+  evaluator.evaluate_all(about(bodies), wrenches, counters);
+  ServiceCounters expected;
   ASSERT_EQ(wrenches.size(), bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    EXPECT_TRUE(same(wrenches[i], answer_alone(scene, bodies[i], 0.0, expected))) << i;
+    EXPECT_TRUE(same(wrenches[i], response_alone(scene, bodies[i], 0.0, expected))) << i;
   }
   EXPECT_EQ(counters.bodies, expected.bodies);
   EXPECT_EQ(counters.bodies_dry, expected.bodies_dry);
@@ -66,89 +66,89 @@ TEST(BodyAnswers, AreThoseOfEachBodyByItself) {
   EXPECT_EQ(counters.bodies_crossing, expected.bodies_crossing);
 }
 
-TEST(BodyAnswers, OfABodyThatDidNotMoveAreTheLastOnesAndCounted) {
+TEST(BodyEvaluator, OfABodyThatDidNotMoveAreTheLastOnesAndCounted) {
   const Scene scene = box_scene();
-  BodyAnswers answers(scene, 1);
-  Counters counters;
+  BodyEvaluator evaluator(scene, 1);
+  ServiceCounters counters;
   std::vector<BodyWrench> first;
   std::vector<BodyWrench> second;
-  answers.answer(about({placed(kBox, 0.1, 0.2), placed(kFastBox, 0.3)}), first, counters);
+  evaluator.evaluate_all(about({placed(kBox, 0.1, 0.2), placed(kFastBox, 0.3)}), first, counters);
   EXPECT_EQ(counters.bodies_unchanged, 0);
-  answers.answer(about({placed(kFastBox, 0.2), placed(kBox, 0.1, 0.2)}), second, counters);
+  evaluator.evaluate_all(about({placed(kFastBox, 0.2), placed(kBox, 0.1, 0.2)}), second, counters);
   EXPECT_EQ(counters.bodies_unchanged, 1);
   EXPECT_TRUE(same(first[0], second[1]));
   EXPECT_EQ(counters.bodies_crossing, 4) << "an unchanged body counts as what it is, too";
 
   // The next double is another pose.
-  answers.answer(about({placed(kBox, std::nextafter(0.1, 1.0), 0.2)}), second, counters);
+  evaluator.evaluate_all(about({placed(kBox, std::nextafter(0.1, 1.0), 0.2)}), second, counters);
   EXPECT_EQ(counters.bodies_unchanged, 1);
   EXPECT_LT(second[0].submerged_volume, first[0].submerged_volume);
 }
 
-TEST(BodyAnswers, AreRememberedByThePoseThatWasEvaluated) {
+TEST(BodyEvaluator, AreRememberedByThePoseThatWasEvaluated) {
   const Scene scene = box_scene();
-  BodyAnswers answers(scene, 1);
-  Counters counters;
+  BodyEvaluator evaluator(scene, 1);
+  ServiceCounters counters;
   std::vector<BodyWrench> wrenches;
   BodyState rising = placed(kBox, 0.0);
   rising.linear_velocity = {0.0, 0.0, 0.5};
-  answers.answer(about({rising}, 0.5), wrenches, counters);
-  answers.answer(about({rising}, 0.25), wrenches, counters);
+  evaluator.evaluate_all(about({rising}, 0.5), wrenches, counters);
+  evaluator.evaluate_all(about({rising}, 0.25), wrenches, counters);
   EXPECT_EQ(counters.bodies_unchanged, 0) << "another lead time is another pose";
-  answers.answer(about({placed(kBox, 0.125)}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(kBox, 0.125)}), wrenches, counters);
   EXPECT_EQ(counters.bodies_unchanged, 1) << "the same pose, sent instead of extrapolated";
 }
 
-TEST(BodyAnswers, ForgetABodyWhoseLastStateWasNotAnswered) {
+TEST(BodyEvaluator, ForgetABodyWhoseLastStateWasNotAnswered) {
   const Scene scene = scene_of(R"(
     [[body]]
     id = 1
     shape = { type = "box", size = [1, 1, 1] }
     method = "exact"
 )");
-  BodyAnswers answers(scene, 1);
-  Counters counters;
+  BodyEvaluator evaluator(scene, 1);
+  ServiceCounters counters;
   std::vector<BodyWrench> wrenches;
-  answers.answer(about({placed(1, 0.1)}), wrenches, counters);
-  answers.answer(about({placed(1, std::nan(""))}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(1, 0.1)}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(1, std::nan(""))}), wrenches, counters);
   EXPECT_EQ(wrenches[0].status, BodyStatus::kNonFinitePose);
   EXPECT_EQ(wrenches[0].force, (std::array<double, 3>{}));
-  answers.answer(about({placed(1, 0.1)}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(1, 0.1)}), wrenches, counters);
   EXPECT_EQ(wrenches[0].status, BodyStatus::kOk);
   EXPECT_GT(wrenches[0].force[2], 0.0);
 }
 
-TEST(BodyAnswers, SkipABodyThatAppearsTwiceInOneQuestionOnlyFromTheNextOneOn) {
+TEST(BodyEvaluator, SkipABodyThatAppearsTwiceInOneQuestionOnlyFromTheNextOneOn) {
   const Scene scene = box_scene();
-  BodyAnswers answers(scene, 1);
-  Counters counters;
+  BodyEvaluator evaluator(scene, 1);
+  ServiceCounters counters;
   std::vector<BodyWrench> wrenches;
-  answers.answer(about({placed(kBox, 0.1), placed(kBox, 0.2)}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(kBox, 0.1), placed(kBox, 0.2)}), wrenches, counters);
   EXPECT_EQ(counters.bodies_unchanged, 0);
   EXPECT_GT(wrenches[0].submerged_volume, wrenches[1].submerged_volume);
-  answers.answer(about({placed(kBox, 0.2)}), wrenches, counters);
+  evaluator.evaluate_all(about({placed(kBox, 0.2)}), wrenches, counters);
   EXPECT_EQ(counters.bodies_unchanged, 1);
 }
 
-TEST(BodyAnswers, HaveTheSameBitsOnOneThreadAndOnEight) {
+TEST(BodyEvaluator, HaveTheSameBitsOnOneThreadAndOnEight) {
 #ifdef BUOYANCY_WITH_TBB
   const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 8);
 #endif
   for (const std::string method : {"hierarchical", "exact", "exact_surface"}) {
     const Scene scene = rocks(60, 12, method);
-    BodyAnswers alone(scene, 1);
-    BodyAnswers together(scene, 8);
+    BodyEvaluator alone(scene, 1);
+    BodyEvaluator together(scene, 8);
     for (int step = 0; step < 20; ++step) {
       std::vector<BodyState> bodies;
       for (int id = 1; id <= 60; ++id) {
         bodies.push_back(placed(id, 1.3 * std::sin(0.7 * id + 0.1 * step), 0.05 * id));
       }
-      Counters one;
-      Counters eight;
+      ServiceCounters one;
+      ServiceCounters eight;
       std::vector<BodyWrench> a;
       std::vector<BodyWrench> b;
-      alone.answer(about(bodies), a, one);
-      together.answer(about(bodies), b, eight);
+      alone.evaluate_all(about(bodies), a, one);
+      together.evaluate_all(about(bodies), b, eight);
       for (std::size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(same(a[i], b[i])) << method << ", body " << i;
       EXPECT_EQ(one.bodies_crossing, eight.bodies_crossing);
       EXPECT_EQ(one.largest_dropped_force, eight.largest_dropped_force);
@@ -156,17 +156,17 @@ TEST(BodyAnswers, HaveTheSameBitsOnOneThreadAndOnEight) {
   }
 }
 
-TEST(BodyAnswers, LookOnlyAtTheTenOfAThousandBodiesThatCrossTheSurface) {
+TEST(BodyEvaluator, LookOnlyAtTheTenOfAThousandBodiesThatCrossTheSurface) {
   const Scene scene = rocks(1000, 4, "hierarchical");
-  BodyAnswers answers(scene, 0);
+  BodyEvaluator evaluator(scene, 0);
   std::vector<BodyState> bodies;
   for (int id = 1; id <= 1000; ++id) bodies.push_back(placed(id, id <= 10 ? 0.1 * id - 0.5 : 5.0));
-  Counters counters;
+  ServiceCounters counters;
   std::vector<BodyWrench> wrenches;
-  answers.answer(about(bodies), wrenches, counters);
+  evaluator.evaluate_all(about(bodies), wrenches, counters);
   EXPECT_EQ(counters.bodies_crossing, 10);
   EXPECT_EQ(counters.bodies_dry, 990);
-  answers.answer(about(bodies), wrenches, counters);
+  evaluator.evaluate_all(about(bodies), wrenches, counters);
   EXPECT_EQ(counters.bodies_unchanged, 1000);
 }
 

@@ -1,4 +1,4 @@
-// The scene that the exchange is tested with, and questions about it.
+// The scene that the handler is tested with, and requests about it.
 #pragma once
 
 #include <cstdint>
@@ -71,10 +71,10 @@ inline BodyState upright(std::int32_t id, double height) {
   return state;
 }
 
-inline std::vector<std::uint8_t> question_bytes(const QuestionKey& key, std::vector<BodyState> bodies,
-                                                double lead_time = 0.0) {
+inline std::vector<std::uint8_t> request_bytes(const RequestId& key, std::vector<BodyState> bodies,
+                                               double lead_time = 0.0) {
   std::vector<std::uint8_t> bytes;
-  encode(Question{.key = key, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
+  encode(WrenchRequest{.key = key, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
   return bytes;
 }
 

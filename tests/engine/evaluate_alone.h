@@ -1,4 +1,4 @@
-// One body's answer, asked by itself of an exchange that remembers nothing.
+// One body's response, asked by itself of an handler that remembers nothing.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace buoyancy {
 
-inline BodyWrench answer_alone(const Scene& scene, const BodyState& state, double lead_time,
-                               Counters& counters) {
-  BodyAnswers answers(scene, 1);
+inline BodyWrench response_alone(const Scene& scene, const BodyState& state, double lead_time,
+                                 ServiceCounters& counters) {
+  BodyEvaluator evaluator(scene, 1);
   std::vector<BodyWrench> wrenches;
-  answers.answer({.key = {}, .lead_time = lead_time, .bodies = {state}}, wrenches, counters);
+  evaluator.evaluate_all({.key = {}, .lead_time = lead_time, .bodies = {state}}, wrenches, counters);
   return wrenches.at(0);
 }
 

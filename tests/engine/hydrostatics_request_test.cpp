@@ -1,4 +1,4 @@
-// Hydrostatics through the exchange: what one body's message holds, and which bodies' go with an answer.
+// Hydrostatics through the handler: what one body's message holds, and which bodies' go with a response.
 #include <cmath>
 #include <limits>
 
@@ -19,13 +19,13 @@ const Scene& scene() {
 }
 
 BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
-                                 Counters& counters) {
+                                 ServiceCounters& counters) {
   const Body* body = scene().find(state.body_id);
-  return hydrostatics_of_body(*body, scene().water(), asked_pose(state, lead_time).pose, status, counters);
+  return hydrostatics_of_body(*body, scene().water(), validate_pose(state, lead_time).pose, status, counters);
 }
 
 TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
-  Counters counters;
+  ServiceCounters counters;
   const BodyHydrostatics found =
       hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kOk, counters);
   EXPECT_EQ(found.body_id, kHydrostaticBox);
@@ -69,7 +69,7 @@ TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
 }
 
 TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
-  Counters counters;
+  ServiceCounters counters;
   BodyState rising = upright(kHydrostaticBox, -0.3);
   rising.linear_velocity = {0.0, 0.0, 0.5};
   const BodyHydrostatics found = hydrostatics_of(rising, 0.2, BodyStatus::kOk, counters);
@@ -77,7 +77,7 @@ TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
 }
 
 TEST(BodyHydrostatics, OfABodyThatIsNotOkAreItsStatusAndZeros) {
-  Counters counters;
+  ServiceCounters counters;
   const BodyHydrostatics found =
       hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kBadQuaternion, counters);
   EXPECT_EQ(found.body_id, kHydrostaticBox);
@@ -93,7 +93,7 @@ ByteVector copied(Bytes bytes) {
 }
 
 ByteVector asks_nothing(std::int64_t seq) {
-  return question_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
+  return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
 }
 
 BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
@@ -103,12 +103,12 @@ BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
 }
 
 TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
-  Exchange exchange(scene());
+  RequestHandler handler(scene());
   std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
                                 upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
   bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
-  exchange.answer(question_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
-  const BodiesHydrostatics found = decoded_hydrostatics(exchange.hydrostatics());
+  handler.handle(request_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
+  const BodiesHydrostatics found = decoded_hydrostatics(handler.last_hydrostatics());
   EXPECT_EQ(found.key.utime, 5);
   EXPECT_EQ(found.key.session_id, 6);
   EXPECT_EQ(found.key.seq, 7);
@@ -118,62 +118,62 @@ TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
   EXPECT_NEAR(found.bodies[1].submerged_volume, 0.75, 1e-14);
   EXPECT_EQ(found.bodies[2].status, BodyStatus::kNonFinitePose);
   EXPECT_EQ(found.bodies[2].submerged_volume, 0.0);
-  EXPECT_EQ(exchange.counters().hydrostatics, 2);
+  EXPECT_EQ(handler.counters().hydrostatics, 2);
 }
 
 TEST(ExchangedHydrostatics, AreEmptyWhereNoBodyOfTheQuestionAsks) {
-  Exchange exchange(scene());
-  EXPECT_TRUE(exchange.hydrostatics().empty());
-  const ByteVector asking = question_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
-  exchange.answer(asking);
-  EXPECT_FALSE(exchange.hydrostatics().empty());
-  exchange.answer(asks_nothing(2));
-  EXPECT_TRUE(exchange.hydrostatics().empty());
-  exchange.answer(asking);
-  exchange.answer(asks_nothing(2));
-  exchange.answer(asks_nothing(2));
-  EXPECT_EQ(exchange.counters().repeated, 1);
-  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a repeat";
-  exchange.answer(asking);
-  exchange.answer(ByteVector{1, 2, 3});
-  EXPECT_TRUE(exchange.hydrostatics().empty()) << "a rejected question";
-  EXPECT_EQ(exchange.counters().hydrostatics, 1) << "of a body that did not move they are computed once";
+  RequestHandler handler(scene());
+  EXPECT_TRUE(handler.last_hydrostatics().empty());
+  const ByteVector asking = request_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
+  handler.handle(asking);
+  EXPECT_FALSE(handler.last_hydrostatics().empty());
+  handler.handle(asks_nothing(2));
+  EXPECT_TRUE(handler.last_hydrostatics().empty());
+  handler.handle(asking);
+  handler.handle(asks_nothing(2));
+  handler.handle(asks_nothing(2));
+  EXPECT_EQ(handler.counters().retries, 1);
+  EXPECT_TRUE(handler.last_hydrostatics().empty()) << "a repeat";
+  handler.handle(asking);
+  handler.handle(ByteVector{1, 2, 3});
+  EXPECT_TRUE(handler.last_hydrostatics().empty()) << "a rejected request";
+  EXPECT_EQ(handler.counters().hydrostatics, 1) << "of a body that did not move they are computed once";
 }
 
 TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
-  Exchange exchange(scene());
+  RequestHandler handler(scene());
   const auto asked = [](std::int64_t session_id, double height) {
-    return question_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
+    return request_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
   };
-  exchange.answer(asked(1, 0.1));
-  const ByteVector first = copied(exchange.hydrostatics());
-  for (std::int64_t other = 2; other < 20; ++other) exchange.answer(asked(other, 0.2));
-  const std::int64_t computed = exchange.counters().hydrostatics;
-  exchange.answer(asked(1, 0.1));
-  EXPECT_EQ(copied(exchange.hydrostatics()), first);
-  EXPECT_EQ(exchange.counters().repeated, 1);
-  EXPECT_EQ(exchange.counters().hydrostatics, computed);
+  handler.handle(asked(1, 0.1));
+  const ByteVector first = copied(handler.last_hydrostatics());
+  for (std::int64_t other = 2; other < 20; ++other) handler.handle(asked(other, 0.2));
+  const std::int64_t computed = handler.counters().hydrostatics;
+  handler.handle(asked(1, 0.1));
+  EXPECT_EQ(copied(handler.last_hydrostatics()), first);
+  EXPECT_EQ(handler.counters().retries, 1);
+  EXPECT_EQ(handler.counters().hydrostatics, computed);
 }
 
 TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing) {
-  Exchange exchange(scene());
-  const auto ask = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
-    exchange.answer(question_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
+  RequestHandler handler(scene());
+  const auto send_request = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
+    handler.handle(request_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
     BodiesHydrostatics found;
-    EXPECT_FALSE(decode(exchange.hydrostatics(), found).has_value());
+    EXPECT_FALSE(decode(handler.last_hydrostatics(), found).has_value());
     return found.bodies;
   };
   const BodyState low = upright(kHydrostaticBox, 0.0);
   const BodyState high = upright(kHydrostaticBox, 0.2);
-  const auto first = ask(0, {low});
-  const auto again = ask(1, {upright(kBox, 0.1), low});
-  EXPECT_EQ(exchange.counters().hydrostatics, 1);
+  const auto first = send_request(0, {low});
+  const auto again = send_request(1, {upright(kBox, 0.1), low});
+  EXPECT_EQ(handler.counters().hydrostatics, 1);
   ASSERT_EQ(again.size(), 1U);
   EXPECT_EQ(again[0].stiffness, first[0].stiffness);
   EXPECT_EQ(again[0].wetted_area, first[0].wetted_area);
 
   // Named twice, each state gets its own.
-  const auto both = ask(2, {high, low});
+  const auto both = send_request(2, {high, low});
   ASSERT_EQ(both.size(), 2U);
   EXPECT_NEAR(both[0].submerged_volume, 0.3, 1e-14);
   EXPECT_EQ(both[1].submerged_volume, first[0].submerged_volume);

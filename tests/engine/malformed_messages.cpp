@@ -18,22 +18,23 @@ constexpr std::size_t kFixed = 44;  // fingerprint, utime, session_id, seq, lead
 constexpr std::size_t kBody = 108;
 constexpr std::size_t kLargeDatagram = 60000;
 
-ByteVector question_of(std::size_t bodies) {
-  Question question{.key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .lead_time = 0.0, .bodies = {}};
+ByteVector request_of(std::size_t bodies) {
+  WrenchRequest request{
+      .key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .lead_time = 0.0, .bodies = {}};
   BodyState body;
   body.body_id = 1;
   body.quaternion_wxyz = {1, 0, 0, 0};
-  question.bodies.assign(bodies, body);
+  request.bodies.assign(bodies, body);
   ByteVector bytes;
-  encode(question, bytes);
+  encode(request, bytes);
   return bytes;
 }
 
-ByteVector answer_of(std::size_t bodies) {
-  Answer answer{.key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .bodies = {}};
-  answer.bodies.resize(bodies);
+ByteVector response_of(std::size_t bodies) {
+  WrenchResponse response{.key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .bodies = {}};
+  response.bodies.resize(bodies);
   ByteVector bytes;
-  encode(answer, bytes);
+  encode(response, bytes);
   return bytes;
 }
 
@@ -99,29 +100,29 @@ ByteVector garbage(std::size_t size, unsigned seed) {
   return bytes;
 }
 
-// The fingerprint of a question, and behind it whatever the generator gives.
+// The fingerprint of a request, and behind it whatever the generator gives.
 ByteVector garbage_behind_fingerprint(std::size_t size, unsigned seed, std::int32_t count) {
-  return with_count(joined(first(question_of(0), kFingerprint), garbage(size, seed)), count);
+  return with_count(joined(first(request_of(0), kFingerprint), garbage(size, seed)), count);
 }
 
 void add_truncated(std::vector<MalformedMessage>& list) {
   const auto add = [&](std::string name, ByteVector bytes) {
-    list.push_back({std::move(name), std::move(bytes), Rejection::kTruncated});
+    list.push_back({std::move(name), std::move(bytes), DecodeError::kTruncated});
   };
-  add("one byte", first(question_of(1), 1));
-  add("half a fingerprint", first(question_of(1), 4));
-  add("a fingerprint without its last byte", first(question_of(1), 7));
-  add("a fingerprint alone", first(question_of(1), 8));
-  add("cut within utime", first(question_of(1), 12));
-  add("cut after utime", first(question_of(1), 16));
-  add("cut within session_id", first(question_of(1), 20));
-  add("cut after session_id", first(question_of(1), 24));
-  add("cut within seq", first(question_of(1), 29));
-  add("cut after seq", first(question_of(1), 32));
-  add("cut within lead_time", first(question_of(1), 36));
-  add("cut after lead_time", first(question_of(1), 40));
-  add("cut within the number of bodies", first(question_of(1), 43));
-  add("an answer without bodies", answer_of(0));
+  add("one byte", first(request_of(1), 1));
+  add("half a fingerprint", first(request_of(1), 4));
+  add("a fingerprint without its last byte", first(request_of(1), 7));
+  add("a fingerprint alone", first(request_of(1), 8));
+  add("cut within utime", first(request_of(1), 12));
+  add("cut after utime", first(request_of(1), 16));
+  add("cut within session_id", first(request_of(1), 20));
+  add("cut after session_id", first(request_of(1), 24));
+  add("cut within seq", first(request_of(1), 29));
+  add("cut after seq", first(request_of(1), 32));
+  add("cut within lead_time", first(request_of(1), 36));
+  add("cut after lead_time", first(request_of(1), 40));
+  add("cut within the number of bodies", first(request_of(1), 43));
+  add("a response without bodies", response_of(0));
   add("twenty bytes of garbage", garbage(20, 1));
   add("a short line of text", text("hello\n"));
   add("zeros, one byte short of the fixed fields", ByteVector(kFixed - 1, 0x00));
@@ -129,82 +130,82 @@ void add_truncated(std::vector<MalformedMessage>& list) {
 
 void add_foreign(std::vector<MalformedMessage>& list) {
   const auto add = [&](std::string name, ByteVector bytes) {
-    list.push_back({std::move(name), std::move(bytes), Rejection::kFingerprint});
+    list.push_back({std::move(name), std::move(bytes), DecodeError::kFingerprint});
   };
-  add("first bit of the fingerprint flipped", with_flipped(question_of(1), 0, 0x80));
-  add("last bit of the fingerprint flipped", with_flipped(question_of(1), 7, 0x01));
-  add("a middle byte of the fingerprint inverted", with_flipped(question_of(1), 4, 0xff));
-  add("fingerprint in little-endian order", with_fingerprint_reversed(question_of(1)));
-  add("fingerprint zero", with_fingerprint(question_of(1), 0));
-  add("fingerprint all ones", with_fingerprint(question_of(1), ~std::uint64_t{0}));
-  add("fingerprint of bot_core.pose_t", with_fingerprint(question_of(1), 0x2e16efb052b0105e));
-  add("fingerprint of bot_core.rigid_transform_t", with_fingerprint(question_of(1), 0xea9ffbf2acc5c5ae));
-  add("no fingerprint at all", without_fingerprint(question_of(1)));
-  add("a byte before the message", joined({0}, question_of(1)));
+  add("first bit of the fingerprint flipped", with_flipped(request_of(1), 0, 0x80));
+  add("last bit of the fingerprint flipped", with_flipped(request_of(1), 7, 0x01));
+  add("a middle byte of the fingerprint inverted", with_flipped(request_of(1), 4, 0xff));
+  add("fingerprint in little-endian order", with_fingerprint_reversed(request_of(1)));
+  add("fingerprint zero", with_fingerprint(request_of(1), 0));
+  add("fingerprint all ones", with_fingerprint(request_of(1), ~std::uint64_t{0}));
+  add("fingerprint of bot_core.pose_t", with_fingerprint(request_of(1), 0x2e16efb052b0105e));
+  add("fingerprint of bot_core.rigid_transform_t", with_fingerprint(request_of(1), 0xea9ffbf2acc5c5ae));
+  add("no fingerprint at all", without_fingerprint(request_of(1)));
+  add("a byte before the message", joined({0}, request_of(1)));
   add("all bytes in reverse order", [] {
-    ByteVector bytes = question_of(1);
+    ByteVector bytes = request_of(1);
     std::reverse(bytes.begin(), bytes.end());
     return bytes;
   }());
-  add("an answer of ours", answer_of(1));
-  add("an answer of ours with 1000 bodies", answer_of(1000));
+  add("a response of ours", response_of(1));
+  add("a response of ours with 1000 bodies", response_of(1000));
   add("a status of ours", status());
-  add("an answer's fingerprint before a question",
-      joined(first(answer_of(0), 8), without_fingerprint(question_of(1))));
+  add("a response's fingerprint before a request",
+      joined(first(response_of(0), 8), without_fingerprint(request_of(1))));
   // The short header of LCM: magic, number, channel.
-  add("a datagram of LCM inside the message", joined(text("LC02....BUOYANCY_STATES."), question_of(1)));
+  add("a datagram of LCM inside the message", joined(text("LC02....BUOYANCY_STATES."), request_of(1)));
   add("JSON", text(R"({"utime": 0, "session_id": 1, "seq": 1, "bodies": [{"body_id": 1}]})"));
   add("HTTP", text("GET /index.html HTTP/1.1\r\nHost: 239.255.76.67:7667\r\nAccept: */*\r\n\r\n"));
   add("as long as the fixed fields, zeros", ByteVector(kFixed, 0x00));
   add("a large datagram of zeros", ByteVector(kLargeDatagram, 0x00));
   add("a large datagram of ones", ByteVector(kLargeDatagram, 0xff));
-  add("garbage as long as a question of one body", garbage(kFixed + kBody, 2));
+  add("garbage as long as a request of one body", garbage(kFixed + kBody, 2));
   add("a large datagram of garbage", garbage(kLargeDatagram, 3));
 }
 
 void add_miscounted(std::vector<MalformedMessage>& list) {
   const auto add = [&](std::string name, ByteVector bytes) {
-    list.push_back({std::move(name), std::move(bytes), Rejection::kCount});
+    list.push_back({std::move(name), std::move(bytes), DecodeError::kCount});
   };
-  add("-1 bodies", with_count(question_of(1), -1));
-  add("-1 bodies and nothing behind it", with_count(question_of(0), -1));
-  add("-2 bodies", with_count(question_of(2), -2));
-  add("INT_MIN bodies", with_count(question_of(1), INT_MIN));
-  add("INT_MIN bodies and nothing behind it", with_count(question_of(0), INT_MIN));
-  add("INT_MIN + 1 bodies", with_count(question_of(1), INT_MIN + 1));
+  add("-1 bodies", with_count(request_of(1), -1));
+  add("-1 bodies and nothing behind it", with_count(request_of(0), -1));
+  add("-2 bodies", with_count(request_of(2), -2));
+  add("INT_MIN bodies", with_count(request_of(1), INT_MIN));
+  add("INT_MIN bodies and nothing behind it", with_count(request_of(0), INT_MIN));
+  add("INT_MIN + 1 bodies", with_count(request_of(1), INT_MIN + 1));
   add("a negative number of bodies before garbage", garbage_behind_fingerprint(1000, 4, -1000));
   add("a negative number of bodies in a large datagram", garbage_behind_fingerprint(kLargeDatagram, 5, -7));
 }
 
 void add_of_wrong_length(std::vector<MalformedMessage>& list) {
   const auto add = [&](std::string name, ByteVector bytes) {
-    list.push_back({std::move(name), std::move(bytes), Rejection::kLength});
+    list.push_back({std::move(name), std::move(bytes), DecodeError::kLength});
   };
-  add("one body announced, none there", with_count(question_of(0), 1));
-  add("cut after the first body's id", first(question_of(1), kFixed + 4));
-  add("cut within the position", first(question_of(1), kFixed + 15));
-  add("cut after the position", first(question_of(1), kFixed + 28));
-  add("cut within the quaternion", first(question_of(1), kFixed + 33));
-  add("cut before the velocities", first(question_of(1), kFixed + 60));
-  add("one body, its last byte missing", first(question_of(1), kFixed + kBody - 1));
-  add("three bodies, the last byte missing", first(question_of(3), kFixed + 3 * kBody - 1));
-  add("three bodies announced, two there", first(question_of(3), kFixed + 2 * kBody));
-  add("one body announced too few", with_count(question_of(2), 1));
-  add("no body announced, one there", with_count(question_of(1), 0));
-  add("INT_MAX bodies", with_count(question_of(1), INT_MAX));
-  add("INT_MAX bodies and nothing behind it", with_count(question_of(0), INT_MAX));
-  add("a number of bodies in little-endian order", with_count(question_of(1), 1 << 24));
-  add("2^30 bodies, which is no byte modulo 2^32", with_count(question_of(0), 1 << 30));
-  add("2^30 + 1 bodies, which is one body modulo 2^32", with_count(question_of(1), (1 << 30) + 1));
-  add("a million bodies", with_count(question_of(1), 1'000'000));
-  add("a zero byte too many", extended(question_of(1), 1, 0x00));
-  add("another byte too many", extended(question_of(1), 1, 0x5a));
-  add("padded to a multiple of eight bytes", extended(question_of(2), 4, 0x00));
-  add("nearly another body behind the last", extended(question_of(1), kBody - 1, 0x00));
-  add("another body behind the last", extended(question_of(1), kBody, 0x00));
-  add("a byte behind no bodies", extended(question_of(0), 1, 0x00));
-  add("two questions in one message", joined(question_of(1), question_of(1)));
-  add("a question and an answer in one message", joined(question_of(1), answer_of(1)));
+  add("one body announced, none there", with_count(request_of(0), 1));
+  add("cut after the first body's id", first(request_of(1), kFixed + 4));
+  add("cut within the position", first(request_of(1), kFixed + 15));
+  add("cut after the position", first(request_of(1), kFixed + 28));
+  add("cut within the quaternion", first(request_of(1), kFixed + 33));
+  add("cut before the velocities", first(request_of(1), kFixed + 60));
+  add("one body, its last byte missing", first(request_of(1), kFixed + kBody - 1));
+  add("three bodies, the last byte missing", first(request_of(3), kFixed + 3 * kBody - 1));
+  add("three bodies announced, two there", first(request_of(3), kFixed + 2 * kBody));
+  add("one body announced too few", with_count(request_of(2), 1));
+  add("no body announced, one there", with_count(request_of(1), 0));
+  add("INT_MAX bodies", with_count(request_of(1), INT_MAX));
+  add("INT_MAX bodies and nothing behind it", with_count(request_of(0), INT_MAX));
+  add("a number of bodies in little-endian order", with_count(request_of(1), 1 << 24));
+  add("2^30 bodies, which is no byte modulo 2^32", with_count(request_of(0), 1 << 30));
+  add("2^30 + 1 bodies, which is one body modulo 2^32", with_count(request_of(1), (1 << 30) + 1));
+  add("a million bodies", with_count(request_of(1), 1'000'000));
+  add("a zero byte too many", extended(request_of(1), 1, 0x00));
+  add("another byte too many", extended(request_of(1), 1, 0x5a));
+  add("padded to a multiple of eight bytes", extended(request_of(2), 4, 0x00));
+  add("nearly another body behind the last", extended(request_of(1), kBody - 1, 0x00));
+  add("another body behind the last", extended(request_of(1), kBody, 0x00));
+  add("a byte behind no bodies", extended(request_of(0), 1, 0x00));
+  add("two requests in one message", joined(request_of(1), request_of(1)));
+  add("a request and a response in one message", joined(request_of(1), response_of(1)));
   add("garbage behind the fingerprint", garbage_behind_fingerprint(1000, 6, 9));
   add("a large datagram of garbage behind the fingerprint",
       garbage_behind_fingerprint(kLargeDatagram, 7, 12345));
@@ -214,7 +215,7 @@ void add_of_wrong_length(std::vector<MalformedMessage>& list) {
 
 std::vector<MalformedMessage> malformed_messages() {
   std::vector<MalformedMessage> list;
-  list.push_back({"no bytes", {}, Rejection::kTruncated});
+  list.push_back({"no bytes", {}, DecodeError::kTruncated});
   add_truncated(list);
   add_foreign(list);
   add_miscounted(list);

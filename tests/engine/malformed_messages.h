@@ -1,5 +1,5 @@
-// Bytes that are not a question, one of every kind we could think of, each with the cause that it must be
-// counted by: for the exchange itself and for the service behind a real network.
+// Bytes that are not a request, one of every kind we could think of, each with the cause that it must be
+// counted by: for the handler itself and for the service behind a real network.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace buoyancy {
 struct MalformedMessage {
   std::string name;  // unique
   std::vector<std::uint8_t> bytes;
-  Rejection cause;
+  DecodeError cause;
 };
 
 // The same list, byte for byte, at every call.

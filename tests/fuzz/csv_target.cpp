@@ -1,5 +1,5 @@
 // Bytes as a CSV file of recorded poses. Every line must turn up once: as the header, blank, as a body of a
-// question, or reported; and the rows written out again, 17 digits each, must be read as the same questions.
+// request, or reported; and the rows written out again, 17 digits each, must be read as the same requests.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -50,43 +50,43 @@ std::int64_t utime_of(std::string_view line) {
   return std::strtoll(std::string(line.substr(0, line.find(','))).c_str(), nullptr, 10);
 }
 
-Question question_of(const RecordedEvent& recorded, std::size_t number) {
-  Question question;
-  law(!decode(recorded.bytes, question), "a question from CSV is a message of ours");
-  law(!question.bodies.empty() && question.bodies.size() <= kMostRowsPerQuestion, "a question has bodies");
-  law(question.key.utime == recorded.timestamp && question.key.session_id == 0 &&
-          question.key.seq == static_cast<std::int64_t>(number) && question.lead_time == 0.0,
-      "a question from CSV has its rows' utime, session 0, and counts from 0");
-  return question;
+WrenchRequest request_of(const RecordedEvent& recorded, std::size_t number) {
+  WrenchRequest request;
+  law(!decode(recorded.bytes, request), "a request from CSV is a message of ours");
+  law(!request.bodies.empty() && request.bodies.size() <= kMaxRowsPerRequest, "a request has bodies");
+  law(request.key.utime == recorded.timestamp && request.key.session_id == 0 &&
+          request.key.seq == static_cast<std::int64_t>(number) && request.lead_time == 0.0,
+      "a request from CSV has its rows' utime, session 0, and counts from 0");
+  return request;
 }
 
-// Walks along the lines: each is a row of the next question, or the next one reported.
-std::vector<Question> read_all(StateCsvReader& reader, const std::vector<std::string_view>& lines) {
-  std::vector<Question> questions;
+// Walks along the lines: each is a row of the next request, or the next one reported.
+std::vector<WrenchRequest> read_all(StateCsvReader& reader, const std::vector<std::string_view>& lines) {
+  std::vector<WrenchRequest> requests;
   std::int64_t offset = 0;
   std::size_t next_line = 0;
   while (true) {
-    const InputItem item = reader.next();
+    const LogItem item = reader.next();
     law(reader.offset() >= offset && reader.offset() <= reader.size(), "reading goes forward, to the end");
     offset = reader.offset();
-    if (std::holds_alternative<EndOfInput>(item)) break;
+    if (std::holds_alternative<EndOfLog>(item)) break;
     law(next_line < lines.size(), "a file has no more rows and reports than lines");
     if (const auto* recorded = std::get_if<RecordedEvent>(&item)) {
-      questions.push_back(question_of(*recorded, questions.size()));
-      const Question& question = questions.back();
-      law(question.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");
-      for (std::size_t row = 0; row < question.bodies.size(); ++row) {
-        law(utime_of(lines[next_line++]) == question.key.utime, "the rows of a question have its utime");
+      requests.push_back(request_of(*recorded, requests.size()));
+      const WrenchRequest& request = requests.back();
+      law(request.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");
+      for (std::size_t row = 0; row < request.bodies.size(); ++row) {
+        law(utime_of(lines[next_line++]) == request.key.utime, "the rows of a request have its utime");
       }
     } else {
-      law(!std::get<Damage>(item).description.empty(), "a report says what is wrong");
+      law(!std::get<CorruptSection>(item).description.empty(), "a report says what is wrong");
       ++next_line;
     }
   }
   law(offset == reader.size(), "the end is the end of the file");
-  law(std::holds_alternative<EndOfInput>(reader.next()), "the end stays the end");
+  law(std::holds_alternative<EndOfLog>(reader.next()), "the end stays the end");
   law(next_line == lines.size(), "every line is a row or reported");
-  return questions;
+  return requests;
 }
 
 void append(double value, std::string& row) {
@@ -95,11 +95,11 @@ void append(double value, std::string& row) {
   row += text;
 }
 
-std::string written_again(const std::vector<Question>& questions) {
+std::string written_again(const std::vector<WrenchRequest>& requests) {
   std::string text(kTwistHeader);
-  for (const Question& question : questions) {
-    for (const BodyState& body : question.bodies) {
-      text += std::to_string(question.key.utime) + "," + std::to_string(body.body_id);
+  for (const WrenchRequest& request : requests) {
+    for (const BodyState& body : request.bodies) {
+      text += std::to_string(request.key.utime) + "," + std::to_string(body.body_id);
       for (const double value : body.position) append(value, text);
       for (const double value : body.quaternion_wxyz) append(value, text);
       for (const double value : body.linear_velocity) append(value, text);
@@ -117,15 +117,15 @@ bool same(const std::array<double, kSize>& a, const std::array<double, kSize>& b
   });
 }
 
-void check_same_rows(const std::vector<Question>& first, const std::vector<Question>& second) {
+void check_same_rows(const std::vector<WrenchRequest>& first, const std::vector<WrenchRequest>& second) {
   std::vector<BodyState> rows;
-  for (const Question& question : first) {
-    rows.insert(rows.end(), question.bodies.begin(), question.bodies.end());
+  for (const WrenchRequest& request : first) {
+    rows.insert(rows.end(), request.bodies.begin(), request.bodies.end());
   }
   std::size_t row = 0;
-  for (const Question& question : second) {
-    law(question.bodies.size() <= rows.size() - row, "what we write has no more rows");
-    for (const BodyState& again : question.bodies) {
+  for (const WrenchRequest& request : second) {
+    law(request.bodies.size() <= rows.size() - row, "what we write has no more rows");
+    for (const BodyState& again : request.bodies) {
       const BodyState& body = rows[row++];
       law(body.body_id == again.body_id && same(body.position, again.position) &&
               same(body.quaternion_wxyz, again.quaternion_wxyz) &&
@@ -143,12 +143,12 @@ void check(std::string_view text) {
     law(reader.error().message().find('\n') == std::string::npos, "an error is one line");
     return;
   }
-  const std::vector<Question> questions = read_all(*reader, telling_lines(text));
+  const std::vector<WrenchRequest> requests = read_all(*reader, telling_lines(text));
 
-  const std::string again = written_again(questions);
+  const std::string again = written_again(requests);
   Expected<StateCsvReader> second = StateCsvReader::open(path_of_file_with(again));
   law(second.has_value(), "what we write has our header");
-  check_same_rows(questions, read_all(*second, telling_lines(again)));
+  check_same_rows(requests, read_all(*second, telling_lines(again)));
 }
 
 }  // namespace

@@ -63,18 +63,18 @@ void check_volume(const TriangleMesh& mesh, const MeshReport& report) {
 }
 
 // What make_hydrostatic_mesh() and the methods make of it: a status, or numbers.
-void check_answers(const ValidatedMesh& accepted) {
+void check_responses(const ValidatedMesh& accepted) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh(accepted);
   const Vec3 middle = mesh.center_B;
   for (const Method method : kAllMethods) {
     const Solver solver(mesh, method);
     for (const double turn : {0.0, 0.3}) {
       const Pose pose{.p_WB = -middle, .q_WB = Eigen::Quaterniond(1.0, turn, 0.5 * turn, 0.0)};
-      const BuoyancyAnswer answer = buoyancy(solver, pose, {}, middle);
-      law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-              answer.center_of_buoyancy_W.allFinite(),
-          "an answer holds numbers");
-      if (answer.status == BuoyancyStatus::kOk) hydrostatics(mesh, pose, {}, middle, middle);
+      const BuoyancyResult response = buoyancy(solver, pose, {}, middle);
+      law(response.force_W.allFinite() && response.torque_W.allFinite() && std::isfinite(response.volume) &&
+              response.center_of_buoyancy_W.allFinite(),
+          "a response holds numbers");
+      if (response.status == BuoyancyStatus::kOk) hydrostatics(mesh, pose, {}, middle, middle);
     }
   }
 }
@@ -112,8 +112,8 @@ void check(const FuzzMesh& input) {
   law(validation.mesh.has_value() != validation.refusal.has_value(), "a mesh is accepted or refused");
   if (validation.refusal) {
     const Error& refusal = *validation.refusal;
-    law(!refusal.found.empty() && !refusal.expectation.empty() && !refusal.cause.empty() &&
-            !refusal.remedy.empty(),
+    law(!refusal.actual.empty() && !refusal.expected.empty() && !refusal.cause.empty() &&
+            !refusal.hint.empty(),
         "a refusal says what was found, expected, why, and what to do");
     return;
   }
@@ -124,7 +124,7 @@ void check(const FuzzMesh& input) {
   check_again(validation, input.options);
   check_inside_out(input, validation);
   mass_properties(accepted.mesh);
-  check_answers(accepted);
+  check_responses(accepted);
 }
 
 }  // namespace

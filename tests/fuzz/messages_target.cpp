@@ -1,9 +1,9 @@
-// Bytes as packets from the network: every decoder on every packet, and an exchange with a small scene that
-// is asked all of them one after another, as questions and as bot_core's poses. What decodes must encode to
-// the same bytes; what is a question must be answered in its form, a repeat with the same bytes, and as an
-// exchange would that never saw the others.
+// Bytes as packets from the network: every decoder on every packet, and an handler with a small scene that
+// is asked all of them one after another, as requests and as bot_core's poses. What decodes must encode to
+// the same bytes; what is a request must be answered in its form, a repeat with the same bytes, and as an
+// handler would that never saw the others.
 //
-//   each packet   1 byte: bits 0-2 a kind of message (0 question, 1 answer, 2 hydrostatics, 3 status, else
+//   each packet   1 byte: bits 0-2 a kind of message (0 request, 1 answer, 2 hydrostatics, 3 status, else
 //                 none), bit 3 its fingerprint is written over the packet's head, bit 4 the number of bodies
 //                 that fits the length is written to its place
 //                 2 bytes: the packet's length, little-endian; then so many bytes, or all that are left
@@ -85,7 +85,8 @@ const std::array<Kind, 4>& kinds() {
   static const std::array<Kind, 4> kKinds = [] {
     Kind status{.empty = {}, .body_size = 0};
     encode(ServiceStatus{}, status.empty);
-    return std::array<Kind, 4>{kind_of<Question>(), kind_of<Answer>(), kind_of<BodiesHydrostatics>(), status};
+    return std::array<Kind, 4>{kind_of<WrenchRequest>(), kind_of<WrenchResponse>(),
+                               kind_of<BodiesHydrostatics>(), status};
   }();
   return kKinds;
 }
@@ -147,25 +148,25 @@ void check_wrench(const BodyWrench& wrench) {
       "a body that is not answered carries zeros");
 }
 
-bool same(const QuestionKey& a, const QuestionKey& b) {
+bool same(const RequestId& a, const RequestId& b) {
   return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
 }
 
-void check_answer(const Question& question, Bytes bytes) {
-  Answer answer;
-  law(!decode(bytes, answer), "an answer is a message of ours");
-  law(same(answer.key, question.key), "an answer carries its question's key");
-  law(answer.bodies.size() == question.bodies.size(), "an answer has its question's bodies");
-  for (std::size_t i = 0; i < answer.bodies.size(); ++i) {
-    law(answer.bodies[i].body_id == question.bodies[i].body_id, "bodies keep their order");
-    check_wrench(answer.bodies[i]);
+void check_response(const WrenchRequest& request, Bytes bytes) {
+  WrenchResponse response;
+  law(!decode(bytes, response), "a response is a message of ours");
+  law(same(response.key, request.key), "a response carries its request's key");
+  law(response.bodies.size() == request.bodies.size(), "a response has its request's bodies");
+  for (std::size_t i = 0; i < response.bodies.size(); ++i) {
+    law(response.bodies[i].body_id == request.bodies[i].body_id, "bodies keep their order");
+    check_wrench(response.bodies[i]);
   }
 }
 
-void check_hydrostatics(const Question& question, Bytes bytes) {
+void check_hydrostatics(const WrenchRequest& request, Bytes bytes) {
   const Scene& scene = small_scene();
   std::vector<std::int32_t> asking;
-  for (const BodyState& state : question.bodies) {
+  for (const BodyState& state : request.bodies) {
     const Body* body = scene.find(state.body_id);
     if (body != nullptr && body->hydrostatics) asking.push_back(body->id);
   }
@@ -173,7 +174,7 @@ void check_hydrostatics(const Question& question, Bytes bytes) {
   if (bytes.empty()) return;
   BodiesHydrostatics hydrostatics;
   law(!decode(bytes, hydrostatics), "hydrostatics are a message of ours");
-  law(same(hydrostatics.key, question.key), "hydrostatics carry their question's key");
+  law(same(hydrostatics.key, request.key), "hydrostatics carry their request's key");
   law(std::equal(asking.begin(), asking.end(), hydrostatics.bodies.begin(), hydrostatics.bodies.end(),
                  [](std::int32_t id, const BodyHydrostatics& body) { return id == body.body_id; }),
       "hydrostatics are of the bodies that ask");
@@ -184,72 +185,72 @@ Packet copy_of(Bytes bytes) {
 }
 
 // session: one that is asked all packets.
-void ask(const Packet& packet, Exchange& session) {
-  const auto key = peek_key(packet);
-  Question question;
-  const std::optional<Rejection> rejection = decode(packet, question);
-  law(key.has_value() == !rejection, "peek_key() and decode() agree on what is a question");
-  const Packet answer = copy_of(session.answer(packet));
-  const Packet hydrostatics = copy_of(session.hydrostatics());
+void send_request(const Packet& packet, RequestHandler& session) {
+  const auto key = peek_request_id(packet);
+  WrenchRequest request;
+  const std::optional<DecodeError> rejection = decode(packet, request);
+  law(key.has_value() == !rejection, "peek_request_id() and decode() agree on what is a request");
+  const Packet response = copy_of(session.handle(packet));
+  const Packet hydrostatics = copy_of(session.last_hydrostatics());
   if (rejection) {
-    law(key.error() == *rejection, "peek_key() and decode() agree on what is wrong");
-    law(answer.empty() && hydrostatics.empty(), "what is no question is not answered");
+    law(key.error() == *rejection, "peek_request_id() and decode() agree on what is wrong");
+    law(response.empty() && hydrostatics.empty(), "what is no request is not answered");
     return;
   }
-  law(same(*key, question.key), "peek_key() finds the question's key");
-  check_answer(question, answer);
-  check_hydrostatics(question, hydrostatics);
-  law(copy_of(session.answer(packet)) == answer && copy_of(session.hydrostatics()) == hydrostatics,
+  law(same(*key, request.key), "peek_request_id() finds the request's key");
+  check_response(request, response);
+  check_hydrostatics(request, hydrostatics);
+  law(copy_of(session.handle(packet)) == response && copy_of(session.last_hydrostatics()) == hydrostatics,
       "a repeat gets the same bytes");
-  Exchange fresh(small_scene(), {.max_sessions = 1, .threads = 1});
-  law(copy_of(fresh.answer(packet)) == answer && copy_of(fresh.hydrostatics()) == hydrostatics,
-      "an answer does not depend on earlier questions");
+  RequestHandler fresh(small_scene(), {.max_sessions = 1, .threads = 1});
+  law(copy_of(fresh.handle(packet)) == response && copy_of(fresh.last_hydrostatics()) == hydrostatics,
+      "a response does not depend on earlier requests");
 }
 
 // As a pose on a channel of its own.
-void ask_pose(const Packet& packet, PoseQuestions& poses, Exchange& session) {
-  const auto question = poses.question(0, packet);
-  law(question.has_value() == decode_bot_pose(packet).has_value(), "a pose asks a question");
-  if (!question) {
-    session.count_rejected(question.error());
+void ask_pose(const Packet& packet, PoseRequestAdapter& poses, RequestHandler& session) {
+  const auto request = poses.request(0, packet);
+  law(request.has_value() == decode_bot_pose(packet).has_value(), "a pose asks a request");
+  if (!request) {
+    session.record_rejected(request.error());
     return;
   }
-  const Packet asked = copy_of(*question);
-  law(decodes<Question>(asked), "what a pose asks is a question of ours");
-  ask(asked, session);
-  Answer answer;
+  const Packet asked = copy_of(*request);
+  law(decodes<WrenchRequest>(asked), "what a pose asks is a request of ours");
+  send_request(asked, session);
+  WrenchResponse response;
   Packet force_torque;
-  force_torque_of(session.answer(asked), answer, force_torque);
-  law(force_torque.size() == 8 + 8 + 6 * sizeof(double), "an answer about one body is a force and a torque");
+  encode_force_torque(session.handle(asked), response, force_torque);
+  law(force_torque.size() == 8 + 8 + 6 * sizeof(double), "a response about one body is a force and a torque");
 }
 
-void check_counters(const Exchange& exchange) {
+void check_counters(const RequestHandler& handler) {
   ServiceStatus status;
   status.version = "0";
-  status.counters = exchange.counters();
-  const Counters& c = status.counters;
-  law(c.questions == c.answered + c.repeated + c.rejected(), "every packet is counted once");
+  status.counters = handler.counters();
+  const ServiceCounters& c = status.counters;
+  law(c.requests == c.computed + c.retries + c.rejected(), "every packet is counted once");
   Packet bytes;
   encode(status, bytes);
-  law(decodes<ServiceStatus>(bytes), "the status of any exchange is a message of ours");
+  law(decodes<ServiceStatus>(bytes), "the status of any handler is a message of ours");
 }
 
 void check(FuzzBytes bytes) {
-  Exchange exchange(small_scene(), {.max_sessions = 2, .threads = 1});
-  PoseQuestions poses(
+  RequestHandler handler(small_scene(), {.max_sessions = 2, .threads = 1});
+  PoseRequestAdapter poses(
       {.channels = {{.channel = "POSE", .body_id = 1, .force_torque_channel = "FORCE_TORQUE"}},
        .velocity_frame = VelocityFrame::kBody,
        .lead_time = 0.01},
       7);
   while (!bytes.empty()) {
     const Packet packet = next_packet(bytes);
-    const int read_as = int{decodes<Question>(packet)} + int{decodes<Answer>(packet)} +
+    const int read_as = int{decodes<WrenchRequest>(packet)} + int{decodes<WrenchResponse>(packet)} +
                         int{decodes<BodiesHydrostatics>(packet)} + int{decodes<ServiceStatus>(packet)};
     law(read_as <= 1, "a packet is one kind of message");
-    ask(packet, exchange);
-    ask_pose(packet, poses, exchange);
+    send_request(packet, handler);
+    ask_pose(packet, poses, handler);
   }
-  check_counters(exchange);
+  check_counters(handler);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::int64_t kMostTriangles = 1500;  // of all bodies; more would cost the fuzzer its speed
+constexpr std::int64_t kMaxTriangles = 1500;  // of all bodies; more would cost the fuzzer its speed
 
 // docs/scene_file.md, "Shapes".
 std::int64_t triangle_count(const Shape& shape) {
@@ -47,7 +47,7 @@ std::int64_t triangle_count(const Shape& shape) {
 void check_error(const Error& error) {
   const std::string message = error.message();
   law(message.starts_with("fuzz.toml"), "an error names the file");
-  law(!error.found.empty() && !error.expectation.empty(), "an error says what was found and expected");
+  law(!error.actual.empty() && !error.expected.empty(), "an error says what was found and expected");
   const bool one_line = std::none_of(message.begin(), message.end(), [](char c) {
     const auto code = static_cast<unsigned char>(c);
     return code < 0x20 || code == 0x7f;
@@ -62,7 +62,7 @@ void check_water(const Water& water) {
   law(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
 }
 
-void check_client(const ClientSpec& client) {
+void check_client(const DynamicsSpec& client) {
   law(!(client.mass && client.density), "mass and density exclude each other");
   for (const auto& given : {client.mass, client.density}) {
     law(!given || (std::isfinite(*given) && *given > 0.0), "mass and density are above 0");
@@ -88,7 +88,7 @@ void check_description(const SceneDescription& scene) {
   std::set<std::int32_t> ids;
   for (const BodyDescription& body : scene.bodies) {
     law(ids.insert(body.id).second, "ids are unique");
-    law(!body.name.empty() && !body.where.empty(), "a body has a name and a place in the file");
+    law(!body.name.empty() && !body.source_location.empty(), "a body has a name and a place in the file");
     law(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
     law(body.tolerance >= 0.0 && body.tolerance <= 1.0, "a tolerance is from 0 to 1");
     law(body.reference_B.allFinite(), "the reference point is finite");
@@ -107,7 +107,7 @@ bool is_small_and_generated(const SceneDescription& scene) {
     const auto* shape = std::get_if<Shape>(&body.source);
     if (shape == nullptr) return false;
     triangles += triangle_count(*shape);
-    if (triangles > kMostTriangles) return false;
+    if (triangles > kMaxTriangles) return false;
   }
   return true;
 }
@@ -119,11 +119,11 @@ void check_prepared(const SceneDescription& description) {
   law(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"), "there is a report");
   for (const Body& body : scene->bodies()) {
     const Pose pose{.p_WB = body.client.position, .q_WB = body.client.orientation};
-    const BuoyancyAnswer answer = buoyancy(body.solver, pose, scene->water(), body.reference_B);
-    law(answer.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
-    law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-            answer.center_of_buoyancy_W.allFinite(),
-        "an answer holds numbers");
+    const BuoyancyResult response = buoyancy(body.solver, pose, scene->water(), body.reference_B);
+    law(response.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
+    law(response.force_W.allFinite() && response.torque_W.allFinite() && std::isfinite(response.volume) &&
+            response.center_of_buoyancy_W.allFinite(),
+        "a response holds numbers");
   }
 }
 

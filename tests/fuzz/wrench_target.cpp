@@ -33,7 +33,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kMostTriangles = 120;  // of a written mesh; the truth takes some 10 us for each
+constexpr std::size_t kMaxTriangles = 120;  // of a written mesh; the truth takes some 10 us for each
 
 // A mesh, prepared, as the oracle and as the methods see it.
 struct Subject {
@@ -155,8 +155,8 @@ bool may_be_asked(const Case& asked) {
 }
 
 bool is_moderate(double value) {
-  return value == 0.0 || (std::abs(value) <= std::ldexp(1.0, kLargestExponent) &&
-                          std::abs(value) >= std::ldexp(1.0, -kLargestExponent));
+  return value == 0.0 || (std::abs(value) <= std::ldexp(1.0, kMaxExponent) &&
+                          std::abs(value) >= std::ldexp(1.0, -kMaxExponent));
 }
 
 template <typename Values>
@@ -175,29 +175,29 @@ void check_within(const char* what, Method method, double error, double bound) {
   if (error <= bound) return;
   std::array<char, 120> figures{};
   std::snprintf(figures.data(), figures.size(), "%s of %s off by %.4g, bound %.4g", what,
-                std::string(name(method)).c_str(), error, bound);
+                std::string(to_string(method)).c_str(), error, bound);
   broken_law("the published bound holds", figures.data());
 }
 
-void check_answer(const BuoyancyAnswer& answer) {
-  law(answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-          answer.center_of_buoyancy_W.allFinite(),
-      "an answer holds numbers");
-  if (answer.status != BuoyancyStatus::kOk) {
-    law(answer.force_W.isZero(0.0) && answer.torque_W.isZero(0.0) && answer.volume == 0.0 &&
-            answer.center_of_buoyancy_W.isZero(0.0),
+void check_result(const BuoyancyResult& result) {
+  law(result.force_W.allFinite() && result.torque_W.allFinite() && std::isfinite(result.volume) &&
+          result.center_of_buoyancy_W.allFinite(),
+      "a result holds numbers");
+  if (result.status != BuoyancyStatus::kOk) {
+    law(result.force_W.isZero(0.0) && result.torque_W.isZero(0.0) && result.volume == 0.0 &&
+            result.center_of_buoyancy_W.isZero(0.0),
         "what is not answered is zero");
   }
 }
 
 void check_method(const Solver& solver, const Case& asked, const TrueWrench* truth) {
-  const BuoyancyAnswer answer = buoyancy(solver, asked.pose, asked.water, asked.reference_B);
-  check_answer(answer);
-  if (answer.status != BuoyancyStatus::kOk || truth == nullptr) return;
-  law(std::isfinite(answer.force_error_bound) && std::isfinite(answer.torque_error_bound),
+  const BuoyancyResult result = buoyancy(solver, asked.pose, asked.water, asked.reference_B);
+  check_result(result);
+  if (result.status != BuoyancyStatus::kOk || truth == nullptr) return;
+  law(std::isfinite(result.force_error_bound) && std::isfinite(result.torque_error_bound),
       "every method has bounds");
-  check_within("force", solver.method(), truth->force_error(answer.force_W), answer.force_error_bound);
-  check_within("torque", solver.method(), truth->torque_error(answer.torque_W), answer.torque_error_bound);
+  check_within("force", solver.method(), truth->force_error(result.force_W), result.force_error_bound);
+  check_within("torque", solver.method(), truth->torque_error(result.torque_W), result.torque_error_bound);
 }
 
 void check_hydrostatics(const Case& asked, const Subject& subject, const TrueWrench* truth) {
@@ -218,7 +218,7 @@ void check(FuzzBytes bytes) {
   std::optional<Subject> written;
   if (asked.mesh_is_written) {
     const FuzzMesh mesh = read_mesh(bytes);
-    if (mesh.imported.mesh.triangles.size() > kMostTriangles) return;
+    if (mesh.imported.mesh.triangles.size() > kMaxTriangles) return;
     written = subject_of(mesh.imported.mesh, mesh.options.open);
     if (!written) return;
   }

@@ -14,7 +14,7 @@
 
 namespace buoyancy {
 
-inline constexpr int kLargestExponent = 40;
+inline constexpr int kMaxExponent = 40;
 
 class TrueWrench {
  public:

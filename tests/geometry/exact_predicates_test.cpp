@@ -59,7 +59,7 @@ RC_GTEST_PROP(ExactPredicates, DecideThePlaneAsRationalArithmeticDoes, ()) {
   const int expected = rational_orient_3d(a, b, c, d);
   RC_ASSERT(orient_3d(a, b, c, d) == expected);
   RC_ASSERT(orient_3d(b, a, c, d) == -expected);
-  const int clear = orient_3d_if_clear(a, b, c, d);
+  const int clear = orient_3d_filtered(a, b, c, d);
   RC_ASSERT(clear == 0 || clear == expected);
 }
 

@@ -21,9 +21,9 @@ inline void expect_clear(const Error& error, const std::filesystem::path& file) 
   const std::string message = error.message();
   EXPECT_EQ(error.subject, file.string());
   EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0U) << message;
-  EXPECT_FALSE(error.found.empty()) << message;
-  EXPECT_FALSE(error.expectation.empty()) << message;
-  for (const char c : error.found + error.expectation + error.cause + error.remedy) {
+  EXPECT_FALSE(error.actual.empty()) << message;
+  EXPECT_FALSE(error.expected.empty()) << message;
+  for (const char c : error.actual + error.expected + error.cause + error.hint) {
     EXPECT_TRUE(c >= ' ' && c <= '~') << message;
   }
 }
@@ -68,7 +68,7 @@ class ImportTest : public testing::Test {
     EXPECT_EQ(errno, ECHILD);
   }
 
-  TemporaryDirectory directory_;
+  TempDir directory_;
 
  private:
   std::size_t descriptors_before_ = open_descriptors();

@@ -69,15 +69,15 @@ std::string sent(const Expected<ImportedMesh>& result) {
   return bytes;
 }
 
-bool broken(const std::variant<NoImport, Expected<ImportedMesh>>& answer) {
-  const NoImport* none = std::get_if<NoImport>(&answer);
-  return none != nullptr && *none == NoImport::kBroken;
+bool broken(const std::variant<ImportFailure, Expected<ImportedMesh>>& outcome) {
+  const ImportFailure* none = std::get_if<ImportFailure>(&outcome);
+  return none != nullptr && *none == ImportFailure::kBroken;
 }
 
 TEST_F(ImportPipe, CarriesAMeshBitForBit) {
   ASSERT_TRUE(send_import(ends_[1], triangle()));
-  const auto answer = receive();
-  const auto& result = std::get<Expected<ImportedMesh>>(answer);
+  const auto outcome = receive();
+  const auto& result = std::get<Expected<ImportedMesh>>(outcome);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->mesh.x, triangle().mesh.x);
   EXPECT_EQ(result->mesh.y, triangle().mesh.y);
@@ -94,18 +94,18 @@ TEST_F(ImportPipe, CarriesMoreThanThePipeHolds) {
   ImportedMesh large = triangle();
   for (int i = 0; i < 300'000; ++i) large.mesh.add_vertex({1.0 * i, 2.0 * i, 3.0 * i});
   std::thread sender([&] { EXPECT_TRUE(send_import(ends_[1], large)); });
-  const auto answer = receive();
+  const auto outcome = receive();
   sender.join();
-  EXPECT_EQ(std::get<Expected<ImportedMesh>>(answer)->mesh.z, large.mesh.z);
+  EXPECT_EQ(std::get<Expected<ImportedMesh>>(outcome)->mesh.z, large.mesh.z);
 }
 
 TEST_F(ImportPipe, CarriesAnErrorInPrintableCharacters) {
-  ASSERT_TRUE(send_import(ends_[1], failure({"", "a\nb\x1b[31m", "exp\xff", "", "do"})));
-  const auto answer = receive();
-  const Error& error = std::get<Expected<ImportedMesh>>(answer).error();
-  EXPECT_EQ(error.found, "a?b?[31m");
-  EXPECT_EQ(error.expectation, "exp?");
-  EXPECT_EQ(error.remedy, "do");
+  ASSERT_TRUE(send_import(ends_[1], make_error({"", "a\nb\x1b[31m", "exp\xff", "", "do"})));
+  const auto outcome = receive();
+  const Error& error = std::get<Expected<ImportedMesh>>(outcome).error();
+  EXPECT_EQ(error.actual, "a?b?[31m");
+  EXPECT_EQ(error.expected, "exp?");
+  EXPECT_EQ(error.hint, "do");
 }
 
 TEST_F(ImportPipe, TakesNothingThatEndsEarly) {
@@ -122,8 +122,8 @@ TEST_F(ImportPipe, TakesNothingThatEndsEarly) {
 
 TEST_F(ImportPipe, GivesUpAtTheDeadline) {
   write(sent(triangle()).substr(0, 20));
-  const auto answer = receive_import(ends_[0], {}, in(kSoon));
-  EXPECT_EQ(std::get<NoImport>(answer), NoImport::kTimedOut);
+  const auto outcome = receive_import(ends_[0], {}, in(kSoon));
+  EXPECT_EQ(std::get<ImportFailure>(outcome), ImportFailure::kTimedOut);
 }
 
 TEST_F(ImportPipe, BelievesNoCountAboveTheLimits) {
@@ -171,10 +171,10 @@ TEST_F(ImportPipe, SetsNoMemoryAsideForBytesThatDoNotCome) {
       ASSERT_EQ(::pipe(ends.data()), 0);
       ASSERT_EQ(::write(ends[1], wrong.data(), wrong.size()), static_cast<ssize_t>(wrong.size()));
       ::close(ends[1]);
-      const auto answer = receive_import(ends[0], {}, in(kLate));
+      const auto outcome = receive_import(ends[0], {}, in(kLate));
       ::close(ends[0]);
-      const auto* result = std::get_if<Expected<ImportedMesh>>(&answer);
-      EXPECT_TRUE(broken(answer) || (result != nullptr && !*result)) << at << ": " << value;
+      const auto* result = std::get_if<Expected<ImportedMesh>>(&outcome);
+      EXPECT_TRUE(broken(outcome) || (result != nullptr && !*result)) << at << ": " << value;
     }
   }
 }

@@ -134,7 +134,7 @@ TEST_F(ImportProcess, IsNotDisturbedBySignalsToTheProgram) {
 
 // The state letter of /proc/<pid>/stat; nothing if there is no such process.
 std::optional<char> process_state(pid_t pid) {
-  const std::string stat = read_bytes("/proc/" + std::to_string(pid) + "/stat");
+  const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t name_end = stat.rfind(") ");
   if (name_end == std::string::npos) return std::nullopt;
   return stat[name_end + 2];
@@ -159,7 +159,7 @@ pid_t importer_of(pid_t process, pid_t thread) {
   const bool started =
       becomes_true([&] { return static_cast<bool>(std::ifstream(children) >> importer) && importer > 0; });
   const std::string score = "/proc/" + std::to_string(importer) + "/oom_score_adj";
-  return started && becomes_true([&] { return read_bytes(score) == "1000\n"; }) ? importer : 0;
+  return started && becomes_true([&] { return read_file(score) == "1000\n"; }) ? importer : 0;
 }
 
 TEST_F(ImportProcess, LeavesNoImporterBehindWhenTheProgramIsKilled) {

@@ -27,7 +27,7 @@ TEST(MassProperties, OfABoxAreThoseOfItsClosedForm) {
 }
 
 TEST(MassProperties, OfATetrahedronAreThoseOfItsClosedForm) {
-  // Corner tetrahedron: volume 1/6, centroid 1/4, second moments 1/60 and 1/120 about the corner.
+  // ClipVertex tetrahedron: volume 1/6, centroid 1/4, second moments 1/60 and 1/120 about the corner.
   const MassProperties corner = mass_properties(tetrahedron_mesh());
   EXPECT_NEAR(corner.volume, 1.0 / 6.0, 1e-16);
   EXPECT_LE((corner.centroid_B - Vec3::Constant(0.25)).norm(), 1e-15);

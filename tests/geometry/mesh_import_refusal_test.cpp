@@ -222,7 +222,7 @@ TEST_F(MeshImportRefusal, GivesAMeshOrOneClearErrorForEveryTruncation) {
                            "glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", "FBX/spider.fbx",
                            "FBX/box.fbx", "3DS/fels.3ds"}) {
     if (fs::exists(models / name)) {
-      files.push_back({"model" + fs::path(name).extension().string(), read_bytes(models / name)});
+      files.push_back({"model" + fs::path(name).extension().string(), read_file(models / name)});
     }
   }
   ImportLimits limits;

@@ -37,7 +37,7 @@ ImportedMesh imported(const fs::path& file) {
 
 class MeshImport : public testing::Test {
  protected:
-  TemporaryDirectory directory_;
+  TempDir directory_;
 };
 
 TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
@@ -49,7 +49,7 @@ TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
     EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
     EXPECT_EQ(found.source.nodes, 1);
     EXPECT_EQ(found.source.left_out, 0);
-    EXPECT_EQ(found.source.format, name_of(*format_of(name)));
+    EXPECT_EQ(found.source.format, to_string(*format_from_path(name)));
   }
 }
 
@@ -201,7 +201,7 @@ TEST_F(MeshImport, SaysThatA3dsFileWasTurned) {
 
 TEST_F(MeshImport, TellsNothingOfAxesWhereTheFormatDoesNot) {
   for (const auto& [name, content] : tetrahedron_files()) {
-    const MeshFormat format = *format_of(name);
+    const MeshFormat format = *format_from_path(name);
     if (format != MeshFormat::kObj && format != MeshFormat::kPly && format != MeshFormat::kStl) continue;
     const ImportedMesh found = imported(directory_.write(name, content));
     EXPECT_EQ(found.source.up_axis, "not stated");

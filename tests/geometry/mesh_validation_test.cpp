@@ -21,7 +21,7 @@ void expect_refused(const MeshValidation& validation, const std::string& words) 
   ASSERT_TRUE(validation.refusal);
   EXPECT_EQ(validation.refusal->subject, "hull.stl");
   EXPECT_NE(validation.refusal->message().find(words), std::string::npos) << validation.refusal->message();
-  EXPECT_FALSE(validation.refusal->remedy.empty());
+  EXPECT_FALSE(validation.refusal->hint.empty());
 }
 
 TEST(MeshValidation, AcceptsAClosedMeshAndMeasuresIt) {

@@ -152,7 +152,8 @@ TEST(SelfIntersection, FindsBoxesPushedIntoEachOther) {
 }
 
 TEST(SelfIntersection, CountsTouching) {
-  // Corner of one cube on the middle of a face of the other; it has no common vertex with that face's halves.
+  // ClipVertex of one cube on the middle of a face of the other; it has no common vertex with that face's
+  // halves.
   TriangleMesh tip = tetrahedron_mesh();
   EXPECT_GT(
       count_intersecting_pairs(joined(cube_mesh(1), moved_mesh(tip, Mat3::Identity(), {0.5, 0.1, 0.2}))), 0);

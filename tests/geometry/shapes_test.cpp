@@ -373,7 +373,7 @@ RC_GTEST_PROP(EveryKnotOfTheWidestTube, DoesNotCrossItself, ()) {
       1, 0.001, p, q, 12 * std::max(p, q) + *rc::gen::inRange(0, 50), *rc::gen::inRange(3, 12)};
   const Expected<Shape> too_wide = check_shape(TorusKnotShape{1, 1, p, q, knot.tubular, knot.radial});
   RC_ASSERT(!too_wide.has_value());
-  knot.tube = std::stod(too_wide.error().expectation.substr(std::string("at most ").size()));
+  knot.tube = std::stod(too_wide.error().expected.substr(std::string("at most ").size()));
   RC_ASSERT(check_shape(knot).has_value());
   RC_ASSERT(count_intersecting_pairs(make_shape(knot)) == 0);
 }

@@ -31,8 +31,8 @@ struct Agreement {
 inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, const HydrostaticMesh& mesh,
                                                    int poses, std::uint64_t seed) {
   const BoundingBox box = bounding_box(source);
-  const double gate = mesh.volume_gate();
-  const double lever = mesh.largest_lever(mesh.center_B);
+  const double gate = mesh.volume_tolerance();
+  const double lever = mesh.max_lever_arm(mesh.center_B);
   std::vector<Agreement> found;
   for (const std::string& target : simd_targets()) found.push_back({.target = target});
   RandomPoses random(seed);

@@ -58,17 +58,17 @@ TEST(Immersion, AtAGlanceOrOfARoughPlaneIsCertainHoweverCloseTheBodyGrazes) {
     const auto expect_certain = [&](Immersion immersion) {
       if (immersion == Immersion::kDry) {
         EXPECT_EQ(below, 0) << i;
-      } else if (immersion == Immersion::kWet) {
+      } else if (immersion == Immersion::kSubmerged) {
         EXPECT_EQ(below, static_cast<int>(source.vertex_count())) << i;
       }
     };
-    const Immersion glance = immersion_at_a_glance(mesh, pose, water);
+    const Immersion glance = quick_immersion(mesh, pose, water);
     expect_certain(glance);
     const WaterPlane plane = within.plane_in_body(pose, water);
     expect_certain(immersion(mesh, plane));
     expect_certain(immersion(mesh, water_plane_in_body(pose, water, mesh.center_B)));
     dry += static_cast<int>(glance == Immersion::kDry);
-    wet += static_cast<int>(glance == Immersion::kWet);
+    wet += static_cast<int>(glance == Immersion::kSubmerged);
     rough += static_cast<int>(plane.error > 0.0);
   }
   EXPECT_GT(dry, 300);
@@ -78,12 +78,12 @@ TEST(Immersion, AtAGlanceOrOfARoughPlaneIsCertainHoweverCloseTheBodyGrazes) {
 
 TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
   for (const Method method : kAllMethods) {
-    const BuoyancyAnswer answer = buoyancy(Solver(unit_box(), method), at_height(0.6), {}, Vec3::Zero());
-    EXPECT_EQ(answer.status, BuoyancyStatus::kOk);
-    EXPECT_EQ(answer.immersion, Immersion::kDry);
-    EXPECT_EQ(answer.force_W, Vec3::Zero());
-    EXPECT_EQ(answer.volume, 0.0);
-    EXPECT_EQ(answer.force_error_bound, 0.0);
+    const BuoyancyResult result = buoyancy(Solver(unit_box(), method), at_height(0.6), {}, Vec3::Zero());
+    EXPECT_EQ(result.status, BuoyancyStatus::kOk);
+    EXPECT_EQ(result.immersion, Immersion::kDry);
+    EXPECT_EQ(result.force_W, Vec3::Zero());
+    EXPECT_EQ(result.volume, 0.0);
+    EXPECT_EQ(result.force_error_bound, 0.0);
   }
 }
 
@@ -96,9 +96,9 @@ TEST(Buoyancy, CallsAFaceOnTheWaterDry) {
 }
 
 TEST(Buoyancy, SaysNothingOfACentreThatTheVolumeDoesNotDetermine) {
-  const BuoyancyAnswer answer =
+  const BuoyancyResult result =
       buoyancy(Solver(unit_box(), Method::kExact), at_height(0.5 - 1e-16), {}, Vec3::Zero());
-  EXPECT_EQ(answer.center_of_buoyancy_W, Vec3::Zero());
+  EXPECT_EQ(result.center_of_buoyancy_W, Vec3::Zero());
 }
 
 TEST(Buoyancy, HasABoundOfRoundingAloneForExactMethodsAndForWhollyWetBodies) {
@@ -106,11 +106,11 @@ TEST(Buoyancy, HasABoundOfRoundingAloneForExactMethodsAndForWhollyWetBodies) {
   const double whole = water.density * water.gravity;
   for (const Method method : kAllMethods) {
     const Solver solver(unit_box(), method);
-    const BuoyancyAnswer cut = buoyancy(solver, at_height(0.1), water, Vec3::Zero());
-    EXPECT_EQ(cut.force_error_bound < 1e-12 * whole, is_exact(method)) << name(method);
-    EXPECT_EQ(cut.torque_error_bound < 1e-12 * whole, is_exact(method)) << name(method);
-    const BuoyancyAnswer wet = buoyancy(solver, at_height(-1.0), water, Vec3::Zero());
-    EXPECT_LT(wet.force_error_bound, 1e-12 * whole) << name(method);
+    const BuoyancyResult cut = buoyancy(solver, at_height(0.1), water, Vec3::Zero());
+    EXPECT_EQ(cut.force_error_bound < 1e-12 * whole, is_exact(method)) << to_string(method);
+    EXPECT_EQ(cut.torque_error_bound < 1e-12 * whole, is_exact(method)) << to_string(method);
+    const BuoyancyResult wet = buoyancy(solver, at_height(-1.0), water, Vec3::Zero());
+    EXPECT_LT(wet.force_error_bound, 1e-12 * whole) << to_string(method);
   }
 }
 
@@ -121,17 +121,17 @@ TEST(Buoyancy, RefusesWhatIsBeyondDoublesRangeInsteadOfAnsweringInfinity) {
     Water water;
     water.up_W = Vec3(0.6, 0, 0.8);
     pose.p_WB.x() = z;
-    const BuoyancyAnswer answer = buoyancy(solver, pose, water, Vec3::Zero());
-    EXPECT_EQ(answer.status, BuoyancyStatus::kOutOfRange);
-    EXPECT_EQ(answer.force_W, Vec3::Zero());
+    const BuoyancyResult result = buoyancy(solver, pose, water, Vec3::Zero());
+    EXPECT_EQ(result.status, BuoyancyStatus::kOutOfRange);
+    EXPECT_EQ(result.force_W, Vec3::Zero());
   }
   Water heavy;
   heavy.density = 1e300;
   heavy.gravity = 1e300;
-  const BuoyancyAnswer answer = buoyancy(solver, at_height(0), heavy, Vec3::Zero());
-  EXPECT_EQ(answer.status, BuoyancyStatus::kOutOfRange);
-  EXPECT_EQ(answer.torque_W, Vec3::Zero());
-  EXPECT_EQ(answer.volume, 0.0);
+  const BuoyancyResult result = buoyancy(solver, at_height(0), heavy, Vec3::Zero());
+  EXPECT_EQ(result.status, BuoyancyStatus::kOutOfRange);
+  EXPECT_EQ(result.torque_W, Vec3::Zero());
+  EXPECT_EQ(result.volume, 0.0);
 }
 
 // A box without its lid: boundary at z = 0.5.
@@ -150,19 +150,19 @@ HydrostaticMesh open_box() {
 
 TEST(Buoyancy, OfAnOpenMeshIsExactWhileItsBoundaryIsDryAndRefusedOtherwise) {
   const HydrostaticMesh mesh = open_box();
-  ASSERT_TRUE(mesh.open());
+  ASSERT_TRUE(mesh.is_open());
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     const Solver solver(mesh, method);
-    const BuoyancyAnswer floating = buoyancy(solver, at_height(0.2), {}, Vec3::Zero());
+    const BuoyancyResult floating = buoyancy(solver, at_height(0.2), {}, Vec3::Zero());
     EXPECT_EQ(floating.status, BuoyancyStatus::kOk);
     EXPECT_NEAR(floating.volume, 0.3, 1e-15);
-    const BuoyancyAnswer awash = buoyancy(solver, at_height(-0.5), {}, Vec3::Zero());
+    const BuoyancyResult awash = buoyancy(solver, at_height(-0.5), {}, Vec3::Zero());
     EXPECT_EQ(awash.status, BuoyancyStatus::kOk) << "a boundary on the plane is dry";
     EXPECT_NEAR(awash.volume, 1.0, 1e-15);
-    const BuoyancyAnswer sunk = buoyancy(solver, at_height(-0.51), {}, Vec3::Zero());
+    const BuoyancyResult sunk = buoyancy(solver, at_height(-0.51), {}, Vec3::Zero());
     EXPECT_EQ(sunk.status, BuoyancyStatus::kOpenEdgeWet);
     EXPECT_EQ(sunk.force_W, Vec3::Zero());
-    const BuoyancyAnswer dry = buoyancy(solver, at_height(2), {}, Vec3::Zero());
+    const BuoyancyResult dry = buoyancy(solver, at_height(2), {}, Vec3::Zero());
     EXPECT_EQ(dry.status, BuoyancyStatus::kOk);
   }
 }
@@ -176,11 +176,11 @@ TEST(Buoyancy, StaysFiniteWithDenormalPosesAndMeshes) {
       for (const double z : {0.0, denormal, -denormal, 1e-310}) {
         Pose pose = at_height(z);
         pose.q_WB.x() = denormal;
-        const BuoyancyAnswer answer = buoyancy(Solver(*mesh, method), pose, {}, Vec3::Zero());
-        EXPECT_TRUE(answer.force_W.allFinite() && answer.torque_W.allFinite() &&
-                    std::isfinite(answer.volume));
-        EXPECT_TRUE(answer.center_of_buoyancy_W.allFinite());
-        EXPECT_TRUE(std::isfinite(answer.dropped_force) && std::isfinite(answer.dropped_torque));
+        const BuoyancyResult result = buoyancy(Solver(*mesh, method), pose, {}, Vec3::Zero());
+        EXPECT_TRUE(result.force_W.allFinite() && result.torque_W.allFinite() &&
+                    std::isfinite(result.volume));
+        EXPECT_TRUE(result.center_of_buoyancy_W.allFinite());
+        EXPECT_TRUE(std::isfinite(result.dropped_force) && std::isfinite(result.dropped_torque));
       }
     }
   }
@@ -193,12 +193,12 @@ TEST(Buoyancy, OfAMeshScaledByAPowerOfTwoHasTheSameBits) {
   const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
   const Water unit{.density = 1, .gravity = 1};
   for (const Method method : kAllMethods) {
-    const BuoyancyAnswer answer =
+    const BuoyancyResult result =
         buoyancy(Solver(mesh, method), {Vec3(0, 0, 0.125), tilted}, unit, Vec3::Zero());
-    const BuoyancyAnswer small =
+    const BuoyancyResult small =
         buoyancy(Solver(scaled, method), {Vec3(0, 0, 0.125 * 0x1p-20), tilted}, unit, Vec3::Zero());
-    EXPECT_EQ(small.volume * 0x1p60, answer.volume) << name(method);
-    EXPECT_EQ(Vec3(small.torque_W * 0x1p80), answer.torque_W) << name(method);
+    EXPECT_EQ(small.volume * 0x1p60, result.volume) << to_string(method);
+    EXPECT_EQ(Vec3(small.torque_W * 0x1p80), result.torque_W) << to_string(method);
   }
 }
 
@@ -215,7 +215,7 @@ TEST(Buoyancy, TakesNothingFromTheHeapAfterWarmUpWhateverTheMethodAndTolerance) 
       buoyancy(solver, at_height(0.0), {}, Vec3::Zero());  // afloat: a dry body would warm nothing up
       const AllocationCount allocations;
       for (const Pose& pose : poses) buoyancy(solver, pose, {}, Vec3::Zero());
-      EXPECT_EQ(allocations.count(), 0) << name(method) << ", tolerance " << tolerance;
+      EXPECT_EQ(allocations.count(), 0) << to_string(method) << ", tolerance " << tolerance;
     }
   }
 }

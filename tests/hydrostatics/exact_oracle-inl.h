@@ -56,7 +56,7 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
   const auto apex = Point<T>::from(apex_o);
 
   SettledHeights<T> heights(mesh, pose, water);
-  std::vector<Corner<T>> corners;
+  std::vector<ClipVertex<T>> corners;
   corners.reserve(mesh.vertex_count());
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     const Vec3T<T> y = mesh.vertex(static_cast<std::int32_t>(i)).template cast<T>() - o_B.template cast<T>();
@@ -73,7 +73,7 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
     }
   };
   PairwiseSum<Term> sum;
-  const auto add = [&](const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
+  const auto add = [&](const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c) {
     const Point<T> p = a.y - apex;
     const Point<T> q = b.y - apex;
     const Point<T> r = c.y - apex;
@@ -82,14 +82,14 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
     sum.add({v6, v6 * (p + q + r)});
   };
   for (const Triangle& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t n) -> const Corner<T>& {
+    const auto corner = [&](std::size_t n) -> const ClipVertex<T>& {
       return corners[static_cast<std::size_t>(triangle[n])];
     };
     const int wet = int(corner(0).wet()) + int(corner(1).wet()) + int(corner(2).wet());
     if (wet == 3) {
       add(corner(0), corner(1), corner(2));
     } else if (wet != 0) {
-      visit_wet_part(corner(0), corner(1), corner(2), add);
+      for_each_wet_triangle(corner(0), corner(1), corner(2), add);
     }
   }
   const Term total = sum.total();

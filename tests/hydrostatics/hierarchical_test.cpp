@@ -125,7 +125,7 @@ TEST(Hierarchical, VisitsAWaterlineAndNotTheMesh) {
   TreeQuery query{};
   query.k = query.k_high = {0, 0, 1};
   query.axes = {2, 0, 1};
-  const WetTreeSum sum = sum_wet_tree(*mesh.tree, query);
+  const WettedTreeSum sum = sum_wet_tree(*mesh.tree, query);
   EXPECT_GT(sum.leaves_clipped, 100);
   EXPECT_LT(sum.leaves_clipped, 900) << "of " << mesh.tree->leaves.size();
   EXPECT_LT(sum.nodes_visited, 900) << "of " << mesh.tree->nodes.size();
@@ -158,12 +158,12 @@ TEST(Hierarchical, AnswersEightThreadsAtOnceAsItAnswersOne) {
         });
       }
       for (std::thread& thread : threads) thread.join();
-      EXPECT_EQ(different, (std::array<int, 8>{})) << name(method) << ", tolerance " << tolerance;
+      EXPECT_EQ(different, (std::array<int, 8>{})) << to_string(method) << ", tolerance " << tolerance;
     }
   }
 }
 
-// Bits of an answer, gathered by FNV-1a.
+// Bits of a result, gathered by FNV-1a.
 class BitHash {
  public:
   void add(double value) {

@@ -256,9 +256,9 @@ TEST(Hydrostatics, AgreeWithTheWrenchOnVolumeAndCentre) {
     for (int i = 0; i < 200; ++i) {
       const Pose pose = i % 2 == 0 ? random.crossing(bounding_box(named.mesh), kWater)
                                    : random.adversarial(named.mesh, kWater);
-      const BuoyancyAnswer wrench = buoyancy(solver, pose, kWater, mesh.center_B);
+      const BuoyancyResult wrench = buoyancy(solver, pose, kWater, mesh.center_B);
       const Hydrostatics found = of(mesh, pose, mesh.center_B);
-      EXPECT_LE(std::abs(found.volume - wrench.volume), 2 * mesh.volume_gate())
+      EXPECT_LE(std::abs(found.volume - wrench.volume), 2 * mesh.volume_tolerance())
           << named.name << ", pose " << i;
       if (wrench.volume > 1e-3 * mesh.volume) {
         expect_near(found.center_of_buoyancy_W, wrench.center_of_buoyancy_W,

@@ -133,15 +133,15 @@ TEST(PaperMethods, AllGiveTheWholeVolumeWhenWhollySubmerged) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
   const Pose pose{Vec3(0, 0, -2), Eigen::Quaterniond::Identity()};
   for (const Method method : kAllMethods) {
-    const BuoyancyAnswer answer = buoyancy(Solver(mesh, method), pose, kPaperWater, Vec3::Zero());
-    EXPECT_NEAR(answer.volume, 1.0, 1e-13) << name(method);
-    EXPECT_NEAR(answer.force_W.z(), 1.0, 1e-13) << name(method);
-    EXPECT_LE(answer.torque_W.norm(), 1e-13) << name(method);
+    const BuoyancyResult result = buoyancy(Solver(mesh, method), pose, kPaperWater, Vec3::Zero());
+    EXPECT_NEAR(result.volume, 1.0, 1e-13) << to_string(method);
+    EXPECT_NEAR(result.force_W.z(), 1.0, 1e-13) << to_string(method);
+    EXPECT_LE(result.torque_W.norm(), 1e-13) << to_string(method);
   }
 }
 
 TEST(PaperMethods, AreFoundByTheirNamesAndByNoOther) {
-  for (const Method method : kAllMethods) EXPECT_EQ(method_from_name(name(method)), method);
+  for (const Method method : kAllMethods) EXPECT_EQ(method_from_name(to_string(method)), method);
   EXPECT_EQ(method_from_name("exactly"), std::nullopt);
   EXPECT_EQ(method_from_name(""), std::nullopt);
 }
@@ -149,7 +149,7 @@ TEST(PaperMethods, AreFoundByTheirNamesAndByNoOther) {
 class Approximations : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(PaperMethods, Approximations,
                          testing::Values(Method::kFast, Method::kImproved, Method::kFastSurface),
-                         [](const auto& method) { return std::string(name(method.param)); });
+                         [](const auto& method) { return std::string(to_string(method.param)); });
 
 TEST_P(Approximations, StayWithinTheirBoundsOnEveryMeshAndPose) {
   for (const NamedMesh& named : closed_test_meshes()) {
@@ -162,18 +162,18 @@ TEST_P(Approximations, StayWithinTheirBoundsOnEveryMeshAndPose) {
       if (i % 4 == 3) water.up_W = random.direction();
       const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(named.mesh, water);
       const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.direction();
-      const BuoyancyAnswer answer = buoyancy(solver, pose, water, reference_B);
+      const BuoyancyResult result = buoyancy(solver, pose, water, reference_B);
       const auto truth = exact_displacement<Ball>(named.mesh, pose, water);
       const Vec3T<Ball> torque_W = exactly_in_world<Ball>(pose, truth.torque(reference_B));
       Vec3 force_error;
       Vec3 torque_error;
       for (int j = 0; j < 3; ++j) {
         force_error[j] =
-            static_cast<double>((truth.volume * Ball(water.up_W[j])).distance(answer.force_W[j]));
-        torque_error[j] = static_cast<double>(torque_W[j].distance(answer.torque_W[j]));
+            static_cast<double>((truth.volume * Ball(water.up_W[j])).distance(result.force_W[j]));
+        torque_error[j] = static_cast<double>(torque_W[j].distance(result.torque_W[j]));
       }
-      EXPECT_LE(force_error.norm(), answer.force_error_bound) << named.name;
-      EXPECT_LE(torque_error.norm(), answer.torque_error_bound) << named.name;
+      EXPECT_LE(force_error.norm(), result.force_error_bound) << named.name;
+      EXPECT_LE(torque_error.norm(), result.torque_error_bound) << named.name;
     }
   }
 }
@@ -187,7 +187,7 @@ TEST(Approximations, OfTheWaterlineTellByTheirBoundThatRefiningHelps) {
           make_hydrostatic_mesh({make_shape(BoxShape{.segments = {segments, segments, segments}}), {}});
       const double finer =
           buoyancy(Solver(mesh, method), tilted, kPaperWater, Vec3::Zero()).force_error_bound;
-      EXPECT_LT(finer, 0.5 * bound) << name(method) << ", " << segments;
+      EXPECT_LT(finer, 0.5 * bound) << to_string(method) << ", " << segments;
       bound = finer;
     }
   }

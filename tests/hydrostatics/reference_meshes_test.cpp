@@ -63,16 +63,16 @@ TEST_F(ReferenceMeshes, GiveTheReferenceVolumesAndCentresBelowEveryPlane) {
       ++planes;
       const Water water = water_below(vec3(plane.at("normal")), plane.at("offset"));
       for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
-        const BuoyancyAnswer answer = buoyancy(Solver(mesh, method), {}, water, Vec3::Zero());
+        const BuoyancyResult result = buoyancy(Solver(mesh, method), {}, water, Vec3::Zero());
         const std::string where =
-            file + " " + plane.at("name").get<std::string>() + " " + std::string(name(method));
+            file + " " + plane.at("name").get<std::string>() + " " + std::string(to_string(method));
         const double expected = plane.at("volume_below");
-        EXPECT_NEAR(answer.volume, expected, (cracked ? 1e-5 : 1e-11) * mesh.volume) << where;
-        EXPECT_LE((answer.center_of_buoyancy_W - vec3(plane.at("cb"))).norm(),
+        EXPECT_NEAR(result.volume, expected, (cracked ? 1e-5 : 1e-11) * mesh.volume) << where;
+        EXPECT_LE((result.center_of_buoyancy_W - vec3(plane.at("cb"))).norm(),
                   (cracked ? 1e-5 : 1e-9) * std::cbrt(mesh.volume))
             << where;
-        EXPECT_LE(answer.force_error_bound, 1e-11 * mesh.volume) << where;
-        EXPECT_LE(answer.torque_error_bound, 1e-11 * mesh.volume * mesh.largest_lever(Vec3::Zero())) << where;
+        EXPECT_LE(result.force_error_bound, 1e-11 * mesh.volume) << where;
+        EXPECT_LE(result.torque_error_bound, 1e-11 * mesh.volume * mesh.max_lever_arm(Vec3::Zero())) << where;
       }
     }
   }
@@ -103,15 +103,16 @@ TEST_F(ReferenceMeshes, OpenBunnyIsRefusedOrAnsweredWhereverItsHolesAreDry) {
     const Vec3 middle = closed_mesh.center_B;
     const Water water = water_below(up, up.dot(middle) + 0.3 * closed_mesh.diagonal * std::sin(3.7 * i));
     for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
-      const BuoyancyAnswer answer = buoyancy(Solver(open_mesh, method), {}, water, Vec3::Zero());
-      const BuoyancyAnswer expected = buoyancy(Solver(closed_mesh, method), {}, water, Vec3::Zero());
-      if (answer.status == BuoyancyStatus::kOpenEdgeWet) {
+      const BuoyancyResult result = buoyancy(Solver(open_mesh, method), {}, water, Vec3::Zero());
+      const BuoyancyResult expected = buoyancy(Solver(closed_mesh, method), {}, water, Vec3::Zero());
+      if (result.status == BuoyancyStatus::kOpenEdgeWet) {
         ++refused;
         continue;
       }
       ++answered;
-      EXPECT_NEAR(answer.volume, expected.volume, 1e-11 * closed_mesh.volume) << name(method);
-      EXPECT_LE((answer.torque_W - expected.torque_W).norm(), 1e-11 * closed_mesh.volume) << name(method);
+      EXPECT_NEAR(result.volume, expected.volume, 1e-11 * closed_mesh.volume) << to_string(method);
+      EXPECT_LE((result.torque_W - expected.torque_W).norm(), 1e-11 * closed_mesh.volume)
+          << to_string(method);
     }
   }
   EXPECT_GT(answered, 30);
@@ -126,7 +127,7 @@ TEST_F(ReferenceMeshes, DirtyWamVIsRefusedWithWhatIsWrongWithIt) {
     EXPECT_GT(validation.report.balanced_edges, 0);
     EXPECT_GT(validation.report.misoriented_edges, 0);
     EXPECT_NE(validation.refusal->message().find("wamv_dirty.dae"), std::string::npos);
-    EXPECT_FALSE(validation.refusal->remedy.empty());
+    EXPECT_FALSE(validation.refusal->hint.empty());
   }
 }
 

@@ -37,8 +37,8 @@ Mat6 stiffness_by_dual_numbers(const HydrostaticMesh& mesh, const Pose& pose, co
                                const Vec3& reference_B) {
   using DualVec = Vec3T<Dual>;
   const DualPlane plane = dual_water_plane(mesh, pose, water, reference_B);
-  const auto floating =
-      read_out<Dual>(wet_moments_by_hand<Dual>(mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
+  const auto floating = displacement_moments<Dual>(
+      wet_moments_by_hand<Dual>(mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
   const DualVec force_B = floating.volume * plane.up_B;
   const DualVec torque_B = floating.moment.cross(plane.up_B) + plane.c_from_r.cross(force_B);
   const Dual weight(water.density * water.gravity);

@@ -86,9 +86,9 @@ TEST(Stiffness, IsWhatForceAndTorqueOfBuoyancyChangeBy) {
           const Vec3 change = sign * h * along;
           const Pose moved = column < 3 ? displaced(pose, reference_B, change, Vec3::Zero())
                                         : displaced(pose, reference_B, Vec3::Zero(), change);
-          const BuoyancyAnswer answer = buoyancy(solver, moved, water, reference_B);
+          const BuoyancyResult result = buoyancy(solver, moved, water, reference_B);
           Eigen::Matrix<double, 6, 1> both;
-          both << answer.force_W, answer.torque_W;
+          both << result.force_W, result.torque_W;
           return both;
         };
         differences.col(column) = (wrench(-1.0) - wrench(1.0)) / (2.0 * h);

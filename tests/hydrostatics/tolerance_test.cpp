@@ -31,7 +31,7 @@ Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh,
   const Solver within(mesh, Method::kHierarchical, tolerance);
   const Solver exactly(mesh, Method::kHierarchical);
   const BoundingBox box = bounding_box(source);
-  const double gate = mesh.volume_gate();
+  const double gate = mesh.volume_tolerance();
   RandomPoses random(seed);
   Worst worst;
   for (int i = 0; i < poses; ++i) {
@@ -39,22 +39,22 @@ Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh,
     if (i % 4 == 3) water.up_W = random.direction();
     const Pose pose = i % 5 == 4 ? random.adversarial(source, water) : random.crossing(box, water);
     const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.uniform(0, 1) * random.direction();
-    const BuoyancyAnswer answer = buoyancy(within, pose, water, reference_B);
-    const BuoyancyAnswer truth = buoyancy(exactly, pose, water, reference_B);
-    if (answer.immersion == Immersion::kDry) continue;
-    const double least = mesh.holds_gate() ? 4.0 * gate : mesh.largest_rounding_bound();
+    const BuoyancyResult result = buoyancy(within, pose, water, reference_B);
+    const BuoyancyResult truth = buoyancy(exactly, pose, water, reference_B);
+    if (result.immersion == Immersion::kDry) continue;
+    const double least = mesh.meets_volume_tolerance() ? 4.0 * gate : mesh.largest_rounding_bound();
     const double allowed = std::max(tolerance * mesh.volume, least);
-    worst.bound = std::max(worst.bound, answer.force_error_bound / allowed);
+    worst.bound = std::max(worst.bound, result.force_error_bound / allowed);
     worst.bound =
-        std::max(worst.bound, answer.torque_error_bound / (allowed * mesh.largest_lever(reference_B)));
+        std::max(worst.bound, result.torque_error_bound / (allowed * mesh.max_lever_arm(reference_B)));
     // The truth has an error of its own, which is one gate at most.
     worst.force =
-        std::max(worst.force, (answer.force_W - truth.force_W).norm() / (answer.force_error_bound + gate));
+        std::max(worst.force, (result.force_W - truth.force_W).norm() / (result.force_error_bound + gate));
     worst.force =
-        std::max(worst.force, std::abs(answer.volume - truth.volume) / (answer.force_error_bound + gate));
+        std::max(worst.force, std::abs(result.volume - truth.volume) / (result.force_error_bound + gate));
     worst.torque =
-        std::max(worst.torque, (answer.torque_W - truth.torque_W).norm() /
-                                   (answer.torque_error_bound + gate * mesh.largest_lever(reference_B)));
+        std::max(worst.torque, (result.torque_W - truth.torque_W).norm() /
+                                   (result.torque_error_bound + gate * mesh.max_lever_arm(reference_B)));
   }
   return worst;
 }
@@ -111,13 +111,13 @@ TEST(Tolerance, TakesTheWaterInPlainDoubleOnlyWhereThatIsFarBelowIt) {
     water.up_W = random.direction();
     const Vec3 aside = std::pow(10.0, random.uniform(0, 10)) * random.direction();
     Pose pose{aside - (water.up_W.dot(aside) - random.uniform(-1, 1)) * water.up_W, random.rotation()};
-    const BuoyancyAnswer answer = buoyancy(within, pose, water, mesh.center_B);
-    const BuoyancyAnswer truth = buoyancy(exactly, pose, water, mesh.center_B);
-    const double gate = mesh.volume_gate();
-    EXPECT_LE((answer.force_W - truth.force_W).norm(), answer.force_error_bound + gate);
-    EXPECT_LE((answer.torque_W - truth.torque_W).norm(),
-              answer.torque_error_bound + gate * mesh.largest_lever(mesh.center_B));
-    EXPECT_LE(answer.force_error_bound, 1e-6 * mesh.volume);
+    const BuoyancyResult result = buoyancy(within, pose, water, mesh.center_B);
+    const BuoyancyResult truth = buoyancy(exactly, pose, water, mesh.center_B);
+    const double gate = mesh.volume_tolerance();
+    EXPECT_LE((result.force_W - truth.force_W).norm(), result.force_error_bound + gate);
+    EXPECT_LE((result.torque_W - truth.torque_W).norm(),
+              result.torque_error_bound + gate * mesh.max_lever_arm(mesh.center_B));
+    EXPECT_LE(result.force_error_bound, 1e-6 * mesh.volume);
   }
 }
 
@@ -147,9 +147,9 @@ TEST(Tolerance, HasRoomForEveryTreeAfterOneOfMoreNodesAndFewerInnerOnes) {
   for (const HydrostaticMesh* const mesh : {&wide, &deep}) {
     const Solver within(*mesh, Method::kHierarchical, 0.1);
     const Solver exactly(*mesh, Method::kHierarchical);
-    const BuoyancyAnswer answer = buoyancy(within, pose, kUnitWater, Vec3::Zero());
-    const BuoyancyAnswer truth = buoyancy(exactly, pose, kUnitWater, Vec3::Zero());
-    EXPECT_LE((answer.force_W - truth.force_W).norm(), answer.force_error_bound);
+    const BuoyancyResult result = buoyancy(within, pose, kUnitWater, Vec3::Zero());
+    const BuoyancyResult truth = buoyancy(exactly, pose, kUnitWater, Vec3::Zero());
+    EXPECT_LE((result.force_W - truth.force_W).norm(), result.force_error_bound);
   }
 }
 
@@ -176,13 +176,13 @@ TEST(Tolerance, LooksAtLessOfTheMeshTheMoreItAllows) {
   std::int64_t visited = sum_wet_tree(*mesh.tree, query).nodes_visited;
   for (const double tolerance : {1e-4, 1e-3, 1e-2}) {
     query.budget = tolerance * mesh.volume;
-    const WetTreeSum sum = sum_wet_tree(*mesh.tree, query);
+    const WettedTreeSum sum = sum_wet_tree(*mesh.tree, query);
     EXPECT_LT(sum.nodes_visited, visited);
     EXPECT_LE(sum.undecided.error, query.budget);
     EXPECT_GT(sum.nodes_undecided, 0);
     visited = sum.nodes_visited;
   }
-  EXPECT_LT(visited, 100) << "at 1e-2 the answer hardly depends on the mesh";
+  EXPECT_LT(visited, 100) << "at 1e-2 the result hardly depends on the mesh";
 }
 
 TEST(Tolerance, KeepsTheCentreOfBuoyancyWhereTheVolumeIs) {

@@ -14,14 +14,14 @@ namespace {
 
 template <typename T>
 struct Clipped {
-  std::vector<std::array<Corner<T>, 3>> triangles;
+  std::vector<std::array<ClipVertex<T>, 3>> triangles;
   Vec3T<T> twice_area = Vec3T<T>::Constant(T(0));
 };
 
 template <typename T>
-Clipped<T> clip(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
+Clipped<T> clip(const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c) {
   Clipped<T> clipped;
-  visit_wet_part(a, b, c, [&](const Corner<T>& p, const Corner<T>& q, const Corner<T>& r) {
+  for_each_wet_triangle(a, b, c, [&](const ClipVertex<T>& p, const ClipVertex<T>& q, const ClipVertex<T>& r) {
     clipped.triangles.push_back({p, q, r});
     clipped.twice_area += cross(q.y - p.y, r.y - p.y).vec3();
   });
@@ -29,9 +29,9 @@ Clipped<T> clip(const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
 }
 
 // A triangle of integer corners whose heights are their z coordinates.
-Corner<Rational> random_corner(RandomPoses& random) {
+ClipVertex<Rational> random_corner(RandomPoses& random) {
   const auto coordinate = [&] { return Rational(static_cast<int>(random.pick(41)) - 20); };
-  Corner<Rational> corner{{coordinate(), coordinate(), coordinate()}, Rational(0)};
+  ClipVertex<Rational> corner{{coordinate(), coordinate(), coordinate()}, Rational(0)};
   corner.z = corner.y.z;
   return corner;
 }
@@ -40,13 +40,13 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
   RandomPoses random(5);
   int cut_triangles = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Corner<Rational> a = random_corner(random);
-    const Corner<Rational> b = random_corner(random);
-    const Corner<Rational> c = random_corner(random);
+    const ClipVertex<Rational> a = random_corner(random);
+    const ClipVertex<Rational> b = random_corner(random);
+    const ClipVertex<Rational> c = random_corner(random);
     const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
     if (wet == 0 || wet == 3 || a.z == 0 || b.z == 0 || c.z == 0) continue;
     ++cut_triangles;
-    const auto mirrored = [](Corner<Rational> corner) {
+    const auto mirrored = [](ClipVertex<Rational> corner) {
       corner.z = -corner.z;
       return corner;
     };
@@ -57,7 +57,7 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
     const Vec3T<Rational> whole = cross(b.y - a.y, c.y - a.y).vec3();
     EXPECT_EQ(Vec3T<Rational>(below.twice_area + above.twice_area), whole);
     for (const auto& triangle : below.triangles) {
-      for (const Corner<Rational>& corner : triangle) {
+      for (const ClipVertex<Rational>& corner : triangle) {
         EXPECT_LE(corner.z, Rational(0));
         EXPECT_EQ(corner.z, corner.y.z) << "a cut point lies where the edge meets the water";
       }
@@ -69,10 +69,10 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
 TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
   RandomPoses random(6);
   for (int i = 0; i < 1000; ++i) {
-    const Corner<double> wet{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
-    const Corner<double> dry{Point<double>::from(random.direction()), random.uniform(0, 1)};
-    const Corner<double> left{Point<double>::from(random.direction()), random.uniform(0, 1)};
-    const Corner<double> right{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
+    const ClipVertex<double> wet{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
+    const ClipVertex<double> dry{Point<double>::from(random.direction()), random.uniform(0, 1)};
+    const ClipVertex<double> left{Point<double>::from(random.direction()), random.uniform(0, 1)};
+    const ClipVertex<double> right{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
     const auto one = clip(wet, dry, left);     // the edge runs wet to dry, one corner wet
     const auto other = clip(dry, wet, right);  // and dry to wet, two corners wet
     EXPECT_EQ(one.triangles[0][1].y.vec3(), other.triangles[0][0].y.vec3());
@@ -80,9 +80,9 @@ TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
 }
 
 TEST(TriangleClip, TakesACornerOnTheWaterForDry) {
-  const Corner<double> on{{0, 0, 0}, 0.0};
-  const Corner<double> below{{1, 0, -1}, -1.0};
-  const Corner<double> also_below{{0, 1, -1}, -1.0};
+  const ClipVertex<double> on{{0, 0, 0}, 0.0};
+  const ClipVertex<double> below{{1, 0, -1}, -1.0};
+  const ClipVertex<double> also_below{{0, 1, -1}, -1.0};
   EXPECT_FALSE(on.wet());
   const auto clipped = clip(on, below, also_below);
   EXPECT_EQ(clipped.twice_area, Vec3(Vec3(1, 0, -1).cross(Vec3(0, 1, -1)))) << "nothing is lost";

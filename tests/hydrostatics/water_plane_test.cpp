@@ -15,13 +15,13 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // Water, pose and centre over many orders of magnitude, and the plane that they make, exactly.
-struct FarQuestion {
+struct FarRequest {
   Water water;
   Pose pose;
   Vec3 c_B = Vec3::Zero();
   ExactPlane<Rational> exact;  // about c
 
-  FarQuestion(RandomPoses& random, double quaternion_norm) {
+  FarRequest(RandomPoses& random, double quaternion_norm) {
     const auto somewhere = [&](double largest_exponent) {
       return Vec3(random.direction() * std::pow(10.0, random.uniform(-3, largest_exponent)));
     };
@@ -38,7 +38,7 @@ struct FarQuestion {
 TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
   RandomPoses random(1);
   for (int i = 0; i < 2000; ++i) {
-    const FarQuestion asked(random, random.uniform(0.999, 1.001));
+    const FarRequest asked(random, random.uniform(0.999, 1.001));
     const WaterPlane plane = water_plane_in_body(asked.pose, asked.water, asked.c_B);
 
     for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
 TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
   RandomPoses random(5);
   for (int i = 0; i < 2000; ++i) {
-    const FarQuestion asked(random, std::pow(10.0, random.uniform(-20, 20)));
+    const FarRequest asked(random, std::pow(10.0, random.uniform(-20, 20)));
     const double reach = std::pow(10.0, random.uniform(-3, 3));
     const Vec3 y = reach * random.direction();
 

@@ -9,20 +9,20 @@ SurfaceMoments<T> wet_moments_by_hand(const TriangleMesh& mesh, const Vec3T<T>& 
   SurfaceMoments<T> moments;
   const auto corner = [&](std::int32_t i) {
     const Vec3T<T> y = mesh.vertex(i).template cast<T>();
-    return Corner<T>{Point<T>::from(y), T(up.dot(y) - h)};
+    return ClipVertex<T>{Point<T>::from(y), T(up.dot(y) - h)};
   };
-  const auto add = [&](const Corner<T>& a, const Corner<T>& b, const Corner<T>& c) {
+  const auto add = [&](const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c) {
     moments += moments_of_triangle<T>(a.y.vec3(), b.y.vec3(), c.y.vec3());
   };
   for (const Triangle& triangle : mesh.triangles) {
-    const Corner<T> a = corner(triangle[0]);
-    const Corner<T> b = corner(triangle[1]);
-    const Corner<T> c = corner(triangle[2]);
+    const ClipVertex<T> a = corner(triangle[0]);
+    const ClipVertex<T> b = corner(triangle[1]);
+    const ClipVertex<T> c = corner(triangle[2]);
     const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
     if (wet == 3) {
       add(a, b, c);
     } else if (wet != 0) {
-      visit_wet_part(a, b, c, add);
+      for_each_wet_triangle(a, b, c, add);
     }
   }
   return moments;
@@ -32,9 +32,11 @@ template SurfaceMoments<Rational> wet_moments_by_hand<Rational>(const TriangleMe
                                                                 const Rational&);
 template SurfaceMoments<Dual> wet_moments_by_hand<Dual>(const TriangleMesh&, const Vec3T<Dual>&, const Dual&);
 
-template struct FloatingMoments<Rational>;
-template FloatingMoments<Rational> read_out<Rational>(const SurfaceMoments<Rational>&, const Rational&,
-                                                      const Vec3T<Rational>&);
-template FloatingMoments<Dual> read_out<Dual>(const SurfaceMoments<Dual>&, const Dual&, const Vec3T<Dual>&);
+template struct DisplacementMoments<Rational>;
+template DisplacementMoments<Rational> displacement_moments<Rational>(const SurfaceMoments<Rational>&,
+                                                                      const Rational&,
+                                                                      const Vec3T<Rational>&);
+template DisplacementMoments<Dual> displacement_moments<Dual>(const SurfaceMoments<Dual>&, const Dual&,
+                                                              const Vec3T<Dual>&);
 
 }  // namespace buoyancy

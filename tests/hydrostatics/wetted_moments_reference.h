@@ -16,10 +16,11 @@ namespace buoyancy {
 template <typename T>
 SurfaceMoments<T> wet_moments_by_hand(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h);
 
-extern template struct FloatingMoments<Rational>;
-extern template FloatingMoments<Rational> read_out<Rational>(const SurfaceMoments<Rational>&, const Rational&,
-                                                             const Vec3T<Rational>&);
-extern template FloatingMoments<Dual> read_out<Dual>(const SurfaceMoments<Dual>&, const Dual&,
-                                                     const Vec3T<Dual>&);
+extern template struct DisplacementMoments<Rational>;
+extern template DisplacementMoments<Rational> displacement_moments<Rational>(const SurfaceMoments<Rational>&,
+                                                                             const Rational&,
+                                                                             const Vec3T<Rational>&);
+extern template DisplacementMoments<Dual> displacement_moments<Dual>(const SurfaceMoments<Dual>&, const Dual&,
+                                                                     const Vec3T<Dual>&);
 
 }  // namespace buoyancy

@@ -45,19 +45,20 @@ double difference(const Matrix& exact, const Eigen::MatrixXd& found) {
 // Of the product and in rationals, both about the product's point.
 struct BothReadOuts {
   WetMoments wet;
-  FloatingMoments<double> found;
-  FloatingMoments<Rational> exact;
+  DisplacementMoments<double> found;
+  DisplacementMoments<Rational> exact;
 };
 
 BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
   const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
   BothReadOuts both;
   both.wet = wet_moments(*mesh.tree, plane);
-  both.found = read_out(both.wet.moments, both.wet.height, plane.up_B);
+  both.found = displacement_moments(both.wet.moments, both.wet.height, plane.up_B);
   const Vec3T<Rational> k = exact_plane<Rational>(pose, kWater).up_B;
   const Rational h_c = Rational(kWater.level) - kWater.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
                        k.dot(mesh.center_B.cast<Rational>());
-  const auto about_c = read_out<Rational>(wet_moments_by_hand<Rational>(mesh.surface, k, h_c), -h_c, k);
+  const auto about_c =
+      displacement_moments<Rational>(wet_moments_by_hand<Rational>(mesh.surface, k, h_c), -h_c, k);
   both.exact = about_c.moved(both.wet.point.cast<Rational>());
   return both;
 }
@@ -77,7 +78,7 @@ TEST(WetMoments, LeadToReadOutsThatAreExactToRounding) {
       const double L = mesh.diagonal;
       grow(worst.volume, std::abs(to_double(both.exact.volume - Rational(both.found.volume))));
       grow(worst.moment, difference(both.exact.moment, both.found.moment) / (area * L * L));
-      // Where a face lies in the surface to within rounding, so does the question whether it is waterplane.
+      // Where a face lies in the surface to within rounding, so does the request whether it is waterplane.
       if (i % 4 == 3) continue;
       grow(worst.area,
            std::abs(to_double(both.exact.waterplane_area - Rational(both.found.waterplane_area))) / area);
@@ -87,7 +88,7 @@ TEST(WetMoments, LeadToReadOutsThatAreExactToRounding) {
            difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments) /
                (area * L * L));
     }
-    EXPECT_LE(worst.volume, mesh.volume_gate()) << named.name;
+    EXPECT_LE(worst.volume, mesh.volume_tolerance()) << named.name;
     for (const double error : {worst.moment, worst.area, worst.waterplane_moment, worst.second_moments}) {
       EXPECT_LE(error, 4.0) << named.name;
     }
@@ -106,7 +107,7 @@ TEST(WetMoments, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
       pose.p_WB.z() = 0.5 * (dry + wet);
       const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
       const WetMoments moments = wet_moments(*mesh.tree, plane);
-      const double volume = read_out(moments.moments, moments.height, plane.up_B).volume;
+      const double volume = displacement_moments(moments.moments, moments.height, plane.up_B).volume;
       (volume < 1e-6 * mesh.volume ? dry : wet) = pose.p_WB.z();
     }
     const BothReadOuts both = read_out_twice(mesh, pose);

@@ -76,14 +76,14 @@ template <typename Decode>
 void expect_only_the_exact_length(const Decode& decode, const std::vector<std::uint8_t>& whole) {
   ASSERT_TRUE(decode(whole));
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_EQ(decode(Bytes(whole).first(size)).error(), Rejection::kTruncated) << size;
+    EXPECT_EQ(decode(Bytes(whole).first(size)).error(), DecodeError::kTruncated) << size;
   }
   std::vector<std::uint8_t> longer = whole;
   longer.push_back(0);
-  EXPECT_EQ(decode(longer).error(), Rejection::kLength);
+  EXPECT_EQ(decode(longer).error(), DecodeError::kLength);
   std::vector<std::uint8_t> other = whole;
   ++other[3];
-  EXPECT_EQ(decode(other).error(), Rejection::kFingerprint);
+  EXPECT_EQ(decode(other).error(), DecodeError::kFingerprint);
 }
 
 TEST(BotCore, NothingButAMessageOfItsTypesExactLengthIsRead) {
@@ -91,8 +91,8 @@ TEST(BotCore, NothingButAMessageOfItsTypesExactLengthIsRead) {
   expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(pose()));
   expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(bot_core::rigid_transform_t{}));
   expect_only_the_exact_length(decode_six_axis_force_torque, force_torque);
-  EXPECT_EQ(decode_bot_pose(force_torque).error(), Rejection::kFingerprint);
-  EXPECT_EQ(decode_six_axis_force_torque(encoded_by_lcm(pose())).error(), Rejection::kFingerprint);
+  EXPECT_EQ(decode_bot_pose(force_torque).error(), DecodeError::kFingerprint);
+  EXPECT_EQ(decode_six_axis_force_torque(encoded_by_lcm(pose())).error(), DecodeError::kFingerprint);
 }
 
 }  // namespace

@@ -28,29 +28,29 @@ void randomise(std::array<double, kSize>& values) {
   for (double& value : values) value = random_double();
 }
 
-inline QuestionKey random_key() {
+inline RequestId random_key() {
   return {.utime = random_integer<std::int64_t>(),
           .session_id = random_integer<std::int64_t>(),
           .seq = random_integer<std::int64_t>()};
 }
 
-inline Question random_question() {
-  Question question{.key = random_key(), .lead_time = random_double(), .bodies = {}};
-  question.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
-  for (BodyState& body : question.bodies) {
+inline WrenchRequest random_request() {
+  WrenchRequest request{.key = random_key(), .lead_time = random_double(), .bodies = {}};
+  request.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyState& body : request.bodies) {
     body.body_id = random_integer<std::int32_t>();
     randomise(body.position);
     randomise(body.quaternion_wxyz);
     randomise(body.linear_velocity);
     randomise(body.angular_velocity);
   }
-  return question;
+  return request;
 }
 
-inline Answer random_answer() {
-  Answer answer{.key = random_key(), .bodies = {}};
-  answer.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
-  for (BodyWrench& body : answer.bodies) {
+inline WrenchResponse random_response() {
+  WrenchResponse response{.key = random_key(), .bodies = {}};
+  response.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyWrench& body : response.bodies) {
     body.body_id = random_integer<std::int32_t>();
     body.status = static_cast<BodyStatus>(random_integer<std::int32_t>());
     randomise(body.force);
@@ -60,7 +60,7 @@ inline Answer random_answer() {
     body.force_error_bound = random_double();
     body.torque_error_bound = random_double();
   }
-  return answer;
+  return response;
 }
 
 inline BodiesHydrostatics random_hydrostatics() {

@@ -30,19 +30,19 @@ ServiceStatus random_status() {
   status.instance_id = random_integer<std::int64_t>();
   status.version = random_text();
   status.scene = random_text();
-  status.mode = static_cast<Mode>(random_integer<std::int32_t>());
+  status.mode = static_cast<ServiceMode>(random_integer<std::int32_t>());
   status.simd_target = static_cast<SimdTarget>(random_integer<std::int32_t>());
   status.threads = random_integer<std::int32_t>();
   status.scene_bodies = random_integer<std::int32_t>();
-  Counters& c = status.counters;
-  for (std::int64_t* counter : {&c.questions,
-                                &c.answered,
-                                &c.repeated,
-                                &c.changed_repeats,
+  ServiceCounters& c = status.counters;
+  for (std::int64_t* counter : {&c.requests,
+                                &c.computed,
+                                &c.retries,
+                                &c.conflicting_retries,
                                 &c.stale,
-                                &c.overtaken,
+                                &c.superseded,
                                 &c.sessions,
-                                &c.sessions_forgotten,
+                                &c.sessions_evicted,
                                 &c.rejected_truncated,
                                 &c.rejected_fingerprint,
                                 &c.rejected_count,
@@ -55,7 +55,7 @@ ServiceStatus random_status() {
                                 &c.hydrostatics,
                                 &status.reloads,
                                 &status.reloads_failed,
-                                &status.not_sent,
+                                &status.send_failures,
                                 &status.packets_dropped,
                                 &status.fragments_dropped}) {
     *counter = random_integer<std::int64_t>();
@@ -74,7 +74,7 @@ std::int64_t count(const ServiceStatus& status, BodyStatus body) {
 }
 
 ByteVector encoded_by_lcm(const ServiceStatus& status) {
-  const Counters& c = status.counters;
+  const ServiceCounters& c = status.counters;
   service_status_t message{};
   message.utime = status.utime;
   message.instance_id = status.instance_id;
@@ -87,17 +87,17 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.scene_bodies = status.scene_bodies;
   message.reloads = status.reloads;
   message.reloads_failed = status.reloads_failed;
-  message.not_sent = status.not_sent;
+  message.send_failures = status.send_failures;
   message.packets_dropped = status.packets_dropped;
   message.fragments_dropped = status.fragments_dropped;
-  message.questions = c.questions;
-  message.answered = c.answered;
-  message.repeated = c.repeated;
-  message.changed_repeats = c.changed_repeats;
+  message.requests = c.requests;
+  message.computed = c.computed;
+  message.retries = c.retries;
+  message.conflicting_retries = c.conflicting_retries;
   message.stale = c.stale;
-  message.overtaken = c.overtaken;
+  message.superseded = c.superseded;
   message.sessions = c.sessions;
-  message.sessions_forgotten = c.sessions_forgotten;
+  message.sessions_evicted = c.sessions_evicted;
   message.rejected_truncated = c.rejected_truncated;
   message.rejected_fingerprint = c.rejected_fingerprint;
   message.rejected_count = c.rejected_count;
@@ -169,8 +169,8 @@ TEST(StatusMessage, NamesInstructionSetsByTheConstantsOfTheDefinition) {
 }
 
 TEST(StatusMessage, NamesModesByTheConstantsOfTheDefinition) {
-  EXPECT_EQ(static_cast<std::int32_t>(Mode::kLockstep), service_status_t::MODE_LOCKSTEP);
-  EXPECT_EQ(static_cast<std::int32_t>(Mode::kLatest), service_status_t::MODE_LATEST);
+  EXPECT_EQ(static_cast<std::int32_t>(ServiceMode::kLockstep), service_status_t::MODE_LOCKSTEP);
+  EXPECT_EQ(static_cast<std::int32_t>(ServiceMode::kLatest), service_status_t::MODE_LATEST);
 }
 
 TEST(StatusMessage, RejectsEveryTruncation) {
@@ -179,7 +179,7 @@ TEST(StatusMessage, RejectsEveryTruncation) {
   ServiceStatus status;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), status),
-              size < shortest ? Rejection::kTruncated : Rejection::kLength)
+              size < shortest ? DecodeError::kTruncated : DecodeError::kLength)
         << size << " bytes";
   }
 }
@@ -187,14 +187,14 @@ TEST(StatusMessage, RejectsEveryTruncation) {
 TEST(StatusMessage, RejectsLengthsOfStringsThatDoNotFit) {
   struct Case {
     std::int32_t length;
-    Rejection expected;
+    DecodeError expected;
   };
   constexpr std::size_t kSceneLength = kVersionLength + 4 + 6;
   for (const std::size_t offset : {kVersionLength, kSceneLength}) {
     for (const Case& c :
-         {Case{0, Rejection::kCount}, Case{-1, Rejection::kCount}, Case{INT_MIN, Rejection::kCount},
-          Case{1, Rejection::kLength}, Case{5, Rejection::kLength}, Case{7, Rejection::kLength},
-          Case{INT_MAX, Rejection::kLength}}) {
+         {Case{0, DecodeError::kCount}, Case{-1, DecodeError::kCount}, Case{INT_MIN, DecodeError::kCount},
+          Case{1, DecodeError::kLength}, Case{5, DecodeError::kLength}, Case{7, DecodeError::kLength},
+          Case{INT_MAX, DecodeError::kLength}}) {
       ByteVector bytes = with_version("1.2.3", "scene");
       set_length(bytes, offset, c.length);
       ServiceStatus status;
@@ -208,10 +208,10 @@ TEST(StatusMessage, RejectsAStringThatDoesNotEndWhereItsLengthSays) {
   for (const std::size_t text : {kVersionLength + 4, kVersionLength + 4 + 6 + 4}) {
     ByteVector no_nul = with_version("1.2.3", "scene");
     no_nul[text + 5] = 'x';
-    EXPECT_EQ(decode(no_nul, status), Rejection::kLength);
+    EXPECT_EQ(decode(no_nul, status), DecodeError::kLength);
     ByteVector early_nul = with_version("1.2.3", "scene");
     early_nul[text + 2] = 0;
-    EXPECT_EQ(decode(early_nul, status), Rejection::kLength);
+    EXPECT_EQ(decode(early_nul, status), DecodeError::kLength);
   }
 }
 
@@ -219,10 +219,10 @@ TEST(StatusMessage, RejectsTrailingBytesAndOtherFingerprints) {
   ServiceStatus status;
   ByteVector longer = with_version("1");
   longer.push_back(0);
-  EXPECT_EQ(decode(longer, status), Rejection::kLength);
+  EXPECT_EQ(decode(longer, status), DecodeError::kLength);
   ByteVector foreign = with_version("1");
   foreign[3] ^= 1U;
-  EXPECT_EQ(decode(foreign, status), Rejection::kFingerprint);
+  EXPECT_EQ(decode(foreign, status), DecodeError::kFingerprint);
 }
 
 TEST(StatusMessage, RejectionLeavesTheStatusUnchanged) {
@@ -250,8 +250,8 @@ TEST(StatusMessage, TakesNothingFromTheHeapAfterWarmUp) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-TEST(Counters, RejectedIsTheSumOverTheCauses) {
-  Counters counters;
+TEST(ServiceCounters, RejectedIsTheSumOverTheCauses) {
+  ServiceCounters counters;
   counters.rejected_truncated = 1;
   counters.rejected_fingerprint = 10;
   counters.rejected_count = 100;
@@ -259,19 +259,19 @@ TEST(Counters, RejectedIsTheSumOverTheCauses) {
   EXPECT_EQ(counters.rejected(), 1111);
 }
 
-TEST(Counters, AreAllOnTheWireAndInASum) {
-  Counters one;
+TEST(ServiceCounters, AreAllOnTheWireAndInASum) {
+  ServiceCounters one;
   LayoutSize visited;
   visit_counters(visited, one);
-  EXPECT_EQ(visited.size(), sizeof(Counters));
-  one.questions = 3;
+  EXPECT_EQ(visited.size(), sizeof(ServiceCounters));
+  one.requests = 3;
   one.bodies[2] = 4;
   one.hydrostatics = 5;
   one.largest_dropped_force = 0.25;
-  Counters sum = one;
+  ServiceCounters sum = one;
   sum.largest_dropped_force = 0.5;
   sum += one;
-  EXPECT_EQ(sum.questions, 6);
+  EXPECT_EQ(sum.requests, 6);
   EXPECT_EQ(sum.bodies[2], 8);
   EXPECT_EQ(sum.hydrostatics, 10);
   EXPECT_EQ(sum.largest_dropped_force, 0.5);

@@ -19,11 +19,11 @@ namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
 
-constexpr std::size_t kQuestionFixed = 44;
+constexpr std::size_t kRequestFixed = 44;
 constexpr std::size_t kBodyState = 108;
-constexpr std::size_t kAnswerFixed = 36;
+constexpr std::size_t kResponseFixed = 36;
 constexpr std::size_t kBodyWrench = 104;
-constexpr std::size_t kBodyHydrostatics = 512;  // behind a head like an answer's
+constexpr std::size_t kBodyHydrostatics = 512;  // behind a head like a response's
 
 template <typename Message>
 ByteVector encoded(const Message& message) {
@@ -37,14 +37,14 @@ void copy(const std::array<double, kSize>& from, double (&to)[kSize]) {
   std::copy(from.begin(), from.end(), to);
 }
 
-body_states_t as_generated(const Question& question) {
+body_states_t as_generated(const WrenchRequest& request) {
   body_states_t message{};
-  message.utime = question.key.utime;
-  message.session_id = question.key.session_id;
-  message.seq = question.key.seq;
-  message.lead_time = question.lead_time;
-  message.num_bodies = static_cast<std::int32_t>(question.bodies.size());
-  for (const BodyState& body : question.bodies) {
+  message.utime = request.key.utime;
+  message.session_id = request.key.session_id;
+  message.seq = request.key.seq;
+  message.lead_time = request.lead_time;
+  message.num_bodies = static_cast<std::int32_t>(request.bodies.size());
+  for (const BodyState& body : request.bodies) {
     body_state_t& to = message.bodies.emplace_back();
     to.body_id = body.body_id;
     copy(body.position, to.position);
@@ -55,13 +55,13 @@ body_states_t as_generated(const Question& question) {
   return message;
 }
 
-body_wrenches_t as_generated(const Answer& answer) {
+body_wrenches_t as_generated(const WrenchResponse& response) {
   body_wrenches_t message{};
-  message.utime = answer.key.utime;
-  message.session_id = answer.key.session_id;
-  message.seq = answer.key.seq;
-  message.num_bodies = static_cast<std::int32_t>(answer.bodies.size());
-  for (const BodyWrench& body : answer.bodies) {
+  message.utime = response.key.utime;
+  message.session_id = response.key.session_id;
+  message.seq = response.key.seq;
+  message.num_bodies = static_cast<std::int32_t>(response.bodies.size());
+  for (const BodyWrench& body : response.bodies) {
     body_wrench_t& to = message.bodies.emplace_back();
     to.body_id = body.body_id;
     to.status = static_cast<std::int32_t>(body.status);
@@ -105,11 +105,11 @@ bodies_hydrostatics_t as_generated(const BodiesHydrostatics& hydrostatics) {
   return message;
 }
 
-ByteVector question_of(std::size_t bodies) {
-  Question question{.key = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
-  question.bodies.resize(bodies);
-  for (std::size_t i = 0; i < bodies; ++i) question.bodies[i].body_id = static_cast<std::int32_t>(i);
-  return encoded(question);
+ByteVector request_of(std::size_t bodies) {
+  WrenchRequest request{.key = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
+  request.bodies.resize(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) request.bodies[i].body_id = static_cast<std::int32_t>(i);
+  return encoded(request);
 }
 
 void set_count(ByteVector& bytes, std::size_t fixed_size, std::int32_t count) {
@@ -119,32 +119,32 @@ void set_count(ByteVector& bytes, std::size_t fixed_size, std::int32_t count) {
 }
 
 RC_GTEST_PROP(Wire, EncodesQuestionsAsTheGeneratedCodeDoes, ()) {
-  const Question question = random_question();
-  RC_ASSERT(encoded(question) == encoded_by_lcm(as_generated(question)));
+  const WrenchRequest request = random_request();
+  RC_ASSERT(encoded(request) == encoded_by_lcm(as_generated(request)));
 }
 
 RC_GTEST_PROP(Wire, EncodesAnswersAsTheGeneratedCodeDoes, ()) {
-  const Answer answer = random_answer();
-  RC_ASSERT(encoded(answer) == encoded_by_lcm(as_generated(answer)));
+  const WrenchResponse response = random_response();
+  RC_ASSERT(encoded(response) == encoded_by_lcm(as_generated(response)));
 }
 
 RC_GTEST_PROP(Wire, DecodesQuestionsOfTheGeneratedCode, ()) {
-  const body_states_t message = as_generated(random_question());
+  const body_states_t message = as_generated(random_request());
   const ByteVector bytes = encoded_by_lcm(message);
-  Question question = random_question();  // what was there before must not matter
-  RC_ASSERT(!decode(bytes, question).has_value());
-  RC_ASSERT(question.key.utime == message.utime);
-  RC_ASSERT(question.key.session_id == message.session_id);
-  RC_ASSERT(question.key.seq == message.seq);
-  RC_ASSERT(question.bodies.size() == message.bodies.size());
-  RC_ASSERT(encoded_by_lcm(as_generated(question)) == bytes);
+  WrenchRequest request = random_request();  // what was there before must not matter
+  RC_ASSERT(!decode(bytes, request).has_value());
+  RC_ASSERT(request.key.utime == message.utime);
+  RC_ASSERT(request.key.session_id == message.session_id);
+  RC_ASSERT(request.key.seq == message.seq);
+  RC_ASSERT(request.bodies.size() == message.bodies.size());
+  RC_ASSERT(encoded_by_lcm(as_generated(request)) == bytes);
 }
 
 RC_GTEST_PROP(Wire, DecodesAnswersOfTheGeneratedCode, ()) {
-  const ByteVector bytes = encoded_by_lcm(as_generated(random_answer()));
-  Answer answer = random_answer();
-  RC_ASSERT(!decode(bytes, answer).has_value());
-  RC_ASSERT(encoded_by_lcm(as_generated(answer)) == bytes);
+  const ByteVector bytes = encoded_by_lcm(as_generated(random_response()));
+  WrenchResponse response = random_response();
+  RC_ASSERT(!decode(bytes, response).has_value());
+  RC_ASSERT(encoded_by_lcm(as_generated(response)) == bytes);
 }
 
 RC_GTEST_PROP(Wire, EncodesHydrostaticsAsTheGeneratedCodeDoes, ()) {
@@ -160,51 +160,51 @@ RC_GTEST_PROP(Wire, DecodesHydrostaticsOfTheGeneratedCode, ()) {
 }
 
 RC_GTEST_PROP(Wire, PeeksTheKeyThatDecodingFinds, ()) {
-  const Question question = random_question();
-  const auto key = peek_key(encoded(question));
+  const WrenchRequest request = random_request();
+  const auto key = peek_request_id(encoded(request));
   RC_ASSERT(key.has_value());
-  RC_ASSERT(key->utime == question.key.utime);
-  RC_ASSERT(key->session_id == question.key.session_id);
-  RC_ASSERT(key->seq == question.key.seq);
+  RC_ASSERT(key->utime == request.key.utime);
+  RC_ASSERT(key->session_id == request.key.session_id);
+  RC_ASSERT(key->seq == request.key.seq);
 }
 
 RC_GTEST_PROP(Wire, RandomBytesBehindTheRightFingerprintAreDecodedOrRejectedButNeverCrash, ()) {
-  ByteVector bytes = question_of(0);
+  ByteVector bytes = request_of(0);
   bytes.resize(8);
   const auto garbage = *rc::gen::arbitrary<ByteVector>();
   bytes.insert(bytes.end(), garbage.begin(), garbage.end());
-  Question question;
-  RC_ASSERT(decode(bytes, question).has_value() == !peek_key(bytes).has_value());
+  WrenchRequest request;
+  RC_ASSERT(decode(bytes, request).has_value() == !peek_request_id(bytes).has_value());
 }
 
 TEST(Wire, SizesAreThoseOfTheMessageDefinitions) {
-  EXPECT_EQ(question_of(0).size(), kQuestionFixed);
-  EXPECT_EQ(question_of(3).size(), kQuestionFixed + 3 * kBodyState);
-  EXPECT_EQ(encoded(Answer{}).size(), kAnswerFixed);
-  EXPECT_EQ(encoded(Answer{.key = {}, .bodies = {{}, {}}}).size(), kAnswerFixed + 2 * kBodyWrench);
-  EXPECT_EQ(encoded(BodiesHydrostatics{}).size(), kAnswerFixed);
+  EXPECT_EQ(request_of(0).size(), kRequestFixed);
+  EXPECT_EQ(request_of(3).size(), kRequestFixed + 3 * kBodyState);
+  EXPECT_EQ(encoded(WrenchResponse{}).size(), kResponseFixed);
+  EXPECT_EQ(encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}}).size(), kResponseFixed + 2 * kBodyWrench);
+  EXPECT_EQ(encoded(BodiesHydrostatics{}).size(), kResponseFixed);
   EXPECT_EQ(encoded(BodiesHydrostatics{.key = {}, .bodies = {{}, {}}}).size(),
-            kAnswerFixed + 2 * kBodyHydrostatics);
+            kResponseFixed + 2 * kBodyHydrostatics);
 }
 
 TEST(Wire, RejectsEveryTruncationOfAQuestion) {
-  const ByteVector whole = question_of(3);
-  Question question;
+  const ByteVector whole = request_of(3);
+  WrenchRequest request;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const Bytes part = Bytes(whole).first(size);
-    const Rejection expected = size < kQuestionFixed ? Rejection::kTruncated : Rejection::kLength;
-    EXPECT_EQ(decode(part, question), expected) << size << " bytes";
-    ASSERT_FALSE(peek_key(part).has_value()) << size << " bytes";
-    EXPECT_EQ(peek_key(part).error(), expected) << size << " bytes";
+    const DecodeError expected = size < kRequestFixed ? DecodeError::kTruncated : DecodeError::kLength;
+    EXPECT_EQ(decode(part, request), expected) << size << " bytes";
+    ASSERT_FALSE(peek_request_id(part).has_value()) << size << " bytes";
+    EXPECT_EQ(peek_request_id(part).error(), expected) << size << " bytes";
   }
 }
 
 TEST(Wire, RejectsEveryTruncationOfAnAnswer) {
-  const ByteVector whole = encoded(Answer{.key = {}, .bodies = {{}, {}}});
-  Answer answer;
+  const ByteVector whole = encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}});
+  WrenchResponse response;
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_EQ(decode(Bytes(whole).first(size), answer),
-              size < kAnswerFixed ? Rejection::kTruncated : Rejection::kLength)
+    EXPECT_EQ(decode(Bytes(whole).first(size), response),
+              size < kResponseFixed ? DecodeError::kTruncated : DecodeError::kLength)
         << size << " bytes";
   }
 }
@@ -214,100 +214,101 @@ TEST(Wire, RejectsEveryTruncationOfHydrostatics) {
   BodiesHydrostatics hydrostatics;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), hydrostatics),
-              size < kAnswerFixed ? Rejection::kTruncated : Rejection::kLength)
+              size < kResponseFixed ? DecodeError::kTruncated : DecodeError::kLength)
         << size << " bytes";
   }
 }
 
 TEST(Wire, RejectsEveryFlippedBitOfTheFingerprint) {
-  const ByteVector whole = question_of(1);
-  Question question;
+  const ByteVector whole = request_of(1);
+  WrenchRequest request;
   for (std::size_t bit = 0; bit < 64; ++bit) {
     ByteVector bytes = whole;
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-    EXPECT_EQ(decode(bytes, question), Rejection::kFingerprint) << "bit " << bit;
+    EXPECT_EQ(decode(bytes, request), DecodeError::kFingerprint) << "bit " << bit;
   }
 }
 
 TEST(Wire, RejectsOtherTypesOfOurOwn) {
-  Question question;
-  Answer answer;
-  EXPECT_EQ(decode(encoded(Answer{.key = {}, .bodies = {{}, {}}}), question), Rejection::kFingerprint);
-  EXPECT_EQ(decode(question_of(2), answer), Rejection::kFingerprint);
-  EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), answer), Rejection::kFingerprint);
+  WrenchRequest request;
+  WrenchResponse response;
+  EXPECT_EQ(decode(encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}}), request),
+            DecodeError::kFingerprint);
+  EXPECT_EQ(decode(request_of(2), response), DecodeError::kFingerprint);
+  EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), response), DecodeError::kFingerprint);
 }
 
 TEST(Wire, RejectsCountsThatDoNotFitTheLength) {
   struct Case {
     std::int32_t count;
-    Rejection expected;
+    DecodeError expected;
   };
   for (const Case& c :
-       {Case{-1, Rejection::kCount}, Case{INT_MIN, Rejection::kCount}, Case{-2, Rejection::kCount},
-        Case{INT_MAX, Rejection::kLength}, Case{0, Rejection::kLength}, Case{1, Rejection::kLength},
-        Case{3, Rejection::kLength}, Case{1 << 30, Rejection::kLength}}) {
-    ByteVector bytes = question_of(2);
-    set_count(bytes, kQuestionFixed, c.count);
-    Question question;
-    EXPECT_EQ(decode(bytes, question), c.expected) << c.count;
-    ByteVector answer_bytes = encoded(Answer{.key = {}, .bodies = {{}, {}}});
-    set_count(answer_bytes, kAnswerFixed, c.count);
-    Answer answer;
-    EXPECT_EQ(decode(answer_bytes, answer), c.expected) << c.count;
+       {Case{-1, DecodeError::kCount}, Case{INT_MIN, DecodeError::kCount}, Case{-2, DecodeError::kCount},
+        Case{INT_MAX, DecodeError::kLength}, Case{0, DecodeError::kLength}, Case{1, DecodeError::kLength},
+        Case{3, DecodeError::kLength}, Case{1 << 30, DecodeError::kLength}}) {
+    ByteVector bytes = request_of(2);
+    set_count(bytes, kRequestFixed, c.count);
+    WrenchRequest request;
+    EXPECT_EQ(decode(bytes, request), c.expected) << c.count;
+    ByteVector response_bytes = encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}});
+    set_count(response_bytes, kResponseFixed, c.count);
+    WrenchResponse response;
+    EXPECT_EQ(decode(response_bytes, response), c.expected) << c.count;
   }
 }
 
 TEST(Wire, RejectsTrailingBytes) {
   for (const std::size_t extra :
        {std::size_t{1}, std::size_t{8}, kBodyState - 1, kBodyState, 2 * kBodyState}) {
-    ByteVector bytes = question_of(1);
+    ByteVector bytes = request_of(1);
     bytes.resize(bytes.size() + extra);
-    Question question;
-    EXPECT_EQ(decode(bytes, question), Rejection::kLength) << extra;
+    WrenchRequest request;
+    EXPECT_EQ(decode(bytes, request), DecodeError::kLength) << extra;
   }
 }
 
 TEST(Wire, RejectionLeavesTheQuestionUnchanged) {
-  Question question;
-  ASSERT_FALSE(decode(question_of(3), question).has_value());
-  ByteVector bad = question_of(2);
+  WrenchRequest request;
+  ASSERT_FALSE(decode(request_of(3), request).has_value());
+  ByteVector bad = request_of(2);
   bad.push_back(0);
-  ASSERT_TRUE(decode(bad, question).has_value());
-  EXPECT_EQ(encoded(question), question_of(3));
+  ASSERT_TRUE(decode(bad, request).has_value());
+  EXPECT_EQ(encoded(request), request_of(3));
 }
 
 TEST(Wire, ACountInTheBillionsTakesNoMemory) {
-  ByteVector bytes = question_of(0);
-  set_count(bytes, kQuestionFixed, INT_MAX);
-  Question question;
+  ByteVector bytes = request_of(0);
+  set_count(bytes, kRequestFixed, INT_MAX);
+  WrenchRequest request;
   const AllocationCount allocations;
-  EXPECT_EQ(decode(bytes, question), Rejection::kLength);
+  EXPECT_EQ(decode(bytes, request), DecodeError::kLength);
   EXPECT_EQ(allocations.count(), 0);
 }
 
 TEST(Wire, DecodesFromAnyAddress) {
-  const ByteVector whole = question_of(2);
+  const ByteVector whole = request_of(2);
   for (std::size_t shift = 0; shift < 8; ++shift) {
     ByteVector shifted(shift);
     shifted.insert(shifted.end(), whole.begin(), whole.end());
-    Question question;
-    ASSERT_FALSE(decode(Bytes(shifted).subspan(shift), question).has_value());
-    EXPECT_EQ(encoded(question), whole) << "shifted by " << shift;
+    WrenchRequest request;
+    ASSERT_FALSE(decode(Bytes(shifted).subspan(shift), request).has_value());
+    EXPECT_EQ(encoded(request), whole) << "shifted by " << shift;
   }
 }
 
 TEST(Wire, TakesNothingFromTheHeapAfterWarmUp) {
-  const ByteVector largest = question_of(1000);
-  const ByteVector small = question_of(7);
-  Question question;
-  ASSERT_FALSE(decode(largest, question).has_value());
+  const ByteVector largest = request_of(1000);
+  const ByteVector small = request_of(7);
+  WrenchRequest request;
+  ASSERT_FALSE(decode(largest, request).has_value());
   ByteVector bytes;
-  encode(question, bytes);
+  encode(request, bytes);
   const AllocationCount allocations;
   for (int i = 0; i < 10; ++i) {
     for (const ByteVector* message : {&small, &largest}) {
-      ASSERT_FALSE(decode(*message, question).has_value());
-      encode(question, bytes);
+      ASSERT_FALSE(decode(*message, request).has_value());
+      encode(request, bytes);
       ASSERT_EQ(bytes, *message);
     }
   }
@@ -315,21 +316,21 @@ TEST(Wire, TakesNothingFromTheHeapAfterWarmUp) {
 }
 
 TEST(BodyStatusNames, AreThoseOfTheMessageDefinition) {
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::OK}), "OK");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::UNKNOWN_BODY}), "UNKNOWN_BODY");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::NON_FINITE_POSE}), "NON_FINITE_POSE");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::BAD_QUATERNION}), "BAD_QUATERNION");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::NON_FINITE_TWIST}), "NON_FINITE_TWIST");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::BAD_LEAD_TIME}), "BAD_LEAD_TIME");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::OPEN_EDGE_WET}), "OPEN_EDGE_WET");
-  EXPECT_STREQ(name(BodyStatus{body_wrench_t::OUT_OF_RANGE}), "OUT_OF_RANGE");
-  EXPECT_STREQ(name(BodyStatus{kBodyStatusCount}), "UNKNOWN_STATUS");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OK}), "OK");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::UNKNOWN_BODY}), "UNKNOWN_BODY");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NON_FINITE_POSE}), "NON_FINITE_POSE");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::BAD_QUATERNION}), "BAD_QUATERNION");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NON_FINITE_TWIST}), "NON_FINITE_TWIST");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::BAD_LEAD_TIME}), "BAD_LEAD_TIME");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OPEN_EDGE_WET}), "OPEN_EDGE_WET");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OUT_OF_RANGE}), "OUT_OF_RANGE");
+  EXPECT_STREQ(to_string(BodyStatus{kBodyStatusCount}), "UNKNOWN_STATUS");
 }
 
 TEST(Rejections, AreEachDescribedInOtherWords) {
-  const std::vector<std::string> descriptions{describe(Rejection::kTruncated),
-                                              describe(Rejection::kFingerprint), describe(Rejection::kCount),
-                                              describe(Rejection::kLength)};
+  const std::vector<std::string> descriptions{
+      to_string(DecodeError::kTruncated), to_string(DecodeError::kFingerprint),
+      to_string(DecodeError::kCount), to_string(DecodeError::kLength)};
   for (std::size_t i = 0; i < descriptions.size(); ++i) {
     EXPECT_FALSE(descriptions[i].empty());
     EXPECT_EQ(std::count(descriptions.begin(), descriptions.end(), descriptions[i]), 1) << descriptions[i];

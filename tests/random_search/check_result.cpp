@@ -19,7 +19,7 @@ struct TrueWrench {
 };
 
 template <typename T>
-TrueWrench<T> true_wrench(const TriangleMesh& source, const SearchQuestion& asked) {
+TrueWrench<T> true_wrench(const TriangleMesh& source, const SearchPose& asked) {
   const auto displaced = exact_displacement<T>(source, asked.pose, asked.water);
   const T weight = T(asked.water.density) * T(asked.water.gravity);
   return {asked.water.up_W.cast<T>() * T(weight * displaced.volume),
@@ -28,7 +28,7 @@ TrueWrench<T> true_wrench(const TriangleMesh& source, const SearchQuestion& aske
 
 class Truth {
  public:
-  Truth(const TriangleMesh& source, const SearchQuestion& asked)
+  Truth(const TriangleMesh& source, const SearchPose& asked)
       : source_(&source), asked_(&asked), balls_(true_wrench<Ball>(source, asked)) {}
 
   // Upper bounds on the norms of the errors; from rational arithmetic where balls are too wide beside the
@@ -58,7 +58,7 @@ class Truth {
   }
 
   const TriangleMesh* source_;
-  const SearchQuestion* asked_;
+  const SearchPose* asked_;
   TrueWrench<Ball> balls_;
   std::optional<TrueWrench<Rational>> rationals_;
 };
@@ -67,49 +67,50 @@ double ratio(double value, double limit) {
   return value == 0.0 ? 0.0 : value / limit;
 }
 
-std::string line(const GivenAnswer& given, const char* what, double found, const char* expected,
+std::string line(const GivenResult& given, const char* what, double found, const char* expected,
                  double limit) {
   std::array<char, 200> text;
-  std::snprintf(text.data(), text.size(), "%s%s%s: %s is %.17g, expected %s %.17g", name(given.answerer),
+  std::snprintf(text.data(), text.size(), "%s%s%s: %s is %.17g, expected %s %.17g", to_string(given.answerer),
                 given.target.empty() ? "" : " on ", given.target.c_str(), what, found, expected, limit);
   return text.data();
 }
 
 class Judge {
  public:
-  Judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchQuestion& asked)
+  Judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked)
       : mesh_(mesh),
         asked_(asked),
         truth_(source, asked),
         weight_(asked.water.density * asked.water.gravity) {}
 
-  void judge(const GivenAnswer& given, Judgement& judgement) {
+  void judge(const GivenResult& given, Judgement& judgement) {
     Figures figures;
-    const BuoyancyAnswer& answer = given.answer;
+    const BuoyancyResult& result = given.result;
     auto& violations = judgement.violations;
-    if (answer.status != BuoyancyStatus::kOk || !answer.force_W.allFinite() || !answer.torque_W.allFinite() ||
-        !std::isfinite(answer.volume) || !answer.center_of_buoyancy_W.allFinite()) {
+    if (result.status != BuoyancyStatus::kOk || !result.force_W.allFinite() || !result.torque_W.allFinite() ||
+        !std::isfinite(result.volume) || !result.center_of_buoyancy_W.allFinite()) {
       violations.push_back(
-          line(given, "the status", static_cast<double>(answer.status), "numbers and status", 0.0));
+          line(given, "the status", static_cast<double>(result.status), "numbers and status", 0.0));
     } else {
-      const double force_error = truth_.force_error(answer.force_W, answer.force_error_bound);
-      const double torque_error = truth_.torque_error(answer.torque_W, answer.torque_error_bound);
-      figures.force_over_bound = ratio(force_error, answer.force_error_bound);
-      figures.torque_over_bound = ratio(torque_error, answer.torque_error_bound);
-      if (!(force_error <= answer.force_error_bound))
+      const double force_error = truth_.force_error(result.force_W, result.force_error_bound);
+      const double torque_error = truth_.torque_error(result.torque_W, result.torque_error_bound);
+      figures.force_over_bound = ratio(force_error, result.force_error_bound);
+      figures.torque_over_bound = ratio(torque_error, result.torque_error_bound);
+      if (!(force_error <= result.force_error_bound))
         violations.push_back(
-            line(given, "the error of force", force_error, "at most its bound,", answer.force_error_bound));
-      if (!(torque_error <= answer.torque_error_bound))
+            line(given, "the error of force", force_error, "at most its bound,", result.force_error_bound));
+      if (!(torque_error <= result.torque_error_bound))
         violations.push_back(line(given, "the error of torque", torque_error, "at most its bound,",
-                                  answer.torque_error_bound));
+                                  result.torque_error_bound));
       const Method method = method_of(given.answerer);
       const Gates gate = gates(method, mesh_, asked_);
-      if (given.answerer == Answerer::kTolerance) {
-        const double least = mesh_.holds_gate() ? 4.0 * mesh_.volume_gate() : mesh_.largest_rounding_bound();
+      if (given.answerer == Evaluator::kTolerance) {
+        const double least =
+            mesh_.meets_volume_tolerance() ? 4.0 * mesh_.volume_tolerance() : mesh_.largest_rounding_bound();
         const double most = std::max(asked_.tolerance * mesh_.volume, least) * weight_;
-        if (!(answer.force_error_bound <= most * (1.0 + 1e-12)))
-          violations.push_back(line(given, "the bound of force", answer.force_error_bound, "at most", most));
-      } else if (is_exact(method) && mesh_.holds_gate()) {
+        if (!(result.force_error_bound <= most * (1.0 + 1e-12)))
+          violations.push_back(line(given, "the bound of force", result.force_error_bound, "at most", most));
+      } else if (is_exact(method) && mesh_.meets_volume_tolerance()) {
         figures.force_over_gate = ratio(force_error, gate.volume * weight_);
         figures.torque_over_gate = ratio(torque_error, gate.torque * weight_);
         if (!(figures.force_over_gate <= 1.0))
@@ -125,40 +126,40 @@ class Judge {
 
  private:
   const HydrostaticMesh& mesh_;
-  const SearchQuestion& asked_;
+  const SearchPose& asked_;
   Truth truth_;
   double weight_;  // N/m^3
 };
 
 }  // namespace
 
-const char* name(Answerer answerer) {
+const char* to_string(Evaluator answerer) {
   constexpr std::array kNames{"exact",    "exact_surface", "hierarchical", "hierarchical within a tolerance",
                               "improved", "fast_surface",  "fast"};
   return kNames[static_cast<std::size_t>(answerer)];
 }
 
-Method method_of(Answerer answerer) {
+Method method_of(Evaluator answerer) {
   constexpr std::array kMethods{Method::kExact,        Method::kExactSurface, Method::kHierarchical,
                                 Method::kHierarchical, Method::kImproved,     Method::kFastSurface,
                                 Method::kFast};
   return kMethods[static_cast<std::size_t>(answerer)];
 }
 
-Gates gates(Method method, const HydrostaticMesh& mesh, const SearchQuestion& asked) {
-  double volume = mesh.volume_gate();
+Gates gates(Method method, const HydrostaticMesh& mesh, const SearchPose& asked) {
+  double volume = mesh.volume_tolerance();
   if (method != Method::kHierarchical) {
     volume *= 1.0 + std::abs(water_plane_in_body(asked.pose, asked.water, mesh.center_B).h_c) / mesh.diagonal;
   }
-  return {volume, volume * mesh.largest_lever(asked.reference_B)};
+  return {volume, volume * mesh.max_lever_arm(asked.reference_B)};
 }
 
-Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchQuestion& asked,
-                const std::vector<GivenAnswer>& answers) {
+Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
+                const std::vector<GivenResult>& results) {
   Judgement judgement;
-  judgement.figures.reserve(answers.size());
+  judgement.figures.reserve(results.size());
   Judge with_truth(source, mesh, asked);
-  for (const GivenAnswer& given : answers) with_truth.judge(given, judgement);
+  for (const GivenResult& given : results) with_truth.judge(given, judgement);
   return judgement;
 }
 

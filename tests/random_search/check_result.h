@@ -1,4 +1,4 @@
-// What is asked of every answer: numbers, within the gates of the oracle's, within the bound that came with
+// What is asked of every result: numbers, within the gates of the oracle's, within the bound that came with
 // it.
 //
 // Truth comes from balls, and from rational arithmetic where a ball is too wide to tell.
@@ -14,21 +14,21 @@
 
 namespace buoyancy {
 
-// Who answers: the six methods, and `hierarchical` within the question's tolerance.
-enum class Answerer { kExact, kExactSurface, kHierarchical, kTolerance, kImproved, kFastSurface, kFast };
-inline constexpr std::array kAnswerers{Answerer::kExact,     Answerer::kExactSurface, Answerer::kHierarchical,
-                                       Answerer::kTolerance, Answerer::kImproved,     Answerer::kFastSurface,
-                                       Answerer::kFast};
-const char* name(Answerer answerer);
-Method method_of(Answerer answerer);
+// Who answers: the six methods, and `hierarchical` within the request's tolerance.
+enum class Evaluator { kExact, kExactSurface, kHierarchical, kTolerance, kImproved, kFastSurface, kFast };
+inline constexpr std::array kAnswerers{
+    Evaluator::kExact,    Evaluator::kExactSurface, Evaluator::kHierarchical, Evaluator::kTolerance,
+    Evaluator::kImproved, Evaluator::kFastSurface,  Evaluator::kFast};
+const char* to_string(Evaluator answerer);
+Method method_of(Evaluator answerer);
 
-struct GivenAnswer {
-  Answerer answerer = Answerer::kExact;
+struct GivenResult {
+  Evaluator answerer = Evaluator::kExact;
   std::string target;  // the instruction set, of `hierarchical`
-  BuoyancyAnswer answer;
+  BuoyancyResult result;
 };
 
-// Of one answer. Errors over G_V and G_tau are only of those who claim exactness, and of bodies that are
+// Of one result. Errors over G_V and G_tau are only of those who claim exactness, and of bodies that are
 // neither slender nor made of thin faces (is_held_to_gates()); 0 of the others.
 struct Figures {
   double force_over_gate = 0.0, torque_over_gate = 0.0;
@@ -41,19 +41,19 @@ struct Figures {
 };
 
 struct Judgement {
-  std::vector<Figures> figures;         // of each answer
+  std::vector<Figures> figures;         // of each result
   std::vector<std::string> violations;  // one line each; empty: all is well
 };
 
 // source: the mesh as validated, in B; mesh: made of it.
-Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchQuestion& asked,
-                const std::vector<GivenAnswer>& answers);
+Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
+                const std::vector<GivenResult>& results);
 
 // The gates of the exact methods in volume and in torque/(rho g): G_V and G_V L_r, of the paper's methods
 // times 1 + depth/L (docs/stability.md).
 struct Gates {
   double volume, torque;
 };
-Gates gates(Method method, const HydrostaticMesh& mesh, const SearchQuestion& asked);
+Gates gates(Method method, const HydrostaticMesh& mesh, const SearchPose& asked);
 
 }  // namespace buoyancy

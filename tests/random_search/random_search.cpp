@@ -1,4 +1,4 @@
-// random_search: searches for a question whose answer breaks a law (judge.h).
+// random_search: searches for a request whose result breaks a law (check_result.h).
 //
 //   random_search [--cases N] [--seed S] [--record DIRECTORY] [--jobs J] [--table]
 //
@@ -19,22 +19,22 @@ namespace {
 using namespace buoyancy;
 
 constexpr int kFound = 1;
-constexpr int kWrongInput = 2;
-constexpr std::int64_t kBlock = 64 * kQuestionsPerMesh;
+constexpr int kUsageError = 2;
+constexpr std::int64_t kBlock = 64 * kRequestsPerMesh;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
 int refuse(const Error& error) {
   std::fprintf(stderr, "random_search: %s\n", error.message().c_str());
-  return kWrongInput;
+  return kUsageError;
 }
 
 void print_failure(std::uint64_t seed, const FailedCase& failure) {
   std::printf("seed %llu, case %lld: %s\n", static_cast<unsigned long long>(seed),
               static_cast<long long>(failure.number), failure.mesh.c_str());
   for (const std::string& violation : failure.violations) std::printf("  %s\n", violation.c_str());
-  const auto still_fails = [](const TriangleMesh& mesh, const SearchQuestion& asked) {
-    return fails(mesh, asked, product_answers);
+  const auto still_fails = [](const TriangleMesh& mesh, const SearchPose& asked) {
+    return fails(mesh, asked, product_results);
   };
   const SearchCase original = search_case(seed, failure.number);
   if (still_fails(original.mesh, original.asked))
@@ -45,7 +45,7 @@ void print_failure(std::uint64_t seed, const FailedCase& failure) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  buoyancy::ToolCommandLine command_line("Searches for a question whose answer breaks a law.",
+  buoyancy::ToolCommandLine command_line("Searches for a request whose result breaks a law.",
                                          "random_search");
   std::int64_t cases = 20'000;
   std::uint64_t seed = 1;
@@ -62,14 +62,14 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
 
-  Expected<Tally> tally = load_tally(record, seed);
+  Expected<SearchStats> tally = load_tally(record, seed);
   if (!tally) return refuse(tally.error());
   ProgressBar progress("cases");
   const std::int64_t before = tally->cases;
   while (tally->cases < cases && stop_requested == 0) {
     const std::int64_t left = cases - tally->cases;
-    const std::int64_t whole_meshes = (left + kQuestionsPerMesh - 1) / kQuestionsPerMesh * kQuestionsPerMesh;
-    const Tally block = search(seed, tally->cases, tally->cases + std::min(kBlock, whole_meshes), jobs);
+    const std::int64_t whole_meshes = (left + kRequestsPerMesh - 1) / kRequestsPerMesh * kRequestsPerMesh;
+    const SearchStats block = search(seed, tally->cases, tally->cases + std::min(kBlock, whole_meshes), jobs);
     *tally += block;
     if (const Expected<void> saved = save_tally(record, seed, *tally); !saved) return refuse(saved.error());
     if (!block.failures.empty()) progress.clear();
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
     progress.update(tally->cases - before, cases - before, tally->cases - before);
   }
   progress.clear();
-  const Expected<Tally> all = load_all(record);
+  const Expected<SearchStats> all = load_all(record);
   if (!all) return refuse(all.error());
   if (table) std::printf("%s", markdown(*all).c_str());
   std::printf("seed %llu: %s; all seeds: %s\n", static_cast<unsigned long long>(seed),

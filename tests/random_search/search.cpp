@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kMostFailures = 100;
+constexpr std::size_t kMaxFailures = 100;
 
 std::uint64_t mesh_seed(std::uint64_t seed, std::int64_t mesh) {
   std::seed_seq mix{seed, static_cast<std::uint64_t>(mesh)};
@@ -25,55 +25,55 @@ struct MeshCases {
   std::string kind;
   TriangleMesh source;
   HydrostaticMesh mesh;
-  std::vector<SearchQuestion> asked;
-  std::vector<std::vector<GivenAnswer>> answers;  // to each
+  std::vector<SearchPose> asked;
+  std::vector<std::vector<GivenResult>> results;  // to each
 };
 
 MeshCases make_cases(std::uint64_t seed, std::int64_t mesh_number) {
   MeshCases cases;
   const std::uint64_t own_seed = mesh_seed(seed, mesh_number);
   RandomMesh drawn = random_mesh(own_seed);
-  cases.first = mesh_number * kQuestionsPerMesh;
+  cases.first = mesh_number * kRequestsPerMesh;
   cases.kind = std::move(drawn.kind);
   cases.mesh = make_hydrostatic_mesh(drawn.validated);
   cases.source = std::move(drawn.validated.mesh);
   RandomPoses random(own_seed + 1);
-  for (std::int64_t i = 0; i < kQuestionsPerMesh; ++i)
-    cases.asked.push_back(random_question(cases.source, random));
-  cases.answers.resize(cases.asked.size());
+  for (std::int64_t i = 0; i < kRequestsPerMesh; ++i)
+    cases.asked.push_back(random_request(cases.source, random));
+  cases.results.resize(cases.asked.size());
   return cases;
 }
 
-BuoyancyAnswer answer_of(Answerer answerer, const HydrostaticMesh& mesh, const SearchQuestion& asked) {
-  const double tolerance = answerer == Answerer::kTolerance ? asked.tolerance : 0.0;
+BuoyancyResult result_of(Evaluator answerer, const HydrostaticMesh& mesh, const SearchPose& asked) {
+  const double tolerance = answerer == Evaluator::kTolerance ? asked.tolerance : 0.0;
   return buoyancy(Solver(mesh, method_of(answerer), tolerance), asked.pose, asked.water, asked.reference_B);
 }
 
 void add_hierarchical(MeshCases& cases, const std::string& target) {
   for (std::size_t i = 0; i < cases.asked.size(); ++i) {
-    for (const Answerer answerer : {Answerer::kHierarchical, Answerer::kTolerance})
-      cases.answers[i].push_back({answerer, target, answer_of(answerer, cases.mesh, cases.asked[i])});
+    for (const Evaluator answerer : {Evaluator::kHierarchical, Evaluator::kTolerance})
+      cases.results[i].push_back({answerer, target, result_of(answerer, cases.mesh, cases.asked[i])});
   }
 }
 
 void add_others(MeshCases& cases) {
   for (std::size_t i = 0; i < cases.asked.size(); ++i) {
-    for (const Answerer answerer : kAnswerers) {
+    for (const Evaluator answerer : kAnswerers) {
       if (method_of(answerer) != Method::kHierarchical)
-        cases.answers[i].push_back({answerer, "", answer_of(answerer, cases.mesh, cases.asked[i])});
+        cases.results[i].push_back({answerer, "", result_of(answerer, cases.mesh, cases.asked[i])});
     }
   }
 }
 
-Tally tally_of(const MeshCases& cases) {
-  Tally tally;
+SearchStats tally_of(const MeshCases& cases) {
+  SearchStats tally;
   for (std::size_t i = 0; i < cases.asked.size(); ++i) {
     const std::int64_t number = cases.first + static_cast<std::int64_t>(i);
-    const Judgement judgement = judge(cases.source, cases.mesh, cases.asked[i], cases.answers[i]);
+    const Judgement judgement = judge(cases.source, cases.mesh, cases.asked[i], cases.results[i]);
     ++tally.cases;
-    tally.answers += static_cast<std::int64_t>(cases.answers[i].size());
+    tally.results += static_cast<std::int64_t>(cases.results[i].size());
     for (std::size_t n = 0; n < judgement.figures.size(); ++n) {
-      auto& row = tally.largest[static_cast<std::size_t>(cases.answers[i][n].answerer)];
+      auto& row = tally.largest[static_cast<std::size_t>(cases.results[i][n].answerer)];
       const auto values = judgement.figures[n].values();
       for (std::size_t column = 0; column < values.size(); ++column) {
         if (values[column] > row[column].value) row[column] = {values[column], number};
@@ -99,9 +99,9 @@ void in_parallel(std::size_t count, unsigned threads, const Work& work) {
 
 }  // namespace
 
-Tally& Tally::operator+=(const Tally& other) {
+SearchStats& SearchStats::operator+=(const SearchStats& other) {
   cases += other.cases;
-  answers += other.answers;
+  results += other.results;
   failed_cases += other.failed_cases;
   for (std::size_t row = 0; row < largest.size(); ++row) {
     for (std::size_t column = 0; column < largest[row].size(); ++column) {
@@ -110,23 +110,23 @@ Tally& Tally::operator+=(const Tally& other) {
     }
   }
   for (const FailedCase& failure : other.failures) {
-    if (failures.size() < kMostFailures) failures.push_back(failure);
+    if (failures.size() < kMaxFailures) failures.push_back(failure);
   }
   return *this;
 }
 
-std::vector<GivenAnswer> product_answers(const HydrostaticMesh& mesh, const SearchQuestion& asked) {
-  std::vector<GivenAnswer> answers;
-  for (const Answerer answerer : kAnswerers) {
+std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked) {
+  std::vector<GivenResult> results;
+  for (const Evaluator answerer : kAnswerers) {
     const bool dispatched = method_of(answerer) == Method::kHierarchical;
-    answers.push_back({answerer, dispatched ? simd_target() : "", answer_of(answerer, mesh, asked)});
+    results.push_back({answerer, dispatched ? simd_target() : "", result_of(answerer, mesh, asked)});
   }
-  return answers;
+  return results;
 }
 
-Tally search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads) {
-  std::vector<MeshCases> meshes(static_cast<std::size_t>((end - begin) / kQuestionsPerMesh));
-  const std::int64_t first_mesh = begin / kQuestionsPerMesh;
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads) {
+  std::vector<MeshCases> meshes(static_cast<std::size_t>((end - begin) / kRequestsPerMesh));
+  const std::int64_t first_mesh = begin / kRequestsPerMesh;
   in_parallel(meshes.size(), threads, [&](std::size_t i) {
     meshes[i] = make_cases(seed, first_mesh + static_cast<std::int64_t>(i));
     add_others(meshes[i]);
@@ -136,28 +136,28 @@ Tally search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned 
     in_parallel(meshes.size(), threads, [&](std::size_t i) { add_hierarchical(meshes[i], target); });
   }
   force_simd_target("");
-  std::vector<Tally> tallies(meshes.size());
+  std::vector<SearchStats> tallies(meshes.size());
   in_parallel(meshes.size(), threads, [&](std::size_t i) { tallies[i] = tally_of(meshes[i]); });
-  Tally total;
-  for (const Tally& tally : tallies) total += tally;
+  SearchStats total;
+  for (const SearchStats& tally : tallies) total += tally;
   return total;
 }
 
-Tally search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering) {
-  Tally total;
-  for (std::int64_t mesh = begin / kQuestionsPerMesh; mesh < end / kQuestionsPerMesh; ++mesh) {
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering) {
+  SearchStats total;
+  for (std::int64_t mesh = begin / kRequestsPerMesh; mesh < end / kRequestsPerMesh; ++mesh) {
     MeshCases cases = make_cases(seed, mesh);
     for (std::size_t i = 0; i < cases.asked.size(); ++i)
-      cases.answers[i] = answering(cases.mesh, cases.asked[i]);
+      cases.results[i] = answering(cases.mesh, cases.asked[i]);
     total += tally_of(cases);
   }
   return total;
 }
 
 SearchCase search_case(std::uint64_t seed, std::int64_t number) {
-  MeshCases cases = make_cases(seed, number / kQuestionsPerMesh);
+  MeshCases cases = make_cases(seed, number / kRequestsPerMesh);
   return {std::move(cases.kind), std::move(cases.source),
-          cases.asked[static_cast<std::size_t>(number % kQuestionsPerMesh)]};
+          cases.asked[static_cast<std::size_t>(number % kRequestsPerMesh)]};
 }
 
 }  // namespace buoyancy

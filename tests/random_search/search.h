@@ -1,5 +1,5 @@
 // The random search: cases numbered from 0, each the same for the same seed whatever the number of threads
-// and wherever a run begins. 32 questions are asked of each mesh.
+// and wherever a run begins. 32 requests are asked of each mesh.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-inline constexpr std::int64_t kQuestionsPerMesh = 32;
+inline constexpr std::int64_t kRequestsPerMesh = 32;
 
 struct Largest {
   double value = 0.0;
@@ -26,33 +26,33 @@ struct FailedCase {
 };
 
 // What a run found; runs add up.
-struct Tally {
+struct SearchStats {
   std::int64_t cases = 0;
-  std::int64_t answers = 0;
+  std::int64_t results = 0;
   std::int64_t failed_cases = 0;
   std::array<std::array<Largest, Figures::kNames.size()>, kAnswerers.size()> largest{};
   std::vector<FailedCase> failures;  // the first hundred
 
-  Tally& operator+=(const Tally& other);
+  SearchStats& operator+=(const SearchStats& other);
 };
 
-// What is asked for an answer: the product, or in tests something broken.
-using Answering = std::function<std::vector<GivenAnswer>(const HydrostaticMesh&, const SearchQuestion&)>;
+// What is asked for a result: the product, or in tests something broken.
+using Answering = std::function<std::vector<GivenResult>(const HydrostaticMesh&, const SearchPose&)>;
 
-// The answers of every method, of `hierarchical` on the instruction set in use.
-std::vector<GivenAnswer> product_answers(const HydrostaticMesh& mesh, const SearchQuestion& asked);
+// The results of every method, of `hierarchical` on the instruction set in use.
+std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked);
 
 // Cases begin <= number < end; both multiples of kQuestionsPerMesh. `hierarchical` is asked on every
 // instruction set in turn (force_simd_target: nobody else may ask meanwhile).
-Tally search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads);
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads);
 // The same of others' answers, on one thread.
-Tally search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering);
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering);
 
 // A case by itself.
 struct SearchCase {
   std::string kind;
   TriangleMesh mesh;
-  SearchQuestion asked;
+  SearchPose asked;
 };
 SearchCase search_case(std::uint64_t seed, std::int64_t number);
 

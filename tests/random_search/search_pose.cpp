@@ -84,9 +84,9 @@ double nudged(double value, RandomPoses& random) {
 
 }  // namespace
 
-SearchQuestion random_question(const TriangleMesh& mesh, RandomPoses& random) {
+SearchPose random_request(const TriangleMesh& mesh, RandomPoses& random) {
   const double size = bounding_box(mesh).diagonal();
-  SearchQuestion asked;
+  SearchPose asked;
   if (random.pick(3) == 0) asked.water.up_W = random.direction();
   const Vec3 up_W = asked.water.up_W;
   const Triangle face = mesh.triangles[random.pick(mesh.triangles.size())];

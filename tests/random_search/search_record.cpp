@@ -16,13 +16,13 @@ std::filesystem::path file_of(const std::filesystem::path& directory, std::uint6
   return directory / (kPrefix + std::to_string(seed) + ".json");
 }
 
-Json to_json(const Tally& tally) {
-  Json json{{"cases", tally.cases}, {"answers", tally.answers}, {"failed_cases", tally.failed_cases}};
+Json to_json(const SearchStats& tally) {
+  Json json{{"cases", tally.cases}, {"results", tally.results}, {"failed_cases", tally.failed_cases}};
   for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
       const Largest& largest = tally.largest[row][column];
-      json["largest"][name(kAnswerers[row])][Figures::kNames[column]] = {{"value", largest.value},
-                                                                         {"case", largest.at}};
+      json["largest"][to_string(kAnswerers[row])][Figures::kNames[column]] = {{"value", largest.value},
+                                                                              {"case", largest.at}};
     }
   }
   json["failures"] = Json::array();
@@ -32,14 +32,14 @@ Json to_json(const Tally& tally) {
   return json;
 }
 
-Tally from_json(const Json& json) {
-  Tally tally;
+SearchStats from_json(const Json& json) {
+  SearchStats tally;
   tally.cases = json.at("cases");
-  tally.answers = json.at("answers");
+  tally.results = json.at("results");
   tally.failed_cases = json.at("failed_cases");
   for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
-      const Json& largest = json.at("largest").at(name(kAnswerers[row])).at(Figures::kNames[column]);
+      const Json& largest = json.at("largest").at(to_string(kAnswerers[row])).at(Figures::kNames[column]);
       tally.largest[row][column] = {largest.at("value"), largest.at("case")};
     }
   }
@@ -48,26 +48,27 @@ Tally from_json(const Json& json) {
   return tally;
 }
 
-Expected<Tally> load(const std::filesystem::path& path) {
+Expected<SearchStats> load(const std::filesystem::path& path) {
   std::ifstream file(path);
   const Json json = Json::parse(file, nullptr, false);
   try {
     return from_json(json);
   } catch (const Json::exception&) {
-    return failure({path.string(), "is no record of a search", "what an earlier run wrote",
-                    "another version wrote it, or something else", "Remove it"});
+    return make_error({path.string(), "is no record of a search", "what an earlier run wrote",
+                       "another version wrote it, or something else", "Remove it"});
   }
 }
 
 }  // namespace
 
-Expected<Tally> load_tally(const std::filesystem::path& directory, std::uint64_t seed) {
+Expected<SearchStats> load_tally(const std::filesystem::path& directory, std::uint64_t seed) {
   const std::filesystem::path path = file_of(directory, seed);
-  if (!std::filesystem::exists(path)) return Tally{};
+  if (!std::filesystem::exists(path)) return SearchStats{};
   return load(path);
 }
 
-Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed, const Tally& tally) {
+Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed,
+                          const SearchStats& tally) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   const std::filesystem::path path = file_of(directory, seed);
@@ -77,31 +78,31 @@ Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t 
   file.close();
   if (file) std::filesystem::rename(fresh, path, error);
   if (!file || error) {
-    return failure({path.string(), "cannot be written", "a directory for the search's records", "",
-                    "Name another with --record"});
+    return make_error({path.string(), "cannot be written", "a directory for the search's records", "",
+                       "Name another with --record"});
   }
   return {};
 }
 
-Expected<Tally> load_all(const std::filesystem::path& directory) {
-  Tally total;
+Expected<SearchStats> load_all(const std::filesystem::path& directory) {
+  SearchStats total;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
-    Expected<Tally> tally = load(entry.path());
+    Expected<SearchStats> tally = load(entry.path());
     if (!tally) return tally;
     total += *tally;
   }
   return total;
 }
 
-std::string markdown(const Tally& tally) {
+std::string markdown(const SearchStats& tally) {
   std::string text = "| |";
   for (const char* column : Figures::kNames) text += std::string(" ") + column + " |";
   text += "\n|---|---|---|---|---|\n";
   for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
-    text += std::string("| `") + name(kAnswerers[row]) + "` |";
+    text += std::string("| `") + to_string(kAnswerers[row]) + "` |";
     for (const Largest& largest : tally.largest[row]) {
       std::array<char, 32> number;
       std::snprintf(number.data(), number.size(), " %.2g |", largest.value);
@@ -112,10 +113,10 @@ std::string markdown(const Tally& tally) {
   return text;
 }
 
-std::string summary(const Tally& tally) {
+std::string summary(const SearchStats& tally) {
   std::array<char, 160> text;
   std::snprintf(text.data(), text.size(), "%lld cases, %lld answers, %lld violations",
-                static_cast<long long>(tally.cases), static_cast<long long>(tally.answers),
+                static_cast<long long>(tally.cases), static_cast<long long>(tally.results),
                 static_cast<long long>(tally.failed_cases));
   return text.data();
 }

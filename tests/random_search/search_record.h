@@ -11,15 +11,16 @@
 namespace buoyancy {
 
 // Zeros where there is no such file. Errors: a file that is not one of ours.
-Expected<Tally> load_tally(const std::filesystem::path& directory, std::uint64_t seed);
+Expected<SearchStats> load_tally(const std::filesystem::path& directory, std::uint64_t seed);
 // Replaces the file at once or not at all. Errors: a directory that cannot be written.
-Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed, const Tally& tally);
+Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed,
+                          const SearchStats& tally);
 // Of all seeds of the directory.
-Expected<Tally> load_all(const std::filesystem::path& directory);
+Expected<SearchStats> load_all(const std::filesystem::path& directory);
 
 // The largest figures as a Markdown table: who answers x error over gate and over bound.
-std::string markdown(const Tally& tally);
+std::string markdown(const SearchStats& tally);
 // One line.
-std::string summary(const Tally& tally);
+std::string summary(const SearchStats& tally);
 
 }  // namespace buoyancy

@@ -12,15 +12,15 @@ namespace buoyancy {
 namespace {
 
 #ifdef __SANITIZE_THREAD__
-constexpr std::int64_t kCases = 10 * kQuestionsPerMesh;
+constexpr std::int64_t kCases = 10 * kRequestsPerMesh;
 #else
-constexpr std::int64_t kCases = 625 * kQuestionsPerMesh;  // 20,000
+constexpr std::int64_t kCases = 625 * kRequestsPerMesh;  // 20,000
 #endif
 
 TEST(RandomSearch, FindsNothingInTwentyThousandCases) {
-  const Tally tally = search(1, 0, kCases, std::max(1U, std::thread::hardware_concurrency()));
+  const SearchStats tally = search(1, 0, kCases, std::max(1U, std::thread::hardware_concurrency()));
   EXPECT_EQ(tally.cases, kCases);
-  EXPECT_GE(tally.answers, 7 * kCases);
+  EXPECT_GE(tally.results, 7 * kCases);
   for (const FailedCase& failure : tally.failures) {
     for (const std::string& violation : failure.violations)
       ADD_FAILURE() << "case " << failure.number << ", " << failure.mesh << ": " << violation;
@@ -28,22 +28,22 @@ TEST(RandomSearch, FindsNothingInTwentyThousandCases) {
 }
 
 // Off by four G_V where the water cuts the box's middle.
-std::vector<GivenAnswer> broken_answers(const HydrostaticMesh& mesh, const SearchQuestion& asked) {
-  BuoyancyAnswer answer = buoyancy(Solver(mesh, Method::kExact), asked.pose, asked.water, asked.reference_B);
-  if (answer.volume > 0.4 * mesh.volume && answer.volume < 0.6 * mesh.volume)
-    answer.force_W += 4.0 * answer.force_error_bound * asked.water.up_W;
-  return {{Answerer::kExact, "", answer}};
+std::vector<GivenResult> broken_results(const HydrostaticMesh& mesh, const SearchPose& asked) {
+  BuoyancyResult result = buoyancy(Solver(mesh, Method::kExact), asked.pose, asked.water, asked.reference_B);
+  if (result.volume > 0.4 * mesh.volume && result.volume < 0.6 * mesh.volume)
+    result.force_W += 4.0 * result.force_error_bound * asked.water.up_W;
+  return {{Evaluator::kExact, "", result}};
 }
 
 TEST(RandomSearch, FindsAnAnswerThatIsOffByFourGatesAndMakesTheCaseSmall) {
-  const Tally tally = search(2, 0, 8 * kQuestionsPerMesh, broken_answers);
+  const SearchStats tally = search(2, 0, 8 * kRequestsPerMesh, broken_results);
   ASSERT_GT(tally.failed_cases, 0);
   ASSERT_FALSE(tally.failures.empty());
   EXPECT_GT(tally.largest[0][0].value, 3.0);
   const std::int64_t number = tally.failures[0].number;
   const SearchCase found = search_case(2, number);
-  const auto still_fails = [](const TriangleMesh& mesh, const SearchQuestion& asked) {
-    return fails(mesh, asked, broken_answers);
+  const auto still_fails = [](const TriangleMesh& mesh, const SearchPose& asked) {
+    return fails(mesh, asked, broken_results);
   };
   ASSERT_TRUE(still_fails(found.mesh, found.asked));
   const SearchCase small = shrunk(found, still_fails);
@@ -54,20 +54,20 @@ TEST(RandomSearch, FindsAnAnswerThatIsOffByFourGatesAndMakesTheCaseSmall) {
 }
 
 TEST(RandomSearch, FindsAnAnswerThatIsNotANumber) {
-  const Tally tally = search(3, 0, kQuestionsPerMesh, [](const HydrostaticMesh&, const SearchQuestion&) {
-    BuoyancyAnswer answer;
-    answer.torque_W.x() = std::numeric_limits<double>::quiet_NaN();
-    return std::vector<GivenAnswer>{{Answerer::kFast, "", answer}};
+  const SearchStats tally = search(3, 0, kRequestsPerMesh, [](const HydrostaticMesh&, const SearchPose&) {
+    BuoyancyResult result;
+    result.torque_W.x() = std::numeric_limits<double>::quiet_NaN();
+    return std::vector<GivenResult>{{Evaluator::kFast, "", result}};
   });
-  EXPECT_EQ(tally.failed_cases, kQuestionsPerMesh);
+  EXPECT_EQ(tally.failed_cases, kRequestsPerMesh);
 }
 
 TEST(RandomSearch, DrawsTheSameCasesWhereverARunBeginsAndOnAnyNumberOfThreads) {
-  Tally parts = search(4, 0, 2 * kQuestionsPerMesh, 1);
-  parts += search(4, 2 * kQuestionsPerMesh, 5 * kQuestionsPerMesh, 3);
-  const Tally whole = search(4, 0, 5 * kQuestionsPerMesh, 2);
+  SearchStats parts = search(4, 0, 2 * kRequestsPerMesh, 1);
+  parts += search(4, 2 * kRequestsPerMesh, 5 * kRequestsPerMesh, 3);
+  const SearchStats whole = search(4, 0, 5 * kRequestsPerMesh, 2);
   EXPECT_EQ(parts.cases, whole.cases);
-  EXPECT_EQ(parts.answers, whole.answers);
+  EXPECT_EQ(parts.results, whole.results);
   EXPECT_EQ(markdown(parts), markdown(whole));
   for (std::size_t row = 0; row < whole.largest.size(); ++row) {
     for (std::size_t column = 0; column < whole.largest[row].size(); ++column)
@@ -81,10 +81,10 @@ TEST(RandomSearch, KeepsItsRecordAndAddsUpSeeds) {
       ("buoyancy_search_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
   std::filesystem::remove_all(directory);
   EXPECT_EQ(load_tally(directory, 5)->cases, 0);
-  const Tally found = search(5, 0, 2 * kQuestionsPerMesh, broken_answers);
+  const SearchStats found = search(5, 0, 2 * kRequestsPerMesh, broken_results);
   ASSERT_TRUE(save_tally(directory, 5, found));
   ASSERT_TRUE(save_tally(directory, 6, found));
-  const Expected<Tally> again = load_tally(directory, 5);
+  const Expected<SearchStats> again = load_tally(directory, 5);
   ASSERT_TRUE(again);
   EXPECT_EQ(summary(*again), summary(found));
   EXPECT_EQ(markdown(*again), markdown(found));

@@ -67,20 +67,20 @@ bool collapse_one_edge(SearchCase& failing, const StillFails& still_fails) {
 }
 
 // Tries each simpler value of what is asked.
-void simplify_question(SearchCase& failing, const StillFails& still_fails) {
+void simplify_request(SearchCase& failing, const StillFails& still_fails) {
   const auto try_change = [&](auto&& change) {
-    SearchQuestion simpler = failing.asked;
+    SearchPose simpler = failing.asked;
     change(simpler);
     if (still_fails(failing.mesh, simpler)) failing.asked = simpler;
   };
-  try_change([](SearchQuestion& asked) { asked.reference_B = Vec3::Zero(); });
-  try_change([](SearchQuestion& asked) { asked.pose.q_WB = Eigen::Quaterniond::Identity(); });
-  try_change([](SearchQuestion& asked) { asked.pose.p_WB = Vec3::Zero(); });
-  try_change([](SearchQuestion& asked) { asked.water.level = 0.0; });
-  try_change([](SearchQuestion& asked) { asked.water.up_W = Vec3::UnitZ(); });
-  try_change([](SearchQuestion& asked) { asked.tolerance = 1e-3; });
+  try_change([](SearchPose& asked) { asked.reference_B = Vec3::Zero(); });
+  try_change([](SearchPose& asked) { asked.pose.q_WB = Eigen::Quaterniond::Identity(); });
+  try_change([](SearchPose& asked) { asked.pose.p_WB = Vec3::Zero(); });
+  try_change([](SearchPose& asked) { asked.water.level = 0.0; });
+  try_change([](SearchPose& asked) { asked.water.up_W = Vec3::UnitZ(); });
+  try_change([](SearchPose& asked) { asked.tolerance = 1e-3; });
   for (const int bits : {30, 16, 8, 4}) {
-    try_change([bits](SearchQuestion& asked) {
+    try_change([bits](SearchPose& asked) {
       for (double& value : asked.pose.p_WB) value = rounded_to(value, bits);
       for (double& value : asked.reference_B) value = rounded_to(value, bits);
       for (double& value : asked.pose.q_WB.coeffs()) value = rounded_to(value, bits);
@@ -101,7 +101,7 @@ std::string numbers(const Vec3& v) {
 
 }  // namespace
 
-bool fails(const TriangleMesh& mesh, const SearchQuestion& asked, const Answering& answering) {
+bool fails(const TriangleMesh& mesh, const SearchPose& asked, const Answering& answering) {
   ImportedMesh imported;
   imported.mesh = mesh;
   const MeshValidation validation = validate_mesh(imported, "case");
@@ -117,14 +117,14 @@ SearchCase shrunk(SearchCase failing, const StillFails& still_fails) {
     SearchCase shorter = with_short_numbers(failing, bits);
     if (still_fails(shorter.mesh, shorter.asked)) failing = std::move(shorter);
   }
-  simplify_question(failing, still_fails);
+  simplify_request(failing, still_fails);
   while (collapse_one_edge(failing, still_fails)) {
   }
   return failing;
 }
 
 std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t number_of_case) {
-  const SearchQuestion& asked = failing.asked;
+  const SearchPose& asked = failing.asked;
   const Eigen::Quaterniond& q = asked.pose.q_WB;
   std::string text = "TEST(FoundBySearch, Seed" + std::to_string(seed) + "Case" +
                      std::to_string(number_of_case) + ") {\n  // from: " + failing.kind +
@@ -137,7 +137,7 @@ std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t 
     std::snprintf(corners.data(), corners.size(), "{%d, %d, %d}, ", face[0], face[1], face[2]);
     text += corners.data();
   }
-  text += "};\n  SearchQuestion asked;\n";
+  text += "};\n  SearchPose asked;\n";
   text += "  asked.pose.p_WB = {" + numbers(asked.pose.p_WB) + "};\n";
   text += "  asked.pose.q_WB = {" + number(q.w()) + ", " + numbers(q.vec()) + "};\n";
   text += "  asked.water.up_W = {" + numbers(asked.water.up_W) + "};\n";

@@ -9,10 +9,10 @@
 
 namespace buoyancy {
 
-using StillFails = std::function<bool(const TriangleMesh&, const SearchQuestion&)>;
+using StillFails = std::function<bool(const TriangleMesh&, const SearchPose&)>;
 
-// The case as validation accepts it and an answer that `answering` gives breaks a law.
-bool fails(const TriangleMesh& mesh, const SearchQuestion& asked, const Answering& answering);
+// The case as validation accepts it and a result that `answering` gives breaks a law.
+bool fails(const TriangleMesh& mesh, const SearchPose& asked, const Answering& answering);
 
 SearchCase shrunk(SearchCase failing, const StillFails& still_fails);
 

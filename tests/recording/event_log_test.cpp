@@ -14,13 +14,13 @@
 namespace buoyancy {
 namespace {
 
-std::vector<std::uint8_t> question(std::int64_t seq, std::size_t bodies = 1) {
-  Question question;
-  question.key = {1'000 + seq, 7, seq};
-  question.bodies.resize(bodies);
-  for (std::size_t i = 0; i < bodies; ++i) question.bodies[i].body_id = static_cast<std::int32_t>(i);
+std::vector<std::uint8_t> request(std::int64_t seq, std::size_t bodies = 1) {
+  WrenchRequest request;
+  request.key = {1'000 + seq, 7, seq};
+  request.bodies.resize(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) request.bodies[i].body_id = static_cast<std::int32_t>(i);
   std::vector<std::uint8_t> bytes;
-  encode(question, bytes);
+  encode(request, bytes);
   return bytes;
 }
 
@@ -38,29 +38,29 @@ struct Log {
   }
 };
 
-Log log_of_questions(int count) {
+Log log_of_requests(int count) {
   Log log;
-  for (int i = 0; i < count; ++i) log.add("BUOYANCY_STATES", question(i));
+  for (int i = 0; i < count; ++i) log.add("BUOYANCY_STATES", request(i));
   return log;
 }
 
 struct Found {
   std::vector<std::int64_t> seqs;
-  std::vector<std::string> damages;
+  std::vector<std::string> corrupt_sections;
 };
 
 Found read_all(const std::string& contents) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   auto reader = EventLogReader::open(directory.write("x.lcmlog", contents), only_channel("BUOYANCY_STATES"));
   if (!reader) throw std::runtime_error(reader.error().message());
   Found found;
   while (true) {
-    const InputItem item = reader->next();
-    if (std::holds_alternative<EndOfInput>(item)) break;
-    if (const auto* damage = std::get_if<Damage>(&item)) {
-      found.damages.push_back(damage->description);
+    const LogItem item = reader->next();
+    if (std::holds_alternative<EndOfLog>(item)) break;
+    if (const auto* damage = std::get_if<CorruptSection>(&item)) {
+      found.corrupt_sections.push_back(damage->description);
     } else {
-      const auto key = peek_key(std::get<RecordedEvent>(item).bytes);
+      const auto key = peek_request_id(std::get<RecordedEvent>(item).bytes);
       found.seqs.push_back(key ? key->seq : -1);
     }
   }
@@ -71,8 +71,8 @@ Found read_all(const std::string& contents) {
 using Seqs = std::vector<std::int64_t>;
 
 TEST(EventLog, WritesWhatLcmReads) {
-  const ScratchDirectory directory;
-  const std::string path = directory.write("x.lcmlog", log_of_questions(2).bytes);
+  const TempDir directory;
+  const std::string path = directory.write("x.lcmlog", log_of_requests(2).bytes);
   lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "r");
   ASSERT_NE(log, nullptr);
   for (int i = 0; i < 2; ++i) {
@@ -82,7 +82,7 @@ TEST(EventLog, WritesWhatLcmReads) {
     EXPECT_EQ(event->timestamp, 1'000'000 + i);
     EXPECT_STREQ(event->channel, "BUOYANCY_STATES");
     const auto* data = static_cast<const std::uint8_t*>(event->data);
-    EXPECT_EQ(std::vector<std::uint8_t>(data, data + event->datalen), question(i));
+    EXPECT_EQ(std::vector<std::uint8_t>(data, data + event->datalen), request(i));
     lcm_eventlog_free_event(event);
   }
   EXPECT_EQ(lcm_eventlog_read_next_event(log), nullptr);
@@ -90,12 +90,12 @@ TEST(EventLog, WritesWhatLcmReads) {
 }
 
 TEST(EventLog, ReadsWhatLcmWrites) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string path = directory.path("x.lcmlog");
   lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "w");
   ASSERT_NE(log, nullptr);
   std::string channel = "BUOYANCY_STATES";
-  std::vector<std::uint8_t> data = question(5);
+  std::vector<std::uint8_t> data = request(5);
   lcm_eventlog_event_t event{};
   event.timestamp = 77;
   event.channellen = static_cast<std::int32_t>(channel.size());
@@ -107,34 +107,34 @@ TEST(EventLog, ReadsWhatLcmWrites) {
 
   auto reader = EventLogReader::open(path, only_channel("BUOYANCY_STATES"));
   ASSERT_TRUE(reader);
-  const InputItem item = reader->next();
+  const LogItem item = reader->next();
   const auto& found = std::get<RecordedEvent>(item);
   EXPECT_EQ(found.timestamp, 77);
   EXPECT_EQ(std::vector<std::uint8_t>(found.bytes.begin(), found.bytes.end()), data);
-  EXPECT_TRUE(std::holds_alternative<EndOfInput>(reader->next()));
+  EXPECT_TRUE(std::holds_alternative<EndOfLog>(reader->next()));
 }
 
 TEST(EventLog, PassesOverOtherChannelsWhateverTheirSize) {
   Log log;
   log.add("OTHER", std::vector<std::uint8_t>(5'000'000, 0xED));
-  log.add("BUOYANCY_STATES", question(1));
-  log.add("BUOYANCY_STATES_2", question(2));
-  log.add("BUOYANCY_STATE", question(3));
-  log.add("BUOYANCY_STATES", question(4, 100'000));
+  log.add("BUOYANCY_STATES", request(1));
+  log.add("BUOYANCY_STATES_2", request(2));
+  log.add("BUOYANCY_STATE", request(3));
+  log.add("BUOYANCY_STATES", request(4, 100'000));
   log.add("OTHER", {});
   const Found found = read_all(log.bytes);
   EXPECT_EQ(found.seqs, (Seqs{1, 4}));
-  EXPECT_TRUE(found.damages.empty());
+  EXPECT_TRUE(found.corrupt_sections.empty());
 }
 
 TEST(EventLog, FindsNothingInAnEmptyFile) {
   const Found found = read_all("");
   EXPECT_TRUE(found.seqs.empty());
-  EXPECT_TRUE(found.damages.empty());
+  EXPECT_TRUE(found.corrupt_sections.empty());
 }
 
 TEST(EventLog, AnswersEveryGoodEventAroundGarbage) {
-  Log log = log_of_questions(4);
+  Log log = log_of_requests(4);
   // The last three: the header behind the garbage lies across the end of the first megabyte, which is read at
   // once.
   const std::size_t megabyte_left = 1'048'576 - log.starts[2];
@@ -145,18 +145,18 @@ TEST(EventLog, AnswersEveryGoodEventAroundGarbage) {
     bytes.insert(log.starts[2], std::string(length, '\xED'));
     const Found found = read_all(bytes);
     EXPECT_EQ(found.seqs, (Seqs{0, 1, 2, 3})) << length;
-    ASSERT_EQ(found.damages.size(), 1U) << length;
-    EXPECT_NE(found.damages[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
-        << found.damages[0];
-    EXPECT_NE(found.damages[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
-        << found.damages[0];
+    ASSERT_EQ(found.corrupt_sections.size(), 1U) << length;
+    EXPECT_NE(found.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
+        << found.corrupt_sections[0];
+    EXPECT_NE(found.corrupt_sections[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
+        << found.corrupt_sections[0];
   }
 }
 
 TEST(EventLog, LosesOnlyTheEventWhoseHeaderIsDamaged) {
   constexpr std::size_t kChannelLength = 20;
   constexpr std::size_t kDataLength = 24;
-  const Log log = log_of_questions(4);
+  const Log log = log_of_requests(4);
   for (const std::size_t field : {std::size_t{0}, kChannelLength, kDataLength}) {
     for (const char value : {'\x00', '\x01', '\x7F', '\xFF'}) {
       for (const std::size_t byte : {std::size_t{0}, std::size_t{3}}) {
@@ -166,41 +166,41 @@ TEST(EventLog, LosesOnlyTheEventWhoseHeaderIsDamaged) {
         changed = value;
         const Found found = read_all(bytes);
         EXPECT_EQ(found.seqs, (Seqs{0, 2, 3})) << field + byte << " = " << int{value};
-        EXPECT_EQ(found.damages.size(), 1U) << field + byte << " = " << int{value};
+        EXPECT_EQ(found.corrupt_sections.size(), 1U) << field + byte << " = " << int{value};
       }
     }
   }
 }
 
 TEST(EventLog, ReportsATailThatWasCutOffAndKeepsWhatStandsBeforeIt) {
-  const Log log = log_of_questions(3);
+  const Log log = log_of_requests(3);
   for (std::size_t length = log.starts[2] + 1; length < log.bytes.size(); ++length) {
     const Found found = read_all(log.bytes.substr(0, length));
     EXPECT_EQ(found.seqs, (Seqs{0, 1})) << length;
-    ASSERT_EQ(found.damages.size(), 1U) << length;
-    EXPECT_NE(found.damages[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
-        << found.damages[0];
+    ASSERT_EQ(found.corrupt_sections.size(), 1U) << length;
+    EXPECT_NE(found.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
+        << found.corrupt_sections[0];
   }
 }
 
 TEST(EventLog, IsNotMisledByHeadersWithinTheData) {
   Log log;
-  Log inner = log_of_questions(1);
+  Log inner = log_of_requests(1);
   std::vector<std::uint8_t> data(inner.bytes.begin(), inner.bytes.end());
   log.add("OTHER", data);
-  log.add("BUOYANCY_STATES", question(9));
+  log.add("BUOYANCY_STATES", request(9));
   EXPECT_EQ(read_all(log.bytes).seqs, Seqs{9});
 }
 
 TEST(EventLog, HandsOnBytesThatAreNoQuestionForTheExchangeToReject) {
   Log log;
   log.add("BUOYANCY_STATES", {1, 2, 3});
-  log.add("BUOYANCY_STATES", question(1));
+  log.add("BUOYANCY_STATES", request(1));
   EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 1}));
 }
 
 TEST(EventLog, RefusesWhatIsNoRegularFile) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), only_channel("A")));
   EXPECT_FALSE(EventLogReader::open(directory.path("."), only_channel("A")));
   EXPECT_FALSE(EventLogReader::open("/dev/null", only_channel("A")));

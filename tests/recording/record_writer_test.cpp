@@ -44,10 +44,10 @@ class FileSizeLimit {
   void (*handler_)(int);
 };
 
-TEST(RecordFile, WritesRecordsInOrder) {
-  const ScratchDirectory directory;
+TEST(RecordWriter, WritesRecordsInOrder) {
+  const TempDir directory;
   const std::string path = directory.write("x", "what was there before, which goes");
-  auto file = RecordFile::create(path);
+  auto file = RecordWriter::create(path);
   ASSERT_TRUE(file);
   std::string expected;
   for (int i = 0; i < 100'000; ++i) {
@@ -58,13 +58,13 @@ TEST(RecordFile, WritesRecordsInOrder) {
   ASSERT_TRUE(file->append(bytes_of(std::string(3'000'000, 'x'))));
   expected += std::string(3'000'000, 'x');
   ASSERT_TRUE(file->flush());
-  EXPECT_EQ(contents_of(path), expected);
+  EXPECT_EQ(read_file(path), expected);
 }
 
-TEST(RecordFile, EndsAtARecordsEndWhereTheDiskIsFull) {
-  const ScratchDirectory directory;
+TEST(RecordWriter, EndsAtARecordsEndWhereTheDiskIsFull) {
+  const TempDir directory;
   for (const rlim_t limit : {1'000'000U, 1'048'576U, 1'500'007U, 5U}) {
-    auto file = RecordFile::create(directory.path("x"));
+    auto file = RecordWriter::create(directory.path("x"));
     ASSERT_TRUE(file);
     Expected<void> written;
     {
@@ -73,7 +73,7 @@ TEST(RecordFile, EndsAtARecordsEndWhereTheDiskIsFull) {
     }
     ASSERT_FALSE(written);
     EXPECT_NE(written.error().message().find("could not be written"), std::string::npos);
-    EXPECT_EQ(contents_of(directory.path("x")).size(), limit / 10 * 10);
+    EXPECT_EQ(read_file(directory.path("x")).size(), limit / 10 * 10);
   }
 }
 
@@ -82,7 +82,7 @@ class UnreadPipe {
  public:
   UnreadPipe() : path_(directory_.path("pipe")) {
     EXPECT_EQ(::mkfifo(path_.c_str(), 0600), 0);
-    reader_ = FileDescriptor(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    reader_ = UniqueFd(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   }
   const std::string& path() const { return path_; }
   std::string read_all() const {
@@ -95,16 +95,16 @@ class UnreadPipe {
   }
 
  private:
-  ScratchDirectory directory_;
+  TempDir directory_;
   std::string path_;
-  FileDescriptor reader_;
+  UniqueFd reader_;
 };
 
-TEST(RecordFile, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
+TEST(RecordWriter, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
   const UnreadPipe pipe;
-  auto file = RecordFile::create(pipe.path());
+  auto file = RecordWriter::create(pipe.path());
   ASSERT_TRUE(file);
-  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  const UniqueFd signal(::eventfd(1, EFD_CLOEXEC));
   file->give_up_after(signal.value());
   const std::string record = "0123456789\n";
   for (int i = 0; i < 50'000; ++i) ASSERT_TRUE(file->append(bytes_of(record)));
@@ -117,11 +117,11 @@ TEST(RecordFile, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
   EXPECT_EQ(written.size() % record.size(), 0U) << "the pipe ends within a record";
 }
 
-TEST(RecordFile, WritesAllToAPipeThatIsReadAfterASignal) {
+TEST(RecordWriter, WritesAllToAPipeThatIsReadAfterASignal) {
   const UnreadPipe pipe;
-  auto file = RecordFile::create(pipe.path());
+  auto file = RecordWriter::create(pipe.path());
   ASSERT_TRUE(file);
-  const FileDescriptor signal(::eventfd(1, EFD_CLOEXEC));
+  const UniqueFd signal(::eventfd(1, EFD_CLOEXEC));
   file->give_up_after(signal.value());
   std::string expected;
   for (const std::size_t size : {10U, 4'000U, 4'096U, 5'000U, 300'000U, 1U, 4'097U}) {
@@ -138,15 +138,15 @@ TEST(RecordFile, WritesAllToAPipeThatIsReadAfterASignal) {
   EXPECT_TRUE(written == expected) << written.size();
 }
 
-TEST(RecordFile, SaysWhatIsWrongWithTheDisk) {
-  auto file = RecordFile::create("/dev/full");
+TEST(RecordWriter, SaysWhatIsWrongWithTheDisk) {
+  auto file = RecordWriter::create("/dev/full");
   ASSERT_TRUE(file);
   ASSERT_TRUE(file->append(bytes_of("x")));
   const Expected<void> flushed = file->flush();
   ASSERT_FALSE(flushed);
   EXPECT_NE(flushed.error().message().find("the disk is full"), std::string::npos)
       << flushed.error().message();
-  const auto missing = RecordFile::create("/no/such/directory/x");
+  const auto missing = RecordWriter::create("/no/such/directory/x");
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message().find("the directory does not exist"), std::string::npos);
 }

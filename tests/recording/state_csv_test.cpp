@@ -14,26 +14,26 @@ namespace {
 const std::string kHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
 
 struct Found {
-  std::vector<Question> questions;
-  std::vector<std::string> damages;
+  std::vector<WrenchRequest> requests;
+  std::vector<std::string> corrupt_sections;
 };
 
 Found read_all(const std::string& contents) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   auto reader = StateCsvReader::open(directory.write("x.csv", contents));
   if (!reader) throw std::runtime_error(reader.error().message());
   Found found;
   while (true) {
-    const InputItem item = reader->next();
-    if (std::holds_alternative<EndOfInput>(item)) break;
-    if (const auto* damage = std::get_if<Damage>(&item)) {
-      found.damages.push_back(damage->description);
+    const LogItem item = reader->next();
+    if (std::holds_alternative<EndOfLog>(item)) break;
+    if (const auto* damage = std::get_if<CorruptSection>(&item)) {
+      found.corrupt_sections.push_back(damage->description);
     } else {
       const auto& recorded = std::get<RecordedEvent>(item);
-      Question question;
-      EXPECT_FALSE(decode(recorded.bytes, question));
-      EXPECT_EQ(recorded.timestamp, question.key.utime);
-      found.questions.push_back(question);
+      WrenchRequest request;
+      EXPECT_FALSE(decode(recorded.bytes, request));
+      EXPECT_EQ(recorded.timestamp, request.key.utime);
+      found.requests.push_back(request);
     }
   }
   EXPECT_EQ(reader->offset(), reader->size());
@@ -41,7 +41,7 @@ Found read_all(const std::string& contents) {
 }
 
 std::string refusal(const std::string& contents) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const auto reader = StateCsvReader::open(directory.write("x.csv", contents));
   return reader ? "" : reader.error().message();
 }
@@ -50,12 +50,12 @@ TEST(StateCsv, ReadsEveryColumnExactly) {
   const Found found = read_all(
       "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
       "-9223372036854775808,-2147483648,0.1,-2e-308,3,0.5,+.5,-0.5,5e-1,1,2,3,4,5,1.7976931348623157e308\n");
-  ASSERT_EQ(found.questions.size(), 1U);
-  const Question& question = found.questions[0];
-  EXPECT_EQ(question.key.utime, INT64_MIN);
-  EXPECT_EQ(question.lead_time, 0.0);
-  ASSERT_EQ(question.bodies.size(), 1U);
-  const BodyState& state = question.bodies[0];
+  ASSERT_EQ(found.requests.size(), 1U);
+  const WrenchRequest& request = found.requests[0];
+  EXPECT_EQ(request.key.utime, INT64_MIN);
+  EXPECT_EQ(request.lead_time, 0.0);
+  ASSERT_EQ(request.bodies.size(), 1U);
+  const BodyState& state = request.bodies[0];
   EXPECT_EQ(state.body_id, INT32_MIN);
   EXPECT_EQ(state.position, (std::array{0.1, -2e-308, 3.0}));
   EXPECT_EQ(state.quaternion_wxyz, (std::array{0.5, 0.5, -0.5, 0.5}));
@@ -69,26 +69,26 @@ TEST(StateCsv, TakesRowsOfOneUtimeAsOneQuestion) {
                                "10,2,0,0,0,1,0,0,0\n"
                                "20,1,0,0,0,1,0,0,0\n"
                                "10,1,0,0,0,1,0,0,0\n");
-  ASSERT_EQ(found.questions.size(), 3U);
-  EXPECT_EQ(found.questions[0].bodies.size(), 2U);
-  EXPECT_EQ(found.questions[1].bodies.size(), 1U);
-  EXPECT_EQ(found.questions[2].key.utime, 10);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.questions[i].key.seq, static_cast<std::int64_t>(i));
+  ASSERT_EQ(found.requests.size(), 3U);
+  EXPECT_EQ(found.requests[0].bodies.size(), 2U);
+  EXPECT_EQ(found.requests[1].bodies.size(), 1U);
+  EXPECT_EQ(found.requests[2].key.utime, 10);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.requests[i].key.seq, static_cast<std::int64_t>(i));
 }
 
 TEST(StateCsv, BoundsTheRowsOfOneQuestion) {
   std::string contents = kHeader;
-  for (std::size_t i = 0; i < kMostRowsPerQuestion + 1; ++i) contents += "1,1,0,0,0,1,0,0,0\n";
+  for (std::size_t i = 0; i < kMaxRowsPerRequest + 1; ++i) contents += "1,1,0,0,0,1,0,0,0\n";
   const Found found = read_all(contents);
-  ASSERT_EQ(found.questions.size(), 2U);
-  EXPECT_EQ(found.questions[0].bodies.size(), kMostRowsPerQuestion);
-  EXPECT_EQ(found.questions[1].bodies.size(), 1U);
+  ASSERT_EQ(found.requests.size(), 2U);
+  EXPECT_EQ(found.requests[0].bodies.size(), kMaxRowsPerRequest);
+  EXPECT_EQ(found.requests[1].bodies.size(), 1U);
 }
 
 TEST(StateCsv, TakesNanAndInfinityAsNumbers) {
   const Found found = read_all(kHeader + "1,1,nan,inf,-inf,1,0,0,0\n");
-  ASSERT_EQ(found.questions.size(), 1U);
-  const auto& position = found.questions[0].bodies[0].position;
+  ASSERT_EQ(found.requests.size(), 1U);
+  const auto& position = found.requests[0].bodies[0].position;
   EXPECT_TRUE(std::isnan(position[0]));
   EXPECT_EQ(position[1], HUGE_VAL);
   EXPECT_EQ(position[2], -HUGE_VAL);
@@ -98,8 +98,8 @@ TEST(StateCsv, BearsSpacesBlankLinesCarriageReturnsAMarkInFrontAndNoNewlineAtThe
   const Found found = read_all(
       "\xEF\xBB\xBFutime, body_id, px, py, pz, qw, qx, qy, qz\r\n\r\n 1 , 1,0,0,0, "
       "1,0,0,0\r\n\n2,1,0,0,0,1,0,0,0");
-  EXPECT_EQ(found.questions.size(), 2U);
-  EXPECT_TRUE(found.damages.empty());
+  EXPECT_EQ(found.requests.size(), 2U);
+  EXPECT_TRUE(found.corrupt_sections.empty());
 }
 
 TEST(StateCsv, ReportsMalformedRowsWithTheirLineAndReadsOn) {
@@ -114,9 +114,9 @@ TEST(StateCsv, ReportsMalformedRowsWithTheirLineAndReadsOn) {
     rows += "\n";
     rows += good;
     const Found found = read_all(rows);
-    EXPECT_EQ(found.questions.size(), 2U) << bad;
-    ASSERT_EQ(found.damages.size(), 1U) << bad;
-    EXPECT_EQ(found.damages[0].rfind("line 3: ", 0), 0U) << found.damages[0];
+    EXPECT_EQ(found.requests.size(), 2U) << bad;
+    ASSERT_EQ(found.corrupt_sections.size(), 1U) << bad;
+    EXPECT_EQ(found.corrupt_sections[0].rfind("line 3: ", 0), 0U) << found.corrupt_sections[0];
   }
 }
 
@@ -124,10 +124,10 @@ TEST(StateCsv, ReportsALineWithoutEndOnce) {
   const std::string good = "1,1,0,0,0,1,0,0,0\n";
   const Found found =
       read_all(kHeader + good + std::string(3'000'000, '7') + "\n" + good + std::string(5000, ' '));
-  EXPECT_EQ(found.questions.size(), 2U);
-  ASSERT_EQ(found.damages.size(), 2U);
-  EXPECT_EQ(found.damages[0].rfind("line 3: ", 0), 0U) << found.damages[0];
-  EXPECT_EQ(found.damages[1].rfind("line 5: ", 0), 0U) << found.damages[1];
+  EXPECT_EQ(found.requests.size(), 2U);
+  ASSERT_EQ(found.corrupt_sections.size(), 2U);
+  EXPECT_EQ(found.corrupt_sections[0].rfind("line 3: ", 0), 0U) << found.corrupt_sections[0];
+  EXPECT_EQ(found.corrupt_sections[1].rfind("line 5: ", 0), 0U) << found.corrupt_sections[1];
 }
 
 TEST(StateCsv, NamesTheHeaderItWantsWhereThereIsAnother) {
@@ -143,8 +143,8 @@ TEST(StateCsv, NamesTheHeaderItWantsWhereThereIsAnother) {
 TEST(StateCsv, FindsNothingInAnEmptyFileOrBehindTheHeader) {
   for (const std::string& contents : {std::string(), kHeader}) {
     const Found found = read_all(contents);
-    EXPECT_TRUE(found.questions.empty());
-    EXPECT_TRUE(found.damages.empty());
+    EXPECT_TRUE(found.requests.empty());
+    EXPECT_TRUE(found.corrupt_sections.empty());
   }
 }
 

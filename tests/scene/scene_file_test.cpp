@@ -33,7 +33,7 @@ TEST(SceneFile, TakesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(body.tolerance, 0.0);
   EXPECT_EQ(body.open, OpenPolicy::kRefuse);
   EXPECT_EQ(body.reference_B, Vec3::Zero());
-  EXPECT_EQ(body.where, "pool.toml:1");
+  EXPECT_EQ(body.source_location, "pool.toml:1");
   EXPECT_FALSE(body.client.given);
 }
 
@@ -93,7 +93,7 @@ angular_damping_quadratic = 13
   EXPECT_EQ(body.open, OpenPolicy::kDryBoundary);
   EXPECT_EQ(body.reference_B, Vec3(1, 2, 3.5));
 
-  const ClientSpec& client = body.client;
+  const DynamicsSpec& client = body.client;
   EXPECT_TRUE(client.given);
   EXPECT_EQ(client.mass, 12.0);
   EXPECT_FALSE(client.density);
@@ -123,7 +123,7 @@ TEST(SceneFile, KeepsHydrostaticsOffUnlessTheOutputsNameThem) {
 
 TEST(SceneFile, ReadsEveryMethodByItsName) {
   for (const Method method : kAllMethods) {
-    const auto scene = parsed(crate_and("method = \"" + std::string(name(method)) + "\"\n"));
+    const auto scene = parsed(crate_and("method = \"" + std::string(to_string(method)) + "\"\n"));
     ASSERT_TRUE(scene) << scene.error().message();
     EXPECT_EQ(scene->bodies[0].method, method);
   }
@@ -134,7 +134,7 @@ TEST(SceneFile, KeepsTheBodiesInTheFilesOrder) {
   ASSERT_TRUE(scene) << scene.error().message();
   ASSERT_EQ(scene->bodies.size(), 2U);
   EXPECT_EQ(scene->bodies[1].id, -2);
-  EXPECT_EQ(scene->bodies[1].where, "pool.toml:4");
+  EXPECT_EQ(scene->bodies[1].source_location, "pool.toml:4");
 }
 
 TEST(SceneFile, LeavesAnAbsoluteMeshPathAsItIs) {
@@ -209,7 +209,7 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
       {crate_and("open = true\n"), "open = true"},
       {crate_and("outputs = [\"hydrostatics\"]\n"),
        "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"] or [\"wrench\", "
-       "\"hydrostatics\"]. Likely cause: wrenches are what every question is answered with. Write outputs = "
+       "\"hydrostatics\"]. Likely cause: wrenches are what every request is answered with. Write outputs = "
        "[\"wrench\", \"hydrostatics\"]."},
       {crate_and("outputs = [\"wrench\", \"hydrostatic\"]\n"),
        "The nearest to 'hydrostatic' is 'hydrostatics'."},
@@ -315,11 +315,11 @@ TEST(SceneFile, NamesTheFirstOfSeveralFaults) {
 }
 
 TEST(SceneFile, ResolvesMeshesAgainstItsOwnDirectory) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const auto path = directory.write("pool.toml", "[[body]]\nid = 1\nmesh = \"duck.dae\"\n");
   const Expected<SceneDescription> scene = read_scene_file(path);
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_EQ(scene->name, path.string());
+  EXPECT_EQ(scene->name, path);
   EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].source).path, directory.path() / "duck.dae");
 }
 
@@ -329,7 +329,7 @@ std::string file_refusal(const std::filesystem::path& path) {
 }
 
 TEST(SceneFile, IsNamedWhereItCannotBeRead) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::filesystem::path missing = directory.path() / "missing.toml";
   EXPECT_EQ(file_refusal(missing).rfind(missing.string() + ": no such file", 0), 0U);
   EXPECT_EQ(file_refusal(directory.path()).rfind(directory.path().string() + ": is a directory", 0), 0U);

@@ -104,9 +104,9 @@ TEST(SceneReports, HoldEveryMeshWithItsBodiesAsJson) {
 }
 
 TEST(SceneReports, LeaveTheMassOfOpenMeshesUnknown) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string mesh =
-      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n").string();
+      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const Scene scene = prepared("[[body]]\nid = 1\nmesh = \"" + mesh + "\"\nopen = \"dry_boundary\"\n");
   const Json report = Json::parse(scene_report_json(scene));
   EXPECT_EQ(report["bodies"][0]["mass"], nullptr);

@@ -11,7 +11,7 @@
 namespace buoyancy {
 namespace {
 
-Expected<Scene> loaded(const TemporaryDirectory& directory, const std::string& text,
+Expected<Scene> loaded(const TempDir& directory, const std::string& text,
                        const PrepareOptions& options = {}) {
   return Scene::load(directory.write("pool.toml", text), options);
 }
@@ -21,7 +21,7 @@ std::string body_with(int id, const std::string& keys) {
 }
 
 TEST(Scene, PreparesGeneratedShapes) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const auto scene = loaded(directory, body_with(4, "shape = { type = \"box\", size = [1, 2, 3] }"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->name(), (directory.path() / "pool.toml").string());
@@ -33,13 +33,13 @@ TEST(Scene, PreparesGeneratedShapes) {
   EXPECT_NEAR(mesh.mass_properties.volume, 6.0, 1e-14);
   ASSERT_EQ(scene->bodies().size(), 1U);
   const Body& body = scene->bodies()[0];
-  EXPECT_EQ(body.prepared, &mesh);
+  EXPECT_EQ(body.prepared_mesh, &mesh);
   EXPECT_EQ(&body.solver.mesh(), &mesh.mesh);
   EXPECT_EQ(body.solver.method(), Method::kHierarchical);
 }
 
 TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const auto scene =
       loaded(directory,
              "[water]\nlevel = 3\n" + body_with(4,
@@ -58,7 +58,7 @@ TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
 }
 
 TEST(Scene, GivesTheTreeToMeshesWhoseBodiesAskForHydrostatics) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string exact_box = "shape = { type = \"box\" }\nmethod = \"exact\"\n";
   const auto without = loaded(directory, body_with(1, exact_box));
   ASSERT_TRUE(without) << without.error().message();
@@ -75,9 +75,9 @@ TEST(Scene, GivesTheTreeToMeshesWhoseBodiesAskForHydrostatics) {
 }
 
 TEST(Scene, KnowsTheCentreOfMassWhereTheClientSaysHowTheMassLies) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string open_mesh =
-      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n").string();
+      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const std::string cone = "shape = { type = \"cone\", height = 2 }\n";
   const std::string open = "mesh = \"" + open_mesh + "\"\nopen = \"dry_boundary\"\n";
   const auto center = [&](const std::string& keys) {
@@ -99,7 +99,7 @@ TEST(Scene, KnowsTheCentreOfMassWhereTheClientSaysHowTheMassLies) {
 }
 
 TEST(Scene, LoadsAMeshUsedTwiceOnce) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
   std::filesystem::create_symlink(directory.path() / "tetrahedron.obj", directory.path() / "alias.obj");
   const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
@@ -107,11 +107,11 @@ TEST(Scene, LoadsAMeshUsedTwiceOnce) {
                                            body_with(3, "mesh = \"alias.obj\""));
   ASSERT_TRUE(scene) << scene.error().message();
   ASSERT_EQ(scene->meshes().size(), 1U);
-  for (const Body& body : scene->bodies()) EXPECT_EQ(body.prepared, scene->meshes()[0].get());
+  for (const Body& body : scene->bodies()) EXPECT_EQ(body.prepared_mesh, scene->meshes()[0].get());
 }
 
 TEST(Scene, PreparesAMeshAgainForAnotherScaleOrOpenPolicy) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
   const auto scene =
       loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
@@ -122,17 +122,17 @@ TEST(Scene, PreparesAMeshAgainForAnotherScaleOrOpenPolicy) {
 }
 
 TEST(Scene, SharesEqualShapesOnly) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const auto scene = loaded(directory, body_with(1, "shape = { type = \"rock\", seed = 1 }") +
                                            body_with(2, "shape = { type = \"rock\", seed = 2 }") +
                                            body_with(3, "shape = { type = \"rock\" }"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->meshes().size(), 2U);
-  EXPECT_EQ(scene->bodies()[0].prepared, scene->bodies()[2].prepared);
+  EXPECT_EQ(scene->bodies()[0].prepared_mesh, scene->bodies()[2].prepared_mesh);
 }
 
 TEST(Scene, ScalesMeshesInDouble) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("tetrahedron.ply", tetrahedron::binary_ply());
   const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.ply\"\nscale = 0.1"));
   ASSERT_TRUE(scene) << scene.error().message();
@@ -141,7 +141,7 @@ TEST(Scene, ScalesMeshesInDouble) {
 }
 
 TEST(Scene, FindsBodiesByTheirId) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const auto scene = loaded(directory, body_with(9, "shape = { type = \"box\" }") +
                                            body_with(-5, "shape = { type = \"box\" }") +
                                            body_with(2, "shape = { type = \"box\" }"));
@@ -156,7 +156,7 @@ TEST(Scene, FindsBodiesByTheirId) {
 }
 
 TEST(Scene, AnswersAfterItHasBeenMoved) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   auto scene = loaded(directory, body_with(1, "shape = { type = \"box\" }\nmethod = \"fast\""));
   ASSERT_TRUE(scene) << scene.error().message();
   const WaterPlane all_wet{Vec3::UnitZ(), 10.0};
@@ -167,7 +167,7 @@ TEST(Scene, AnswersAfterItHasBeenMoved) {
 }
 
 TEST(Scene, CountsIntersectionsOnRequestOnly) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::string text = body_with(1, "shape = { type = \"box\" }");
   const auto plain = loaded(directory, text);
   ASSERT_TRUE(plain) << plain.error().message();
@@ -182,7 +182,7 @@ std::string refusal(const Expected<Scene>& scene) {
 }
 
 TEST(Scene, NamesFileLineBodyAndMeshWhereAMeshCannotBeUsed) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   for (const std::string mesh : {"missing.obj", "open.obj"}) {
     const std::string message = refusal(loaded(
@@ -194,15 +194,15 @@ TEST(Scene, NamesFileLineBodyAndMeshWhereAMeshCannotBeUsed) {
 }
 
 TEST(Scene, TakesOpenMeshesWhereTheFileSaysSo) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const auto scene = loaded(directory, body_with(1, "mesh = \"open.obj\"\nopen = \"dry_boundary\""));
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_TRUE(scene->bodies()[0].prepared->mesh.open());
+  EXPECT_TRUE(scene->bodies()[0].prepared_mesh->mesh.is_open());
 }
 
 TEST(Scene, RefusesMeshesBeyondItsLimits) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
   const std::string message =
       refusal(loaded(directory, "[limits]\nfaces = 3\n" + body_with(1, "mesh = \"tetrahedron.obj\"")));
@@ -210,7 +210,7 @@ TEST(Scene, RefusesMeshesBeyondItsLimits) {
 }
 
 TEST(Scene, NamesOnlyTheMeshWhereThereIsNoSceneFile) {
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::filesystem::path mesh = directory.path() / "missing.obj";
   const std::string message =
       refusal(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0, OpenPolicy::kRefuse)));

@@ -48,13 +48,13 @@ TEST(ShippedScenes, LetADuckOfSensibleSizeFallIntoTheWater) {
   const Expected<Scene> scene = Scene::prepare(*description);
   ASSERT_TRUE(scene) << scene.error().message();
   const Body& duck = scene->bodies().at(0);
-  EXPECT_EQ(duck.prepared->report.triangles, 4'212);
-  EXPECT_TRUE(duck.prepared->report.closed());
+  EXPECT_EQ(duck.prepared_mesh->report.triangles, 4'212);
+  EXPECT_TRUE(duck.prepared_mesh->report.closed());
 
   // Its lowest point is above the water, its head is up.
   double lowest = 1e9;
   double highest = -1e9;
-  const HydrostaticMesh& mesh = duck.prepared->mesh;
+  const HydrostaticMesh& mesh = duck.prepared_mesh->mesh;
   for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
     const Vec3 vertex_B = mesh.center_B + Vec3(mesh.surface.x[i], mesh.surface.y[i], mesh.surface.z[i]);
     const Vec3 vertex_W = duck.client.position + duck.client.orientation * vertex_B;

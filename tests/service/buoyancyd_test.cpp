@@ -32,14 +32,14 @@ class Ended : public testing::TestWithParam<int> {};
 TEST_P(Ended, BySignalItSaysWhatItDidAndExitsWith0) {
   RunningService service;
   RawLcmSocket socket;
-  ask(socket, one_body(1, 1, 0.0));
-  hear(socket);
+  send_request(socket, one_body(1, 1, 0.0));
+  receive(socket);
   service.child().send_signal(GetParam());
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
   EXPECT_NE(log.find(GetParam() == SIGINT ? "ended by SIGINT" : "ended by SIGTERM"), std::string::npos)
       << log;
-  EXPECT_NE(log.find("1 questions: 1 answered"), std::string::npos) << log;
+  EXPECT_NE(log.find("1 requests: 1 computed"), std::string::npos) << log;
   EXPECT_EQ(service.child().standard_output(), "");
 }
 
@@ -55,7 +55,7 @@ TEST(Buoyancyd, SaysWhatItListensToWhenItIsReady) {
 }
 
 TEST(Buoyancyd, RefusesWrongArgumentsWithOneLineAnd2) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   expect_refusal(run({}), 2, "--scene");
   expect_refusal(run({"--scene"}), 2, "--scene");
@@ -73,7 +73,7 @@ TEST(Buoyancyd, RefusesWrongArgumentsWithOneLineAnd2) {
 }
 
 TEST(Buoyancyd, RefusesScenesAndMeshesItCannotUseWithOneLineAnd2) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   expect_refusal(run({"--scene", directory.path("missing.toml")}), 2, "missing.toml");
   expect_refusal(run({"--scene", directory.path(".")}), 2, directory.path("."));
   expect_refusal(run({"--scene", directory.write("bad.toml", "[[body]]\nid = ")}), 2, "bad.toml");
@@ -86,7 +86,7 @@ TEST(Buoyancyd, RefusesScenesAndMeshesItCannotUseWithOneLineAnd2) {
 }
 
 TEST(Buoyancyd, SaysWhatMendsAMissingMulticastRoute) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess finished =
       run_to_end(command_of({"unshare", "-n", "sh", "-c", "ip link set lo up && exec \"$0\" --scene \"$1\"",
@@ -107,9 +107,9 @@ TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
       run_to_end(command_of({"ip", "route", "add", route[0], route[1], route[2]}), kWaitTimeout).exit_code,
       0);
   RawLcmSocket socket;
-  ask(socket, one_body(1, 1, 0.0));
-  EXPECT_EQ(hear(socket).seq, 1);
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.not_sent > 0; }));
+  send_request(socket, one_body(1, 1, 0.0));
+  EXPECT_EQ(receive(socket).seq, 1);
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.send_failures > 0; }));
 }
 
 TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
@@ -135,17 +135,17 @@ class LogLevel : public testing::TestWithParam<std::pair<const char*, std::set<s
 
 TEST_P(LogLevel, SaysWhatItIsAskedForAndWhatIsGraver) {
   const auto& [level, expected] = GetParam();
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   ChildProcess child(command_of({BUOYANCYD, "--scene", scene, "--log-level", level}));
   RawLcmSocket socket;
   ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it says
   socket.send("BUOYANCY_STATES", {1, 2, 3});                     // a trouble
-  ask(socket, one_body(7, 3, 0.0));
-  EXPECT_EQ(hear(socket).seq, 3);
+  send_request(socket, one_body(7, 3, 0.0));
+  EXPECT_EQ(receive(socket).seq, 3);
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
-  ASSERT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+  ASSERT_TRUE(on_status(socket, [](const ServiceStatus& status) {
     return status.counters.rejected() == 1 && status.reloads_failed == 1;
   }));
   child.send_signal(SIGTERM);
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Levels, LogLevel,
                          [](const auto& level) { return level.param.first; });
 
 TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const auto started = [&scene](const std::string& journal_stream) {
     return command_of({"bash", "-c",
@@ -193,16 +193,16 @@ TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
 TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
-  const auto first = hear_status(socket, [](const ServiceStatus&) { return true; });
+  const auto first = on_status(socket, [](const ServiceStatus&) { return true; });
   ASSERT_TRUE(first);
   EXPECT_EQ(first->version, BUOYANCY_VERSION);
   EXPECT_EQ(first->scene, service.path("scene.toml"));
-  EXPECT_EQ(first->mode, Mode::kLatest);
+  EXPECT_EQ(first->mode, ServiceMode::kLatest);
   EXPECT_EQ(first->scene_bodies, 2);
   EXPECT_GE(first->uptime, 0.0);
   EXPECT_LT(first->uptime, kWaitTimeout);
   service.child().send_signal(SIGHUP);
-  const auto reloaded = hear_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
+  const auto reloaded = on_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
   ASSERT_TRUE(reloaded);
   EXPECT_EQ(reloaded->reloads_failed, 0);
   EXPECT_GT(reloaded->uptime, first->uptime);
@@ -217,24 +217,24 @@ TEST(Buoyancyd, SaysInItsStatusHowLongQuestionsLayInTheQueue) {
   // one.
   bool waited = false;
   for (int burst = 0; burst < 20 && !waited; ++burst) {
-    for (int question = 0; question < 100; ++question) {
+    for (int request = 0; request < 100; ++request) {
       states.seq++;
       for (RawState& body : states.bodies) body.position[2] = 0.001 * static_cast<double>(states.seq);
-      ask(socket, states);
+      send_request(socket, states);
     }
     const std::int64_t asked = states.seq;
-    EXPECT_TRUE(hear_status(socket, [&waited, asked](const ServiceStatus& status) {
+    EXPECT_TRUE(on_status(socket, [&waited, asked](const ServiceStatus& status) {
       waited = waited || status.queue_wait > 3 * status.latency.p50;
-      return status.counters.questions == asked;
+      return status.counters.requests == asked;
     }));
   }
   EXPECT_TRUE(waited);
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.queue_wait == 0.0; }))
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.queue_wait == 0.0; }))
       << "of the last second alone";
 }
 
 TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess text = run({"--scene", scene, "--check"});
   EXPECT_EQ(text.exit_code, 0);
@@ -246,7 +246,7 @@ TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
 }
 
 TEST(Buoyancyd, FailsWhereItsReportCannotBeWritten) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   ChildCommand command =
       command_of({BUOYANCYD, "--scene", directory.write("scene.toml", kBoxScene), "--check"});
   command.standard_output = "/dev/full";

@@ -14,32 +14,32 @@ std::vector<std::uint8_t> status_of(std::int64_t instance_id) {
   return bytes;
 }
 
-TEST(OtherInstances, AreSaidOnceEachAndOurOwnNever) {
-  OtherInstances others(7);
-  others.hear(status_of(7));
+TEST(InstanceMonitor, AreSaidOnceEachAndOurOwnNever) {
+  InstanceMonitor others(7);
+  others.observe(status_of(7));
   EXPECT_TRUE(others.take_new().empty());
-  others.hear(status_of(8));
-  others.hear(status_of(9));
-  others.hear(status_of(8));
+  others.observe(status_of(8));
+  others.observe(status_of(9));
+  others.observe(status_of(8));
   EXPECT_EQ(others.take_new(), (std::vector<std::int64_t>{8, 9}));
-  others.hear(status_of(9));
+  others.observe(status_of(9));
   EXPECT_TRUE(others.take_new().empty());
 }
 
-TEST(OtherInstances, AreNotSeenInWhatIsNoStatus) {
-  OtherInstances others(7);
+TEST(InstanceMonitor, AreNotSeenInWhatIsNoStatus) {
+  InstanceMonitor others(7);
   std::vector<std::uint8_t> cut = status_of(8);
   cut.pop_back();
-  others.hear(cut);
-  others.hear({});
+  others.observe(cut);
+  others.observe({});
   EXPECT_TRUE(others.take_new().empty());
 }
 
-TEST(OtherInstances, AreNotSaidBeyondAsManyAsAreToldApart) {
-  OtherInstances others(-1);
-  for (std::int64_t id = 0; id < 1000; ++id) others.hear(status_of(id));
-  EXPECT_EQ(others.take_new().size(), OtherInstances::kMost);
-  others.hear(status_of(1000));
+TEST(InstanceMonitor, AreNotSaidBeyondAsManyAsAreToldApart) {
+  InstanceMonitor others(-1);
+  for (std::int64_t id = 0; id < 1000; ++id) others.observe(status_of(id));
+  EXPECT_EQ(others.take_new().size(), InstanceMonitor::kMost);
+  others.observe(status_of(1000));
   EXPECT_TRUE(others.take_new().empty());
 }
 

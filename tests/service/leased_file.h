@@ -17,16 +17,17 @@ class HeldFile {
  public:
   explicit HeldFile(const std::string& path) : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
     // The kernel says that somebody waits, by a signal that would end us: by one that does not.
-    held_ = ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;
+    delay_line_ =
+        ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;
   }
-  bool held() const { return held_; }  // false: the file system has no leases
+  bool held() const { return delay_line_; }  // false: the file system has no leases
   // Does somebody wait for it?
   bool awaited() const { return ::fcntl(file_.value(), F_GETLEASE) != F_WRLCK; }
   void let_go() { ::fcntl(file_.value(), F_SETLEASE, F_UNLCK); }
 
  private:
-  FileDescriptor file_;
-  bool held_ = false;
+  UniqueFd file_;
+  bool delay_line_ = false;
 };
 
 }  // namespace buoyancy

@@ -21,7 +21,7 @@ RawBytes pose_at(double height, std::int64_t utime) {
 
 bot_core::six_axis_force_torque_t hear_force(RawLcmSocket& socket, const std::string& channel) {
   const std::optional<RawBytes> bytes = socket.receive(channel, kWaitTimeout);
-  if (!bytes) throw std::runtime_error("no answer on " + channel);
+  if (!bytes) throw std::runtime_error("no response on " + channel);
   bot_core::six_axis_force_torque_t message{};
   const auto size = static_cast<int>(bytes->size());
   EXPECT_EQ(message.decode(bytes->data(), 0, size), size);
@@ -38,23 +38,23 @@ TEST_P(LivePoses, AreAnsweredAsWrenchesOrAsForceAndTorqueBesideQuestions) {
   for (std::int64_t i = 0; i < 20; ++i) {
     const double height = 0.1 * static_cast<double>(i) - 1.0;
     socket.send("HULL", pose_at(height, 100 + i));
-    const RawWrenches answer = hear(socket);
-    EXPECT_EQ(answer.utime, 100 + i);
-    EXPECT_EQ(answer.seq, i);
-    ASSERT_EQ(answer.bodies.size(), 1U);
-    EXPECT_EQ(answer.bodies[0].body_id, 1);
-    EXPECT_NEAR(answer.bodies[0].force[2], force_at(height), 1e-6);
+    const RawWrenches response = receive(socket);
+    EXPECT_EQ(response.utime, 100 + i);
+    EXPECT_EQ(response.seq, i);
+    ASSERT_EQ(response.bodies.size(), 1U);
+    EXPECT_EQ(response.bodies[0].body_id, 1);
+    EXPECT_NEAR(response.bodies[0].force[2], force_at(height), 1e-6);
 
     socket.send("HULL_ESTIMATE", pose_at(0.5 * height, 200 + i));
     const auto message = hear_force(socket, "BUOYANCY_OF_2");
     EXPECT_EQ(message.utime, 200 + i);
     EXPECT_NEAR(message.force[2], force_at(0.5 * height), 1e-6);
 
-    ask(socket, one_body(1, i, height));
-    EXPECT_EQ(hear(socket).session_id, 1);
+    send_request(socket, one_body(1, i, height));
+    EXPECT_EQ(receive(socket).session_id, 1);
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    return status.counters.answered == 60 && status.counters.sessions == 3 &&
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+    return status.counters.computed == 60 && status.counters.sessions == 3 &&
            status.counters.hydrostatics == 20;
   }));
 }
@@ -68,10 +68,10 @@ TEST_P(LivePoses, WhatIsNoPoseIsCountedByItsCause) {
   ++other[0];
   for (const RawBytes& wrong : {RawBytes{1, 2, 3}, longer, other}) socket.send("HULL", wrong);
   socket.send("HULL", pose_at(0.0, 2));
-  EXPECT_EQ(hear(socket).utime, 2);
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    const Counters& counters = status.counters;
-    return counters.questions == 4 && counters.answered == 1 && counters.rejected_truncated == 1 &&
+  EXPECT_EQ(receive(socket).utime, 2);
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+    const ServiceCounters& counters = status.counters;
+    return counters.requests == 4 && counters.computed == 1 && counters.rejected_truncated == 1 &&
            counters.rejected_length == 1 && counters.rejected_fingerprint == 1;
   }));
 }

@@ -1,4 +1,4 @@
-// What is no question must not keep the service from answering those that are.
+// What is no request must not keep the service from answering those that are.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -12,16 +12,16 @@
 namespace buoyancy {
 namespace {
 
-std::map<Rejection, std::int64_t> rejected(const Counters& counters) {
-  return {{Rejection::kTruncated, counters.rejected_truncated},
-          {Rejection::kFingerprint, counters.rejected_fingerprint},
-          {Rejection::kCount, counters.rejected_count},
-          {Rejection::kLength, counters.rejected_length}};
+std::map<DecodeError, std::int64_t> rejected(const ServiceCounters& counters) {
+  return {{DecodeError::kTruncated, counters.rejected_truncated},
+          {DecodeError::kFingerprint, counters.rejected_fingerprint},
+          {DecodeError::kCount, counters.rejected_count},
+          {DecodeError::kLength, counters.rejected_length}};
 }
 
-void expect_an_answer(RawLcmSocket& socket, std::int64_t seq, const std::string& after) {
-  ask(socket, one_body(1, seq, 0.0));
-  EXPECT_EQ(hear(socket).seq, seq) << "after " << after;
+void expect_an_response(RawLcmSocket& socket, std::int64_t seq, const std::string& after) {
+  send_request(socket, one_body(1, seq, 0.0));
+  EXPECT_EQ(receive(socket).seq, seq) << "after " << after;
 }
 
 class HostilePackets : public testing::TestWithParam<std::string> {};
@@ -31,19 +31,19 @@ TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestio
   ASSERT_GE(messages.size(), 40U);
   RunningService service({"--mode", GetParam()});
   RawLcmSocket socket;
-  std::map<Rejection, std::int64_t> expected = rejected({});
+  std::map<DecodeError, std::int64_t> expected = rejected({});
   std::int64_t seq = 0;
   for (const MalformedMessage& message : messages) {
     socket.send("BUOYANCY_STATES", message.bytes);
     ++expected[message.cause];
-    expect_an_answer(socket, ++seq, message.name);
+    expect_an_response(socket, ++seq, message.name);
   }
   const auto asked = static_cast<std::int64_t>(2 * messages.size());
   const auto status =
-      hear_status(socket, [asked](const ServiceStatus& s) { return s.counters.questions == asked; });
+      on_status(socket, [asked](const ServiceStatus& s) { return s.counters.requests == asked; });
   ASSERT_TRUE(status);
   EXPECT_EQ(rejected(status->counters), expected);
-  EXPECT_EQ(status->counters.answered, seq);
+  EXPECT_EQ(status->counters.computed, seq);
   EXPECT_TRUE(service.child().wait_for_text("messages rejected", kWaitTimeout)) << service.log();
 }
 
@@ -68,7 +68,7 @@ TEST(HostilePackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
   std::int64_t seq = 0;
   for (std::size_t i = 0; i < packets.size(); ++i) {
     socket.send_packet(packets[i]);
-    expect_an_answer(socket, ++seq, "packet " + std::to_string(i));
+    expect_an_response(socket, ++seq, "packet " + std::to_string(i));
   }
 }
 
@@ -80,10 +80,10 @@ TEST(HostilePackets, APacketThatEndsBeforeItsChannelsNameDoesIsNoMessage) {
   RawBytes packet{'L', 'C', '0', '2', 0, 0, 0, 0};
   for (const char c : std::string("BUOYANCY_STATES")) packet.push_back(static_cast<std::uint8_t>(c));
   socket.send_packet(packet);
-  expect_an_answer(socket, 1, "the packet");
-  const auto status = hear_status(socket, [](const ServiceStatus& s) { return s.counters.questions > 0; });
+  expect_an_response(socket, 1, "the packet");
+  const auto status = on_status(socket, [](const ServiceStatus& s) { return s.counters.requests > 0; });
   ASSERT_TRUE(status);
-  EXPECT_EQ(status->counters.questions, 1);
+  EXPECT_EQ(status->counters.requests, 1);
 }
 
 TEST(HostilePackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
@@ -97,9 +97,9 @@ TEST(HostilePackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
     packet.bytes.insert(packet.bytes.end(), channel.begin(), channel.end());
     packet.bytes.resize(packet.bytes.size() + 200, 0xAB);
     socket.send_packet(packet.bytes);
-    expect_an_answer(socket, 1 + number, "fragment " + std::to_string(number));
+    expect_an_response(socket, 1 + number, "fragment " + std::to_string(number));
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
       << "the other belongs to no message";
   EXPECT_TRUE(service.child().wait_for_text("fragments of incomplete", kWaitTimeout)) << service.log();
 }
@@ -112,7 +112,7 @@ TEST(HostilePackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
   std::int64_t before = 0;
   for (int name = 0; name < 2 * kNames; ++name) {
     socket.send("SOMEBODY_ELSES_CHANNEL_" + std::to_string(name), {});
-    if (name % 100 == 0) expect_an_answer(socket, name, "names");
+    if (name % 100 == 0) expect_an_response(socket, name, "names");
     if (name == kNames) before = resident_kb(service.child().pid());
   }
   EXPECT_LE(resident_kb(service.child().pid()) - before, kMayGrow);
@@ -124,7 +124,7 @@ TEST(HostilePackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
   constexpr int kMessages = 5'000;
   for (int i = 0; i < kMessages; ++i) {
     socket.send("BUOYANCY_STATES", {1, 2, 3});
-    if (i % 100 == 99) expect_an_answer(socket, i, "a flood");
+    if (i % 100 == 99) expect_an_response(socket, i, "a flood");
   }
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);

@@ -1,9 +1,9 @@
-// A real buoyancyd under packets that are no questions, for as long as one likes.
+// A real buoyancyd under packets that are no requests, for as long as one likes.
 //
 //   malformed_traffic [--packets N] [--seed S] [--channel-names N]
 //
-// Sends N packets in batches, each followed by a valid question that must be answered. A packet is a valid
-// question damaged at random, one of the malformed messages of the test suite, a fragment of a message that
+// Sends N packets in batches, each followed by a valid request that must be answered. A packet is a valid
+// request damaged at random, one of the malformed messages of the test suite, a fragment of a message that
 // never becomes whole, bytes with a wrong LCM header, or a message on a channel that nobody asked for. Then
 // counts what the service says of itself beside what was sent, by cause, and its memory before and after.
 //
@@ -11,7 +11,7 @@
 // may be kept.
 //
 // To be run in a network namespace with a multicast route (scripts/attack_service). Exit codes: 0 all
-// questions were answered, the counters add up, memory did not grow; 1 not so; 2 wrong arguments.
+// requests were answered, the counters add up, memory did not grow; 1 not so; 2 wrong arguments.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -36,7 +36,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::int64_t kBatch = 64;        // packets between two questions: far fewer than the queues hold
+constexpr std::int64_t kBatch = 64;        // packets between two requests: far fewer than the queues hold
 constexpr std::int64_t kWarmUp = 250'000;  // packets until every buffer is as large as it gets
 constexpr std::int64_t kMayGrow = 1'024;   // kB
 
@@ -44,14 +44,14 @@ struct Rejected {
   std::int64_t truncated = 0, fingerprint = 0, count = 0, length = 0;
 };
 
-// Everything that is sent on the channel of the questions, by what must become of it.
+// Everything that is sent on the channel of the requests, by what must become of it.
 struct Sent {
   Rejected rejected;
-  std::int64_t questions = 0;  // damaged, but still a question: answered
+  std::int64_t requests = 0;   // damaged, but still a request: answered
   std::int64_t elsewhere = 0;  // never reaches the service: another channel's, or no whole message
 
   std::int64_t on_channel() const {
-    return rejected.truncated + rejected.fingerprint + rejected.count + rejected.length + questions;
+    return rejected.truncated + rejected.fingerprint + rejected.count + rejected.length + requests;
   }
 };
 
@@ -75,7 +75,7 @@ void expect_of(const RawBytes& message, Sent& sent) {
   } else if (message.size() != kFixed + kBody * static_cast<std::size_t>(count)) {
     ++sent.rejected.length;
   } else {
-    ++sent.questions;
+    ++sent.requests;
   }
 }
 
@@ -97,7 +97,7 @@ class Attacker {
         ++sent_.elsewhere;
         return socket_.send("OTHER_" + std::to_string(below(100)), garbage(below(200)));
       default:
-        return on_our_channel(damaged(valid_question()));
+        return on_our_channel(damaged(valid_request()));
     }
   }
 
@@ -115,7 +115,7 @@ class Attacker {
     return bytes;
   }
 
-  RawBytes valid_question() {
+  RawBytes valid_request() {
     RawStates states =
         one_body(static_cast<std::int64_t>(100 + below(200)), static_cast<std::int64_t>(below(1000)),
                  0.01 * static_cast<double>(below(100)));
@@ -211,21 +211,21 @@ class Attacker {
   Sent sent_;
 };
 
-// A client in lock-step, with its own retries. Throws where a question gets no answer, or a wrong one.
-class Asker {
+// A client in lock-step, with its own retries. Throws where a request gets no response, or a wrong one.
+class CheckedClient {
  public:
-  void ask() {
+  void send_request() {
     const double height = 0.001 * static_cast<double>(++asked_ % 1000);
     BodyState state{.body_id = 1,
                     .position = {1.0, 2.0, height},
                     .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0},
                     .linear_velocity = {},
                     .angular_velocity = {}};
-    const auto answer = client_.ask(asked_, {&state, 1});
-    if (!answer) throw std::runtime_error(answer.error().message());
+    const auto response = client_.request(asked_, {&state, 1});
+    if (!response) throw std::runtime_error(response.error().message());
     const double force = kDensity * kGravity * 6.0 * (2.0 - height);
-    if (std::abs((*answer)->bodies[0].force[2] - force) > 1e-9 * force) {
-      throw std::runtime_error("question " + std::to_string(asked_) + " was answered wrongly");
+    if (std::abs((*response)->bodies[0].force[2] - force) > 1e-9 * force) {
+      throw std::runtime_error("request " + std::to_string(asked_) + " was answered wrongly");
     }
   }
 
@@ -250,24 +250,24 @@ bool print_row(const char* what, std::int64_t sent, std::int64_t counted) {
   return holds;
 }
 
-bool counters_add_up(const Counters& counters, const Sent& sent, const Asker& asker) {
+bool counters_add_up(const ServiceCounters& counters, const Sent& sent, const CheckedClient& client) {
   std::printf("%-28s %12s %12s\n", "", "sent", "counted");
   bool holds = print_row("rejected_truncated", sent.rejected.truncated, counters.rejected_truncated);
   holds &= print_row("rejected_fingerprint", sent.rejected.fingerprint, counters.rejected_fingerprint);
   holds &= print_row("rejected_count", sent.rejected.count, counters.rejected_count);
   holds &= print_row("rejected_length", sent.rejected.length, counters.rejected_length);
-  holds &= print_row("answered and repeated", sent.questions + asker.sent(),
-                     counters.answered + counters.repeated);
-  holds &= print_row("questions", sent.on_channel() + asker.sent(), counters.questions);
-  holds &= print_row("questions, sum of the above",
-                     counters.rejected() + counters.answered + counters.repeated, counters.questions);
+  holds &=
+      print_row("answered and repeated", sent.requests + client.sent(), counters.computed + counters.retries);
+  holds &= print_row("requests", sent.on_channel() + client.sent(), counters.requests);
+  holds &= print_row("requests, sum of the above", counters.rejected() + counters.computed + counters.retries,
+                     counters.requests);
   std::printf("%-28s %12" PRId64 "\n%-28s %12s %12" PRId64 "\n", "not for the service", sent.elsewhere,
-              "sessions forgotten", "", counters.sessions_forgotten);
+              "sessions forgotten", "", counters.sessions_evicted);
   return holds;
 }
 
 // Does no channel's name stay in memory?
-bool forgets_names(RawLcmSocket& socket, Asker& asker, RunningService& service, std::int64_t names) {
+bool forgets_names(RawLcmSocket& socket, CheckedClient& client, RunningService& service, std::int64_t names) {
   const std::int64_t before = resident_kb(service.child().pid());
   const auto start = std::chrono::steady_clock::now();
   {
@@ -275,12 +275,12 @@ bool forgets_names(RawLcmSocket& socket, Asker& asker, RunningService& service, 
     for (std::int64_t name = 0; name < names; ++name) {
       socket.send("SOMEBODY_ELSES_CHANNEL_" + std::to_string(name), {});
       if (name % kBatch == 0) {
-        asker.ask();
+        client.send_request();
         progress.update(name, names, name);
       }
     }
   }
-  asker.ask();
+  client.send_request();
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::int64_t after = resident_kb(service.child().pid());
   const bool flat = after - before <= kMayGrow;
@@ -293,7 +293,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
   RunningService service;
   RawLcmSocket socket;
   Attacker attacker(socket, seed);
-  Asker asker;
+  CheckedClient client;
   std::int64_t warm = 0;
   const auto start = std::chrono::steady_clock::now();
   {
@@ -301,7 +301,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
     for (std::int64_t packet = 1; packet <= packets; ++packet) {
       attacker.send();
       if (packet % kBatch != 0 && packet != packets) continue;
-      asker.ask();
+      client.send_request();
       progress.update(packet, packets, packet);
       if (warm == 0 && packet >= std::min(kWarmUp, packets / 2)) warm = resident_kb(service.child().pid());
     }
@@ -309,20 +309,20 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::int64_t after = resident_kb(service.child().pid());
   std::printf("%" PRId64 " packets, seed %" PRIu64 ", in %.1f s; %" PRId64
-              " questions between them, all answered, %" PRId64 " asked again\n",
-              packets, seed, took, asker.asked(), asker.repeats());
-  const std::int64_t least = attacker.sent().on_channel() + asker.sent();
+              " requests between them, all answered, %" PRId64 " asked again\n",
+              packets, seed, took, client.asked(), client.repeats());
+  const std::int64_t least = attacker.sent().on_channel() + client.sent();
   RawLcmSocket status_socket;  // the other's is full of what it sent
-  const auto status = hear_status(
-      status_socket, [least](const ServiceStatus& now) { return now.counters.questions >= least; });
+  const auto status =
+      on_status(status_socket, [least](const ServiceStatus& now) { return now.counters.requests >= least; });
   if (!status) throw std::runtime_error("the service's counters stay below what was sent: packets were lost");
-  bool holds = counters_add_up(status->counters, attacker.sent(), asker);
+  bool holds = counters_add_up(status->counters, attacker.sent(), client);
   const bool flat = after - warm <= kMayGrow;
   std::printf("memory (VmRSS): %" PRId64 " kB after the first %" PRId64 " packets, %" PRId64
               " kB at the end%s\n",
               warm, std::min(kWarmUp, packets / 2), after, flat ? "" : ": GROWS");
   holds &= flat;
-  if (names > 0) holds &= forgets_names(socket, asker, service, names);
+  if (names > 0) holds &= forgets_names(socket, client, service, names);
   service.child().send_signal(SIGTERM);
   if (service.child().wait(kWaitTimeout) != 0)
     throw std::runtime_error("buoyancyd did not end well: " + service.log());
@@ -333,7 +333,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  buoyancy::ToolCommandLine command_line("Packets that are no questions, at a real buoyancyd",
+  buoyancy::ToolCommandLine command_line("Packets that are no requests, at a real buoyancyd",
                                          "malformed_traffic");
   std::int64_t packets = 3'000'000;
   std::uint64_t seed = 1;

@@ -27,16 +27,16 @@ struct Log {
   std::vector<std::size_t> starts;  // of the events, and behind the last one
 };
 
-std::vector<std::uint8_t> question(int number) {
+std::vector<std::uint8_t> request(int number) {
   BodyState state;
   state.body_id = 1;
   state.position = {1.0 * number, 0.0, 0.01 * number - 0.3};
   state.quaternion_wxyz = {0.8, 0.6, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
   // Of several lengths, so that no damage happens to leave the events in step.
-  encode(Question{.key = {number, 7, number},
-                  .lead_time = 0.0,
-                  .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)},
+  encode(WrenchRequest{.key = {number, 7, number},
+                       .lead_time = 0.0,
+                       .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)},
          bytes);
   return bytes;
 }
@@ -46,7 +46,7 @@ Log whole_log() {
   std::vector<std::uint8_t> event;
   for (int number = 0; number < kEvents; ++number) {
     const bool ours = number % 5 != 4;
-    encode_event(number, number, ours ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", question(number), event);
+    encode_event(number, number, ours ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", request(number), event);
     log.starts.push_back(log.bytes.size());
     log.bytes.append(event.begin(), event.end());
   }
@@ -55,13 +55,13 @@ Log whole_log() {
 }
 
 // The bytes [begin, end) of the whole log are replaced.
-struct Damage {
+struct CorruptSection {
   std::string kind;
   std::size_t begin = 0, end = 0;
   std::string replacement;
 };
 
-Damage damage_of(const Log& log, unsigned seed) {
+CorruptSection damage_of(const Log& log, unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
@@ -71,7 +71,7 @@ Damage damage_of(const Log& log, unsigned seed) {
     for (char& value : bytes) value = static_cast<char>(below(256));
     return bytes;
   };
-  Damage damage;
+  CorruptSection damage;
   damage.begin = below(log.bytes.size());
   damage.end = std::min(damage.begin + 1 + below(600), log.bytes.size());
   switch (seed % 6) {
@@ -104,8 +104,8 @@ Damage damage_of(const Log& log, unsigned seed) {
   return damage;
 }
 
-// The answers of a CSV by their question's utime.
-using Answers = std::map<int, std::string>;
+// The responses of a CSV by their request's utime.
+using Responses = std::map<int, std::string>;
 
 class MutatedLogs : public testing::Test {
  protected:
@@ -115,27 +115,27 @@ class MutatedLogs : public testing::Test {
                       kWaitTimeout);
   }
 
-  Answers answers() const {
-    Answers result;
-    std::istringstream lines(contents_of(directory_.path("out.csv")));
+  Responses responses() const {
+    Responses result;
+    std::istringstream lines(read_file(directory_.path("out.csv")));
     std::string line;
     std::getline(lines, line);
     while (std::getline(lines, line)) result[std::stoi(line)] += line + "\n";
     return result;
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
 
 TEST_F(MutatedLogs, AreAnsweredBeforeAndBehindTheDamageAsIfThereWereNone) {
   const Log log = whole_log();
   ASSERT_EQ(replay(log.bytes).exit_code, 0);
-  const Answers whole = answers();
+  const Responses whole = responses();
   ASSERT_EQ(whole.size(), std::size_t{kEvents} * 4 / 5);
   int damaged = 0;
   for (unsigned seed = 0; seed < kLogs; ++seed) {
-    const Damage damage = damage_of(log, seed);
+    const CorruptSection damage = damage_of(log, seed);
     std::string bytes = log.bytes;
     bytes.replace(damage.begin, damage.end - damage.begin, damage.replacement);
     const FinishedProcess finished = replay(bytes);
@@ -144,7 +144,7 @@ TEST_F(MutatedLogs, AreAnsweredBeforeAndBehindTheDamageAsIfThereWereNone) {
     ASSERT_TRUE(finished.exit_code == 0 || finished.exit_code == 1)
         << what << ": " << finished.standard_error;
     if (finished.exit_code == 1) ++damaged;
-    const Answers found = answers();
+    const Responses found = responses();
     for (int number = 0; number < kEvents; ++number) {
       const auto place = static_cast<std::size_t>(number);
       const bool before = log.starts[place + 1] <= damage.begin;
@@ -155,7 +155,7 @@ TEST_F(MutatedLogs, AreAnsweredBeforeAndBehindTheDamageAsIfThereWereNone) {
       EXPECT_EQ(found.at(number), whole.at(number)) << "event " << number << "; " << what;
     }
   }
-  EXPECT_GT(damaged, static_cast<int>(kLogs) / 2) << "most damages are reported";
+  EXPECT_GT(damaged, static_cast<int>(kLogs) / 2) << "most corrupt_sections are reported";
 }
 
 }  // namespace

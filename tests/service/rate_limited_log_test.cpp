@@ -7,12 +7,12 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(TroubleLog, SaysATroubleAtOnceAndWhatFollowsAtGrowingIntervalsWithItsNumber) {
-  TroubleLog log;
+TEST(RateLimitedLog, SaysATroubleAtOnceAndWhatFollowsAtGrowingIntervalsWithItsNumber) {
+  RateLimitedLog log;
   std::vector<std::pair<double, std::string>> said;
   for (int second = 0; second <= 2000; ++second) {  // 5 a second
     log.add({"rejected", 5, {}}, second);
-    for (const std::string& line : log.take(second)) said.emplace_back(second, line);
+    for (const std::string& line : log.drain(second)) said.emplace_back(second, line);
   }
   EXPECT_EQ(said, (std::vector<std::pair<double, std::string>>{{0, "rejected: 5"},
                                                                {1, "rejected: 5 in 1 s"},
@@ -23,54 +23,54 @@ TEST(TroubleLog, SaysATroubleAtOnceAndWhatFollowsAtGrowingIntervalsWithItsNumber
                                                                {1871, "rejected: 3000 in 600 s"}}));
 }
 
-TEST(TroubleLog, ComesToFewLinesForADayOfTrouble) {
-  TroubleLog log;
+TEST(RateLimitedLog, ComesToFewLinesForADayOfTrouble) {
+  RateLimitedLog log;
   std::size_t lines = 0;
   for (int second = 0; second < 86'400; ++second) {
     log.add({"rejected", 1, {}}, second);
-    lines += log.take(second).size();
+    lines += log.drain(second).size();
   }
   EXPECT_LT(lines, 150U);
   EXPECT_GT(lines, 140U);
 }
 
-TEST(TroubleLog, LeavesNoOccurrenceUncounted) {
-  TroubleLog log;
+TEST(RateLimitedLog, LeavesNoOccurrenceUncounted) {
+  RateLimitedLog log;
   log.add({"rejected", 1, {}}, 0.0);
-  EXPECT_EQ(log.take(0.0), Lines{"rejected: 1"});
+  EXPECT_EQ(log.drain(0.0), Lines{"rejected: 1"});
   log.add({"rejected", 7, {}}, 0.5);
-  EXPECT_EQ(log.take(0.5), Lines{});
-  EXPECT_EQ(log.take(1.0), Lines{"rejected: 7 in 1 s"}) << "though it did not occur any more";
-  EXPECT_EQ(log.take(2.0), Lines{});
+  EXPECT_EQ(log.drain(0.5), Lines{});
+  EXPECT_EQ(log.drain(1.0), Lines{"rejected: 7 in 1 s"}) << "though it did not occur any more";
+  EXPECT_EQ(log.drain(2.0), Lines{});
 }
 
-TEST(TroubleLog, KeepsEachTroublesOwnTimeAndItsNewestDetail) {
-  TroubleLog log;
+TEST(RateLimitedLog, KeepsEachTroublesOwnTimeAndItsNewestDetail) {
+  RateLimitedLog log;
   log.add({"not sent", 1, "no route"}, 0.0);
-  EXPECT_EQ(log.take(0.0), Lines{"not sent: 1; no route"});
+  EXPECT_EQ(log.drain(0.0), Lines{"not sent: 1; no route"});
   log.add({"not sent", 1, "no route"}, 0.2);
   log.add({"not sent", 1, "too large"}, 0.3);
   log.add({"rejected", 2, {}}, 0.3);
-  EXPECT_EQ(log.take(0.3), Lines{"rejected: 2"});
-  EXPECT_EQ(log.take(1.0), Lines{"not sent: 2 in 1 s; too large"});
+  EXPECT_EQ(log.drain(0.3), Lines{"rejected: 2"});
+  EXPECT_EQ(log.drain(1.0), Lines{"not sent: 2 in 1 s; too large"});
 }
 
-TEST(TroubleLog, StartsAfreshAfterAQuietTime) {
-  TroubleLog log;
+TEST(RateLimitedLog, StartsAfreshAfterAQuietTime) {
+  RateLimitedLog log;
   for (int second = 0; second < 100; ++second) {
     log.add({"rejected", 1, {}}, second);
-    log.take(second);
+    log.drain(second);
   }
-  EXPECT_EQ(log.take(698.0).size(), 1U) << "the rest of the hundred";
-  log.take(699.0);
+  EXPECT_EQ(log.drain(698.0).size(), 1U) << "the rest of the hundred";
+  log.drain(699.0);
   log.add({"rejected", 1, {}}, 700.0);
-  EXPECT_EQ(log.take(700.0), Lines{"rejected: 1"});
+  EXPECT_EQ(log.drain(700.0), Lines{"rejected: 1"});
 }
 
-TEST(TroubleLog, SaysNothingOfWhatDidNotHappen) {
-  TroubleLog log;
+TEST(RateLimitedLog, SaysNothingOfWhatDidNotHappen) {
+  RateLimitedLog log;
   log.add({"rejected", 0, {}}, 0.0);
-  EXPECT_EQ(log.take(0.0), Lines{});
+  EXPECT_EQ(log.drain(0.0), Lines{});
 }
 
 }  // namespace

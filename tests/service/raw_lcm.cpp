@@ -21,7 +21,7 @@ constexpr std::size_t kLongestShortMessage = 65'499;
 constexpr std::size_t kFragmentSize = 60'000;  // any that fits a datagram; liblcm's is another
 // Root gets it, others what net.core.rmem_max permits: a test that is kept from the processor loses nothing.
 constexpr int kReceiveBuffer = 4'000'000;
-constexpr std::size_t kLargestDatagram = 65'536;
+constexpr std::size_t kMaxDatagram = 65'536;
 
 sockaddr_in address(const char* host) {
   sockaddr_in result{};
@@ -83,7 +83,7 @@ std::int64_t state_fingerprint() {
       .value();
 }
 
-std::int64_t answer_fingerprint(std::int64_t body) {
+std::int64_t response_fingerprint(std::int64_t body) {
   return Fingerprint()
       .field("utime", "int64_t")
       .field("session_id", "int64_t")
@@ -104,7 +104,7 @@ std::int64_t wrenches_fingerprint() {
                                   .field("force_error_bound", "double")
                                   .field("torque_error_bound", "double")
                                   .value();
-  return answer_fingerprint(wrench);
+  return response_fingerprint(wrench);
 }
 
 std::int64_t hydrostatics_fingerprint() {
@@ -123,19 +123,19 @@ std::int64_t hydrostatics_fingerprint() {
                                 .fixed_array("metacentric_heights", "double", "2")
                                 .matrix("stiffness", "double", "6", "6")
                                 .value();
-  return answer_fingerprint(body);
+  return response_fingerprint(body);
 }
 
-// What every answer begins with, and room for its bodies.
-template <typename Answer>
-Answer read_head(RawReader& reader, std::int64_t fingerprint) {
+// What every response begins with, and room for its bodies.
+template <typename WrenchResponse>
+WrenchResponse read_head(RawReader& reader, std::int64_t fingerprint) {
   if (reader.int64() != fingerprint) throw std::runtime_error("a message of another type");
-  Answer answer;
-  answer.utime = reader.int64();
-  answer.session_id = reader.int64();
-  answer.seq = reader.int64();
-  answer.bodies.resize(static_cast<std::size_t>(reader.int32()));
-  return answer;
+  WrenchResponse response;
+  response.utime = reader.int64();
+  response.session_id = reader.int64();
+  response.seq = reader.int64();
+  response.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  return response;
 }
 
 }  // namespace
@@ -201,7 +201,7 @@ std::optional<RawMessage> RawLcmSocket::receive_any(double seconds) {
     const std::chrono::duration<double, std::milli> left = limit - std::chrono::steady_clock::now();
     pollfd waiting{receiver_.value(), POLLIN, 0};
     if (::poll(&waiting, 1, std::max(0, static_cast<int>(left.count()))) != 1) return std::nullopt;
-    RawBytes packet(kLargestDatagram);
+    RawBytes packet(kMaxDatagram);
     sockaddr_in from{};
     socklen_t from_size = sizeof from;
     const ssize_t size = ::recvfrom(receiver_.value(), packet.data(), packet.size(), 0,
@@ -226,7 +226,7 @@ std::optional<RawBytes> RawLcmSocket::receive(const std::string& channel, double
 std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std::uint64_t sender) {
   constexpr std::size_t kShortHeader = 8;
   constexpr std::size_t kLongHeader = 20;
-  constexpr std::size_t kLargestMessage = std::size_t{1} << 28U;  // liblcm's limit
+  constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 28U;  // liblcm's limit
   if (packet.size() < kShortHeader) return std::nullopt;
   RawReader reader(packet);
   const std::int32_t magic = reader.int32();
@@ -241,7 +241,7 @@ std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std:
 
   const std::size_t size = static_cast<std::uint32_t>(reader.int32());
   const std::size_t offset = static_cast<std::uint32_t>(reader.int32());
-  if (size > kLargestMessage) return std::nullopt;
+  if (size > kMaxMessageBytes) return std::nullopt;
   const std::int32_t fragment_and_count = reader.int32();
   Fragments& fragments = incomplete_[{sender, sequence}];
   fragments.payload.resize(size);

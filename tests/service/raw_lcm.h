@@ -44,8 +44,8 @@ class RawLcmSocket {
   };
   std::optional<RawMessage> take_packet(const RawBytes& packet, std::uint64_t sender);
 
-  FileDescriptor sender_;
-  FileDescriptor receiver_;
+  UniqueFd sender_;
+  UniqueFd receiver_;
   std::uint32_t sequence_ = 0;
   std::map<std::pair<std::uint64_t, std::uint32_t>, Fragments> incomplete_;
 };

@@ -19,7 +19,7 @@ std::vector<RawBytes> events(const std::string& path, const std::string& channel
 }
 
 TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string recorded = directory.path("live.lcmlog");
   const std::string replayed = directory.path("replayed.lcmlog");
   const std::string scene = directory.write("scene.toml", kHydrostaticBoxScene);
@@ -36,11 +36,11 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
   // it writes, and not twice in a millisecond, so that what it has may show with the next message alone.
   std::size_t checkpoints = 0;
   const auto wait_for_the_logger = [&] {
-    constexpr std::size_t kMostWaiting = 3;
+    constexpr std::size_t kMaxWaiting = 3;
     const std::size_t wanted = checkpoints + 1;
     std::size_t written = 0;
     while (written < wanted) {
-      if (checkpoints < written + kMostWaiting) {
+      if (checkpoints < written + kMaxWaiting) {
         socket.send("CHECKPOINT", {1});
         ++checkpoints;
       }
@@ -62,8 +62,8 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
     states.bodies.back().linear_velocity = {0.1, 0.2, -0.3};
     const int repeats = seq % 10 == 3 ? 2 : 1;
     for (int repeat = 0; repeat < repeats; ++repeat) {
-      ask(socket, states);
-      ASSERT_EQ(hear(socket).seq, seq);
+      send_request(socket, states);
+      ASSERT_EQ(receive(socket).seq, seq);
     }
   }
   ASSERT_TRUE(wait_for_the_logger()) << logger.standard_error();

@@ -25,11 +25,11 @@ constexpr double kHalfSubmerged = 0.0;  // m, of the body's origin
 constexpr double kSubmerged = -100.0;
 
 double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kHalfSubmerged) {
-  ask(socket, one_body(1, seq, height));
-  const RawWrenches answer = hear(socket);
-  EXPECT_EQ(answer.session_id, 1);
-  EXPECT_EQ(answer.seq, seq);
-  return answer.bodies.at(0).force[2];
+  send_request(socket, one_body(1, seq, height));
+  const RawWrenches response = receive(socket);
+  EXPECT_EQ(response.session_id, 1);
+  EXPECT_EQ(response.seq, seq);
+  return response.bodies.at(0).force[2];
 }
 
 void reload(RunningService& service, const std::string& scene, const std::string& until) {
@@ -59,21 +59,21 @@ TEST(Reload, AnswersTheVerySameSessionFromTheNewSceneWithItsNextStep) {
   reload(service, box_scene(500.0, 8.0) + "[[body]]\nid = 2\nshape = { type = \"box\", size = [1, 1, 1] }\n",
          "reloaded: 2 bodies (before: 1)");
   EXPECT_NEAR(vertical_force(socket, 3), kForceBefore, 1e-6);
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    return status.counters.answered == 3 && status.counters.sessions == 1 && status.counters.stale == 0;
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+    return status.counters.computed == 3 && status.counters.sessions == 1 && status.counters.stale == 0;
   }));
 }
 
 TEST(Reload, GivesARepeatOfWhatTheOldSceneAnsweredTheSameBytes) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
-  ask(socket, one_body(1, 5, 0.3));
+  send_request(socket, one_body(1, 5, 0.3));
   const auto first = hear_bytes(socket);
   ASSERT_TRUE(first);
   reload(service, box_scene(500.0, 4.0), "reloaded:");
-  ask(socket, one_body(1, 5, 0.3));
+  send_request(socket, one_body(1, 5, 0.3));
   EXPECT_EQ(hear_bytes(socket), first);
-  ask(socket, one_body(1, 6, 0.3));
+  send_request(socket, one_body(1, 6, 0.3));
   const auto next = hear_bytes(socket);
   ASSERT_TRUE(next);
   EXPECT_NEAR(decode_wrenches(*next).bodies[0].force[2], 0.5 * decode_wrenches(*first).bodies[0].force[2],
@@ -97,9 +97,9 @@ TEST(Reload, LeavesTheOldSceneAnsweringWhereTheNewOneIsBad) {
 TEST(Reload, LosesNoAnswerOfASteadyStream) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
-  constexpr std::int64_t kQuestions = 4000;
+  constexpr std::int64_t kRequests = 4000;
   std::size_t reloads = 0;
-  for (std::int64_t seq = 0; seq < kQuestions; ++seq) {
+  for (std::int64_t seq = 0; seq < kRequests; ++seq) {
     if (seq % 100 == 50) {
       service.write("scene.toml", box_scene(++reloads % 2 == 0 ? 1000.0 : 500.0, 4.0));
       service.child().send_signal(SIGHUP);
@@ -109,8 +109,8 @@ TEST(Reload, LosesNoAnswerOfASteadyStream) {
         << force;
   }
   EXPECT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    return status.counters.answered == kQuestions && status.counters.repeated == 0 &&
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+    return status.counters.computed == kRequests && status.counters.retries == 0 &&
            status.counters.sessions == 1;
   }));
   expect_a_clean_end(service);

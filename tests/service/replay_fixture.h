@@ -37,19 +37,19 @@ class Replay : public testing::Test {
     return directory_.write(name, contents);
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   std::string scene_ = directory_.write("scene.toml", kOneBoxScene);
 };
 
-inline std::vector<std::uint8_t> question(std::int64_t utime, double height) {
-  Question question;
-  question.key = {utime, 0, utime};
-  question.bodies.resize(1);
-  question.bodies[0].body_id = 1;
-  question.bodies[0].position = {7.0, 8.0, height};
-  question.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
+inline std::vector<std::uint8_t> request(std::int64_t utime, double height) {
+  WrenchRequest request;
+  request.key = {utime, 0, utime};
+  request.bodies.resize(1);
+  request.bodies[0].body_id = 1;
+  request.bodies[0].position = {7.0, 8.0, height};
+  request.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
-  encode(question, bytes);
+  encode(request, bytes);
   return bytes;
 }
 
@@ -60,9 +60,9 @@ inline std::string event(const std::string& channel, std::int64_t timestamp,
   return {bytes.begin(), bytes.end()};
 }
 
-inline std::string log_of_questions(int count) {
+inline std::string log_of_requests(int count) {
   std::string log;
-  for (int i = 0; i < count; ++i) log += event("BUOYANCY_STATES", 500 + i, question(i, 0.125 * i));
+  for (int i = 0; i < count; ++i) log += event("BUOYANCY_STATES", 500 + i, request(i, 0.125 * i));
   return log;
 }
 
@@ -78,8 +78,8 @@ inline std::vector<LoggedEvent> events_of(const std::string& path, ChannelFilter
   if (!reader) throw std::runtime_error(reader.error().message());
   std::vector<LoggedEvent> found;
   while (true) {
-    const InputItem item = reader->next();
-    if (std::holds_alternative<EndOfInput>(item)) return found;
+    const LogItem item = reader->next();
+    if (std::holds_alternative<EndOfLog>(item)) return found;
     if (const auto* event = std::get_if<RecordedEvent>(&item)) {
       found.push_back(
           {event->timestamp, std::string(event->channel), {event->bytes.begin(), event->bytes.end()}});

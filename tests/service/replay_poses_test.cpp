@@ -31,12 +31,12 @@ double force_at(double height) {
   return 10'000.0 * 6.0 * (2.0 - height);
 }
 
-std::vector<Answer> answers_in(const std::string& path) {
-  std::vector<Answer> answers;
+std::vector<WrenchResponse> responses_in(const std::string& path) {
+  std::vector<WrenchResponse> responses;
   for (const LoggedEvent& event : events_of(path, only_channel("BUOYANCY_WRENCHES"))) {
-    EXPECT_FALSE(decode(event.bytes, answers.emplace_back()));
+    EXPECT_FALSE(decode(event.bytes, responses.emplace_back()));
   }
-  return answers;
+  return responses;
 }
 
 TEST_F(ReplayPoses, AreAnsweredAsWrenchesOfTheBodyThatTheirChannelIsGivenTo) {
@@ -44,15 +44,15 @@ TEST_F(ReplayPoses, AreAnsweredAsWrenchesOfTheBodyThatTheirChannelIsGivenTo) {
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
   const std::vector<LoggedEvent> events = events_of(path("out.lcmlog"));
-  const std::vector<Answer> answers = answers_in(path("out.lcmlog"));
-  ASSERT_EQ(answers.size(), 20U);
+  const std::vector<WrenchResponse> responses = responses_in(path("out.lcmlog"));
+  ASSERT_EQ(responses.size(), 20U);
   for (std::size_t i = 0; i < 20; ++i) {
     const auto timestamp = static_cast<std::int64_t>(500 + i);
     EXPECT_EQ(events[i].timestamp, timestamp);
-    EXPECT_EQ(answers[i].key.utime, 10 * timestamp);
-    ASSERT_EQ(answers[i].bodies.size(), 1U);
-    EXPECT_EQ(answers[i].bodies[0].body_id, 1);
-    EXPECT_NEAR(answers[i].bodies[0].force[2], force_at(0.01 * static_cast<double>(i) - 2.0), 1e-7);
+    EXPECT_EQ(responses[i].key.utime, 10 * timestamp);
+    ASSERT_EQ(responses[i].bodies.size(), 1U);
+    EXPECT_EQ(responses[i].bodies[0].body_id, 1);
+    EXPECT_NEAR(responses[i].bodies[0].force[2], force_at(0.01 * static_cast<double>(i) - 2.0), 1e-7);
   }
 }
 
@@ -68,7 +68,7 @@ TEST_F(ReplayPoses, ABodyIsNamedByItsIdOrItsName) {
   }
   write("scene.toml", "[[body]]\nid = 7\nname = \"hull\"\nshape = { type = \"box\", size = [1, 1, 1] }\n");
   EXPECT_EQ(replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=hull"}).exit_code, 0);
-  EXPECT_EQ(answers_in(path("out.lcmlog")).at(0).bodies.at(0).body_id, 7);
+  EXPECT_EQ(responses_in(path("out.lcmlog")).at(0).bodies.at(0).body_id, 7);
 }
 
 TEST_F(ReplayPoses, RigidTransformsAreAnsweredAsForceAndTorqueOnTheirOwnChannel) {
@@ -110,7 +110,7 @@ TEST_F(ReplayPoses, VelocitiesAreReadInTheFrameThatTheUserSays) {
         replay(path("in.lcmlog"), path("out.lcmlog"),
                {"--pose", "POSE=1", "--lead-time", "0.5", "--velocity-frame", frame});
     EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
-    return answers_in(path("out.lcmlog")).at(0).bodies.at(0).submerged_volume;
+    return responses_in(path("out.lcmlog")).at(0).bodies.at(0).submerged_volume;
   };
   // On its side the box is 4 x 3 m wide and 2 m high.
   EXPECT_NEAR(volume("world"), 12.0, 1e-9) << "moves along the surface";
@@ -125,11 +125,11 @@ TEST_F(ReplayPoses, ALeadTimeNeedsVelocities) {
       replay(path("in.lcmlog"), path("out.lcmlog"),
              {"--pose", "POSE=1", "--lead-time", "0.5", "--velocity-frame", "world", "--json"});
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
-  EXPECT_EQ(answers_in(path("out.lcmlog")).at(0).bodies.at(0).status, BodyStatus::kNonFiniteTwist);
+  EXPECT_EQ(responses_in(path("out.lcmlog")).at(0).bodies.at(0).status, BodyStatus::kNonFiniteTwist);
 }
 
 TEST_F(ReplayPoses, MessagesThatAreNoPoseAreReportedAndCounted) {
-  write("in.lcmlog", pose_event(1, 0.0) + event("POSE", 2, {1, 2, 3}) + event("POSE", 3, question(1, 0.0)) +
+  write("in.lcmlog", pose_event(1, 0.0) + event("POSE", 2, {1, 2, 3}) + event("POSE", 3, request(1, 0.0)) +
                          pose_event(4, 0.0));
   const FinishedProcess finished =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--json"});
@@ -139,8 +139,8 @@ TEST_F(ReplayPoses, MessagesThatAreNoPoseAreReportedAndCounted) {
   EXPECT_NE(finished.standard_error.find("event at 3 us is no pose: fingerprint"), std::string::npos)
       << finished.standard_error;
   const auto summary = nlohmann::json::parse(finished.standard_output);
-  EXPECT_EQ(summary["questions"], 4);
-  EXPECT_EQ(summary["answered"], 2);
+  EXPECT_EQ(summary["requests"], 4);
+  EXPECT_EQ(summary["computed"], 2);
   EXPECT_EQ(summary["rejected"]["truncated"], 1);
   EXPECT_EQ(summary["rejected"]["fingerprint"], 1);
 }
@@ -153,7 +153,7 @@ TEST_F(ReplayPoses, APoseBeforeADamageIsAnsweredAndTheDamageHasItsOffset) {
   EXPECT_NE(finished.standard_error.find("damaged at byte " + std::to_string(before.size())),
             std::string::npos)
       << finished.standard_error;
-  EXPECT_EQ(answers_in(path("out.lcmlog")).size(), 20U);
+  EXPECT_EQ(responses_in(path("out.lcmlog")).size(), 20U);
 }
 
 TEST_F(ReplayPoses, OtherChannelsAreCopiedOnRequestInTheirPlace) {
@@ -173,14 +173,14 @@ TEST_F(ReplayPoses, OtherChannelsAreCopiedOnRequestInTheirPlace) {
   EXPECT_EQ(channels({"--copy", "LIDAR"}), "LIDAR@1 BUOYANCY_WRENCHES@2 BUOYANCY_WRENCHES@5 ");
   EXPECT_EQ(channels({"--copy", ".*"}),
             "LIDAR@1 POSE@2 BUOYANCY_WRENCHES@2 LIDAR_STATUS@4 POSE@5 BUOYANCY_WRENCHES@5 ")
-      << "an answer of the recording's own service is not taken along";
+      << "a response of the recording's own service is not taken along";
 }
 
 TEST_F(ReplayPoses, OutputAndSummaryDoNotDependOnTheNumberOfJobs) {
   std::string log;
   for (int i = 0; i < 6000; ++i) {
     log += pose_event(i, 0.001 * i - 3.0);
-    if (i % 3 == 0) log += event("BUOYANCY_STATES", i, question(i, 0.0005 * i));
+    if (i % 3 == 0) log += event("BUOYANCY_STATES", i, request(i, 0.0005 * i));
     if (i % 7 == 0) log += event("OTHER", i, {1, 2, 3});
     if (i % 500 == 0) log += event("POSE", i, {1});
     if (i % 1000 == 0) log += "garbage";
@@ -191,7 +191,7 @@ TEST_F(ReplayPoses, OutputAndSummaryDoNotDependOnTheNumberOfJobs) {
                                             {"--pose", "POSE=1", "--copy", "OTHER", "--jobs", jobs});
     EXPECT_EQ(finished.exit_code, 1);
     const std::string& summary = finished.standard_output;
-    return contents_of(path("out.lcmlog")) + finished.standard_error +
+    return read_file(path("out.lcmlog")) + finished.standard_error +
            summary.substr(0, summary.find("seconds"));
   };
   const std::string of_one = outcome("1");
@@ -210,11 +210,11 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   };
   const auto same = compared("earlier.lcmlog", 0);
   EXPECT_EQ(same["agrees"], true);
-  EXPECT_EQ(same["bodies"][0]["answers"], 3000);
+  EXPECT_EQ(same["bodies"][0]["responses"], 3000);
   EXPECT_EQ(same["bodies"][0]["force"], 0.0);
 
   // Another exact method differs by rounding, an approximation by what its bound allows, other water by more.
-  const std::string scene = contents_of(scene_);
+  const std::string scene = read_file(scene_);
   const auto with = [&](const std::string& what, const std::string& instead) {
     std::string changed = scene;
     changed.replace(changed.find(what), what.size(), instead);
@@ -230,13 +230,13 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   EXPECT_GT(denser["bodies"][0]["force_in_bounds"], 1e6);
   write("scene.toml", scene);
 
-  const std::string earlier = contents_of(path("earlier.lcmlog"));
+  const std::string earlier = read_file(path("earlier.lcmlog"));
   const std::size_t one = earlier.size() / 3000;
   write("shorter.lcmlog", earlier.substr(0, 10 * one) + earlier.substr(11 * one));
-  EXPECT_EQ(compared("shorter.lcmlog", 1)["only_now"], 1);
+  EXPECT_EQ(compared("shorter.lcmlog", 1)["unmatched_new"], 1);
   write("longer.lcmlog", earlier + event("BUOYANCY_WRENCHES", 1, {1}) + earlier.substr(0, one));
   const auto longer = compared("longer.lcmlog", 1);
-  EXPECT_EQ(longer["only_earlier"], 1);
+  EXPECT_EQ(longer["unmatched_baseline"], 1);
   EXPECT_EQ(longer["unreadable"], 1);
 }
 
@@ -247,12 +247,12 @@ TEST_F(ReplayPoses, DifferFromEarlierAnswersThatHoldNoNumbers) {
     for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
       for (const bool in_force : {true, false}) {
         std::string changed;
-        for (Answer& answer : answers_in(path("earlier.lcmlog"))) {
-          BodyWrench& wrench = answer.bodies.at(0);
+        for (WrenchResponse& response : responses_in(path("earlier.lcmlog"))) {
+          BodyWrench& wrench = response.bodies.at(0);
           (in_force ? wrench.force[1] : wrench.*bound) = number;
           std::vector<std::uint8_t> bytes;
-          encode(answer, bytes);
-          changed += event("BUOYANCY_WRENCHES", answer.key.utime / 10, bytes);
+          encode(response, bytes);
+          changed += event("BUOYANCY_WRENCHES", response.key.utime / 10, bytes);
         }
         write("changed.lcmlog", changed);
         EXPECT_EQ(
@@ -274,7 +274,7 @@ TEST_F(ReplayPoses, AreTheSameBytesInWhateverOrderTheirChannelsAreNamed) {
       << "an option takes one value: INPUT is none of its";
   ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog"), {"--pose", "HULL=1", "--pose", "POSE=1"}).exit_code,
             0);
-  EXPECT_TRUE(contents_of(path("a.lcmlog")) == contents_of(path("b.lcmlog")));
+  EXPECT_TRUE(read_file(path("a.lcmlog")) == read_file(path("b.lcmlog")));
 }
 
 TEST_F(ReplayPoses, OnAChannelThatTheLogDoesNotHaveAreWarnedAbout) {

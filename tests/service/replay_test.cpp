@@ -60,12 +60,12 @@ TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
   const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"));
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
   EXPECT_EQ(finished.standard_error, "");
-  const std::string csv = contents_of(path("out.csv"));
+  const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U) << csv;
-  const std::vector<Row> answers = rows(csv);
-  ASSERT_EQ(answers.size(), 53U);
+  const std::vector<Row> responses = rows(csv);
+  ASSERT_EQ(responses.size(), 53U);
   for (std::size_t i = 0; i < 50; ++i) {
-    const Row& row = answers[i + 1];
+    const Row& row = responses[i + 1];
     ASSERT_EQ(row.size(), 15U);
     const double depth = std::clamp(2.0 - (0.1 * static_cast<double>(i) - 2.5), 0.0, 4.0);
     EXPECT_EQ(row[0], std::to_string(i / 2));
@@ -74,18 +74,18 @@ TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
     EXPECT_NEAR(std::stod(row[5]), 10'000.0 * 6.0 * depth, 1e-7) << i;
     EXPECT_NEAR(std::stod(row[9]), 6.0 * depth, 1e-12) << i;
   }
-  EXPECT_EQ(answers[51][2], "1") << "unknown body";
-  EXPECT_EQ(answers[52][2], "2") << "pose not finite";
-  EXPECT_EQ(std::stod(answers[52][5]), 0.0);
+  EXPECT_EQ(responses[51][2], "1") << "unknown body";
+  EXPECT_EQ(responses[52][2], "2") << "pose not finite";
+  EXPECT_EQ(std::stod(responses[52][5]), 0.0);
 }
 
 TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
   replay(write("in.csv", std::string(kPoseHeader) + "0,1,0,0,0.1,0.9998,0.02,0,0\n"), path("out.csv"));
   replay(path("in.csv"), path("out.lcmlog"));
-  Answer answer;
-  ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, answer));
-  const Row row = rows(contents_of(path("out.csv"))).at(1);
-  const BodyWrench& wrench = answer.bodies.at(0);
+  WrenchResponse response;
+  ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, response));
+  const Row row = rows(read_file(path("out.csv"))).at(1);
+  const BodyWrench& wrench = response.bodies.at(0);
   EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
   EXPECT_EQ(std::stod(row[6]), wrench.torque[0]);
   EXPECT_NE(wrench.torque[0], 0.0);
@@ -95,19 +95,19 @@ TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
 }
 
 TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
-  const std::string log = event("OTHER", 1, {1, 2}) + event("BUOYANCY_STATES", 2, question(20, 0.0)) +
-                          event("BUOYANCY_WRENCHES", 3, {3}) + event("BUOYANCY_STATES", 4, question(40, 1.0));
+  const std::string log = event("OTHER", 1, {1, 2}) + event("BUOYANCY_STATES", 2, request(20, 0.0)) +
+                          event("BUOYANCY_WRENCHES", 3, {3}) + event("BUOYANCY_STATES", 4, request(40, 1.0));
   ASSERT_EQ(replay(write("in.lcmlog", log), path("out.lcmlog")).exit_code, 0);
-  const std::vector<LoggedEvent> answers = events_of(path("out.lcmlog"));
-  ASSERT_EQ(answers.size(), 2U);
+  const std::vector<LoggedEvent> responses = events_of(path("out.lcmlog"));
+  ASSERT_EQ(responses.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto timestamp = static_cast<std::int64_t>(2 * i + 2);
-    EXPECT_EQ(answers[i].channel, "BUOYANCY_WRENCHES");
-    EXPECT_EQ(answers[i].timestamp, timestamp);
-    Answer answer;
-    ASSERT_FALSE(decode(answers[i].bytes, answer));
-    EXPECT_EQ(answer.key.utime, 10 * timestamp);
-    EXPECT_DOUBLE_EQ(answer.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
+    EXPECT_EQ(responses[i].channel, "BUOYANCY_WRENCHES");
+    EXPECT_EQ(responses[i].timestamp, timestamp);
+    WrenchResponse response;
+    ASSERT_FALSE(decode(responses[i].bytes, response));
+    EXPECT_EQ(response.key.utime, 10 * timestamp);
+    EXPECT_DOUBLE_EQ(response.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
   }
 }
 
@@ -119,7 +119,7 @@ TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     return run(std::move(arguments)).exit_code;
   };
-  write("in.lcmlog", log_of_questions(3));
+  write("in.lcmlog", log_of_requests(3));
   ASSERT_EQ(replay_asking(path("out.lcmlog"), {"--hydrostatics-channel", "H"}), 0);
   const std::vector<LoggedEvent> found = events_of(path("out.lcmlog"), only_channel("H"));
   ASSERT_EQ(found.size(), 3U);
@@ -134,7 +134,7 @@ TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
 
   ASSERT_EQ(replay_asking(path("asked.csv"), {}), 0);
   ASSERT_EQ(replay(path("in.lcmlog"), path("not_asked.csv")).exit_code, 0);
-  EXPECT_EQ(contents_of(path("asked.csv")), contents_of(path("not_asked.csv")));
+  EXPECT_EQ(read_file(path("asked.csv")), read_file(path("not_asked.csv")));
   EXPECT_EQ(replay_asking(path("x.lcmlog"), {"--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2);
 }
 
@@ -144,7 +144,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
       write("asking.toml",
             kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n" + "[body.client]\nmass = 9e3\n");
   std::string log;
-  for (const double height : {0.3, -9.0, 9.0}) log += event("BUOYANCY_STATES", 1, question(1, height));
+  for (const double height : {0.3, -9.0, 9.0}) log += event("BUOYANCY_STATES", 1, request(1, height));
   write("in.lcmlog", log);
   ASSERT_EQ(run({"--scene", asking, path("in.lcmlog"), path("earlier.lcmlog")}).exit_code, 0);
   const auto compared = [&](const std::string& scene, const std::string& earlier, int exit_code) {
@@ -157,7 +157,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
   EXPECT_EQ(same["hydrostatics"], 3);
   EXPECT_EQ(same["hydrostatics_in_bounds"], 0.0);
   EXPECT_EQ(same["center_in_bounds"], 0.0);
-  EXPECT_EQ(compared(scene_, "earlier.lcmlog", 1)["only_earlier"], 3) << "the hydrostatics";
+  EXPECT_EQ(compared(scene_, "earlier.lcmlog", 1)["unmatched_baseline"], 3) << "the hydrostatics";
 
   // The first message of `channel`, of the partly submerged body, after `change`.
   const auto changed = [&](const std::string& channel, auto message, const auto& change) {
@@ -175,7 +175,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
     return compared(asking, "changed.lcmlog", 1)["bodies"][0];
   };
   for (const double shift : {1e-9, std::nan("")}) {
-    const auto moved = changed("BUOYANCY_WRENCHES", Answer{},
+    const auto moved = changed("BUOYANCY_WRENCHES", WrenchResponse{},
                                [&](BodyWrench& wrench) { wrench.center_of_buoyancy[2] += shift; });
     if (!std::isnan(shift)) {
       EXPECT_NEAR(moved["center"], shift, 1e-3 * shift);
@@ -206,20 +206,20 @@ TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20; ++i) poses += pose_row(i, 0.125 * i);
   ASSERT_EQ(replay(write("in.csv", poses), path("from_csv.csv")).exit_code, 0);
-  ASSERT_EQ(replay(write("in.lcmlog", log_of_questions(20)), path("from_log.csv")).exit_code, 0);
-  EXPECT_EQ(contents_of(path("from_csv.csv")), contents_of(path("from_log.csv")));
+  ASSERT_EQ(replay(write("in.lcmlog", log_of_requests(20)), path("from_log.csv")).exit_code, 0);
+  EXPECT_EQ(read_file(path("from_csv.csv")), read_file(path("from_log.csv")));
 }
 
 TEST_F(Replay, GivesTheSameBytesEveryTime) {
-  write("in.lcmlog", log_of_questions(100));
+  write("in.lcmlog", log_of_requests(100));
   ASSERT_EQ(replay(path("in.lcmlog"), path("a.lcmlog")).exit_code, 0);
   ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog")).exit_code, 0);
-  EXPECT_EQ(contents_of(path("a.lcmlog")), contents_of(path("b.lcmlog")));
-  EXPECT_GT(contents_of(path("a.lcmlog")).size(), 10'000U);
+  EXPECT_EQ(read_file(path("a.lcmlog")), read_file(path("b.lcmlog")));
+  EXPECT_GT(read_file(path("a.lcmlog")).size(), 10'000U);
 }
 
 TEST_F(Replay, AnswersWhatIsGoodInADamagedLogAndExitsWith1) {
-  std::string log = log_of_questions(10);
+  std::string log = log_of_requests(10);
   const std::size_t middle = log.size() / 2;
   log.insert(middle, "garbage");
   log.resize(log.size() - 3);
@@ -229,18 +229,18 @@ TEST_F(Replay, AnswersWhatIsGoodInADamagedLogAndExitsWith1) {
       << finished.standard_error;
   EXPECT_NE(finished.standard_error.find("the file ends within an event"), std::string::npos)
       << finished.standard_error;
-  EXPECT_EQ(rows(contents_of(path("out.csv"))).size(), 1U + 9U);
+  EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 1U + 9U);
 }
 
 TEST_F(Replay, ReportsAndCountsMessagesThatAreNoQuestion) {
-  const std::string log = event("BUOYANCY_STATES", 1, {1, 2, 3}) + log_of_questions(2);
+  const std::string log = event("BUOYANCY_STATES", 1, {1, 2, 3}) + log_of_requests(2);
   const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"), {"--json"});
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("shorter than the fixed fields"), std::string::npos)
       << finished.standard_error;
   const auto summary = nlohmann::json::parse(finished.standard_output);
-  EXPECT_EQ(summary["questions"], 3);
-  EXPECT_EQ(summary["answered"], 2);
+  EXPECT_EQ(summary["requests"], 3);
+  EXPECT_EQ(summary["computed"], 2);
   EXPECT_EQ(summary["rejected"]["truncated"], 1);
   EXPECT_EQ(summary["bodies"]["OK"], 2);
   EXPECT_EQ(summary["complete"], false);
@@ -252,7 +252,7 @@ TEST_F(Replay, ReportsMalformedRowsByLineAndExitsWith1) {
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("line 3: 'zero' in column 3"), std::string::npos)
       << finished.standard_error;
-  EXPECT_EQ(rows(contents_of(path("out.csv"))).size(), 3U);
+  EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 3U);
 }
 
 TEST_F(Replay, ShowsTheFirstTroublesAndCountsTheRest) {
@@ -267,9 +267,9 @@ TEST_F(Replay, ShowsTheFirstTroublesAndCountsTheRest) {
 
 TEST_F(Replay, GivesAnEmptyOutputForAnEmptyInput) {
   EXPECT_EQ(replay(write("in.csv", ""), path("out.csv")).exit_code, 0);
-  EXPECT_EQ(contents_of(path("out.csv")), kWrenchHeader);
+  EXPECT_EQ(read_file(path("out.csv")), kWrenchHeader);
   EXPECT_EQ(replay(write("in.lcmlog", ""), path("out.lcmlog")).exit_code, 0);
-  EXPECT_EQ(contents_of(path("out.lcmlog")), "");
+  EXPECT_EQ(read_file(path("out.lcmlog")), "");
 }
 
 TEST_F(Replay, TakesOneMeshInPlaceOfAScene) {
@@ -277,12 +277,12 @@ TEST_F(Replay, TakesOneMeshInPlaceOfAScene) {
   write("in.csv", kPoseHeader + pose_row(0, 0.25));
   const FinishedProcess finished = run({"--mesh", path("cube.obj"), path("in.csv"), path("out.csv")});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
-  const Row row = rows(contents_of(path("out.csv"))).at(1);
+  const Row row = rows(read_file(path("out.csv"))).at(1);
   EXPECT_NEAR(std::stod(row[5]), 0.25 * 1025.0 * 9.80665, 1e-9);
   const FinishedProcess fast =
       run({"--mesh", path("cube.obj"), "--method", "fast", path("in.csv"), path("fast.csv")});
   ASSERT_EQ(fast.exit_code, 0) << fast.standard_error;
-  EXPECT_NE(contents_of(path("fast.csv")), contents_of(path("out.csv")));
+  EXPECT_NE(read_file(path("fast.csv")), read_file(path("out.csv")));
 }
 
 TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
@@ -290,7 +290,7 @@ TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
   const std::string out = path("out.csv");
   const std::string cube = write("cube.obj", kCube);
   const std::string wrong_header = write("header.csv", "a,b\n1,2\n");
-  const std::string untouched = contents_of(in);
+  const std::string untouched = read_file(in);
   const std::vector<std::vector<std::string>> wrong{
       {},
       {in, out},
@@ -325,8 +325,8 @@ TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << shown << ": " << error;
     EXPECT_EQ(error.rfind("buoyancy-replay: ", 0), 0U) << shown << ": " << error;
   }
-  EXPECT_EQ(contents_of(in), untouched);
-  EXPECT_EQ(contents_of(out), "") << "no output where nothing ran";
+  EXPECT_EQ(read_file(in), untouched);
+  EXPECT_EQ(read_file(out), "") << "no output where nothing ran";
 }
 
 TEST_F(Replay, FailsWith1WhereTheOutputCannotBeWritten) {
@@ -356,12 +356,12 @@ TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
   EXPECT_NE(child.standard_error().find("ended by SIGTERM"), std::string::npos) << child.standard_error();
-  const std::string csv = contents_of(path("out.csv"));
+  const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.back(), '\n');
-  const std::vector<Row> answers = rows(csv);
-  EXPECT_GT(answers.size(), 1U);
-  EXPECT_LT(answers.size(), 200'001U);
-  EXPECT_EQ(answers.back().size(), 15U);
+  const std::vector<Row> responses = rows(csv);
+  EXPECT_GT(responses.size(), 1U);
+  EXPECT_LT(responses.size(), 200'001U);
+  EXPECT_EQ(responses.back().size(), 15U);
 }
 
 TEST_F(Replay, EndsByASignalWhereNobodyReadsItsPipe) {
@@ -371,7 +371,7 @@ TEST_F(Replay, EndsByASignalWhereNobodyReadsItsPipe) {
   for (const auto& [signal, name] : {std::pair{SIGTERM, "SIGTERM"}, std::pair{SIGINT, "SIGINT"}}) {
     const std::string pipe = path(std::string(name) + ".csv");
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-    const FileDescriptor reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    const UniqueFd reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     ChildProcess child(command({"--scene", scene_, path("in.csv"), pipe}));
     const auto waiting = [&reader] {
       int bytes = 0;
@@ -407,11 +407,11 @@ TEST_F(Replay, AnswersAnOpenMeshWhileItsBoundaryIsDryOnRequest) {
   accepting.insert(accepting.end(), {"--open", "dry_boundary"});
   const FinishedProcess accepted = run(accepting);
   ASSERT_EQ(accepted.exit_code, 0) << accepted.standard_error;
-  const std::vector<Row> answers = rows(contents_of(path("out.csv")));
-  ASSERT_EQ(answers.size(), 3U);
-  EXPECT_EQ(answers[1][2], "0");
-  EXPECT_NEAR(std::stod(answers[1][9]), 0.25, 1e-12);
-  EXPECT_EQ(answers[2][2], "6") << "OPEN_EDGE_WET";
+  const std::vector<Row> responses = rows(read_file(path("out.csv")));
+  ASSERT_EQ(responses.size(), 3U);
+  EXPECT_EQ(responses[1][2], "0");
+  EXPECT_NEAR(std::stod(responses[1][9]), 0.25, 1e-12);
+  EXPECT_EQ(responses[2][2], "6") << "OPEN_EDGE_WET";
 }
 
 TEST_F(Replay, TellsItsVersion) {

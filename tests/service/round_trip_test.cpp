@@ -1,4 +1,4 @@
-// Questions over real UDP by a client written from the message definitions, answers against closed forms.
+// Requests over real UDP by a client written from the message definitions, answers against closed forms.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -75,14 +75,14 @@ TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
   states.session_id = 0x0123'4567'89AB'CDEF;
   states.seq = 42;
   for (const Pose& pose : asked) states.bodies.push_back(pose.state);
-  ask(socket, states);
-  const RawWrenches answer = hear(socket);
-  EXPECT_EQ(answer.utime, states.utime);
-  EXPECT_EQ(answer.session_id, states.session_id);
-  EXPECT_EQ(answer.seq, states.seq);
-  ASSERT_EQ(answer.bodies.size(), asked.size());
+  send_request(socket, states);
+  const RawWrenches response = receive(socket);
+  EXPECT_EQ(response.utime, states.utime);
+  EXPECT_EQ(response.session_id, states.session_id);
+  EXPECT_EQ(response.seq, states.seq);
+  ASSERT_EQ(response.bodies.size(), asked.size());
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    const RawWrench& wrench = answer.bodies[i];
+    const RawWrench& wrench = response.bodies[i];
     const Expected3 expected = box_in_water(asked[i].state, asked[i].yaw, asked[i].lying);
     const double whole_force = kDensity * kGravity * 24.0;
     EXPECT_EQ(wrench.body_id, asked[i].state.body_id) << i;
@@ -110,13 +110,12 @@ TEST(RoundTripOfHydrostatics, DropsNothingBecauseOfTheServicesOwnPackets) {
   RawStates states = one_body(9, 1, 0.5);
   states.bodies[0].body_id = 2;
   states.bodies.resize(600, states.bodies[0]);
-  ask(socket, states);
+  send_request(socket, states);
   const auto hydrostatics = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
   ASSERT_TRUE(hydrostatics);
   EXPECT_GT(hydrostatics->size(), 250'000U);
-  ask(socket, one_body(9, 2, 0.5));
-  const auto status =
-      hear_status(socket, [](const ServiceStatus& now) { return now.counters.questions == 2; });
+  send_request(socket, one_body(9, 2, 0.5));
+  const auto status = on_status(socket, [](const ServiceStatus& now) { return now.counters.requests == 2; });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->packets_dropped, 0);
 }
@@ -125,8 +124,8 @@ TEST(RoundTripOfOneBody, IsAnsweredByAServiceThatDoesNotSpin) {
   const RunningService service({"--no-spin"});
   RawLcmSocket socket;
   for (std::int64_t seq = 1; seq <= 300; ++seq) {
-    ask(socket, one_body(3, seq, 0.001 * static_cast<double>(seq)));
-    ASSERT_EQ(hear(socket).seq, seq);
+    send_request(socket, one_body(3, seq, 0.001 * static_cast<double>(seq)));
+    ASSERT_EQ(receive(socket).seq, seq);
   }
 }
 
@@ -138,8 +137,8 @@ TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAn
   states.bodies.resize(3, states.bodies[0]);
   states.bodies[1].body_id = 2;
   states.bodies[2].body_id = 5;  // unknown
-  ask(socket, states);
-  EXPECT_EQ(hear(socket).bodies.size(), 3U);
+  send_request(socket, states);
+  EXPECT_EQ(receive(socket).bodies.size(), 3U);
   const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
   ASSERT_TRUE(bytes);
   const RawHydrostatics heard = decode_hydrostatics(*bytes);
@@ -174,7 +173,7 @@ TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAn
   }
   EXPECT_NEAR(body.stiffness[2][2], kDensity * kGravity * 6.0, 1e-7);
   EXPECT_TRUE(
-      hear_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
+      on_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
 }
 
 TEST(RoundTripOfHydrostatics, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsks) {
@@ -182,33 +181,33 @@ TEST(RoundTripOfHydrostatics, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsk
   RawLcmSocket socket;
   RawStates asking = one_body(1, 1, 0.3);
   asking.bodies[0].body_id = 2;
-  ask(socket, asking);
+  send_request(socket, asking);
   const auto first = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(first);
-  ask(socket, asking);
+  send_request(socket, asking);
   EXPECT_EQ(socket.receive("H", kWaitTimeout), first);
-  ask(socket, one_body(1, 2, 0.3));
+  send_request(socket, one_body(1, 2, 0.3));
   asking.seq = 3;
-  ask(socket, asking);
+  send_request(socket, asking);
   const auto next = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(next);
-  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "nothing of question 2";
+  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "nothing of request 2";
 }
 
 TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;
-  ask(socket, one_body(1, 5, 0.3));
+  send_request(socket, one_body(1, 5, 0.3));
   const auto first = hear_bytes(socket);
   ASSERT_TRUE(first);
   for (int repeat = 0; repeat < 3; ++repeat) {
-    ask(socket, one_body(1, 5, 0.3));
+    send_request(socket, one_body(1, 5, 0.3));
     EXPECT_EQ(hear_bytes(socket), first);
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
     const LatencyPercentiles& latency = status.latency;
     const bool measured = 0.0 < latency.p50 && latency.p50 <= latency.p99 && latency.max < kWaitTimeout;
-    return status.counters.answered == 1 && status.counters.repeated == 3 && status.counters.questions == 4 &&
+    return status.counters.computed == 1 && status.counters.retries == 3 && status.counters.requests == 4 &&
            measured;
   }));
 }
@@ -216,32 +215,33 @@ TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
 TEST(Lockstep, ComputesAnewWhatChangedUnderTheSameSeq) {
   const RunningService service;
   RawLcmSocket socket;
-  ask(socket, one_body(1, 5, 1.0));
-  EXPECT_DOUBLE_EQ(hear(socket).bodies[0].submerged_volume, 6.0);
-  ask(socket, one_body(1, 5, 0.0));
-  EXPECT_DOUBLE_EQ(hear(socket).bodies[0].submerged_volume, 12.0);
-  EXPECT_TRUE(
-      hear_status(socket, [](const ServiceStatus& status) { return status.counters.changed_repeats == 1; }));
+  send_request(socket, one_body(1, 5, 1.0));
+  EXPECT_DOUBLE_EQ(receive(socket).bodies[0].submerged_volume, 6.0);
+  send_request(socket, one_body(1, 5, 0.0));
+  EXPECT_DOUBLE_EQ(receive(socket).bodies[0].submerged_volume, 12.0);
+  EXPECT_TRUE(on_status(
+      socket, [](const ServiceStatus& status) { return status.counters.conflicting_retries == 1; }));
 }
 
 TEST(Lockstep, AnswersEveryQuestionOfABurstInOrder) {
   const RunningService service;
   RawLcmSocket socket;
-  for (std::int64_t seq = 0; seq < 200; ++seq) ask(socket, one_body(1, seq, 0.01 * static_cast<double>(seq)));
-  for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(hear(socket).seq, seq);
+  for (std::int64_t seq = 0; seq < 200; ++seq)
+    send_request(socket, one_body(1, seq, 0.01 * static_cast<double>(seq)));
+  for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(receive(socket).seq, seq);
 }
 
 TEST(Lockstep, AnswersAClientThatStartedOverAtOnce) {
   const RunningService service;
   RawLcmSocket socket;
-  ask(socket, one_body(1, 1'000'000, 0.0));
-  EXPECT_EQ(hear(socket).seq, 1'000'000);
-  ask(socket, one_body(2, 0, 1.0));
-  const RawWrenches other_session = hear(socket);
+  send_request(socket, one_body(1, 1'000'000, 0.0));
+  EXPECT_EQ(receive(socket).seq, 1'000'000);
+  send_request(socket, one_body(2, 0, 1.0));
+  const RawWrenches other_session = receive(socket);
   EXPECT_EQ(other_session.session_id, 2);
   EXPECT_DOUBLE_EQ(other_session.bodies[0].submerged_volume, 6.0);
-  ask(socket, one_body(1, 0, -1.0));
-  const RawWrenches same_session = hear(socket);
+  send_request(socket, one_body(1, 0, -1.0));
+  const RawWrenches same_session = receive(socket);
   EXPECT_EQ(same_session.seq, 0);
   EXPECT_DOUBLE_EQ(same_session.bodies[0].submerged_volume, 18.0);
 }
@@ -252,21 +252,21 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
   std::optional<ServiceStatus> status_before;
   {
     RunningService service;
-    ask(socket, one_body(1, 5, 0.3));
+    send_request(socket, one_body(1, 5, 0.3));
     before = hear_bytes(socket);
-    status_before = hear_status(socket, [](const ServiceStatus&) { return true; });
+    status_before = on_status(socket, [](const ServiceStatus&) { return true; });
     service.child().send_signal(SIGKILL);
     EXPECT_EQ(service.child().wait(kWaitTimeout), 128 + SIGKILL);
   }
-  ask(socket, one_body(1, 6, 0.3));  // nobody hears it
+  send_request(socket, one_body(1, 6, 0.3));  // nobody hears it
   const RunningService service;
-  ask(socket, one_body(1, 5, 0.3));
+  send_request(socket, one_body(1, 5, 0.3));
   ASSERT_TRUE(before);
   EXPECT_EQ(hear_bytes(socket), before);
   ASSERT_TRUE(status_before);
   const std::int64_t first_instance = status_before->instance_id;
-  EXPECT_TRUE(hear_status(socket, [first_instance](const ServiceStatus& status) {
-    return status.instance_id != first_instance && status.counters.questions == 1;
+  EXPECT_TRUE(on_status(socket, [first_instance](const ServiceStatus& status) {
+    return status.instance_id != first_instance && status.counters.requests == 1;
   }));
 }
 
@@ -279,14 +279,14 @@ TEST(Lockstep, ComparesTheAskersClockWithNothing) {
                                    std::numeric_limits<std::int64_t>::min(), std::int64_t{1}}) {
     RawStates states = one_body(1, ++seq, 0.5);
     states.utime = utime;
-    ask(socket, states);
-    const RawWrenches answer = hear(socket);
-    EXPECT_EQ(answer.utime, utime);
-    EXPECT_EQ(answer.seq, seq);
-    EXPECT_NEAR(answer.bodies[0].force[2], 90'000.0, 1e-6) << utime;
+    send_request(socket, states);
+    const RawWrenches response = receive(socket);
+    EXPECT_EQ(response.utime, utime);
+    EXPECT_EQ(response.seq, seq);
+    EXPECT_NEAR(response.bodies[0].force[2], 90'000.0, 1e-6) << utime;
   }
-  EXPECT_TRUE(hear_status(socket, [seq](const ServiceStatus& status) {
-    return status.counters.answered == seq && status.counters.stale == 0;
+  EXPECT_TRUE(on_status(socket, [seq](const ServiceStatus& status) {
+    return status.counters.computed == seq && status.counters.stale == 0;
   }));
 }
 
@@ -299,15 +299,15 @@ TEST(Lockstep, GivesEachFaultOfABodyItsOwnStatusAndZeros) {
   states.bodies[2].position[1] = NAN;
   states.bodies[3].quaternion_wxyz = {1.1, 0.0, 0.0, 0.0};
   states.bodies[4].quaternion_wxyz = {1.0005, 0.0, 0.0, 0.0};
-  ask(socket, states);
-  const RawWrenches answer = hear(socket);
-  ASSERT_EQ(answer.bodies.size(), 5U);
+  send_request(socket, states);
+  const RawWrenches response = receive(socket);
+  ASSERT_EQ(response.bodies.size(), 5U);
   const std::array<std::int32_t, 5> statuses{0, 1, 2, 3, 0};
   for (std::size_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(answer.bodies[i].status, statuses[i]) << i;
-    EXPECT_NEAR(answer.bodies[i].force[2], statuses[i] == 0 ? 120'000.0 : 0.0, 1e-6) << i;
+    EXPECT_EQ(response.bodies[i].status, statuses[i]) << i;
+    EXPECT_NEAR(response.bodies[i].force[2], statuses[i] == 0 ? 120'000.0 : 0.0, 1e-6) << i;
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
     return status.counters.bodies[0] == 2 && status.counters.bodies[1] == 1 &&
            status.counters.bodies[2] == 1 && status.counters.bodies[3] == 1 &&
            status.counters.quaternions_normalised == 1;
@@ -317,38 +317,38 @@ TEST(Lockstep, GivesEachFaultOfABodyItsOwnStatusAndZeros) {
 TEST(Latest, AnswersTheNewestOfWhatWaitsInEachSession) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
-  constexpr std::int64_t kQuestions = 50;
+  constexpr std::int64_t kRequests = 50;
   service.child().send_signal(SIGSTOP);
-  for (std::int64_t seq = 1; seq <= kQuestions; ++seq) {
-    for (const std::int64_t session : {7, 8}) ask(socket, one_body(session, seq, 0.1));
+  for (std::int64_t seq = 1; seq <= kRequests; ++seq) {
+    for (const std::int64_t session : {7, 8}) send_request(socket, one_body(session, seq, 0.1));
   }
   service.child().send_signal(SIGCONT);
   std::map<std::int64_t, std::int64_t> newest;
-  while (newest[7] < kQuestions || newest[8] < kQuestions) {
-    const RawWrenches answer = hear(socket);
-    EXPECT_GT(answer.seq, newest[answer.session_id]) << "never back to an older one";
-    newest[answer.session_id] = answer.seq;
+  while (newest[7] < kRequests || newest[8] < kRequests) {
+    const RawWrenches response = receive(socket);
+    EXPECT_GT(response.seq, newest[response.session_id]) << "never back to an older one";
+    newest[response.session_id] = response.seq;
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) {
-    const Counters& counters = status.counters;
-    return counters.questions == 2 * kQuestions && counters.answered + counters.overtaken == 2 * kQuestions;
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+    const ServiceCounters& counters = status.counters;
+    return counters.requests == 2 * kRequests && counters.computed + counters.superseded == 2 * kRequests;
   }));
 }
 
 TEST(Latest, LeavesStaleQuestionsUnansweredAndAnswersAnAskerThatStartsOver) {
   const RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
-  ask(socket, one_body(1, 100, 0.0));
-  EXPECT_EQ(hear(socket).seq, 100);
-  ask(socket, one_body(1, 99, 0.0));
-  ask(socket, one_body(2, 1, 0.0));
-  const RawWrenches next = hear(socket);
+  send_request(socket, one_body(1, 100, 0.0));
+  EXPECT_EQ(receive(socket).seq, 100);
+  send_request(socket, one_body(1, 99, 0.0));
+  send_request(socket, one_body(2, 1, 0.0));
+  const RawWrenches next = receive(socket);
   EXPECT_EQ(next.session_id, 2) << "99 is stale";
   for (const std::int64_t seq : {0, 1, 2}) {
-    ask(socket, one_body(1, seq, 0.0));
-    EXPECT_EQ(hear(socket).seq, seq);
+    send_request(socket, one_body(1, seq, 0.0));
+    EXPECT_EQ(receive(socket).seq, seq);
   }
-  EXPECT_TRUE(hear_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
+  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
 }
 
 TEST(Channels, CanBeNamedAndAreTakenLiterally) {

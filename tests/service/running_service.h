@@ -77,7 +77,7 @@ class RunningService {
     return whole;
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   ChildProcess child_;
 };
 
@@ -91,7 +91,7 @@ inline RawStates one_body(std::int64_t session_id, std::int64_t seq, double heig
   return states;
 }
 
-inline void ask(RawLcmSocket& socket, const RawStates& states) {
+inline void send_request(RawLcmSocket& socket, const RawStates& states) {
   socket.send("BUOYANCY_STATES", encode_states(states));
 }
 
@@ -99,16 +99,16 @@ inline std::optional<RawBytes> hear_bytes(RawLcmSocket& socket, double seconds =
   return socket.receive("BUOYANCY_WRENCHES", seconds);
 }
 
-// Throws where no answer comes.
-inline RawWrenches hear(RawLcmSocket& socket) {
+// Throws where no response comes.
+inline RawWrenches receive(RawLcmSocket& socket) {
   const std::optional<RawBytes> bytes = hear_bytes(socket);
-  if (!bytes) throw std::runtime_error("no answer");
+  if (!bytes) throw std::runtime_error("no response");
   return decode_wrenches(*bytes);
 }
 
 // The first status that satisfies `wanted`; nullopt: none within kWaitTimeout.
 template <typename Wanted>
-std::optional<ServiceStatus> hear_status(RawLcmSocket& socket, Wanted&& wanted) {
+std::optional<ServiceStatus> on_status(RawLcmSocket& socket, Wanted&& wanted) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (std::chrono::steady_clock::now() < limit) {
     const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_STATUS", kWaitTimeout);

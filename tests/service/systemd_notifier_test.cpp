@@ -51,14 +51,14 @@ class NotifySocket {
     return heard;
   }
 
-  bool hears(const std::string& text) {
+  bool has_received(const std::string& text) {
     const std::vector<std::string> heard = receive_until(text);
     return !heard.empty() && heard.back().starts_with(text);
   }
 
  private:
-  ScratchDirectory directory_;
-  FileDescriptor socket_;
+  TempDir directory_;
+  UniqueFd socket_;
 };
 
 class ServiceManaged : public testing::Test {
@@ -67,41 +67,41 @@ class ServiceManaged : public testing::Test {
     if (!BUOYANCY_TALKS_TO_SYSTEMD) GTEST_SKIP() << "built without libsystemd";
   }
   std::vector<std::string> environment(const std::string& watchdog_usec = "") const {
-    std::vector<std::string> entries{"NOTIFY_SOCKET=" + manager_.path()};
+    std::vector<std::string> entries{"NOTIFY_SOCKET=" + systemd_.path()};
     if (!watchdog_usec.empty()) entries.push_back("WATCHDOG_USEC=" + watchdog_usec);
     return entries;
   }
 
-  NotifySocket manager_;
+  NotifySocket systemd_;
   RawLcmSocket socket_;
 };
 
 TEST_F(ServiceManaged, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
   const RunningService service({}, kBoxScene, environment());
-  ASSERT_TRUE(manager_.hears("READY=1"));
-  ask(socket_, one_body(1, 1, 0.0));
-  EXPECT_EQ(hear(socket_).seq, 1);
-  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 1 question answered"));
+  ASSERT_TRUE(systemd_.has_received("READY=1"));
+  send_request(socket_, one_body(1, 1, 0.0));
+  EXPECT_EQ(receive(socket_).seq, 1);
+  EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 1 request answered"));
 }
 
 TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   HeldFile scene(directory.write("scene.toml", kBoxScene));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
   ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
   command.environment = environment();
   ChildProcess child(command);
   while (!scene.awaited()) ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
-  EXPECT_EQ(manager_.receive(0.1), std::nullopt);
+  EXPECT_EQ(systemd_.receive(0.1), std::nullopt);
   scene.let_go();
-  EXPECT_TRUE(manager_.hears("READY=1"));
+  EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
 TEST_F(ServiceManaged, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
   RunningService service({}, kBoxScene, environment());
-  ASSERT_TRUE(manager_.hears("READY=1"));
+  ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGHUP);
-  const std::vector<std::string> begin = manager_.receive_until("RELOADING=1");
+  const std::vector<std::string> begin = systemd_.receive_until("RELOADING=1");
   ASSERT_FALSE(begin.empty());
   long long microseconds = 0;
   ASSERT_EQ(std::sscanf(begin.back().c_str(), "RELOADING=1\nMONOTONIC_USEC=%lld", &microseconds), 1)
@@ -109,32 +109,32 @@ TEST_F(ServiceManaged, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   EXPECT_LE(microseconds, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
   EXPECT_GT(microseconds, 0);
-  EXPECT_TRUE(manager_.hears("READY=1"));
+  EXPECT_TRUE(systemd_.has_received("READY=1"));
 
   service.write("scene.toml", "nothing");
   service.child().send_signal(SIGHUP);
-  EXPECT_TRUE(manager_.hears("RELOADING=1"));
-  EXPECT_TRUE(manager_.hears("READY=1"));
-  EXPECT_TRUE(manager_.hears("STATUS=2 bodies, 0 questions answered; the last reload failed"));
+  EXPECT_TRUE(systemd_.has_received("RELOADING=1"));
+  EXPECT_TRUE(systemd_.has_received("READY=1"));
+  EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 0 requests answered; the last reload failed"));
 }
 
 TEST_F(ServiceManaged, HearsThatItStopsBeforeItEnds) {
   RunningService service({}, kBoxScene, environment());
-  ASSERT_TRUE(manager_.hears("READY=1"));
+  ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGTERM);
-  EXPECT_TRUE(manager_.hears("STOPPING=1"));
+  EXPECT_TRUE(systemd_.has_received("STOPPING=1"));
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }
 
 TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
   RunningService service({}, kBoxScene, environment("100000"));
-  for (int beat = 0; beat < 5; ++beat) ASSERT_TRUE(manager_.hears("WATCHDOG=1"));
+  for (int beat = 0; beat < 5; ++beat) ASSERT_TRUE(systemd_.has_received("WATCHDOG=1"));
   service.stop();
-  while (manager_.receive(0.0)) {  // what was sent before
+  while (systemd_.receive(0.0)) {  // what was sent before
   }
-  EXPECT_EQ(manager_.receive(0.5), std::nullopt) << "ten beats";
+  EXPECT_EQ(systemd_.receive(0.5), std::nullopt) << "ten beats";
   service.child().send_signal(SIGCONT);
-  EXPECT_TRUE(manager_.hears("WATCHDOG=1"));
+  EXPECT_TRUE(systemd_.has_received("WATCHDOG=1"));
 }
 
 TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileASceneLoads) {
@@ -142,21 +142,21 @@ TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileASceneLoads) {
   HeldFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
   service.child().send_signal(SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1"));
+  ASSERT_TRUE(systemd_.has_received("RELOADING=1"));
   for (int beat = 0; beat < 10; ++beat) {
-    const std::vector<std::string> heard = manager_.receive_until("WATCHDOG=1");
+    const std::vector<std::string> heard = systemd_.receive_until("WATCHDOG=1");
     ASSERT_FALSE(heard.empty());
     EXPECT_EQ(std::ranges::count(heard, "READY=1"), 0);
   }
   scene.let_go();
-  EXPECT_TRUE(manager_.hears("READY=1"));
+  EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
 TEST_F(ServiceManaged, HearsNoBeatWhereNoWatchdogWaits) {
   const RunningService service({}, kBoxScene, environment());
-  const std::vector<std::string> heard = manager_.receive_until("STATUS=2 bodies, 0");
-  ASSERT_TRUE(manager_.hears("READY=1"));
-  std::optional<std::string> more = manager_.receive(1.5);
+  const std::vector<std::string> heard = systemd_.receive_until("STATUS=2 bodies, 0");
+  ASSERT_TRUE(systemd_.has_received("READY=1"));
+  std::optional<std::string> more = systemd_.receive(1.5);
   EXPECT_EQ(more, std::nullopt) << "no beat, and a status that did not change is not said again";
 }
 
@@ -169,8 +169,8 @@ TEST(WithoutAServiceManager, TheServiceAnswersThoughTheSocketIsGone) {
   const RunningService service({}, kBoxScene, {"NOTIFY_SOCKET=" + gone, "WATCHDOG_USEC=100000"});
   RawLcmSocket socket;
   for (int beat = 0; beat < 3; ++beat) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
-  ask(socket, one_body(1, 1, 0.0));
-  EXPECT_EQ(hear(socket).seq, 1);
+  send_request(socket, one_body(1, 1, 0.0));
+  EXPECT_EQ(receive(socket).seq, 1);
 }
 
 }  // namespace

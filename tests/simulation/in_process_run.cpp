@@ -21,8 +21,8 @@ Simulation simulation_of(const Scene& scene, const SimulationOptions& options) {
 void run_embedded(const Scene& scene, Simulation& simulation, std::int64_t steps,
                   const std::function<void(const Simulation&)>& see) {
   const std::atomic<bool> never{false};
-  Asker asker{EmbeddedAsker(scene)};
-  const Expected<RunEnd> end = run(simulation, asker, steps, never, [&](const Simulation& now) {
+  RequestClient client{InProcessClient(scene)};
+  const Expected<RunOutcome> end = run(simulation, client, steps, never, [&](const Simulation& now) {
     if (see) see(now);
     return Expected<void>{};
   });

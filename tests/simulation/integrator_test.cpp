@@ -98,7 +98,7 @@ TEST(FreeRotation, PrecessesASymmetricTopAsInClosedForm) {
     const Vec3 momentum_W = start.angular_momentum_W;
 
     RigidBodyState state = start;
-    for (int i = 0; i < 1000; ++i) rotate_freely(body, 0.05, state);
+    for (int i = 0; i < 1000; ++i) integrate_free_rotation(body, 0.05, state);
 
     // The axis of symmetry circles L at |L|/I_across; the body turns about it at L_axis (1/I_axis -
     // 1/I_across).
@@ -120,7 +120,7 @@ TEST(FreeRotation, KeepsAngularMomentumExactlyAndEnergyWithoutDriftOverAMillionS
   double early = 0.0;
   double ever = 0.0;
   for (int i = 0; i < 1000000; ++i) {
-    rotate_freely(body, 0.05, state);
+    integrate_free_rotation(body, 0.05, state);
     ever = std::max(ever, std::abs(rotational_energy(body, state) / energy - 1.0));
     if (i == 2000) early = ever;
   }
@@ -135,7 +135,7 @@ TEST(FreeRotation, OfAnAsymmetricBodyIsOfSecondOrder) {
   const RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   const auto turned = [&](int steps) {
     RigidBodyState state = tumbling();
-    for (int i = 0; i < steps; ++i) rotate_freely(body, 5.0 / steps, state);
+    for (int i = 0; i < steps; ++i) integrate_free_rotation(body, 5.0 / steps, state);
     return state;
   };
   const RigidBodyState reference = turned(100000);
@@ -151,7 +151,7 @@ TEST(FreeRotation, TurnsABodyThatSpinsAboutItsMiddleAxisOver) {
   state.angular_momentum_W = middle_W + 1e-3 * body.principal_axes_B.col(0);
   double least = 1.0;
   for (int i = 0; i < 3000; ++i) {
-    rotate_freely(body, 0.01, state);
+    integrate_free_rotation(body, 0.01, state);
     least = std::min(least, middle_W.dot(state.q_WB * body.principal_axes_B.col(1)));
   }
   EXPECT_LT(least, -0.99);
@@ -174,7 +174,7 @@ TEST(Integrators, FollowTheirClosedFormsOnAHarmonicOscillator) {
     for (int n = 1; n <= 1000; ++n) {
       step_on_springs(integrator, body, step, state);
       ASSERT_NEAR(state.center_W.z(), 0.5 * std::cos(n * phi) + sine * std::sin(n * phi), 1e-11)
-          << name(integrator) << " step " << n;
+          << to_string(integrator) << " step " << n;
     }
   }
 }
@@ -207,8 +207,8 @@ TEST(Integrators, KeepTheEnergyOfAnUndampedBodyBoundedOverAMillionSteps) {
       if (i >= 900000) late = std::max(late, error);
     }
     const double order_of_error = integrator == Integrator::kVelocityVerlet ? 5e-3 : 1e-1;
-    EXPECT_LT(early, order_of_error) << name(integrator);
-    EXPECT_LT(late, 1.1 * early) << name(integrator);
+    EXPECT_LT(early, order_of_error) << to_string(integrator);
+    EXPECT_LT(late, 1.1 * early) << to_string(integrator);
   }
 }
 
@@ -274,7 +274,8 @@ TEST(Damping, ReachesTheTerminalSpeed) {
 }
 
 TEST(Integrators, HaveNamesThatReadBack) {
-  for (const Integrator integrator : kBoth) EXPECT_EQ(integrator_from_name(name(integrator)), integrator);
+  for (const Integrator integrator : kBoth)
+    EXPECT_EQ(integrator_from_name(to_string(integrator)), integrator);
   EXPECT_EQ(integrator_from_name("runge_kutta"), std::nullopt);
 }
 

@@ -20,8 +20,10 @@ struct Prepared {
   RigidBodyState state;
 
   const Body& body() const { return scene.bodies().front(); }
-  FastestMotion fastest() const { return fastest_motion(body(), rigid, state, scene.water()); }
-  double bound() const { return frequency_bound(body(), rigid, scene.water()); }
+  HighestNaturalFrequency fastest() const {
+    return highest_natural_frequency(body(), rigid, state, scene.water());
+  }
+  double bound() const { return natural_frequency_bound(body(), rigid, scene.water()); }
 };
 
 // One body with these lines, and these in its [body.client].
@@ -42,15 +44,15 @@ std::string floating_plate(double relative_density, double above_rest = 0.0) {
 }
 const std::string kPlate = R"(shape = { type = "box", size = [1, 1, 0.2] })";
 
-TEST(FastestMotion, OfAFlatPlateAtRestIsItsHeave) {
+TEST(HighestNaturalFrequency, OfAFlatPlateAtRestIsItsHeave) {
   for (const double s : {0.05, 0.3, 0.8}) {
-    const FastestMotion fastest = prepared(kPlate, floating_plate(s)).fastest();
+    const HighestNaturalFrequency fastest = prepared(kPlate, floating_plate(s)).fastest();
     EXPECT_NEAR(fastest.frequency, std::sqrt(kStandardGravity / (0.2 * s)), 1e-9 * fastest.frequency) << s;
     EXPECT_NEAR(fastest.draft, 0.2 * s, 1e-9) << s;
   }
 }
 
-TEST(FastestMotion, OfABodyOfLittleInertiaIsItsRoll) {
+TEST(HighestNaturalFrequency, OfABodyOfLittleInertiaIsItsRoll) {
   // Mass on the axes: rho g (J + V (z_b - z_c)) / I with J = 1/12 and z_b - z_c = -0.1 (1 - s).
   const double s = 0.5;
   const double inertia = 0.2;
@@ -59,12 +61,12 @@ TEST(FastestMotion, OfABodyOfLittleInertiaIsItsRoll) {
   EXPECT_NEAR(plate.fastest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.fastest().frequency);
 }
 
-TEST(FastestMotion, OfADryBodyIsThatOfTheWaterThatItFallsInto) {
+TEST(HighestNaturalFrequency, OfADryBodyIsThatOfTheWaterThatItFallsInto) {
   const Prepared plate = prepared(kPlate, floating_plate(0.1, 1.0));
   EXPECT_GE(plate.fastest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));
 }
 
-TEST(FastestMotion, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
+TEST(HighestNaturalFrequency, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
   // A light plate on its edge has a small waterplane; lying flat it is stiff.
   const double heave = std::sqrt(kStandardGravity / 0.02);
   const Prepared on_edge = prepared(kPlate,
@@ -73,7 +75,7 @@ TEST(FastestMotion, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
   EXPECT_GE(on_edge.fastest().frequency, heave * (1.0 - 1e-9));
 }
 
-TEST(FastestMotion, CountsNothingThatItsEnergyDoesNotReach) {
+TEST(HighestNaturalFrequency, CountsNothingThatItsEnergyDoesNotReach) {
   // An upright cone on its apex, at rest at half its height: the waterplane further up is wider, and stays
   // dry.
   const Prepared cone = prepared(
@@ -84,26 +86,26 @@ TEST(FastestMotion, CountsNothingThatItsEnergyDoesNotReach) {
   EXPECT_NEAR(cone.fastest().draft, 0.5, 1e-9);
 }
 
-TEST(FastestMotion, IsTheSameWhateverMethodAnswersForTheBody) {
-  const FastestMotion expected = prepared(kPlate, floating_plate(0.3)).fastest();
+TEST(HighestNaturalFrequency, IsTheSameWhateverMethodAnswersForTheBody) {
+  const HighestNaturalFrequency expected = prepared(kPlate, floating_plate(0.3)).fastest();
   for (const char* method : {R"(method = "exact")", R"(method = "fast_surface")"}) {
     std::string keys = kPlate + "\n";
     keys += method;
-    const FastestMotion found = prepared(keys, floating_plate(0.3)).fastest();
+    const HighestNaturalFrequency found = prepared(keys, floating_plate(0.3)).fastest();
     EXPECT_EQ(found.frequency, expected.frequency) << method;
     EXPECT_EQ(found.draft, expected.draft) << method;
   }
 }
 
-TEST(FastestMotion, IsZeroWithoutWaterOrGravity) {
+TEST(HighestNaturalFrequency, IsZeroWithoutWaterOrGravity) {
   Prepared plate = prepared(kPlate, floating_plate(0.3));
   Water none = plate.scene.water();
   none.gravity = 0.0;
-  EXPECT_EQ(fastest_motion(plate.body(), plate.rigid, plate.state, none).frequency, 0.0);
-  EXPECT_EQ(frequency_bound(plate.body(), plate.rigid, none), 0.0);
+  EXPECT_EQ(highest_natural_frequency(plate.body(), plate.rigid, plate.state, none).frequency, 0.0);
+  EXPECT_EQ(natural_frequency_bound(plate.body(), plate.rigid, none), 0.0);
 }
 
-TEST(FastestMotion, IsNeverAboveItsBound) {
+TEST(HighestNaturalFrequency, IsNeverAboveItsBound) {
   for (const char* shape : {R"(shape = { type = "box", size = [2, 1, 0.1] })",
                             R"(shape = { type = "sphere" })", R"(shape = { type = "torus_knot" })",
                             R"(shape = { type = "wigley" })", R"(shape = { type = "rock", frequency = 5 })",
@@ -117,9 +119,9 @@ TEST(FastestMotion, IsNeverAboveItsBound) {
   }
 }
 
-TEST(FastestMotion, OfAnOpenHullIsThatOfItsSidesWhileItsEdgeIsDry) {
+TEST(HighestNaturalFrequency, OfAnOpenHullIsThatOfItsSidesWhileItsEdgeIsDry) {
   // A tray of 1 x 1 x 0.2 m, without its lid.
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::filesystem::path path = directory.path() / "tray.off";
   std::ofstream(path)
       << "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.2\n1 0 0.2\n1 1 0.2\n0 1 0.2\n"

@@ -71,11 +71,11 @@ TEST(RigidBody, StartsAndReportsItsStateAsGivenOfTheOriginOfB) {
   EXPECT_LT((state.velocity_W - Vec3(1, 2, 3) - Vec3(-0.3, 0.2, 0.9).cross(center_from_origin_W)).norm(),
             1e-14);
 
-  const BodyState message = message_state(42, body, state);
+  const BodyState message = to_body_state(42, body, state);
   EXPECT_EQ(message.body_id, 42);
-  EXPECT_LT((as_vec3(message.position) - Vec3(5, 6, 7)).norm(), 1e-14);
-  EXPECT_LT((as_vec3(message.linear_velocity) - Vec3(1, 2, 3)).norm(), 1e-14);
-  EXPECT_LT((as_vec3(message.angular_velocity) - Vec3(-0.3, 0.2, 0.9)).norm(), 1e-14);
+  EXPECT_LT((to_vec3(message.position) - Vec3(5, 6, 7)).norm(), 1e-14);
+  EXPECT_LT((to_vec3(message.linear_velocity) - Vec3(1, 2, 3)).norm(), 1e-14);
+  EXPECT_LT((to_vec3(message.angular_velocity) - Vec3(-0.3, 0.2, 0.9)).norm(), 1e-14);
   EXPECT_EQ(message.quaternion_wxyz, (std::array{0.5, 0.5, -0.5, 0.5}));
 }
 
@@ -96,10 +96,10 @@ TEST(RigidBody, CarriesTheTorqueFromTheReferencePointToTheCentreOfMass) {
     const Vec3 force_W = any();
     const Vec3 point_W = any();
     BodyWrench wrench;
-    wrench.force = as_array(force_W);
-    wrench.torque = as_array((point_W - reference_W).cross(force_W));
+    wrench.force = to_array(force_W);
+    wrench.torque = to_array((point_W - reference_W).cross(force_W));
 
-    const Load load = load_on(body, state, wrench, scene.water());
+    const Load load = total_load(body, state, wrench, scene.water());
     EXPECT_LT((load.torque_W - (point_W - state.center_W).cross(force_W)).norm(), 1e-13);
     EXPECT_LT((load.force_W - force_W + Vec3(0, 0, body.mass * kStandardGravity)).norm(), 1e-9);
   }
@@ -121,13 +121,13 @@ TEST(RigidBody, LosesInPotentialWhatTheForcesDo) {
   const Body& described = scene.bodies().front();
   const RigidBody body = rigid_body_of(scene);
   const auto wrench_at = [&](const RigidBodyState& state) {
-    const BuoyancyAnswer answer =
+    const BuoyancyResult response =
         buoyancy(described.solver, pose_of(body, state), scene.water(), described.reference_B);
     BodyWrench wrench;
-    wrench.force = as_array(answer.force_W);
-    wrench.torque = as_array(answer.torque_W);
-    wrench.submerged_volume = answer.volume;
-    wrench.center_of_buoyancy = as_array(answer.center_of_buoyancy_W);
+    wrench.force = to_array(response.force_W);
+    wrench.torque = to_array(response.torque_W);
+    wrench.submerged_volume = response.volume;
+    wrench.center_of_buoyancy = to_array(response.center_of_buoyancy_W);
     return wrench;
   };
   std::mt19937 random(2);
@@ -146,7 +146,7 @@ TEST(RigidBody, LosesInPotentialWhatTheForcesDo) {
       return mechanical_energy(body, moved, wrench_at(moved), scene.water());
     };
     const double h = 1e-4;
-    const Load load = load_on(body, state, wrench_at(state), scene.water());
+    const Load load = total_load(body, state, wrench_at(state), scene.water());
     const double power = load.force_W.dot(shift_W) + load.torque_W.dot(turn_W);
     EXPECT_NEAR(-(energy_at(h) - energy_at(-h)) / (2.0 * h), power, 1e-6 * body.mass * kStandardGravity);
   }

@@ -52,17 +52,17 @@ TEST(StepWarning, ComesBeforeEveryBlowUpFrom1KilohertzTo10HertzAndOnlyThen) {
       for (const Integrator integrator : kBoth) {
         Simulation simulation = simulation_of(scene, options_of(integrator, step));
         const double wh = frequency_of_plate(relative_density) * step;
-        SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(name(integrator)));
+        SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(to_string(integrator)));
         const std::optional<Error> warning = step_warning(simulation);
         run_embedded(scene, simulation, 2000);
-        const EnergyRecord& energy = simulation.bodies().front().energy;
-        if (wh <= kAccurateSwing) {
+        const EnergyStats& energy = simulation.bodies().front().energy;
+        if (wh <= kAccuracyLimit) {
           EXPECT_FALSE(warning) << warning->message();
           EXPECT_FALSE(energy_warning(simulation));
           const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : wh;
-          EXPECT_LT(energy.greatest - energy.least, 1.1 * swing * energy.greatest_kinetic);
+          EXPECT_LT(energy.max - energy.min, 1.1 * swing * energy.max_kinetic);
           ++quiet;
-        } else if (wh < kStableSwing) {
+        } else if (wh < kStabilityLimit) {
           EXPECT_TRUE(contains(warning, "stable but inaccurate"));
           ++inaccurate;
         } else {
@@ -70,7 +70,7 @@ TEST(StepWarning, ComesBeforeEveryBlowUpFrom1KilohertzTo10HertzAndOnlyThen) {
           EXPECT_TRUE(contains(energy_warning(simulation), "energy rose"));
           ++blown_up;
         }
-        stress.require(warning.has_value() == (wh > kAccurateSwing), "w h = " + std::to_string(wh));
+        stress.require(warning.has_value() == (wh > kAccuracyLimit), "w h = " + std::to_string(wh));
       }
     }
   }
@@ -88,8 +88,7 @@ TEST(StepWarning, AdvisesAStepThatItHasNothingAgainst) {
       const std::optional<Error> warning = step_warning(simulation_of(scene, options));
       ASSERT_TRUE(warning);
       double advised = 0.0;
-      ASSERT_EQ(std::sscanf(warning->remedy.c_str(), "Take --step %lf or less", &advised), 1)
-          << warning->remedy;
+      ASSERT_EQ(std::sscanf(warning->hint.c_str(), "Take --step %lf or less", &advised), 1) << warning->hint;
       options.step = advised;
       EXPECT_FALSE(step_warning(simulation_of(scene, options))) << advised;
       options.step = 1.15 * advised;
@@ -124,7 +123,7 @@ TEST(StepWarning, KnowsThatDampingMakesNoStepTooLarge) {
     Simulation simulation = simulation_of(scene, options_of(integrator, step));
     EXPECT_FALSE(step_warning(simulation));
     run_embedded(scene, simulation, 2000);
-    EXPECT_LE(simulation.bodies().front().energy.greatest, simulation.bodies().front().energy.initial);
+    EXPECT_LE(simulation.bodies().front().energy.max, simulation.bodies().front().energy.initial);
   }
 }
 
@@ -153,7 +152,7 @@ TEST(StepWarning, KnowsTheStepFromWhichALeadTimeThatNothingIsLateByBlowsUp) {
           highest = std::max(highest, height);
         });
         EXPECT_EQ(highest - lowest > 1e-4, factor > 1.0)
-            << name(integrator) << " " << lead_time << " " << factor << ": " << highest - lowest;
+            << to_string(integrator) << " " << lead_time << " " << factor << ": " << highest - lowest;
       }
     }
   }
@@ -163,30 +162,30 @@ TEST(LatenessWarning, ComesAboveATenthOfARadian) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(2, 0.1));
   const double w = frequency_of_plate(0.1);
   const Simulation simulation = simulation_of(scene, {});
-  EXPECT_FALSE(lateness_warning(simulation, 0.0));
-  EXPECT_FALSE(lateness_warning(simulation, 0.099 / w));
-  const std::optional<Error> warning = lateness_warning(simulation, 0.101 / w);
+  EXPECT_FALSE(latency_warning(simulation, 0.0));
+  EXPECT_FALSE(latency_warning(simulation, 0.099 / w));
+  const std::optional<Error> warning = latency_warning(simulation, 0.101 / w);
   EXPECT_TRUE(contains(warning, "body 2 (plate 2)"));
   EXPECT_TRUE(contains(warning, "= 0.101")) << warning->message();
-  EXPECT_TRUE(contains(lateness_warning(simulation, 1.0), "and 1 more"));
+  EXPECT_TRUE(contains(latency_warning(simulation, 1.0), "and 1 more"));
 }
 
-TEST(LatenessWatch, WarnsOnceWhenTheMeanDelayOfASecondIsTooMuch) {
+TEST(LatencyMonitor, WarnsOnceWhenTheMeanDelayOfASecondIsTooMuch) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + "linear_damping = 1000\n");
   const double w = frequency_of_plate(0.5);
   const double step = 0.02 / w;
-  for (const std::int64_t late_steps : {4, 6}) {
+  for (const std::int64_t delay_steps : {4, 6}) {
     SimulationOptions options = options_of(Integrator::kVelocityVerlet, step);
-    options.late_steps = late_steps;
+    options.delay_steps = delay_steps;
     Simulation simulation = simulation_of(scene, options);
-    LatenessWatch watch;
+    LatencyMonitor monitor;
     int warnings = 0;
     double first = -1.0;
     run_embedded(scene, simulation, 2000, [&](const Simulation& now) {
-      if (!watch.see(now)) return;
+      if (!monitor.update(now)) return;
       if (++warnings == 1) first = now.time();
     });
-    EXPECT_EQ(warnings, late_steps == 6 ? 1 : 0);
+    EXPECT_EQ(warnings, delay_steps == 6 ? 1 : 0);
     if (warnings > 0) {
       EXPECT_NEAR(first, 1.0, 2.0 * step);
     }

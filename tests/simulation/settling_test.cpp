@@ -117,7 +117,7 @@ TEST(Drafts, OfAWigleyHullIsThatAtWhichItsMeshDisplacesItsMass) {
                        density, -0.35};
     const Scene scene = scene_with(hull);
     const Body& body = scene.bodies().front();
-    const double displaced = density / 1000.0 * body.prepared->mass_properties.volume;
+    const double displaced = density / 1000.0 * body.prepared_mesh->mass_properties.volume;
     double deep = -0.3;
     double high = 0.5;
     for (int i = 0; i < 60; ++i) {

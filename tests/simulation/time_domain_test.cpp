@@ -82,7 +82,7 @@ TEST(UndampedBob, KeepsItsEnergyWithinTheIntegratorsSwingOverAMillionSteps) {
   for (const Integrator integrator : kBoth) {
     const EnergyErrors errors = energy_errors(scene, integrator, step, 1'000'000);
     const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
-    const std::string at(name(integrator));
+    const std::string at(to_string(integrator));
     stress.check(errors.early, 1.05 * swing * bob.swing(), at + ", first tenth");
     stress.check(errors.late, 1.05 * errors.early, at + ", last tenth");
   }
@@ -94,7 +94,7 @@ TEST(UndampedBob, KeepsItsEnergyWhereItRollsAndPitchesToo) {
       "[body.client]\ndensity = 500\nposition = [0, 3, 0.03]\norientation = [0.999, 0.03, 0.02, 0]\n");
   for (const Integrator integrator : kBoth) {
     const EnergyErrors errors = energy_errors(scene, integrator, 0.01, 200'000);
-    EXPECT_LT(errors.late, 1.1 * errors.early) << name(integrator);
+    EXPECT_LT(errors.late, 1.1 * errors.early) << to_string(integrator);
   }
 }
 
@@ -132,7 +132,7 @@ TEST(UndampedBob, ConvergesWithOrderOneAndTwoInTheStep) {
   StressCase stress("undamped bob: order in the step", "closed form; steps of 1/200 to 1/3200 s",
                     "order 1 (semi-implicit Euler), 2 (Verlet), +- 0.05");
   const auto check = [&](Integrator integrator, double order) {
-    stress.check(std::abs(fitted_order(integrator) - order), 0.05, std::string(name(integrator)));
+    stress.check(std::abs(fitted_order(integrator) - order), 0.05, std::string(to_string(integrator)));
   };
   check(Integrator::kSemiImplicitEuler, 1.0);
   check(Integrator::kVelocityVerlet, 2.0);
@@ -205,10 +205,10 @@ struct LateRun {
 };
 
 // A minute of the bob with wrenches late by so many steps, `delay` in all.
-LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t late_steps, double delay,
+LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t delay_steps, double delay,
                  bool with_lead_time) {
-  SimulationOptions options = options_of(integrator, delay / static_cast<double>(late_steps));
-  options.late_steps = late_steps;
+  SimulationOptions options = options_of(integrator, delay / static_cast<double>(delay_steps));
+  options.delay_steps = delay_steps;
   options.lead_time = with_lead_time ? delay : 0.0;
   const Scene scene = bob.scene();
   Simulation simulation = simulation_of(scene, options);
@@ -216,7 +216,7 @@ LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t late_steps,
   run_embedded(scene, simulation, std::llround(60.0 / options.step), [&](const Simulation& now) {
     run.largest_error = std::max(run.largest_error, energy_error(now.bodies().front()) / bob.swing());
   });
-  const EnergyRecord& energy = simulation.bodies().front().energy;
+  const EnergyStats& energy = simulation.bodies().front().energy;
   run.final_growth = 1.0 + (energy.current - energy.initial) / bob.swing();
   run.warned = energy_warning(simulation).has_value();
   EXPECT_NEAR(simulation.delay(), delay, 1e-12);
@@ -227,17 +227,17 @@ TEST(LateWrench, KeepsTheEnergyWithinOnePercentOverAMinuteWithALeadTime) {
   const Bob bob;
   StressCase stress("wrench one and five steps late, `lead_time` set, alpha = w delay <= 0.02",
                     "the energy at the start, over 60 s", "1 % (Euler: and its own swing)");
-  for (const std::int64_t late_steps : {1, 5}) {
+  for (const std::int64_t delay_steps : {1, 5}) {
     for (const double alpha : {0.02, 0.01}) {
       const std::string at =
-          ", " + std::to_string(late_steps) + " late, alpha " + (alpha == 0.02 ? "0.02" : "0.01");
+          ", " + std::to_string(delay_steps) + " late, alpha " + (alpha == 0.02 ? "0.02" : "0.01");
       const LateRun verlet =
-          late_run(bob, Integrator::kVelocityVerlet, late_steps, alpha / bob.frequency(), true);
+          late_run(bob, Integrator::kVelocityVerlet, delay_steps, alpha / bob.frequency(), true);
       stress.check(verlet.largest_error, 0.01, "Verlet" + at);
       // Beside what this integrator's energy swings by on its own.
       const LateRun euler =
-          late_run(bob, Integrator::kSemiImplicitEuler, late_steps, alpha / bob.frequency(), true);
-      stress.check(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(late_steps), "Euler" + at);
+          late_run(bob, Integrator::kSemiImplicitEuler, delay_steps, alpha / bob.frequency(), true);
+      stress.check(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(delay_steps), "Euler" + at);
       EXPECT_FALSE(verlet.warned || euler.warned);
     }
   }
@@ -251,12 +251,13 @@ TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
   StressCase stress("the same delay without and with `lead_time`: threefold energy in 60 s, or as it was",
                     "exp(w^2 delay t)", "+- 0.05; +- 0.01; warned of without");
   for (const Integrator integrator : kBoth) {
-    for (const std::int64_t late_steps : {1, 5}) {
-      const LateRun late = late_run(bob, integrator, late_steps, delay, false);
-      const std::string at = std::string(name(integrator)) + ", " + std::to_string(late_steps) + " late";
+    for (const std::int64_t delay_steps : {1, 5}) {
+      const LateRun late = late_run(bob, integrator, delay_steps, delay, false);
+      const std::string at =
+          std::string(to_string(integrator)) + ", " + std::to_string(delay_steps) + " late";
       stress.check(std::abs(late.final_growth - 3.0), 0.05, at);
       stress.require(late.warned, at + ", warning");
-      const LateRun led = late_run(bob, integrator, late_steps, delay, true);
+      const LateRun led = late_run(bob, integrator, delay_steps, delay, true);
       stress.check(std::abs(led.final_growth - 1.0), 0.01, at + ", led");
     }
   }
@@ -264,7 +265,7 @@ TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
 
 TEST(LateWrench, IsThatOfSoManyStepsAgoAndTheFirstUntilThen) {
   SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
-  options.late_steps = 3;
+  options.delay_steps = 3;
   const Bob bob;
   const Scene scene = bob.scene();
   Simulation simulation = simulation_of(scene, options);
@@ -281,10 +282,10 @@ TEST(LateWrench, IsThatOfSoManyStepsAgoAndTheFirstUntilThen) {
 TEST(LateWrench, LeavesTheEnergyThatOfTheBodyAsItLies) {
   const Bob bob;
   const Scene scene = bob.scene();
-  for (const std::int64_t late_steps : {0, 3}) {
+  for (const std::int64_t delay_steps : {0, 3}) {
     for (const double lead_time : {0.0, 0.03}) {
       SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
-      options.late_steps = late_steps;
+      options.delay_steps = delay_steps;
       options.lead_time = lead_time;
       Simulation simulation = simulation_of(scene, options);
       run_embedded(scene, simulation, 50, [&](const Simulation& now) {
@@ -296,7 +297,7 @@ TEST(LateWrench, LeavesTheEnergyThatOfTheBodyAsItLies) {
         const double energy = 0.5 * mass * body.state.velocity_W.squaredNorm() +
                               mass * kStandardGravity * height +
                               0.5 * kDensity * kStandardGravity * depth * depth;
-        ASSERT_NEAR(body.energy.current, energy, 1e-10) << late_steps << " " << lead_time;
+        ASSERT_NEAR(body.energy.current, energy, 1e-10) << delay_steps << " " << lead_time;
       });
     }
   }

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
@@ -56,14 +56,14 @@ TEST(StressInvariants, HierarchicalIsBruteForceOnEveryInstructionSetAndLeafSize)
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, body, i, water);
       const Vec3 reference_B = reference_near(random, body);
-      const BuoyancyAnswer one = buoyancy(brute, pose, water, reference_B);
-      if (one.immersion == Immersion::kWet) continue;  // from its constants, without the tree
+      const BuoyancyResult one = buoyancy(brute, pose, water, reference_B);
+      if (one.immersion == Immersion::kSubmerged) continue;  // from its constants, without the tree
       for (const std::string& target : simd_targets()) {
         ASSERT_TRUE(force_simd_target(target));
         for (const double tolerance : {0.0, 1e-9, 1e-3}) {
           const Solver solver(body.mesh, Method::kHierarchical, tolerance);
-          const BuoyancyAnswer other = buoyancy(solver, pose, water, reference_B);
-          const std::string where = body.name + ", " + target + ", tolerance " + number_text(tolerance);
+          const BuoyancyResult other = buoyancy(solver, pose, water, reference_B);
+          const std::string where = body.name + ", " + target + ", tolerance " + format_shortest(tolerance);
           const double force_bound = one.force_error_bound + other.force_error_bound;
           const double torque_bound = one.torque_error_bound + other.torque_error_bound;
           stress.check(weight * std::abs(other.volume - one.volume), force_bound, "volume, " + where);

@@ -8,7 +8,7 @@
 
 namespace buoyancy {
 
-Truth true_answer(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B) {
+Truth true_result(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B) {
   const auto exact = exact_displacement<Rational>(mesh, pose, water);
   return {exact.volume, exact.volume * water.up_W.cast<Rational>(),
           exactly_in_world<Rational>(pose, exact.torque(reference_B))};
@@ -25,20 +25,20 @@ double distance(double found, const Rational& truth) {
   return std::abs(Rational(Rational(found) - truth).convert_to<double>());
 }
 
-void check_answer(StressCase& stress, const StressedBody& body, const BuoyancyAnswer& answer,
+void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
                   const Truth& truth, const Vec3& reference_B, double factor, const std::string& where) {
-  stress.require(answer.status == BuoyancyStatus::kOk, "the status of " + where);
-  stress.check(distance(answer.volume, truth.volume), factor * body.volume_gate(), "volume, " + where);
-  stress.check(distance(answer.force_W, truth.force_W), factor * body.volume_gate(), "force, " + where);
-  stress.check(distance(answer.torque_W, truth.torque_W), factor * body.torque_gate(reference_B),
+  stress.require(result.status == BuoyancyStatus::kOk, "the status of " + where);
+  stress.check(distance(result.volume, truth.volume), factor * body.volume_tolerance(), "volume, " + where);
+  stress.check(distance(result.force_W, truth.force_W), factor * body.volume_tolerance(), "force, " + where);
+  stress.check(distance(result.torque_W, truth.torque_W), factor * body.torque_gate(reference_B),
                "torque, " + where);
 }
 
 void check_exactly(StressCase& stress, const StressedBody& body, const Pose& pose, const Water& water,
                    const Vec3& reference_B, const std::string& where, double factor) {
-  const Truth truth = true_answer(body.source, pose, water, reference_B);
+  const Truth truth = true_result(body.source, pose, water, reference_B);
   visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-    check_answer(stress, body, buoyancy(solver, pose, water, reference_B), truth, reference_B,
+    check_result(stress, body, buoyancy(solver, pose, water, reference_B), truth, reference_B,
                  factor * depth_factor(solver, pose, water), body.name + ", " + method + where);
   });
 }
@@ -50,7 +50,7 @@ TrueWaterplane true_waterplane(const TriangleMesh& mesh, const Pose& pose, const
   const Rational h = plane.h + Rational(raised);
   const auto corner = [&](std::int32_t i) {
     const Vec3T<Rational> x = mesh.vertex(i).cast<Rational>();
-    return Corner<Rational>{Point<Rational>::from(x), Rational(k.dot(x) - h)};
+    return ClipVertex<Rational>{Point<Rational>::from(x), Rational(k.dot(x) - h)};
   };
   const auto as_double = [](const Vec3T<Rational>& v) {
     return Vec3(v.x().convert_to<double>(), v.y().convert_to<double>(), v.z().convert_to<double>());
@@ -61,15 +61,15 @@ TrueWaterplane true_waterplane(const TriangleMesh& mesh, const Pose& pose, const
   TrueWaterplane found;
   Rational twice_area(0);  // of the wet surface, projected on the water's: what closes it has the opposite
   for (const Triangle& triangle : mesh.triangles) {
-    const Corner<Rational> a = corner(triangle[0]);
-    const Corner<Rational> b = corner(triangle[1]);
-    const Corner<Rational> c = corner(triangle[2]);
+    const ClipVertex<Rational> a = corner(triangle[0]);
+    const ClipVertex<Rational> b = corner(triangle[1]);
+    const ClipVertex<Rational> c = corner(triangle[2]);
     const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
     if (wet == 3) twice_area += twice_projected(a, b, c);
     if (wet == 0 || wet == 3) continue;
     if (wet == 2) found.cut_area += std::abs(twice_projected(a, b, c).convert_to<double>()) / 2.0;
     std::vector<Vec3> on_water;
-    visit_wet_part(a, b, c, [&](const auto& p, const auto& q, const auto& r) {
+    for_each_wet_triangle(a, b, c, [&](const auto& p, const auto& q, const auto& r) {
       twice_area += twice_projected(p, q, r);
       for (const auto* one : {&p, &q, &r}) {
         if (one->z == Rational(0)) on_water.push_back(as_double(one->y.vec3()));

@@ -1,4 +1,4 @@
-// The true answer of one pose in rational arithmetic, in the world's axes, and how far an answer is from it:
+// The true result of one pose in rational arithmetic, in the world's axes, and how far a result is from it:
 // nothing is rounded before the difference is known.
 #pragma once
 
@@ -19,14 +19,14 @@ struct Truth {
   Vec3T<Rational> torque_W;  // m^4, about the reference point
 };
 
-Truth true_answer(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B);
+Truth true_result(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B);
 
 double distance(const Vec3& found, const Vec3T<Rational>& truth);
 
 double distance(double found, const Rational& truth);
 
 // One answer against the truth: volume and force to G_V, torque to G_tau, times `factor`.
-void check_answer(StressCase& stress, const StressedBody& body, const BuoyancyAnswer& answer,
+void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
                   const Truth& truth, const Vec3& reference_B, double factor, const std::string& where);
 
 // Every exact method at one pose against the truth; factor: what else widens the gates.

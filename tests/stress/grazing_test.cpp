@@ -201,20 +201,20 @@ TEST(StressGrazing, AWetTipOfABillionthOfTheVolumeKeepsAnAbsoluteError) {
       for (int exponent = -3; exponent >= -16; --exponent) {
         const double draft = body.mesh.diagonal * std::pow(10.0, exponent) * random.uniform(0.3, 1.0);
         const Pose pose{Vec3(0, 0, -lowest_point(body.source, grazing.q_WB) - draft), grazing.q_WB};
-        const Truth truth = true_answer(body.source, pose, kLevelZero, body.mesh.center_B);
+        const Truth truth = true_result(body.source, pose, kLevelZero, body.mesh.center_B);
         if (truth.volume > Rational(1e-9 * body.mesh.volume)) continue;
         // A tip, or a face that a body rests on, is in the water or not as rounding has it.
         const TrueWaterplane plane =
             true_waterplane(body.source, pose, kLevelZero, 4 * kEpsilon * body.mesh.diagonal);
         visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-          const BuoyancyAnswer answer = buoyancy(solver, pose, kLevelZero, body.mesh.center_B);
+          const BuoyancyResult result = buoyancy(solver, pose, kLevelZero, body.mesh.center_B);
           const double gate = grazing_gate(solver.method(), plane, body.mesh.diagonal);
           const std::string where = body.name + ", " + method;
-          stress.check(distance(answer.volume, truth.volume), gate, "volume, " + where);
-          stress.check(distance(answer.torque_W, truth.torque_W),
-                       gate * body.mesh.largest_lever(body.mesh.center_B), "torque, " + where);
-          const bool has_center = answer.center_of_buoyancy_W != Vec3::Zero();
-          stress.require(!has_center || answer.volume > answer.force_error_bound, "c_B, " + where);
+          stress.check(distance(result.volume, truth.volume), gate, "volume, " + where);
+          stress.check(distance(result.torque_W, truth.torque_W),
+                       gate * body.mesh.max_lever_arm(body.mesh.center_B), "torque, " + where);
+          const bool has_center = result.center_of_buoyancy_W != Vec3::Zero();
+          stress.require(!has_center || result.volume > result.force_error_bound, "c_B, " + where);
         });
       }
     }
@@ -245,22 +245,22 @@ TEST(StressGrazing, ASubmergedBodyIsItsConstantsAtEveryDepth) {
       Pose pose{Vec3::Zero(), random.rotation()};
       const Vec3 reference_B = reference_near(random, body);
       const Vec3 center_W = pose.q_WB * body.box.center();
-      std::vector<BuoyancyAnswer> shallow;
+      std::vector<BuoyancyResult> shallow;
       for (const double depth : {0.6 * body.mesh.diagonal, 3.0 * body.mesh.diagonal, 1e2 * body.mesh.diagonal,
                                  0.6 * body.mesh.diagonal + 1e4}) {
         pose.p_WB = Vec3(0, 0, -depth) - center_W;
-        const Truth truth = true_answer(body.source, pose, kLevelZero, reference_B);
+        const Truth truth = true_result(body.source, pose, kLevelZero, reference_B);
         std::size_t next = 0;
         visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-          const BuoyancyAnswer answer = buoyancy(solver, pose, kLevelZero, reference_B);
+          const BuoyancyResult result = buoyancy(solver, pose, kLevelZero, reference_B);
           const std::string where = body.name + ", " + method;
-          check_answer(stress, body, answer, truth, reference_B, depth_factor(solver, pose, kLevelZero),
+          check_result(stress, body, result, truth, reference_B, depth_factor(solver, pose, kLevelZero),
                        where);
-          stress.require(answer.immersion == Immersion::kWet, where);
-          if (next == shallow.size()) shallow.push_back(answer);
+          stress.require(result.immersion == Immersion::kSubmerged, where);
+          if (next == shallow.size()) shallow.push_back(result);
           if (solver.method() == Method::kHierarchical) {
-            stress.require(same_bits(answer, shallow[next]), "bits, " + where);
-            stress.check(std::abs(answer.volume - body.mesh.volume), 0.0, "V_T, " + where);
+            stress.require(same_bits(result, shallow[next]), "bits, " + where);
+            stress.check(std::abs(result.volume - body.mesh.volume), 0.0, "V_T, " + where);
           }
           ++next;
         });
@@ -278,12 +278,12 @@ TEST(StressGrazing, ADryBodyIsZero) {
       const double clearance = body.mesh.diagonal * std::pow(10.0, random.uniform(-9, 5));
       pose.p_WB.z() = clearance - lowest_point(body.source, pose.q_WB);
       for (const Method method : kAllMethods) {
-        const BuoyancyAnswer answer =
+        const BuoyancyResult result =
             buoyancy(Solver(body.mesh, method), pose, kLevelZero, body.mesh.center_B);
-        stress.require(answer.status == BuoyancyStatus::kOk && answer.volume == 0.0 &&
-                           answer.force_W.isZero(0.0) && answer.torque_W.isZero(0.0) &&
-                           answer.center_of_buoyancy_W.isZero(0.0),
-                       body.name + ", " + std::string(name(method)));
+        stress.require(result.status == BuoyancyStatus::kOk && result.volume == 0.0 &&
+                           result.force_W.isZero(0.0) && result.torque_W.isZero(0.0) &&
+                           result.center_of_buoyancy_W.isZero(0.0),
+                       body.name + ", " + std::string(to_string(method)));
       }
     }
   }

@@ -69,9 +69,9 @@ TEST(StressMeshPolicy, WhatIsInsideOutIsTurnedAndSaidSo) {
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, meant, i, water);
       const Vec3 reference_B = reference_near(random, meant);
-      const Truth truth = true_answer(meant.source, pose, water, reference_B);
+      const Truth truth = true_result(meant.source, pose, water, reference_B);
       visit_exact_solvers(accepted.mesh, [&](const std::string& method, const Solver& solver) {
-        check_answer(stress, meant, buoyancy(solver, pose, water, reference_B), truth, reference_B,
+        check_result(stress, meant, buoyancy(solver, pose, water, reference_B), truth, reference_B,
                      depth_factor(solver, pose, water), one.name + ", " + method);
       });
     }
@@ -124,12 +124,13 @@ TEST(StressMeshPolicy, FaultyEdgesAreRefusedBalancedOnesAcceptedAndAllReported) 
   for (const StressedBody& body : stressed_bodies()) {
     const MeshReport report = validate(body.source).report;
     const Vec3& volumes = report.volume_by_axis;
-    stress.check(volumes.maxCoeff() - volumes.minCoeff(), body.volume_gate(), "V from x, y, z, " + body.name);
-    stress.check(report.area_vector.norm() * body.mesh.diagonal, body.volume_gate(),
+    stress.check(volumes.maxCoeff() - volumes.minCoeff(), body.volume_tolerance(),
+                 "V from x, y, z, " + body.name);
+    stress.check(report.area_vector.norm() * body.mesh.diagonal, body.volume_tolerance(),
                  "int n dA, " + body.name);
     const SurfaceMoments<double> whole = body.mesh.tree->total.moments();
-    stress.check(whole.S.norm() * body.mesh.diagonal, body.volume_gate(), "S, " + body.name);
-    stress.check((whole.N - body.mesh.volume * Mat3::Identity()).norm(), body.volume_gate(),
+    stress.check(whole.S.norm() * body.mesh.diagonal, body.volume_tolerance(), "S, " + body.name);
+    stress.check((whole.N - body.mesh.volume * Mat3::Identity()).norm(), body.volume_tolerance(),
                  "N = V I, " + body.name);
   }
 }
@@ -173,15 +174,15 @@ TEST(StressMeshPolicy, CavitiesComponentsAndShellsAddUp) {
       const Pose pose = stressed_pose(random, body, i, water);
       const Vec3 reference_B = reference_near(random, body);
       visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const BuoyancyAnswer whole = buoyancy(solver, pose, water, reference_B);
-        BuoyancyAnswer sum;
+        const BuoyancyResult whole = buoyancy(solver, pose, water, reference_B);
+        BuoyancyResult sum;
         for (const StressedBody& part : alone) {
-          const BuoyancyAnswer one = buoyancy(Solver(part.mesh, solver.method()), pose, water, reference_B);
+          const BuoyancyResult one = buoyancy(Solver(part.mesh, solver.method()), pose, water, reference_B);
           sum.volume += one.volume;
           sum.torque_W += one.torque_W;
         }
         const std::string where = parts.name + ", " + method;
-        stress.check(std::abs(whole.volume - sum.volume), body.volume_gate(), "volume, " + where);
+        stress.check(std::abs(whole.volume - sum.volume), body.volume_tolerance(), "volume, " + where);
         stress.check((whole.torque_W - sum.torque_W).norm(), body.torque_gate(reference_B),
                      "torque, " + where);
       });
@@ -201,19 +202,19 @@ TEST(StressMeshPolicy, WhereAMeshIntersectsItselfTheOverlapCountsTwice) {
   stress.require(to_text(validation.report).find("intersect") != std::string::npos, "reported in words");
   stress.require(validate(crate, true).report.intersecting_pairs == 0, "no false report");
   const StressedBody body("two boxes in each other", validation.mesh->mesh);
-  stress.check(std::abs(body.mesh.volume - (8.0 + 2.0 * 1.5 * 1.25)), body.volume_gate(), "V_T");
+  stress.check(std::abs(body.mesh.volume - (8.0 + 2.0 * 1.5 * 1.25)), body.volume_tolerance(), "V_T");
   RandomPoses random(504);
   for (int i = 0; i < tries(60); ++i) {
     Water water = kStressWater;
     const Pose pose = stressed_pose(random, body, i, water);
     const Vec3 reference_B = reference_near(random, body);
-    Truth sum = true_answer(crate, pose, water, reference_B);
-    const Truth more = true_answer(other, pose, water, reference_B);
+    Truth sum = true_result(crate, pose, water, reference_B);
+    const Truth more = true_result(other, pose, water, reference_B);
     sum.volume += more.volume;
     sum.force_W += more.force_W;
     sum.torque_W += more.torque_W;
     visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-      check_answer(stress, body, buoyancy(solver, pose, water, reference_B), sum, reference_B,
+      check_result(stress, body, buoyancy(solver, pose, water, reference_B), sum, reference_B,
                    depth_factor(solver, pose, water), method);
     });
   }
@@ -275,7 +276,7 @@ TEST(StressMeshPolicy, RefiningASphereAndACylinderLetsTheErrorFallAsOneOverN) {
             errors.push_back(std::abs(volume - refined.volume(draft, tilt)));
           }
           stress.check(std::abs(slope_of(triangles, errors) + 1.0), 0.05,
-                       refined.name + ", " + std::string(name(method)));
+                       refined.name + ", " + std::string(to_string(method)));
         }
       }
     }

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wetted_tree_sum.h"
@@ -19,23 +19,23 @@ namespace {
 
 double waterplane_area(const StressedBody& body, const Pose& pose, const Water& water) {
   const auto found = hydrostatics(body.mesh, pose, water, body.mesh.center_B, std::nullopt);
-  return found ? found->waterplane_area : kUndefined;
+  return found ? found->waterplane_area : kNaN;
 }
 
-// Two answers to what would be the same question if poses had all digits: within what the body's waterplane
+// Two answers to what would be the same request if poses had all digits: within what the body's waterplane
 // makes of the last digit of p.
 void check_moved(StressCase& stress, const StressedBody& body, const Pose& near, const Water& near_water,
                  const Pose& far, const Water& far_water, double distance) {
   const double area =
       std::max(waterplane_area(body, near, near_water), waterplane_area(body, far, far_water));
-  const double volume_gate = area * kEpsilon * distance + body.volume_gate();
-  const double torque_gate = volume_gate * body.mesh.largest_lever(body.mesh.center_B);
+  const double volume_tolerance = area * kEpsilon * distance + body.volume_tolerance();
+  const double torque_gate = volume_tolerance * body.mesh.max_lever_arm(body.mesh.center_B);
   visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-    const BuoyancyAnswer one = buoyancy(solver, near, near_water, body.mesh.center_B);
-    const BuoyancyAnswer other = buoyancy(solver, far, far_water, body.mesh.center_B);
+    const BuoyancyResult one = buoyancy(solver, near, near_water, body.mesh.center_B);
+    const BuoyancyResult other = buoyancy(solver, far, far_water, body.mesh.center_B);
     const double factor = depth_factor(solver, near, near_water);
     const std::string where = body.name + ", " + method;
-    stress.check(std::abs(other.volume - one.volume), factor * volume_gate, "volume, " + where);
+    stress.check(std::abs(other.volume - one.volume), factor * volume_tolerance, "volume, " + where);
     stress.check((other.torque_W - one.torque_W).norm(), factor * torque_gate, "torque, " + where);
   });
 }
@@ -147,7 +147,7 @@ TEST(StressPlacement, AMeshFarFromItsOwnOriginIsAnsweredExactly) {
   for (const double distance : {1e3, 1e6}) {
     for (const TriangleMesh* mesh : {&rock, &box}) {
       const Vec3 offset = distance * Vec3(0.6, -0.77, 0.3);
-      const StressedBody body((mesh == &rock ? "rock, " : "box, ") + number_text(distance) + " m away",
+      const StressedBody body((mesh == &rock ? "rock, " : "box, ") + format_shortest(distance) + " m away",
                               moved_and_scaled(*mesh, offset));
       RandomPoses random(206);
       for (int i = 0; i < tries(60); ++i) {
@@ -176,8 +176,8 @@ TEST(StressPlacement, ABodyScaledByAPowerOfTwoHasTheSameBits) {
         scaled_water.level *= scale;
         const Vec3 reference_B = reference_near(random, body);
         const auto check = [&](const Solver& solver, const Solver& scaled_solver) {
-          const BuoyancyAnswer one = buoyancy(solver, pose, water, reference_B);
-          BuoyancyAnswer other = buoyancy(scaled_solver, scaled_pose, scaled_water, scale * reference_B);
+          const BuoyancyResult one = buoyancy(solver, pose, water, reference_B);
+          BuoyancyResult other = buoyancy(scaled_solver, scaled_pose, scaled_water, scale * reference_B);
           const double volume = scale * scale * scale;
           other.volume /= volume;
           other.force_W /= volume;
@@ -186,7 +186,7 @@ TEST(StressPlacement, ABodyScaledByAPowerOfTwoHasTheSameBits) {
           const bool same = other.volume == one.volume && other.force_W == one.force_W &&
                             other.torque_W == one.torque_W &&
                             other.center_of_buoyancy_W == one.center_of_buoyancy_W;
-          stress.require(same, body.name + ", " + std::string(name(solver.method())));
+          stress.require(same, body.name + ", " + std::string(to_string(solver.method())));
         };
         for (const Method method : kAllMethods) check(Solver(body.mesh, method), Solver(scaled.mesh, method));
         for (const std::string& target : simd_targets()) {

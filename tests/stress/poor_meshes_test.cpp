@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/number_text.h"
+#include "base/format.h"
 #include "geometry/rounding_area.h"
 #include "geometry/shapes.h"
 #include "tests/geometry/mesh_files.h"
@@ -66,7 +66,7 @@ TEST(StressPoorMeshes, SliversNeedlesAndCollinearTrianglesAreAnsweredExactly) {
           std::size_t next = 0;
           visit_exact_solvers(poor.mesh, [&](const std::string& method, const Solver& solver) {
             stress.check(std::abs(buoyancy(solver, pose, water, reference_B).volume - without[next++]),
-                         body.volume_gate(), "inserted, " + method);
+                         body.volume_tolerance(), "inserted, " + method);
           });
         }
       }
@@ -90,7 +90,7 @@ TEST(StressPoorMeshes, SliversNeedlesAndCollinearTrianglesAreAnsweredExactly) {
         Water water = kStressWater;
         const Pose pose = stressed_pose(random, needle, i, water);
         check_exactly(stress, needle, pose, water, reference_near(random, needle), "",
-                      wide / needle.volume_gate());
+                      wide / needle.volume_tolerance());
       }
     }
   }
@@ -119,11 +119,11 @@ TEST(StressPoorMeshes, FacesThatRepeatAnIndexAreDroppedAndReported) {
   for (int i = 0; i < tries(100); ++i) {
     const Pose pose = random.crossing(bounding_box(clean), kStressWater);
     for (const Method method : kAllMethods) {
-      const BuoyancyAnswer one = buoyancy(Solver(clean_mesh, method), pose, kStressWater, Vec3::Zero());
-      const BuoyancyAnswer other = buoyancy(Solver(poor_mesh, method), pose, kStressWater, Vec3::Zero());
+      const BuoyancyResult one = buoyancy(Solver(clean_mesh, method), pose, kStressWater, Vec3::Zero());
+      const BuoyancyResult other = buoyancy(Solver(poor_mesh, method), pose, kStressWater, Vec3::Zero());
       stress.require(
           one.volume == other.volume && one.force_W == other.force_W && one.torque_W == other.torque_W,
-          std::string(name(method)));
+          std::string(to_string(method)));
     }
   }
 }
@@ -149,10 +149,10 @@ TEST(StressPoorMeshes, AThinPlateIsAnsweredExactly) {
   }
 }
 
-bool is_finite(const BuoyancyAnswer& answer) {
-  return answer.force_W.allFinite() && answer.torque_W.allFinite() && std::isfinite(answer.volume) &&
-         answer.center_of_buoyancy_W.allFinite() && std::isfinite(answer.dropped_force) &&
-         std::isfinite(answer.dropped_torque);
+bool is_finite(const BuoyancyResult& result) {
+  return result.force_W.allFinite() && result.torque_W.allFinite() && std::isfinite(result.volume) &&
+         result.center_of_buoyancy_W.allFinite() && std::isfinite(result.dropped_force) &&
+         std::isfinite(result.dropped_torque);
 }
 
 TEST(StressPoorMeshes, DenormalsNeverMakeANaN) {
@@ -160,7 +160,7 @@ TEST(StressPoorMeshes, DenormalsNeverMakeANaN) {
   constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
   std::vector<StressedBody> bodies;
   for (const double scale : {1.0, 1e-90, 1e-110, 1e-155, 1e-165, 1e-250, 1e-310, 1e-322}) {
-    bodies.emplace_back("rock of " + number_text(scale) + " m",
+    bodies.emplace_back("rock of " + format_shortest(scale) + " m",
                         moved_and_scaled(small_rock(), Vec3::Zero(), scale));
   }
   TriangleMesh speckled = make_shape(BoxShape{.segments = {2, 2, 2}});  // its zeros become denormals
@@ -180,11 +180,11 @@ TEST(StressPoorMeshes, DenormalsNeverMakeANaN) {
         const Water water{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
         for (const Method method : kAllMethods) {
           for (const double tolerance : {0.0, 1e-3}) {
-            const BuoyancyAnswer answer =
+            const BuoyancyResult result =
                 buoyancy(Solver(body.mesh, method, tolerance), pose, water, body.mesh.center_B);
-            const std::string where = body.name + ", " + std::string(name(method));
-            stress.require(is_finite(answer), where);
-            stress.require(answer.status == BuoyancyStatus::kOk, "the status of " + where);
+            const std::string where = body.name + ", " + std::string(to_string(method));
+            stress.require(is_finite(result), where);
+            stress.require(result.status == BuoyancyStatus::kOk, "the status of " + where);
           }
         }
         if (body.mesh.diagonal > 1e-3 && tilt == 0.4 && height == 0.0)
@@ -219,7 +219,7 @@ TriangleMesh in_single_precision(TriangleMesh mesh) {
 TEST(StressPoorMeshes, AnUnweldedStlIsTheSameMeshWelded) {
   StressCase stress("unwelded STL against the same mesh welded", "rational arithmetic; the welded mesh",
                     "G_V, G_V L_r");
-  const TemporaryDirectory directory;
+  const TempDir directory;
   const std::vector<NamedMesh> meshes{{"rock", small_rock()},
                                       {"knot", make_shape(TorusKnotShape{.tubular = 40, .radial = 5})}};
   for (const NamedMesh& named : meshes) {
@@ -238,10 +238,10 @@ TEST(StressPoorMeshes, AnUnweldedStlIsTheSameMeshWelded) {
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, original, i, water);
       const Vec3 reference_B = reference_near(random, original);
-      const Truth truth = true_answer(original.source, pose, water, reference_B);
+      const Truth truth = true_result(original.source, pose, water, reference_B);
       for (const StressedBody* body : {&unwelded, &welded}) {
         visit_exact_solvers(body->mesh, [&](const std::string& method, const Solver& solver) {
-          check_answer(stress, original, buoyancy(solver, pose, water, reference_B), truth, reference_B, 1.0,
+          check_result(stress, original, buoyancy(solver, pose, water, reference_B), truth, reference_B, 1.0,
                        body->name + ", " + method);
         });
       }

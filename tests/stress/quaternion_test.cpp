@@ -1,5 +1,5 @@
 // The stress catalogue, "Cases": quaternions and positions as people send them, through the solvers and
-// through the exchange that stands before them.
+// through the handler that stands before them.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -38,12 +38,12 @@ TEST(StressQuaternions, QAndMinusQAreTheSamePose) {
       Pose opposite = pose;
       opposite.q_WB = scaled(pose.q_WB, -1.0);
       const auto check = [&](const Solver& solver) {
-        const BuoyancyAnswer one = buoyancy(solver, pose, water, body.mesh.center_B);
-        const BuoyancyAnswer other = buoyancy(solver, opposite, water, body.mesh.center_B);
+        const BuoyancyResult one = buoyancy(solver, pose, water, body.mesh.center_B);
+        const BuoyancyResult other = buoyancy(solver, opposite, water, body.mesh.center_B);
         stress.require(one.volume == other.volume && one.force_W == other.force_W &&
                            one.torque_W == other.torque_W &&
                            one.center_of_buoyancy_W == other.center_of_buoyancy_W,
-                       body.name + ", " + std::string(name(solver.method())));
+                       body.name + ", " + std::string(to_string(solver.method())));
       };
       for (const Method method : kAllMethods) check(Solver(body.mesh, method));
       visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) { check(solver); });
@@ -59,11 +59,12 @@ BodyState asked(std::int32_t id, const Pose& pose) {
   return state;
 }
 
-Answer answer_of(Exchange& exchange, const std::vector<BodyState>& bodies, double lead_time = 0.0) {
+WrenchResponse result_of(RequestHandler& handler, const std::vector<BodyState>& bodies,
+                         double lead_time = 0.0) {
   static std::int64_t seq = 0;
-  Answer answer;
-  EXPECT_FALSE(decode(exchange.answer(question_bytes({.seq = ++seq}, bodies, lead_time)), answer));
-  return answer;
+  WrenchResponse result;
+  EXPECT_FALSE(decode(handler.handle(request_bytes({.seq = ++seq}, bodies, lead_time)), result));
+  return result;
 }
 
 TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
@@ -80,27 +81,28 @@ TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
   }
 
   const Scene scene = box_scene();
-  const StressedBody box("box, by the exchange", make_shape(BoxShape{.segments = {2, 2, 2}}));
+  const StressedBody box("box, by the handler", make_shape(BoxShape{.segments = {2, 2, 2}}));
   const Water water{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
-  Exchange exchange(scene);
+  RequestHandler handler(scene);
   RandomPoses random(603);
   for (int i = 0; i < tries(60); ++i) {
     Pose pose = random.crossing(box.box, water);
     pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i) % norms.size()]);
-    const Truth truth = true_answer(box.source, pose, water, Vec3::Zero());
-    const std::int64_t before = exchange.counters().quaternions_normalised;
-    const Answer answer = answer_of(exchange, {asked(kBox, pose), asked(kHierarchicalBox, pose)});
-    for (const BodyWrench& wrench : answer.bodies) {
+    const Truth truth = true_result(box.source, pose, water, Vec3::Zero());
+    const std::int64_t before = handler.counters().quaternions_normalised;
+    const WrenchResponse result = result_of(handler, {asked(kBox, pose), asked(kHierarchicalBox, pose)});
+    for (const BodyWrench& wrench : result.bodies) {
       const std::string where = box.name + ", body " + std::to_string(wrench.body_id);
       stress.require(wrench.status == BodyStatus::kOk, "the status of " + where);
-      stress.check(distance(wrench.submerged_volume, truth.volume), box.volume_gate(), "volume, " + where);
-      stress.check(distance(as_vec3(wrench.force) / kWeight, truth.force_W), box.volume_gate(),
+      stress.check(distance(wrench.submerged_volume, truth.volume), box.volume_tolerance(),
+                   "volume, " + where);
+      stress.check(distance(to_vec3(wrench.force) / kWeight, truth.force_W), box.volume_tolerance(),
                    "force, " + where);
-      stress.check(distance(as_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_gate(Vec3::Zero()),
+      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_gate(Vec3::Zero()),
                    "torque, " + where);
     }
     const bool noteworthy = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
-    if (noteworthy) stress.require(exchange.counters().quaternions_normalised == before + 2, "counted");
+    if (noteworthy) stress.require(handler.counters().quaternions_normalised == before + 2, "counted");
   }
 }
 
@@ -156,13 +158,13 @@ TEST(StressQuaternions, WhatIsNoPoseIsRefusedCountedAndLeavesTheOthersAlone) {
                     "its status, counted; zeros for it, the others' wrenches unchanged", "status");
   const Scene scene = box_scene();
   for (const Refused& refused : refused_states()) {
-    Exchange exchange(scene);
+    RequestHandler handler(scene);
     const BodyState good = upright(kHierarchicalBox, 0.2);
-    const Answer alone = answer_of(exchange, {good}, 0.0);
-    const Counters before = exchange.counters();
-    const Answer answer = answer_of(exchange, {refused.state, good}, refused.lead_time);
-    ASSERT_EQ(answer.bodies.size(), 2U);
-    const BodyWrench& bad = answer.bodies[0];
+    const WrenchResponse alone = result_of(handler, {good}, 0.0);
+    const ServiceCounters before = handler.counters();
+    const WrenchResponse result = result_of(handler, {refused.state, good}, refused.lead_time);
+    ASSERT_EQ(result.bodies.size(), 2U);
+    const BodyWrench& bad = result.bodies[0];
     const std::array<double, 3> zeros{};
     stress.require(bad.status == refused.status, "the status of " + refused.name);
     stress.require(bad.force == zeros && bad.torque == zeros && bad.submerged_volume == 0.0 &&
@@ -171,16 +173,16 @@ TEST(StressQuaternions, WhatIsNoPoseIsRefusedCountedAndLeavesTheOthersAlone) {
                    "zeros for " + refused.name);
     const auto index = static_cast<std::size_t>(refused.status);
     const bool concerns_all = refused.status == BodyStatus::kBadLeadTime;
-    stress.require(exchange.counters().bodies[index] == before.bodies[index] + (concerns_all ? 2 : 1),
+    stress.require(handler.counters().bodies[index] == before.bodies[index] + (concerns_all ? 2 : 1),
                    "counted, " + refused.name);
     if (!concerns_all) {
-      stress.require(answer.bodies[1].status == BodyStatus::kOk &&
-                         answer.bodies[1].force == alone.bodies[0].force &&
-                         answer.bodies[1].torque == alone.bodies[0].torque,
+      stress.require(result.bodies[1].status == BodyStatus::kOk &&
+                         result.bodies[1].force == alone.bodies[0].force &&
+                         result.bodies[1].torque == alone.bodies[0].torque,
                      "the other body beside " + refused.name);
     }
     // And the body is answered again as soon as it is asked about properly.
-    stress.require(answer_of(exchange, {upright(kBox, 0.1)}).bodies[0].status == BodyStatus::kOk,
+    stress.require(result_of(handler, {upright(kBox, 0.1)}).bodies[0].status == BodyStatus::kOk,
                    "afterwards, " + refused.name);
   }
 }

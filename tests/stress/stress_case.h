@@ -19,7 +19,7 @@ constexpr int tries(int count) {
 
 class StressCase {
  public:
-  // As they stand in the table: what is asked, who knows the answer, what is allowed.
+  // As they stand in the table: what is asked, who knows the result, what is allowed.
   StressCase(std::string row, std::string oracle, std::string gate);
   StressCase(const StressCase&) = delete;
   StressCase& operator=(const StressCase&) = delete;

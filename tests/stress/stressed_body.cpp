@@ -62,7 +62,7 @@ Vec3 reference_near(RandomPoses& random, const StressedBody& body) {
 void visit_exact_solvers(const HydrostaticMesh& mesh,
                          const std::function<void(const std::string&, const Solver&)>& visit) {
   for (const Method method : {Method::kExact, Method::kExactSurface}) {
-    visit(std::string(name(method)), Solver(mesh, method));
+    visit(std::string(to_string(method)), Solver(mesh, method));
   }
   for (const std::string& target : simd_targets()) {
     EXPECT_TRUE(force_simd_target(target));
@@ -75,11 +75,11 @@ double depth_factor(const Solver& solver, const Pose& pose, const Water& water) 
   if (solver.method() == Method::kHierarchical) return 1.0;
   const HydrostaticMesh& mesh = solver.mesh();
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  if (immersion(mesh, plane) != Immersion::kWet) return 1.0;
+  if (immersion(mesh, plane) != Immersion::kSubmerged) return 1.0;
   return 1.0 + 8.0 * (plane.h_c + 0.5 * mesh.diagonal) / mesh.diagonal;
 }
 
-bool same_bits(const BuoyancyAnswer& a, const BuoyancyAnswer& b) {
+bool same_bits(const BuoyancyResult& a, const BuoyancyResult& b) {
   return a.status == b.status && a.force_W == b.force_W && a.torque_W == b.torque_W && a.volume == b.volume &&
          a.center_of_buoyancy_W == b.center_of_buoyancy_W && a.force_error_bound == b.force_error_bound &&
          a.torque_error_bound == b.torque_error_bound;

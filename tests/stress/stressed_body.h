@@ -1,4 +1,4 @@
-// The bodies that the catalogue's rows are tried on, and their answers by every method that claims to be
+// The bodies that the catalogue's rows are tried on, and their results by every method that claims to be
 // exact.
 #pragma once
 
@@ -25,9 +25,9 @@ struct StressedBody {
 
   StressedBody(std::string called, TriangleMesh from);
 
-  double volume_gate() const { return mesh.volume_gate(); }  // G_V
-  double torque_gate(const Vec3& reference_B) const {        // G_tau
-    return mesh.volume_gate() * mesh.largest_lever(reference_B);
+  double volume_tolerance() const { return mesh.volume_tolerance(); }  // G_V
+  double torque_gate(const Vec3& reference_B) const {                  // G_tau
+    return mesh.volume_tolerance() * mesh.max_lever_arm(reference_B);
   }
 };
 
@@ -52,6 +52,6 @@ void visit_exact_solvers(const HydrostaticMesh& mesh,
 // plate of 1 : 1e8 in 10 x 10 squares: 4.3).
 double depth_factor(const Solver& solver, const Pose& pose, const Water& water);
 
-bool same_bits(const BuoyancyAnswer& a, const BuoyancyAnswer& b);
+bool same_bits(const BuoyancyResult& a, const BuoyancyResult& b);
 
 }  // namespace buoyancy

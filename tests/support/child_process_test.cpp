@@ -82,7 +82,7 @@ class Descendants : public testing::Test {
   }
 
  private:
-  ScratchDirectory directory_;
+  TempDir directory_;
 };
 
 TEST_F(Descendants, AreGoneWhenTheProgramHasEnded) {

@@ -1,5 +1,5 @@
-// A directory that is there for one test and gone after it. A directory that cannot be removed ends the
-// program with SIGABRT, since this serves programs without GoogleTest too: a process that still writes into
+// A temporary directory, removed with all it holds by the destructor. A directory that cannot be removed ends
+// the program with SIGABRT, since programs without GoogleTest use this too: a process that still writes into
 // it was left behind.
 #pragma once
 
@@ -19,22 +19,22 @@
 
 namespace buoyancy {
 
-class ScratchDirectory {
+class TempDir {
  public:
-  ScratchDirectory() {
+  TempDir() {
     std::string pattern = (std::filesystem::temp_directory_path() / "buoyancy_test_XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no directory " + pattern);
     path_ = pattern;
   }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  ~ScratchDirectory() {
+  TempDir(const TempDir&) = delete;
+  TempDir& operator=(const TempDir&) = delete;
+  ~TempDir() {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
     std::error_code error;
     // A file that appears while the directory is emptied makes the removal fail.
     while (std::filesystem::remove_all(path_, error), error) {
       if (std::chrono::steady_clock::now() >= deadline) {
-        std::fprintf(stderr, "scratch directory %s cannot be removed: %s\n", path_.c_str(),
+        std::fprintf(stderr, "temporary directory %s cannot be removed: %s\n", path_.c_str(),
                      error.message().c_str());
         std::abort();
       }
@@ -42,9 +42,10 @@ class ScratchDirectory {
     }
   }
 
+  const std::filesystem::path& path() const { return path_; }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
 
-  // The new file's path.
+  // Writes a file and returns its path.
   std::string write(const std::string& name, std::string_view contents) const {
     std::ofstream(path(name), std::ios::binary).write(contents.data(), static_cast<long>(contents.size()));
     return path(name);
@@ -54,7 +55,7 @@ class ScratchDirectory {
   std::filesystem::path path_;
 };
 
-inline std::string contents_of(const std::string& path) {
+inline std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }

@@ -7,61 +7,61 @@
 namespace buoyancy {
 namespace {
 
-using Duration = QuickWait::Duration;
+using Duration = AdaptiveSpin::Duration;
 using std::chrono::microseconds;
 
 // A wait for a message that comes after `after`. Did it look and find it?
-bool finds(QuickWait& wait, Duration after) {
+bool finds(AdaptiveSpin& wait, Duration after) {
   const Duration longest = wait.begin();
-  if (longest > Duration::zero()) wait.looked(std::min(after, longest), after <= longest);
+  if (longest > Duration::zero()) wait.record_spin(std::min(after, longest), after <= longest);
   if (after <= longest) return true;
-  wait.slept(after);
+  wait.record_sleep(after);
   return false;
 }
 
-int found_in(QuickWait& wait, int waits, Duration after) {
+int found_in(AdaptiveSpin& wait, int waits, Duration after) {
   int found = 0;
   for (int i = 0; i < waits; ++i) found += finds(wait, after) ? 1 : 0;
   return found;
 }
 
-TEST(QuickWait, LooksEachTimeWhileMessagesComeQuickly) {
-  QuickWait wait;
+TEST(AdaptiveSpin, LooksEachTimeWhileMessagesComeQuickly) {
+  AdaptiveSpin wait;
   EXPECT_EQ(found_in(wait, 1'000, microseconds(5)), 1'000);
 }
 
-TEST(QuickWait, HardlyEverLooksWhereMessagesAreFarApart) {
-  QuickWait wait;
+TEST(AdaptiveSpin, HardlyEverLooksWhereMessagesAreFarApart) {
+  AdaptiveSpin wait;
   constexpr int kWaits = 100'000;
   int looks = 0;
   for (int i = 0; i < kWaits; ++i) {
     const Duration longest = wait.begin();
     if (longest > Duration::zero()) {
       ++looks;
-      wait.looked(longest, false);
+      wait.record_spin(longest, false);
     }
-    wait.slept(microseconds(1'000));
+    wait.record_sleep(microseconds(1'000));
   }
-  EXPECT_LE(looks, kWaits / QuickWait::kTrialEvery + 1);
+  EXPECT_LE(looks, kWaits / AdaptiveSpin::kProbeEvery + 1);
 }
 
-TEST(QuickWait, LooksAgainAfterTwoMessagesThatCameQuickly) {
-  QuickWait wait;
+TEST(AdaptiveSpin, LooksAgainAfterTwoMessagesThatCameQuickly) {
+  AdaptiveSpin wait;
   found_in(wait, 1'000, microseconds(1'000));
   EXPECT_GE(found_in(wait, 1'000, microseconds(5)), 1'000 - 2);
 }
 
-TEST(QuickWait, TwoEndsThatSleepWakeEachOther) {
+TEST(AdaptiveSpin, TwoEndsThatSleepWakeEachOther) {
   constexpr Duration kWakeUp = microseconds(60);
   constexpr Duration kWork = microseconds(5);
-  QuickWait here;
-  QuickWait there;
+  AdaptiveSpin here;
+  AdaptiveSpin there;
   found_in(here, 1'000, microseconds(1'000));
   found_in(there, 10'000, microseconds(1'000));
-  // Each answers after its work, and after its wake-up where it slept.
+  // Each responses after its work, and after its wake-up where it slept.
   bool here_awake = false;
   bool there_awake = false;
-  for (int exchange = 0; exchange < 2 * QuickWait::kTrialEvery; ++exchange) {
+  for (int handler = 0; handler < 2 * AdaptiveSpin::kProbeEvery; ++handler) {
     here_awake = finds(here, kWork + (there_awake ? Duration::zero() : kWakeUp));
     there_awake = finds(there, kWork + (here_awake ? Duration::zero() : kWakeUp));
   }
@@ -69,19 +69,19 @@ TEST(QuickWait, TwoEndsThatSleepWakeEachOther) {
   EXPECT_TRUE(there_awake);
 }
 
-TEST(QuickWait, LooksRarelyWhereTheProcessorDoesNotComeBackForLong) {
-  QuickWait wait;
+TEST(AdaptiveSpin, LooksRarelyWhereTheProcessorDoesNotComeBackForLong) {
+  AdaptiveSpin wait;
   constexpr int kWaits = 100'000;
   int given_away = 0;
   for (int i = 0; i < kWaits; ++i) {
     if (wait.begin() > Duration::zero()) {
       ++given_away;
-      wait.looked(microseconds(4'000), true);
+      wait.record_spin(microseconds(4'000), true);
     } else {
-      wait.slept(microseconds(5));
+      wait.record_sleep(microseconds(5));
     }
   }
-  EXPECT_LE(given_away, kWaits / QuickWait::kMostSkipped + 5);
+  EXPECT_LE(given_away, kWaits / AdaptiveSpin::kMaxSkipped + 5);
 }
 
 }  // namespace

@@ -181,12 +181,12 @@ TEST(LcmConnection, FindsAMessageThatComesSoonWithoutSleeping) {
   LcmConnection receiver = open_or_die();
   int received = 0;
   ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
-  EXPECT_FALSE(receiver.handle_one_soon()) << "nothing was sent";
+  EXPECT_FALSE(receiver.handle_one_spinning()) << "nothing was sent";
   const std::uint8_t byte = 7;
   ASSERT_TRUE(sender.publish("A", {&byte, 1}));
   // On a busy machine the kernel delivers later than the receiver looks for a message.
   ASSERT_TRUE(becomes_readable(receiver.fileno()));
-  EXPECT_TRUE(receiver.handle_one_soon());
+  EXPECT_TRUE(receiver.handle_one_spinning());
   EXPECT_EQ(received, 1);
 }
 
@@ -194,14 +194,14 @@ TEST(LcmConnection, SleepsAtOnceWhereItMustNotSpin) {
   const auto looks_for = [](LcmConnection connection) {
     EXPECT_TRUE(connection.subscribe("A", [](Bytes, std::string_view) {}));
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_FALSE(connection.handle_one_soon());
+    EXPECT_FALSE(connection.handle_one_spinning());
     return std::chrono::steady_clock::now() - start;
   };
-  EXPECT_GE(looks_for(open_or_die()), QuickWait::kTrial);
+  EXPECT_GE(looks_for(open_or_die()), AdaptiveSpin::kProbeTime);
   const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   bool slept_at_once = false;
   while (!slept_at_once && std::chrono::steady_clock::now() < give_up_at) {
-    slept_at_once = looks_for(open_or_die("", {.spin = false})) < QuickWait::kTrial;
+    slept_at_once = looks_for(open_or_die("", {.spin = false})) < AdaptiveSpin::kProbeTime;
   }
   EXPECT_TRUE(slept_at_once);
 }
@@ -227,7 +227,7 @@ TEST(LcmConnection, LosesNothingToItsOwnMessages) {
   }
   EXPECT_EQ(of_other, foreign.size()) << "there was room for it";
   EXPECT_EQ(of_own, 0);
-  EXPECT_EQ(connection.losses().packets, 0);
+  EXPECT_EQ(connection.drop_counts().packets, 0);
   EXPECT_TRUE(wait_and_handle(other));
   EXPECT_TRUE(other_received);
 }
@@ -263,7 +263,7 @@ TEST(LcmConnection, CountsWhatTheKernelHadNoRoomFor) {
     drain();
   } while (newest != sent - 1 && std::chrono::steady_clock::now() < limit);
   ASSERT_EQ(newest, sent - 1);
-  EXPECT_EQ(received + receiver.losses().packets, sent);
+  EXPECT_EQ(received + receiver.drop_counts().packets, sent);
 }
 
 TEST(LcmConnection, HearsNothingThatWasSentToThePortByAnotherAddress) {
@@ -368,12 +368,12 @@ TEST(LcmConnection, RefusesUrlsItDoesNotKnow) {
 TEST(LcmConnection, TakesItsUrlFromTheEnvironmentAsLcmsOwnToolsDo) {
   // NOLINTBEGIN(concurrency-mt-unsafe): no other thread lives yet, or lives any more
   ASSERT_EQ(::setenv("LCM_DEFAULT_URL", "memq://", 1), 0);
-  EXPECT_EQ(effective_lcm_url(""), "memq://");
+  EXPECT_EQ(resolve_lcm_url(""), "memq://");
   EXPECT_EQ(open_or_die("").url(), "memq://");
-  EXPECT_EQ(effective_lcm_url("udpm://:7700"), "udpm://:7700") << "an explicit URL wins";
+  EXPECT_EQ(resolve_lcm_url("udpm://:7700"), "udpm://:7700") << "an explicit URL wins";
   ASSERT_EQ(::unsetenv("LCM_DEFAULT_URL"), 0);
   // NOLINTEND(concurrency-mt-unsafe)
-  EXPECT_EQ(effective_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0");
+  EXPECT_EQ(resolve_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0");
 }
 
 }  // namespace

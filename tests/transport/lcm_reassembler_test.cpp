@@ -57,61 +57,62 @@ RawBytes counting(std::size_t size) {
   return payload;
 }
 
-LcmPackets listening_to(const std::vector<std::string>& channels) {
-  LcmPackets packets;
+LcmReassembler listening_to(const std::vector<std::string>& channels) {
+  LcmReassembler packets;
   for (std::size_t i = 0; i < channels.size(); ++i) EXPECT_EQ(packets.add_channel(channels[i]), i);
   return packets;
 }
 
-bool holds(const std::optional<LcmPackets::Message>& message, std::size_t channel, const RawBytes& payload) {
+bool holds(const std::optional<LcmReassembler::Message>& message, std::size_t channel,
+           const RawBytes& payload) {
   return message && message->channel == channel &&
          RawBytes(message->payload.begin(), message->payload.end()) == payload;
 }
 
-TEST(LcmPackets, GivesWhatIsOnTheChannelsThatAreNamedAndNothingElse) {
-  LcmPackets packets = listening_to({"A", "BB"});
-  EXPECT_TRUE(holds(packets.take(whole("BB", {1, 2, 3}), 1), 1, {1, 2, 3}));
-  EXPECT_TRUE(holds(packets.take(whole("A", {}), 1), 0, {}));
-  for (const char* other : {"", "B", "BBB", "a"}) EXPECT_FALSE(packets.take(whole(other, {1}), 1)) << other;
+TEST(LcmReassembler, GivesWhatIsOnTheChannelsThatAreNamedAndNothingElse) {
+  LcmReassembler packets = listening_to({"A", "BB"});
+  EXPECT_TRUE(holds(packets.push(whole("BB", {1, 2, 3}), 1), 1, {1, 2, 3}));
+  EXPECT_TRUE(holds(packets.push(whole("A", {}), 1), 0, {}));
+  for (const char* other : {"", "B", "BBB", "a"}) EXPECT_FALSE(packets.push(whole(other, {1}), 1)) << other;
 }
 
-TEST(LcmPackets, PutsFragmentsTogetherOfSeveralSendersAtATime) {
-  LcmPackets packets = listening_to({"A"});
+TEST(LcmReassembler, PutsFragmentsTogetherOfSeveralSendersAtATime) {
+  LcmReassembler packets = listening_to({"A"});
   const RawBytes one = counting(1'000);
   const RawBytes other = counting(900);
   const auto of_one = fragments("A", one, 300, 5);
   const auto of_other = fragments("A", other, 300, 5);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_FALSE(packets.take(of_one[i], 1));
-    const auto message = packets.take(of_other[i], 2);
+    EXPECT_FALSE(packets.push(of_one[i], 1));
+    const auto message = packets.push(of_other[i], 2);
     EXPECT_EQ(message.has_value(), i == 2);
     if (i == 2) {
       EXPECT_TRUE(holds(message, 0, other));
     }
   }
-  EXPECT_TRUE(holds(packets.take(of_one[3], 1), 0, one));
+  EXPECT_TRUE(holds(packets.push(of_one[3], 1), 0, one));
   EXPECT_EQ(packets.fragments_dropped(), 0);
 }
 
-TEST(LcmPackets, TakesAChannelOnce) {
-  LcmPackets packets = listening_to({"A"});
+TEST(LcmReassembler, TakesAChannelOnce) {
+  LcmReassembler packets = listening_to({"A"});
   EXPECT_FALSE(packets.add_channel("A"));
   EXPECT_EQ(packets.add_channel("B"), 1U);
 }
 
-TEST(LcmPackets, LosesAMessageWholeThatLostAFragmentAndTakesTheNext) {
-  LcmPackets packets = listening_to({"A"});
+TEST(LcmReassembler, LosesAMessageWholeThatLostAFragmentAndTakesTheNext) {
+  LcmReassembler packets = listening_to({"A"});
   const auto lost = fragments("A", counting(1'000), 300, 5);
-  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(packets.take(lost[i], 1));
+  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(packets.push(lost[i], 1));
   const RawBytes payload = counting(1'000);
   const auto next = fragments("A", payload, 300, 6);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(packets.take(next[i], 1));
-  EXPECT_TRUE(holds(packets.take(next[3], 1), 0, payload));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(packets.push(next[i], 1));
+  EXPECT_TRUE(holds(packets.push(next[3], 1), 0, payload));
   EXPECT_EQ(packets.fragments_dropped(), 3);
 }
 
-RC_GTEST_PROP(LcmPackets, TakesFragmentsInAnyOrderBehindTheFirstAndAnyOfThemTwice, ()) {
-  LcmPackets packets = listening_to({"A"});
+RC_GTEST_PROP(LcmReassembler, TakesFragmentsInAnyOrderBehindTheFirstAndAnyOfThemTwice, ()) {
+  LcmReassembler packets = listening_to({"A"});
   for (int number = 0; number < 3; ++number) {  // what an earlier message left behind is in none
     const RawBytes payload = counting(static_cast<std::size_t>(*rc::gen::inRange(301, 3'000)));
     auto packets_of_it = fragments("A", payload, 300, number);
@@ -121,62 +122,63 @@ RC_GTEST_PROP(LcmPackets, TakesFragmentsInAnyOrderBehindTheFirstAndAnyOfThemTwic
     const RawBytes last = packets_of_it.back();
     packets_of_it.pop_back();
     for (const RawBytes& packet : packets_of_it) {
-      RC_ASSERT(!packets.take(packet, 1));
-      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!packets.take(packet, 1));
+      RC_ASSERT(!packets.push(packet, 1));
+      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!packets.push(packet, 1));
     }
-    RC_ASSERT(holds(packets.take(last, 1), 0, payload));
+    RC_ASSERT(holds(packets.push(last, 1), 0, payload));
   }
   RC_ASSERT(packets.fragments_dropped() == 0);
 }
 
-TEST(LcmPackets, DropsFragmentsThatLeaveAGapOrLieOnEachOther) {
+TEST(LcmReassembler, DropsFragmentsThatLeaveAGapOrLieOnEachOther) {
   constexpr std::size_t kOffsetsLowByte = 15;
-  LcmPackets packets = listening_to({"A"});
+  LcmReassembler packets = listening_to({"A"});
   int number = 0;
   for (const int moved : {-1, 1}) {
     auto some = fragments("A", counting(1'000), 400, ++number);
     some[1][kOffsetsLowByte] = static_cast<std::uint8_t>(some[1][kOffsetsLowByte] + moved);
-    for (const RawBytes& packet : some) EXPECT_FALSE(packets.take(packet, 1)) << moved;
+    for (const RawBytes& packet : some) EXPECT_FALSE(packets.push(packet, 1)) << moved;
     EXPECT_EQ(packets.fragments_dropped(), 3 * number);
   }
 }
 
-TEST(LcmPackets, GivesUpTheOldestOfMoreThanItHasRoomFor) {
-  LcmPackets packets = listening_to({"A"});
+TEST(LcmReassembler, GivesUpTheOldestOfMoreThanItHasRoomFor) {
+  LcmReassembler packets = listening_to({"A"});
   for (std::uint64_t sender = 0; sender < 100; ++sender) {
-    EXPECT_FALSE(packets.take(fragments("A", counting(1'000), 600, 1)[0], sender));
+    EXPECT_FALSE(packets.push(fragments("A", counting(1'000), 600, 1)[0], sender));
   }
-  EXPECT_EQ(packets.fragments_dropped(), 100 - static_cast<std::int64_t>(LcmPackets::kMostIncomplete));
-  EXPECT_FALSE(packets.take(fragments("A", counting(1'000), 600, 1)[1], 0));
-  EXPECT_TRUE(holds(packets.take(fragments("A", counting(1'000), 600, 1)[1], 99), 0, counting(1'000)));
+  EXPECT_EQ(packets.fragments_dropped(),
+            100 - static_cast<std::int64_t>(LcmReassembler::kMaxPartialMessages));
+  EXPECT_FALSE(packets.push(fragments("A", counting(1'000), 600, 1)[1], 0));
+  EXPECT_TRUE(holds(packets.push(fragments("A", counting(1'000), 600, 1)[1], 99), 0, counting(1'000)));
 }
 
-TEST(LcmPackets, BeginsNoMessageThatIsLargerThanItTakes) {
-  LcmPackets packets = listening_to({"A"});
+TEST(LcmReassembler, BeginsNoMessageThatIsLargerThanItTakes) {
+  LcmReassembler packets = listening_to({"A"});
   RawBytes first = fragments("A", counting(1'000), 600, 1)[0];
   for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // its size
-  EXPECT_FALSE(packets.take(first, 1));
+  EXPECT_FALSE(packets.push(first, 1));
   EXPECT_EQ(packets.fragments_dropped(), 1);
 }
 
-RC_GTEST_PROP(LcmPackets, TakesAnyBytesAndEveryWholeMessageAfterThem, ()) {
-  LcmPackets packets = listening_to({"A"});
+RC_GTEST_PROP(LcmReassembler, TakesAnyBytesAndEveryWholeMessageAfterThem, ()) {
+  LcmReassembler packets = listening_to({"A"});
   const RawBytes payload = counting(1'000);
-  const int damages = *rc::gen::inRange(0, 30);
-  for (int i = 0; i < damages; ++i) {
+  const int corrupt_sections = *rc::gen::inRange(0, 30);
+  for (int i = 0; i < corrupt_sections; ++i) {
     auto some = fragments("A", payload, 400, *rc::gen::inRange(0, 3));
     some.push_back(whole("A", payload));
     RawBytes packet = *rc::gen::elementOf(some);
     const auto place = *rc::gen::inRange<std::size_t>(0, 30);
     packet[place] = *rc::gen::arbitrary<std::uint8_t>();
     if (*rc::gen::inRange(0, 4) == 0) packet.resize(place);
-    const auto message = packets.take(packet, *rc::gen::inRange<std::uint64_t>(0, 3));
+    const auto message = packets.push(packet, *rc::gen::inRange<std::uint64_t>(0, 3));
     RC_ASSERT(!message || message->payload.size() <= payload.size() + 30);
   }
   const auto next = fragments("A", payload, 400, 77);
-  RC_ASSERT(!packets.take(next[0], 9));
-  RC_ASSERT(!packets.take(next[1], 9));
-  RC_ASSERT(holds(packets.take(next[2], 9), 0, payload));
+  RC_ASSERT(!packets.push(next[0], 9));
+  RC_ASSERT(!packets.push(next[1], 9));
+  RC_ASSERT(holds(packets.push(next[2], 9), 0, payload));
 }
 
 }  // namespace

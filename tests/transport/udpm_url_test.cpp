@@ -26,9 +26,9 @@ TEST(UdpmUrl, TakesWhatIsLeftOutFromLcm) {
 }
 
 TEST(UdpmUrl, IsToldWhole) {
-  EXPECT_EQ(text_of(parse_udpm_url("udpm://239.1.2.3").value()), "udpm://239.1.2.3:7667?ttl=0");
+  EXPECT_EQ(to_string(parse_udpm_url("udpm://239.1.2.3").value()), "udpm://239.1.2.3:7667?ttl=0");
   const std::string whole = "udpm://239.1.2.3:7700?ttl=1&recv_buf_size=65536";
-  EXPECT_EQ(text_of(parse_udpm_url(whole).value()), whole);
+  EXPECT_EQ(to_string(parse_udpm_url(whole).value()), whole);
 }
 
 TEST(UdpmUrl, RefusesWhatLiblcmWouldMisread) {

@@ -24,7 +24,7 @@ using nlohmann::json;
 }
 
 // Its home is the scratch directory; without a bus it does not look for the desktop's settings.
-ChildCommand with_scratch_home(std::vector<std::string> arguments, const ScratchDirectory& directory) {
+ChildCommand with_scratch_home(std::vector<std::string> arguments, const TempDir& directory) {
   std::filesystem::create_directories(directory.path("tmp"));
   ChildCommand whole = command_of(std::move(arguments));
   whole.with_descendants = true;
@@ -38,7 +38,7 @@ ChildCommand with_scratch_home(std::vector<std::string> arguments, const Scratch
 
 // We start Chromium ourselves and let chromedriver join it: one that chromedriver starts outlives a
 // chromedriver that is killed.
-ChildCommand chromium(const ScratchDirectory& directory) {
+ChildCommand chromium(const TempDir& directory) {
   return with_scratch_home(
       {
           "chromium",
@@ -67,7 +67,7 @@ ChildCommand chromium(const ScratchDirectory& directory) {
       directory);
 }
 
-ChildCommand chromedriver(const ScratchDirectory& directory) {
+ChildCommand chromedriver(const TempDir& directory) {
   return with_scratch_home({"chromedriver", "--port=0"}, directory);
 }
 
@@ -241,8 +241,8 @@ void Browser::press(std::string_view key) {
   act("key", {{{"type", "keyDown"}, {"value", code}}, {{"type", "keyUp"}, {"value", code}}});
 }
 
-Picture Browser::screenshot() {
-  return Picture(decoded(send(session_ + "/screenshot", "").get<std::string>()));
+Image Browser::screenshot() {
+  return Image(decoded(send(session_ + "/screenshot", "").get<std::string>()));
 }
 
 Region Browser::region_of(const std::string& selector) {

@@ -83,7 +83,7 @@ class Browser {
   void press(std::string_view key);
 
   // What is on the screen, as large as the screen.
-  Picture screenshot();
+  Image screenshot();
 
   // Where the first element that fits the selector is in a screenshot: the part of it that is on the screen,
   // which may be empty.
@@ -98,7 +98,7 @@ class Browser {
   void act(const std::string& type, const nlohmann::json& actions);
   std::string console_errors_in_lines();
 
-  ScratchDirectory directory_;  // its home, its profile, its temporary files
+  TempDir directory_;  // its home, its profile, its temporary files
   ChildProcess chromium_;
   ChildProcess chromedriver_;
   std::unique_ptr<httplib::Client> client_;

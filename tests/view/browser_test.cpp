@@ -51,7 +51,7 @@ class BrowserTest : public PageTest {
   }
 
  private:
-  ScratchDirectory directory_;
+  TempDir directory_;
 };
 
 TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
@@ -88,7 +88,7 @@ TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
   browser().wait_until("window.drawn");
   EXPECT_THAT(browser().console_errors(), IsEmpty());
 
-  const Picture picture = browser().screenshot();
+  const Image picture = browser().screenshot();
   EXPECT_EQ(picture.share({100, 50, 150, 200}, is_near({255, 204, 0})), 1.0);
   EXPECT_EQ(picture.share({250, 50, 150, 200}, is_near({0, 102, 204})), 1.0);
   EXPECT_EQ(picture.pixel(99, 49), (Colour{255, 255, 255}));
@@ -106,7 +106,7 @@ TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
 TEST_F(BrowserTest, DrawsText) {
   show(R"(<style>p { font: 40px sans-serif; margin: 0; width: 60px; height: 60px }</style>
     <p id="a">A</p><p id="b">B</p><p id="rho">ρ</p><p id="nothing"></p>)");
-  const Picture picture = browser().screenshot();
+  const Image picture = browser().screenshot();
   const auto ink = [&](const std::string& selector) {
     return picture.share(browser().region_of(selector), [](const Colour& c) { return c.green < 128; });
   };
@@ -196,7 +196,7 @@ TEST_F(BrowserTest, ShowsThePageOnAScreenOfTheSizeThatWasAskedFor) {
   EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
   show("<button id='go' onclick='window.clicked = true'>after</button>");
   EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
-  const Picture picture = browser().screenshot();
+  const Image picture = browser().screenshot();
   EXPECT_EQ(picture.width(), 390);
   EXPECT_EQ(picture.height(), 844);
   browser().click("#go");
@@ -258,7 +258,7 @@ TEST_F(BrowserTest, ShowsAPageOfAServerThatNeverStopsSending) {
   const int port = server.bind_to_any_port("127.0.0.1");
   std::thread serving([&] { server.listen_after_bind(); });
 
-  const std::string trouble = what_is_thrown([&] {
+  const std::string warning = what_is_thrown([&] {
     browser().open("http://127.0.0.1:" + std::to_string(port) + "/");
     EXPECT_EQ(browser().wait_until("heard.length > 3 && heard[3]"), "a wave");
     EXPECT_THAT(browser().console_errors(), IsEmpty());
@@ -267,7 +267,7 @@ TEST_F(BrowserTest, ShowsAPageOfAServerThatNeverStopsSending) {
   over = true;
   server.stop();
   serving.join();
-  EXPECT_EQ(trouble, "nothing");
+  EXPECT_EQ(warning, "nothing");
 }
 
 // Processes that have the path in their environment or arguments, and the option in their arguments. Chromium
@@ -276,8 +276,8 @@ int processes_that_name(const std::string& path, const std::string& option = {})
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     // A process that has ended has neither, and one that ends just now cannot be read.
-    const std::string arguments = contents_of(entry.path() / "cmdline");
-    const std::string environment = contents_of(entry.path() / "environ");
+    const std::string arguments = read_file(entry.path() / "cmdline");
+    const std::string environment = read_file(entry.path() / "environ");
     if ((arguments + environment).find(path) != std::string::npos &&
         arguments.find(option) != std::string::npos) {
       ++count;
@@ -297,7 +297,7 @@ bool comes_true(Condition&& condition) {
 }
 
 // A test of this program as a process of its own, whose browser has its files in `directory`.
-ChildCommand this_program(std::vector<std::string> arguments, const ScratchDirectory& directory) {
+ChildCommand this_program(std::vector<std::string> arguments, const TempDir& directory) {
   arguments.insert(arguments.begin(), std::filesystem::read_symlink("/proc/self/exe").string());
   ChildCommand whole = command_of(std::move(arguments));
   whole.environment = {"TMPDIR=" + directory.path("")};
@@ -314,7 +314,7 @@ TEST_F(BrowserTest, DISABLED_ShowsAPageUntilItsInputEnds) {
 // That test as a process; constructed when the page is shown.
 class PageInAnotherProcess {
  public:
-  explicit PageInAnotherProcess(const ScratchDirectory& directory) : test_(command(directory)) {
+  explicit PageInAnotherProcess(const TempDir& directory) : test_(command(directory)) {
     // The child opens its input before it starts the program, and either end waits for the other.
     writer_.open(input_.path("input"));
     if (!test_.wait_for_text("the page is shown", kWaitTimeout)) {
@@ -326,7 +326,7 @@ class PageInAnotherProcess {
   void end_input() { writer_.close(); }
 
  private:
-  ChildCommand command(const ScratchDirectory& directory) const {
+  ChildCommand command(const TempDir& directory) const {
     ChildCommand whole = this_program(
         {"--gtest_filter=*DISABLED_ShowsAPageUntilItsInputEnds", "--gtest_also_run_disabled_tests"},
         directory);
@@ -335,13 +335,13 @@ class PageInAnotherProcess {
     return whole;
   }
 
-  ScratchDirectory input_;
+  TempDir input_;
   ChildProcess test_;
   std::ofstream writer_;
 };
 
 TEST(BrowserProcesses, LeaveNothingBehind) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   PageInAnotherProcess page(directory);
   EXPECT_GT(processes_that_name(directory.path(""), "--type=renderer"), 0);
   page.end_input();
@@ -351,7 +351,7 @@ TEST(BrowserProcesses, LeaveNothingBehind) {
 }
 
 TEST(BrowserProcesses, EndWithATestThatIsKilled) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   PageInAnotherProcess page(directory);
   EXPECT_GT(processes_that_name(directory.path(""), "--type=renderer"), 0);
   EXPECT_GT(processes_that_name(directory.path(""), "chromedriver"), 0);
@@ -361,7 +361,7 @@ TEST(BrowserProcesses, EndWithATestThatIsKilled) {
 }
 
 TEST(BrowserProcesses, FailWithTheNamesOfTheirPackagesWhereTheyAreMissing) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   ChildCommand without = this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory);
   without.environment.emplace_back("PATH=" + directory.path(""));
   const FinishedProcess finished = run_to_end(without, kWaitTimeout);

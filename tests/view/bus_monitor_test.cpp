@@ -21,9 +21,9 @@ using nlohmann::json;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::uint8_t> answer_bytes(const QuestionKey& key, std::vector<BodyWrench> bodies) {
+std::vector<std::uint8_t> response_bytes(const RequestId& key, std::vector<BodyWrench> bodies) {
   std::vector<std::uint8_t> bytes;
-  encode(Answer{.key = key, .bodies = std::move(bodies)}, bytes);
+  encode(WrenchResponse{.key = key, .bodies = std::move(bodies)}, bytes);
   return bytes;
 }
 
@@ -47,20 +47,20 @@ BodyWrench lifted(std::int32_t id, double force) {
 class WatchedBus : public testing::Test {
  protected:
   explicit WatchedBus(PoseChannels poses = {}) : watch_(scene_, 0.0, std::move(poses)) {}
-  HeardAt at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
+  ArrivalTime at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
   json snapshot(double now) { return json::parse(snapshot_json(watch_, 1, 0.0, now, now)); }
 
   const Scene scene_ = box_scene();
-  BusWatch watch_;
+  BusMonitor watch_;
 };
 
 TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
   EXPECT_TRUE(snapshot(0.0)["bodies"].empty()) << "nothing was asked yet";
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0), upright(kFastBox, 3.0)}), at(0.1));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0), upright(kFastBox, 3.0)}), at(0.1));
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["f"].is_null()) << "asked, not answered";
-  watch_.hear_answer(answer_bytes({0, 1, 1}, {lifted(kBox, 5.0), lifted(kFastBox, 6.0)}), at(0.1));
-  watch_.hear_question(question_bytes({0, 1, 2}, {upright(kBox, 1.5)}), at(0.2));
-  watch_.hear_answer(answer_bytes({0, 1, 2}, {lifted(kBox, 7.0)}), at(0.2));
+  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0), lifted(kFastBox, 6.0)}), at(0.1));
+  watch_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.5)}), at(0.2));
+  watch_.on_response(response_bytes({0, 1, 2}, {lifted(kBox, 7.0)}), at(0.2));
   const json bodies = snapshot(0.5)["bodies"];
   ASSERT_EQ(bodies.size(), 2U);
   EXPECT_EQ(bodies[0]["id"], kBox);
@@ -74,71 +74,71 @@ TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
 }
 
 TEST_F(WatchedBus, KeepsTheLastPoseThatIsOneAndSaysTheStatus) {
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   BodyState bad = upright(kBox, 1.0);
   bad.position[0] = kNan;
-  watch_.hear_question(question_bytes({0, 1, 2}, {bad}), at(0.2));
+  watch_.on_request(request_bytes({0, 1, 2}, {bad}), at(0.2));
   bad = upright(kBox, 1.0);
   bad.quaternion_wxyz[0] = 1.1;
-  watch_.hear_question(question_bytes({0, 1, 3}, {bad}), at(0.3));
+  watch_.on_request(request_bytes({0, 1, 3}, {bad}), at(0.3));
   BodyWrench refused;
   refused.body_id = kBox;
   refused.status = BodyStatus::kBadQuaternion;
-  watch_.hear_answer(answer_bytes({0, 1, 3}, {refused}), at(0.3));
+  watch_.on_response(response_bytes({0, 1, 3}, {refused}), at(0.3));
   const json body = snapshot(0.3)["bodies"][0];
   EXPECT_EQ(body["p"], json({3.0, -2.0, 2.0}));
   EXPECT_EQ(body["status"], 3);
 }
 
 TEST_F(WatchedBus, ShowsNoWrenchBesideAPoseThatItIsTooOldFor) {
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
-  watch_.hear_answer(answer_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
   EXPECT_FALSE(snapshot(100.0)["bodies"][0]["f"].is_null()) << "nobody asked since";
   for (const double now : {0.5, 1.05}) {
-    watch_.hear_question(question_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
-    EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the answer is still being waited for";
+    watch_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
+    EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the response is still being waited for";
   }
-  watch_.hear_question(question_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
+  watch_.on_request(request_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
   for (const char* unknown : {"status", "f", "t", "b", "volume"}) {
     EXPECT_TRUE(snapshot(1.2)["bodies"][0][unknown].is_null()) << unknown;
   }
-  watch_.hear_answer(answer_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
+  watch_.on_response(response_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
   EXPECT_EQ(snapshot(1.3)["bodies"][0]["f"], json({0.0, 0.0, 6.0}));
 }
 
 TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
   BodyHydrostatics body;
   body.body_id = kHydrostaticBox;
   body.metacenters = {{{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}};
   body.metacentric_heights = {0.75, kNan};
   std::vector<std::uint8_t> bytes;
   encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
-  watch_.hear_hydrostatics(bytes);
+  watch_.on_hydrostatics(bytes);
   json shown = snapshot(0.1)["bodies"][0];
   EXPECT_EQ(shown["m"], json({{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}));
   EXPECT_EQ(shown["gm"], json({0.75, nullptr}));
   body.metacenters[1][2] = kNan;  // dry
   encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
-  watch_.hear_hydrostatics(bytes);
+  watch_.on_hydrostatics(bytes);
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }
 
 TEST_F(WatchedBus, RoundsNoPositionFarFromTheWorldsOrigin) {
   constexpr double kFarHeight = 5'000'000.125;  // m: a float would be 0.5 m apart there
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
   EXPECT_EQ(snapshot(0.0)["bodies"][0]["p"], json({3.0, -2.0, kFarHeight}));
 }
 
 TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   std::array<std::int64_t, 4> expected{};
   for (const MalformedMessage& malformed : malformed_messages()) {
-    watch_.hear_question(malformed.bytes, at(0.0));
+    watch_.on_request(malformed.bytes, at(0.0));
     ++expected[static_cast<std::size_t>(malformed.cause)];
   }
   EXPECT_EQ(watch_.counts().malformed, expected);
-  EXPECT_EQ(watch_.ledger().questions, 0);
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  EXPECT_EQ(watch_.tracker().requests, 0);
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 1U);
 }
 
@@ -146,28 +146,28 @@ TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
 class WatchedPoses : public WatchedBus {
  protected:
   WatchedPoses() : WatchedBus({.channels = {{"BOX", kBox, ""}, {"FAST", kFastBox, "FORCE"}}}) {}
-  void hear_pose(std::size_t channel, std::int64_t utime, double height) {
-    watch_.hear_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
-                     at(1e-6 * static_cast<double>(utime)));
+  void on_pose(std::size_t channel, std::int64_t utime, double height) {
+    watch_.on_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
+                   at(1e-6 * static_cast<double>(utime)));
   }
   void hear_force(std::int64_t utime, double force, double now) {
     std::vector<std::uint8_t> bytes;
     encode_six_axis_force_torque(utime, {0.0, 0.0, force}, {1.0, 2.0, 3.0}, bytes);
-    watch_.hear_force_torque(1, bytes, at(now));
+    watch_.on_force_torque(1, bytes, at(now));
   }
 };
 
 TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
-  hear_pose(0, 100'000, 0.25);
-  hear_pose(1, 100'000, 0.5);
+  on_pose(0, 100'000, 0.25);
+  on_pose(1, 100'000, 0.5);
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 2U);
-  watch_.hear_answer(answer_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
-  EXPECT_EQ(watch_.ledger().answers, 1) << "its session and number are the service's own";
+  watch_.on_response(response_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
+  EXPECT_EQ(watch_.tracker().responses, 1) << "its session and number are the service's own";
   EXPECT_NEAR(watch_.latency().max, 0.003, 1e-5);
   hear_force(100'000, 7.0, 0.104);
-  EXPECT_EQ(watch_.ledger().answers, 2);
-  EXPECT_EQ(watch_.ledger().questions, 2);
-  EXPECT_EQ(watch_.ledger().answers_without_question, 0);
+  EXPECT_EQ(watch_.tracker().responses, 2);
+  EXPECT_EQ(watch_.tracker().requests, 2);
+  EXPECT_EQ(watch_.tracker().responses_without_request, 0);
   EXPECT_EQ(watch_.service_state(0.2), ServiceState::kAnswering);
   const json bodies = snapshot(0.2)["bodies"];
   EXPECT_EQ(bodies[0]["p"], json({0.0, 0.0, 0.25}));
@@ -175,48 +175,48 @@ TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
   EXPECT_EQ(bodies[0]["status"], 0);
   EXPECT_EQ(bodies[1]["f"], json({0.0, 0.0, 7.0}));
   EXPECT_EQ(bodies[1]["t"], json({1.0, 2.0, 3.0}));
-  for (const char* unsaid : {"status", "b", "volume", "force_bound", "torque_bound"}) {
-    EXPECT_TRUE(bodies[1][unsaid].is_null()) << unsaid;
+  for (const char* pending : {"status", "b", "volume", "force_bound", "torque_bound"}) {
+    EXPECT_TRUE(bodies[1][pending].is_null()) << pending;
   }
 }
 
 TEST_F(WatchedPoses, LeaveNoGapsAndWaitInVainLikeAnyQuestion) {
-  for (std::int64_t i = 0; i < 5; ++i) hear_pose(0, 10'000 * i, 0.0);
-  watch_.hear_answer(answer_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
-  watch_.hear_answer(answer_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
-  watch_.pass_time(3.0);
-  EXPECT_EQ(watch_.ledger().questions_missed, 0);
-  EXPECT_EQ(watch_.ledger().unanswered, 4);
-  EXPECT_EQ(watch_.ledger().answers_without_question, 1) << "a microsecond beside the newest pose";
+  for (std::int64_t i = 0; i < 5; ++i) on_pose(0, 10'000 * i, 0.0);
+  watch_.on_response(response_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
+  watch_.on_response(response_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
+  watch_.tick(3.0);
+  EXPECT_EQ(watch_.tracker().requests_missed, 0);
+  EXPECT_EQ(watch_.tracker().unanswered, 4);
+  EXPECT_EQ(watch_.tracker().responses_without_request, 1) << "a microsecond beside the newest pose";
 }
 
 TEST_F(WatchedPoses, DoNotTakeAnAnswerThatBelongsToAQuestion) {
-  hear_pose(0, 100'000, 0.25);
-  watch_.hear_question(question_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
-  watch_.hear_answer(answer_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
-  EXPECT_NEAR(watch_.latency().max, 0.005, 1e-5) << "from the question, not from the pose";
-  watch_.pass_time(3.0);
-  EXPECT_EQ(watch_.ledger().answers, 1);
-  EXPECT_EQ(watch_.ledger().unanswered, 1) << "the pose";
+  on_pose(0, 100'000, 0.25);
+  watch_.on_request(request_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
+  watch_.on_response(response_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
+  EXPECT_NEAR(watch_.latency().max, 0.005, 1e-5) << "from the request, not from the pose";
+  watch_.tick(3.0);
+  EXPECT_EQ(watch_.tracker().responses, 1);
+  EXPECT_EQ(watch_.tracker().unanswered, 1) << "the pose";
 }
 
 TEST_F(WatchedPoses, ThatAreNoneAreCountedByTheirCause) {
-  watch_.hear_pose(0, Bytes(), at(0.0));
-  watch_.hear_pose(0, question_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
+  watch_.on_pose(0, Bytes(), at(0.0));
+  watch_.on_pose(0, request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
   std::vector<std::uint8_t> longer = encoded_by_lcm(upright_pose(0.0, 1));
-  watch_.hear_force_torque(1, longer, at(0.0));
+  watch_.on_force_torque(1, longer, at(0.0));
   longer.push_back(0);
-  watch_.hear_pose(0, longer, at(0.0));
+  watch_.on_pose(0, longer, at(0.0));
   const std::array<std::int64_t, 4>& malformed = watch_.counts().malformed;
-  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kTruncated)], 1);
-  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kFingerprint)], 2);
-  EXPECT_EQ(malformed[static_cast<std::size_t>(Rejection::kLength)], 1);
-  EXPECT_EQ(watch_.ledger().questions, 0);
+  EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kTruncated)], 1);
+  EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kFingerprint)], 2);
+  EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kLength)], 1);
+  EXPECT_EQ(watch_.tracker().requests, 0);
 }
 
 TEST_F(WatchedBus, CountsBodiesThatItsSceneDoesNotHave) {
-  watch_.hear_question(question_bytes({0, 1, 1}, {upright(kNoBody, 2.0), upright(kBox, 1.0)}), at(0.0));
-  watch_.hear_answer(answer_bytes({0, 1, 1}, {lifted(kNoBody, 1.0)}), at(0.0));
+  watch_.on_request(request_bytes({0, 1, 1}, {upright(kNoBody, 2.0), upright(kBox, 1.0)}), at(0.0));
+  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kNoBody, 1.0)}), at(0.0));
   EXPECT_EQ(watch_.counts().bodies_not_in_scene, 1);
   EXPECT_EQ(snapshot(0.0)["bodies"].size(), 1U);
 }
@@ -224,72 +224,72 @@ TEST_F(WatchedBus, CountsBodiesThatItsSceneDoesNotHave) {
 TEST_F(WatchedBus, TellsPercentilesOfEachSecondAndOfAll) {
   for (int i = 0; i < 100; ++i) {
     const double begin = 0.1 + 0.001 * i;
-    watch_.hear_question(question_bytes({0, 1, i}, {}), at(begin));
-    watch_.hear_answer(answer_bytes({0, 1, i}, {}), at(begin + (i < 60 ? 0.001 : 0.004)));
+    watch_.on_request(request_bytes({0, 1, i}, {}), at(begin));
+    watch_.on_response(response_bytes({0, 1, i}, {}), at(begin + (i < 60 ? 0.001 : 0.004)));
   }
-  watch_.pass_time(1.0);
+  watch_.tick(1.0);
   ASSERT_EQ(watch_.seconds().size(), 1U);
-  const WatchedSecond& second = watch_.seconds().back();
-  EXPECT_EQ(second.questions, 100);
-  EXPECT_EQ(second.answers, 100);
+  const SecondStats& second = watch_.seconds().back();
+  EXPECT_EQ(second.requests, 100);
+  EXPECT_EQ(second.responses, 100);
   EXPECT_NEAR(second.latency.p50, 0.001, 0.03 * 0.001);
   EXPECT_NEAR(second.latency.max, 0.004, 1e-5);
-  watch_.pass_time(2.0);
-  EXPECT_EQ(watch_.seconds().back().answers, 0);
+  watch_.tick(2.0);
+  EXPECT_EQ(watch_.seconds().back().responses, 0);
   EXPECT_TRUE(snapshot(2.0)["second"]["p50"].is_null());
   EXPECT_NEAR(snapshot(2.0)["latency"]["p50"].get<double>(), 0.001, 0.03 * 0.001);
 }
 
 TEST_F(WatchedBus, KeepsAMinuteOfSecondsAndNoneOfATimeInWhichItStoodStill) {
-  for (int i = 1; i <= 100; ++i) watch_.pass_time(i);
-  EXPECT_EQ(watch_.seconds().size(), BusWatch::kSecondsKept);
+  for (int i = 1; i <= 100; ++i) watch_.tick(i);
+  EXPECT_EQ(watch_.seconds().size(), BusMonitor::kSecondsKept);
   EXPECT_EQ(watch_.seconds().back().number, 99);
-  watch_.pass_time(1e6);
-  watch_.pass_time(1e6 + 0.5);
+  watch_.tick(1e6);
+  watch_.tick(1e6 + 0.5);
   EXPECT_EQ(watch_.seconds().back().number, 100);
-  EXPECT_EQ(json::parse(history_json(watch_)).size(), BusWatch::kSecondsKept);
+  EXPECT_EQ(json::parse(history_json(watch_)).size(), BusMonitor::kSecondsKept);
 }
 
 TEST_F(WatchedBus, SaysWhetherTheServiceAnswersWaitsIsStuckOrIsSilent) {
-  EXPECT_EQ(watch_.service_state(0.0), ServiceState::kSilent) << "nothing was heard yet";
-  watch_.hear_status(status_bytes(7), 1.0);
+  EXPECT_EQ(watch_.service_state(0.0), ServiceState::kOffline) << "nothing was heard yet";
+  watch_.on_status(status_bytes(7), 1.0);
   EXPECT_EQ(watch_.service_state(1.5), ServiceState::kWaiting);
-  watch_.hear_question(question_bytes({0, 1, 1}, {}), at(2.0));
-  watch_.hear_answer(answer_bytes({0, 1, 1}, {}), at(2.0));
+  watch_.on_request(request_bytes({0, 1, 1}, {}), at(2.0));
+  watch_.on_response(response_bytes({0, 1, 1}, {}), at(2.0));
   EXPECT_EQ(watch_.service_state(2.1), ServiceState::kAnswering);
-  watch_.hear_question(question_bytes({0, 1, 2}, {}), at(2.2));
-  watch_.hear_question(question_bytes({0, 1, 2}, {}), at(3.2));
+  watch_.on_request(request_bytes({0, 1, 2}, {}), at(2.2));
+  watch_.on_request(request_bytes({0, 1, 2}, {}), at(3.2));
   EXPECT_EQ(watch_.service_state(3.5), ServiceState::kNotAnswering) << "the last status is 2.5 s old";
-  watch_.hear_question(question_bytes({0, 1, 2}, {}), at(4.2));
-  EXPECT_EQ(watch_.service_state(4.3), ServiceState::kSilent);
-  watch_.hear_status(status_bytes(8), 5.0);
-  watch_.hear_question(question_bytes({0, 1, 2}, {}), at(5.1));
-  watch_.hear_answer(answer_bytes({0, 1, 2}, {}), at(5.1));
+  watch_.on_request(request_bytes({0, 1, 2}, {}), at(4.2));
+  EXPECT_EQ(watch_.service_state(4.3), ServiceState::kOffline);
+  watch_.on_status(status_bytes(8), 5.0);
+  watch_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
+  watch_.on_response(response_bytes({0, 1, 2}, {}), at(5.1));
   EXPECT_EQ(watch_.service_state(5.2), ServiceState::kAnswering);
   EXPECT_EQ(watch_.counts().services_started, 2);
 }
 
 TEST_F(WatchedBus, WaitsAgainWhereNobodyAsksAnyMore) {
-  watch_.hear_question(question_bytes({0, 1, 1}, {}), at(0.0));
-  for (const double now : {1.0, 2.0, 3.0, 4.0, 5.0}) watch_.hear_status(status_bytes(7), now);
+  watch_.on_request(request_bytes({0, 1, 1}, {}), at(0.0));
+  for (const double now : {1.0, 2.0, 3.0, 4.0, 5.0}) watch_.on_status(status_bytes(7), now);
   EXPECT_EQ(watch_.service_state(1.5), ServiceState::kNotAnswering);
-  EXPECT_EQ(watch_.service_state(5.0), ServiceState::kWaiting) << "that question is long forgotten";
-  watch_.hear_question(question_bytes({0, 1, 2}, {}), at(5.1));
+  EXPECT_EQ(watch_.service_state(5.0), ServiceState::kWaiting) << "that request is long forgotten";
+  watch_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
   EXPECT_EQ(watch_.service_state(5.2), ServiceState::kWaiting) << "and a new one has its own patience";
 }
 
 TEST_F(WatchedBus, NamesEveryServiceOnTheBusAndForgetsTheOneThatIsGone) {
-  watch_.hear_status(status_bytes(7), 0.0);
-  watch_.hear_status(status_bytes(std::numeric_limits<std::int64_t>::min()), 0.5);
-  watch_.hear_status(status_bytes(7), 1.0);
+  watch_.on_status(status_bytes(7), 0.0);
+  watch_.on_status(status_bytes(std::numeric_limits<std::int64_t>::min()), 0.5);
+  watch_.on_status(status_bytes(7), 1.0);
   EXPECT_EQ(snapshot(1.0)["services"], json({"7", "-9223372036854775808"}));
   EXPECT_EQ(snapshot(3.8)["services"], json({"7"}));
-  for (std::int64_t id = 100; id < 1'000; ++id) watch_.hear_status(status_bytes(id), 4.0);
-  EXPECT_EQ(snapshot(4.0)["services"].size(), BusWatch::kMostServices);
+  for (std::int64_t id = 100; id < 1'000; ++id) watch_.on_status(status_bytes(id), 4.0);
+  EXPECT_EQ(snapshot(4.0)["services"].size(), BusMonitor::kMaxServices);
 }
 
 TEST_F(WatchedBus, MakesJsonOfASceneNameThatIsNoUtf8) {
-  watch_.hear_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
+  watch_.on_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
   const std::string text = snapshot_json(watch_, 1, 0.0, 0.0, 0.0);
   EXPECT_EQ(text.find('\n'), std::string::npos) << "an event is a line";
   EXPECT_EQ(json::parse(text)["status"]["scene"], "sc\xEF\xBF\xBD\n\"ene");
@@ -299,8 +299,8 @@ TEST_F(WatchedBus, MakesJsonOfASceneNameThatIsNoUtf8) {
 RC_GTEST_FIXTURE_PROP(WatchedBus, MakesJsonOfWhateverIsHeard, ()) {
   double now = 0.0;
   const std::vector<std::vector<std::uint8_t>> messages{
-      question_bytes({1, 2, 3}, {upright(kBox, 1.0), upright(kHydrostaticBox, kNan)}, 0.5),
-      answer_bytes({1, 2, 3}, {lifted(kBox, 1e300), lifted(kFastBox, kNan)}), status_bytes(5)};
+      request_bytes({1, 2, 3}, {upright(kBox, 1.0), upright(kHydrostaticBox, kNan)}, 0.5),
+      response_bytes({1, 2, 3}, {lifted(kBox, 1e300), lifted(kFastBox, kNan)}), status_bytes(5)};
   const int count = *rc::gen::inRange(0, 50);
   for (int i = 0; i < count; ++i) {
     std::vector<std::uint8_t> bytes = *rc::gen::elementOf(messages);
@@ -310,18 +310,18 @@ RC_GTEST_FIXTURE_PROP(WatchedBus, MakesJsonOfWhateverIsHeard, ()) {
     now += 0.1 * *rc::gen::inRange(0, 10);
     switch (*rc::gen::inRange(0, 4)) {
       case 0:
-        watch_.hear_question(bytes, at(now));
+        watch_.on_request(bytes, at(now));
         break;
       case 1:
-        watch_.hear_answer(bytes, at(now));
+        watch_.on_response(bytes, at(now));
         break;
       case 2:
-        watch_.hear_hydrostatics(bytes);
+        watch_.on_hydrostatics(bytes);
         break;
       default:
-        watch_.hear_status(bytes, now);
+        watch_.on_status(bytes, now);
     }
-    watch_.pass_time(now);
+    watch_.tick(now);
     const std::string text = snapshot_json(watch_, i, 0.0, now, now);
     RC_ASSERT(json::accept(text));
     RC_ASSERT(text.find('\n') == std::string::npos);

@@ -9,9 +9,9 @@
 namespace buoyancy {
 namespace {
 
-Row row_of(double time, double heave, double energy = kNotKnown) {
+Row row_of(double time, double heave, double energy = kUnknown) {
   Row row;
-  row.fill(kNotKnown);
+  row.fill(kUnknown);
   row[kTime] = time;
   row[kHeave] = heave;
   row[kEnergy] = energy;
@@ -25,8 +25,8 @@ std::vector<Row> rows_made(int count, MakeRow make_row) {
   return rows;
 }
 
-ThinnedRows thinned(std::size_t most_rows, const std::vector<Row>& rows) {
-  ThinnedRows kept(most_rows);
+DecimatedRows decimated(std::size_t max_rows, const std::vector<Row>& rows) {
+  DecimatedRows kept(max_rows);
   for (std::size_t i = 0; i < rows.size(); ++i) kept.add(static_cast<std::int64_t>(i), rows[i]);
   return kept;
 }
@@ -37,17 +37,17 @@ bool same_numbers(const Row& a, const Row& b) {
                             [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-TEST(ThinnedRows, AreAllRowsUpToTheBound) {
+TEST(DecimatedRows, AreAllRowsUpToTheBound) {
   const std::vector<Row> rows = rows_made(100, [](int i) { return row_of(i, std::sin(i)); });
-  const std::vector<Row> kept = thinned(100, rows).rows();
+  const std::vector<Row> kept = decimated(100, rows).rows();
   EXPECT_TRUE(std::ranges::equal(kept, rows, same_numbers));
 }
 
-TEST(ThinnedRows, KeepAPeakThatOneRowAloneHas) {
+TEST(DecimatedRows, KeepAPeakThatOneRowAloneHas) {
   const std::vector<Row> rows = rows_made(1'000'000, [](int i) {
     return row_of(i, i == 333'333 ? 7.0 : i == 777'777 ? -9.0 : std::sin(1e-4 * i));
   });
-  const ThinnedRows all = thinned(500, rows);
+  const DecimatedRows all = decimated(500, rows);
   const std::vector<Row> kept = all.rows();
   EXPECT_EQ(all.added(), 1'000'000);
   EXPECT_LE(kept.size(), 500);
@@ -62,24 +62,24 @@ TEST(ThinnedRows, KeepAPeakThatOneRowAloneHas) {
   EXPECT_TRUE(has(999'999, std::sin(1e-4 * 999'999))) << "the last row";
 }
 
-TEST(ThinnedRows, KeepTheExtremesOfAColumnThatMostRowsDoNotKnow) {
+TEST(DecimatedRows, KeepTheExtremesOfAColumnThatMostRowsDoNotKnow) {
   const std::vector<Row> rows = rows_made(10'000, [](int i) {
-    return row_of(i, 0.0, i == 5'000 ? 1.5 : i == 6'000 ? 2.5 : kNotKnown);
+    return row_of(i, 0.0, i == 5'000 ? 1.5 : i == 6'000 ? 2.5 : kUnknown);
   });
-  const std::vector<Row> kept = thinned(64, rows).rows();
+  const std::vector<Row> kept = decimated(64, rows).rows();
   for (const double energy : {1.5, 2.5}) {
     EXPECT_TRUE(std::ranges::any_of(kept, [energy](const Row& row) { return row[kEnergy] == energy; }))
         << energy;
   }
 }
 
-RC_GTEST_PROP(ThinnedRows, AreRowsThatWereAddedInOrderWithTheExtremesOfAll, ()) {
-  const auto most_rows = *rc::gen::inRange<std::size_t>(32, 400);
+RC_GTEST_PROP(DecimatedRows, AreRowsThatWereAddedInOrderWithTheExtremesOfAll, ()) {
+  const auto max_rows = *rc::gen::inRange<std::size_t>(32, 400);
   const auto count = *rc::gen::inRange(1, 5'000);
   const std::vector<Row> rows =
       rows_made(count, [](int i) { return row_of(i, *rc::gen::inRange(-1'000, 1'000)); });
-  const std::vector<Row> kept = thinned(most_rows, rows).rows();
-  RC_ASSERT(kept.size() <= most_rows);
+  const std::vector<Row> kept = decimated(max_rows, rows).rows();
+  RC_ASSERT(kept.size() <= max_rows);
   RC_ASSERT(std::ranges::is_sorted(kept, {}, [](const Row& row) { return row[kTime]; }));
   for (const Row& row : kept) RC_ASSERT(same_numbers(row, rows[static_cast<std::size_t>(row[kTime])]));
   const auto heave = [](const Row& row) { return row[kHeave]; };

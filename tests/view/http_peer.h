@@ -80,7 +80,7 @@ class HttpPeer {
   }
 
  private:
-  FileDescriptor socket_;
+  UniqueFd socket_;
 };
 
 // The port of "ready: http://127.0.0.1:PORT/" on a view's standard output.

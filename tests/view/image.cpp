@@ -19,7 +19,7 @@ ColourPredicate is_near(const Colour& colour, int tolerance) {
   };
 }
 
-Picture::Picture(std::string png) : png_(std::move(png)) {
+Image::Image(std::string png) : png_(std::move(png)) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&image, png_.data(), png_.size()) == 0) {
@@ -35,7 +35,7 @@ Picture::Picture(std::string png) : png_(std::move(png)) {
   height_ = static_cast<int>(image.height);
 }
 
-Colour Picture::pixel(int x, int y) const {
+Colour Image::pixel(int x, int y) const {
   if (x < 0 || y < 0 || x >= width_ || y >= height_) {
     throw std::runtime_error("picture: pixel (" + std::to_string(x) + ", " + std::to_string(y) +
                              ") is not in " + std::to_string(width_) + " x " + std::to_string(height_));
@@ -45,11 +45,11 @@ Colour Picture::pixel(int x, int y) const {
   return {rgb_[at], rgb_[at + 1], rgb_[at + 2]};
 }
 
-double Picture::share(const Region& region, const ColourPredicate& wanted) const {
+double Image::share(const Region& region, const ColourPredicate& wanted) const {
   return share_of_pixels(region, [&](int x, int y) { return wanted(pixel(x, y)); });
 }
 
-double Picture::share_changed(const Picture& other, const Region& region, int tolerance) const {
+double Image::share_changed(const Image& other, const Region& region, int tolerance) const {
   if (other.width_ != width_ || other.height_ != height_) {
     throw std::runtime_error("picture: pictures of different sizes cannot be compared");
   }
@@ -57,7 +57,7 @@ double Picture::share_changed(const Picture& other, const Region& region, int to
                          [&](int x, int y) { return !is_near(pixel(x, y), tolerance)(other.pixel(x, y)); });
 }
 
-void Picture::save(const std::string& path) const {
+void Image::save(const std::string& path) const {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
   std::ofstream file(path, std::ios::binary);
@@ -65,7 +65,7 @@ void Picture::save(const std::string& path) const {
   if (!file) throw std::runtime_error("picture: cannot write " + path);
 }
 
-double Picture::share_of_pixels(const Region& region, const std::function<bool(int x, int y)>& wanted) const {
+double Image::share_of_pixels(const Region& region, const std::function<bool(int x, int y)>& wanted) const {
   if (region.width <= 0 || region.height <= 0) throw std::runtime_error("picture: the region is empty");
   std::size_t count = 0;
   for (int y = region.top; y < region.top + region.height; ++y) {

@@ -27,9 +27,9 @@ struct Region {  // pixels, from the picture's top left corner
 };
 
 // Throws std::runtime_error where the bytes are no PNG, and where a pixel or region is not in the picture.
-class Picture {
+class Image {
  public:
-  explicit Picture(std::string png);
+  explicit Image(std::string png);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -41,7 +41,7 @@ class Picture {
 
   // The part of the region's pixels that another picture of the same size has in another colour, by more than
   // `tolerance` in one component.
-  double share_changed(const Picture& other, const Region& region, int tolerance = 2) const;
+  double share_changed(const Image& other, const Region& region, int tolerance = 2) const;
 
   // As a PNG. Makes the folder if need be.
   void save(const std::string& path) const;

@@ -37,8 +37,8 @@ std::string three_by_two(int duck = 1) {
   return png;
 }
 
-TEST(Picture, HoldsEveryPixelOfThePng) {
-  const Picture picture(three_by_two());
+TEST(Image, HoldsEveryPixelOfThePng) {
+  const Image picture(three_by_two());
   EXPECT_EQ(picture.width(), 3);
   EXPECT_EQ(picture.height(), 2);
   EXPECT_EQ(picture.pixel(0, 0), kSea);
@@ -46,40 +46,40 @@ TEST(Picture, HoldsEveryPixelOfThePng) {
   EXPECT_EQ(picture.pixel(2, 1), kSea);
 }
 
-TEST(Picture, CountsThePixelsOfARegionThatAreWanted) {
-  const Picture picture(three_by_two());
+TEST(Image, CountsThePixelsOfARegionThatAreWanted) {
+  const Image picture(three_by_two());
   EXPECT_DOUBLE_EQ(picture.share(picture.whole(), is_near(kDuck)), 2.0 / 6.0);
   EXPECT_DOUBLE_EQ(picture.share({1, 0, 2, 2}, is_near(kDuck)), 0.5);
   EXPECT_DOUBLE_EQ(picture.share({1, 1, 1, 1}, is_near(kDuck)), 1.0);
 }
 
-TEST(Picture, IsNearAColourWithinItsToleranceAlone) {
+TEST(Image, IsNearAColourWithinItsToleranceAlone) {
   EXPECT_TRUE(is_near(kSea, 5)({15, 15, 205}));
   EXPECT_FALSE(is_near(kSea, 5)({16, 20, 200}));
   EXPECT_FALSE(is_near(kSea, 5)({10, 14, 200}));
   EXPECT_FALSE(is_near(kSea, 5)({10, 20, 206}));
 }
 
-TEST(Picture, SaysHowMuchOfARegionChanged) {
-  const Picture before(three_by_two(1));
-  const Picture after(three_by_two(2));
+TEST(Image, SaysHowMuchOfARegionChanged) {
+  const Image before(three_by_two(1));
+  const Image after(three_by_two(2));
   EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole()), 4.0 / 6.0);
   EXPECT_DOUBLE_EQ(before.share_changed(after, {0, 0, 1, 2}), 0.0);
   EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole(), 255), 0.0);
 }
 
-TEST(Picture, IsTheSameAfterItWasSaved) {
-  const ScratchDirectory directory;
+TEST(Image, IsTheSameAfterItWasSaved) {
+  const TempDir directory;
   const std::string path = directory.path("a/folder/that/is/not/there.png");
-  Picture(three_by_two()).save(path);
-  EXPECT_EQ(contents_of(path), three_by_two());
+  Image(three_by_two()).save(path);
+  EXPECT_EQ(read_file(path), three_by_two());
 }
 
-TEST(Picture, RefusesWhatIsNoPngAndWhatIsNotInIt) {
-  EXPECT_THROW(Picture("not a PNG"), std::runtime_error);
+TEST(Image, RefusesWhatIsNoPngAndWhatIsNotInIt) {
+  EXPECT_THROW(Image("not a PNG"), std::runtime_error);
   const std::string png = three_by_two();
-  EXPECT_THROW(Picture(png.substr(0, png.size() / 2)), std::runtime_error);
-  const Picture picture(png);
+  EXPECT_THROW(Image(png.substr(0, png.size() / 2)), std::runtime_error);
+  const Image picture(png);
   EXPECT_THROW(picture.pixel(3, 0), std::runtime_error);
   EXPECT_THROW(picture.pixel(0, -1), std::runtime_error);
   EXPECT_THROW(picture.share({2, 0, 2, 1}, is_near(kSea)), std::runtime_error);

@@ -72,7 +72,7 @@ TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
   EXPECT_NEAR(browser().run("return buoyancyView.scene.bodies.get(1).group.position.z;").get<double>(), 0.0,
               1e-6)
       << "half under water";
-  const Picture picture = browser().screenshot();
+  const Image picture = browser().screenshot();
   const Region canvas = browser().region_of("#canvas");
   const auto amber = [](const Colour& colour) {
     return colour.red > colour.green + 20 && colour.red > colour.blue + 60;
@@ -137,7 +137,7 @@ TEST_F(LivePage, ShowsNoForceOfABodyThatIsNotAnsweredYet) {
   RawLcmSocket socket;
   socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
   const std::string facts = "document.getElementById('body_facts').textContent";
-  browser().wait_until(facts + ".includes('asked, not answered yet')");
+  browser().wait_until(facts + ".includes('requested, no response yet')");
   browser().wait_until(facts + ".includes('force, N–')");
   wait_for_news(30);
   EXPECT_EQ(browser().run("const body = buoyancyView.scene.bodies.get(2);"
@@ -153,7 +153,7 @@ TEST_F(LivePage, NamesEveryStatusAsTheMessagesDo) {
   EXPECT_EQ(browser().run("return status_text(0);"), "OK");
   for (int i = 1; i < kBodyStatusCount; ++i) {
     EXPECT_EQ(browser().run("return status_text(arguments[0]).split(':')[0];", i),
-              name(static_cast<BodyStatus>(i)));
+              to_string(static_cast<BodyStatus>(i)));
   }
 }
 

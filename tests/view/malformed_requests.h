@@ -17,15 +17,15 @@ class MalformedRequests {
   // The same series from the same seed.
   std::string next() {
     std::string request = kinds_[count_ % kinds_.size()];
-    const std::size_t damages = count_++ / kinds_.size() % kMostDamages;
-    for (std::size_t i = 0; i < damages && !request.empty(); ++i) {
+    const std::size_t corrupt_sections = count_++ / kinds_.size() % kMaxDamages;
+    for (std::size_t i = 0; i < corrupt_sections && !request.empty(); ++i) {
       request[random_() % request.size()] = static_cast<char>(random_());
     }
     return request;
   }
 
  private:
-  static constexpr std::size_t kMostDamages = 25;
+  static constexpr std::size_t kMaxDamages = 25;
 
   std::mt19937 random_;
   std::size_t count_ = 0;

@@ -35,7 +35,7 @@ const PageLimits kLimits;
 
 class ServedPage : public testing::Test {
  protected:
-  ServedPage() : ServedPage(PageLimits{.head_patience = kWaitTimeout, .write_patience = kWaitTimeout}) {}
+  ServedPage() : ServedPage(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = kWaitTimeout}) {}
   // port: 0 for any that is free.
   explicit ServedPage(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0) {
     auto started = PageServer::start(
@@ -79,7 +79,7 @@ class ServedPage : public testing::Test {
     return true;
   }
 
-  SnapshotHub hub_;
+  SnapshotBroadcaster hub_;
   std::unique_ptr<PageServer> server_;
   std::uint16_t port_ = 0;
 };
@@ -190,7 +190,7 @@ TEST_F(ServedPage, ForgetsAListenerThatWentAway) {
 // Where the server waits only shortly for what it wrote to be taken.
 class ImpatientPage : public ServedPage {
  protected:
-  ImpatientPage() : ServedPage(PageLimits{.head_patience = kWaitTimeout, .write_patience = 0.1}) {}
+  ImpatientPage() : ServedPage(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = 0.1}) {}
 };
 
 TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
@@ -309,7 +309,7 @@ TEST_F(ServedPage, RefusesAHeadThatHasNoEnd) {
 // Where the server waits only shortly for a request.
 class HurriedPage : public ServedPage {
  protected:
-  HurriedPage() : ServedPage(PageLimits{.head_patience = 0.1, .write_patience = kWaitTimeout}) {}
+  HurriedPage() : ServedPage(PageLimits{.header_timeout = 0.1, .write_timeout = kWaitTimeout}) {}
 };
 
 TEST_F(HurriedPage, DoesNotWaitForAHeadThatNeverComes) {
@@ -326,7 +326,7 @@ TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
 }
 
 TEST_F(ServedPage, SaysThatItsPortIsTaken) {
-  SnapshotHub other_hub;
+  SnapshotBroadcaster other_hub;
   const auto second = PageServer::start("127.0.0.1", port_, {}, other_hub);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message().find("Address already in use"), std::string::npos)

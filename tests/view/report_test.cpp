@@ -37,7 +37,7 @@ FinishedProcess report(const std::vector<std::string>& arguments) {
 class TheReport : public PageTest {
  protected:
   static void SetUpTestSuite() {
-    directory_ = std::make_unique<ScratchDirectory>();
+    directory_ = std::make_unique<TempDir>();
     const std::string scene = directory_->write("box.toml", kBobbingBox);
     const FinishedProcess simulated = run_to_end(
         command_of({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "5", "--csv", csv()}),
@@ -93,20 +93,20 @@ class TheReport : public PageTest {
   }
 
  private:
-  static inline std::unique_ptr<ScratchDirectory> directory_;
+  static inline std::unique_ptr<TempDir> directory_;
   static inline bool made_ = false;
 };
 
 TEST_F(TheReport, OpensWithoutAnErrorAndWithoutAnotherFile) {
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(browser().run("return performance.getEntriesByType('resource').length"), 0);
-  EXPECT_LT(contents_of(page()).size(), 5'000'000);
+  EXPECT_LT(read_file(page()).size(), 5'000'000);
 }
 
 TEST_F(TheReport, DrawsSkyWaterDryHullWettedHullAndTheWaterlineInBetween) {
   go_to(5.0);
   const double heave = recorded("pz").back();
-  const Picture picture = browser().screenshot();
+  const Image picture = browser().screenshot();
   const auto at = [&picture](std::array<int, 2> place) { return picture.pixel(place[0], place[1]); };
   // The face at y = -1.5 looks at the camera.
   const Colour dry = at(pixel_of(0.7, -1.5, 0.7 + heave));
@@ -135,7 +135,7 @@ TEST_F(TheReport, MovesTheBodyWithTheSlider) {
     return browser().run("return buoyancy_report.scene.bodies.get(1).group.position.z").get<double>();
   };
   const Region canvas = browser().region_of("#canvas");
-  const Picture at_start = browser().screenshot();
+  const Image at_start = browser().screenshot();
   EXPECT_NEAR(height(), recorded("pz").front(), 1e-6);
   browser().drag("#slider", 60, 0);
   const double later = time();
@@ -199,7 +199,7 @@ TEST_F(TheReport, IsPlayedByTheKeyboard) {
 }
 
 TEST_F(TheReport, TurnsItsCameraWhereSomebodyDrags) {
-  const Picture before = browser().screenshot();
+  const Image before = browser().screenshot();
   browser().drag("#canvas", 120, 20);
   EXPECT_GT(browser().screenshot().share_changed(before, browser().region_of("#canvas")), 0.01);
 }
@@ -247,11 +247,11 @@ TEST_F(TheReport, KeepsDryAndWettedApartByLightAlone) {
 }
 
 TEST_F(TheReport, OverwritesNothingThatItReadsAndSaysWhatIsNoThreeJs) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("box.toml", kBobbingBox);
   EXPECT_EQ(report({"--scene", scene, csv(), scene}).exit_code, 2);
   EXPECT_EQ(report({"--scene", scene, csv(), csv()}).exit_code, 2);
-  EXPECT_EQ(contents_of(scene), kBobbingBox);
+  EXPECT_EQ(read_file(scene), kBobbingBox);
   const FinishedProcess refused =
       report({"--scene", scene, csv(), directory.path("run.html"), "--three", directory.path("")});
   EXPECT_EQ(refused.exit_code, 1);
@@ -295,7 +295,7 @@ const std::string kAnsweredHeader =
     "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,energy\n";
 
 TEST_F(TheReport, LeavesAGapWhereTheAnswerIsNotOkOrThePoseIsNone) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string run = kAnsweredHeader +
                           "0,1,0,0,0.1,1,0,0,0,0,0,0,1e5,0,0,0,1,0,0,0,5\n"
                           "1000000,1,0,0,0.2,1,0,0,0,0,0,0,2e5,0,0,0,1,0,0,0,5\n"
@@ -359,7 +359,7 @@ TEST_F(TheReport, CountsNoStatusesOfARunThatWasAlwaysAnswered) {
 }
 
 TEST_F(TheReport, LooksAtASmallBodyBesideALargeOneFromNearby) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("two.toml", kTestWater + R"([[body]]
 id = 1
 shape = { type = "box", size = [200, 30, 20] }
@@ -393,7 +393,7 @@ shape = { type = "box", size = [0.5, 0.5, 0.5] }
 }
 
 TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   std::string text = kTestWater;
   for (const char* id : {"1", "2", "3", "5", "6"}) {
     text += std::string("[[body]]\nid = ") + id + "\nshape = { type = \"box\", size = [2, 3, 4] }\n";
@@ -431,7 +431,7 @@ TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
 }
 
 TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
@@ -445,7 +445,7 @@ TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
 }
 
 TEST(ReportOutput, ThatCannotBeWrittenIsAnErrorWithExitCode1) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
@@ -459,14 +459,14 @@ TEST(ReportOutput, ThatCannotBeWrittenIsAnErrorWithExitCode1) {
 }
 
 TEST(ReportOfADamagedRun, IsWrittenAndFailsWithWhatWasLeftOut) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n</script>,1\n");
   const FinishedProcess finished = report({"--scene", scene, run, directory.path("page.html")});
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("line 3"), std::string::npos);
-  EXPECT_NE(contents_of(directory.path("page.html")).find("line 3"), std::string::npos);
+  EXPECT_NE(read_file(directory.path("page.html")).find("line 3"), std::string::npos);
 }
 
 }  // namespace

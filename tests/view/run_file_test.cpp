@@ -22,13 +22,12 @@
 namespace buoyancy {
 namespace {
 
-Question question_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
-  Question question;
-  question.key = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq};
-  question.bodies.resize(1);
-  question.bodies[0] = {
-      .body_id = 1, .position = {0.0, 0.0, height}, .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}};
-  return question;
+WrenchRequest request_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
+  WrenchRequest request;
+  request.key = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq};
+  request.bodies.resize(1);
+  request.bodies[0] = {.body_id = 1, .position = {0.0, 0.0, height}, .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}};
+  return request;
 }
 
 class ARunFile : public testing::Test {
@@ -46,15 +45,15 @@ class ARunFile : public testing::Test {
     encode_event(number_++, timestamp, channel, bytes, event);
     log_.insert(log_.end(), event.begin(), event.end());
   }
-  void log_question(std::int64_t timestamp, const Question& question) {
+  void log_request(std::int64_t timestamp, const WrenchRequest& request) {
     std::vector<std::uint8_t> bytes;
-    encode(question, bytes);
+    encode(request, bytes);
     log(timestamp, kStatesChannel, bytes);
   }
-  void log_answer(std::int64_t timestamp, const Question& question) {
+  void log_response(std::int64_t timestamp, const WrenchRequest& request) {
     std::vector<std::uint8_t> bytes;
-    encode(question, bytes);
-    log(timestamp, kWrenchesChannel, exchange_.answer(bytes));
+    encode(request, bytes);
+    log(timestamp, kWrenchesChannel, handler_.handle(bytes));
   }
   Expected<RecordedRun> read_log() const {
     return read(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}));
@@ -65,10 +64,10 @@ class ARunFile : public testing::Test {
     log(timestamp, "POSE", encoded_by_lcm(pose));
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   RunFileOptions options_;
   Scene scene_ = scene_of(kOneBoxScene);
-  Exchange exchange_{scene_};
+  RequestHandler handler_{scene_};
   std::vector<std::uint8_t> log_;
   std::int64_t number_ = 0;
 };
@@ -113,14 +112,14 @@ TEST_F(ARunFile, LeavesOutRowsThatAreDamagedAndSaysWhich) {
                               "3000,1,0,0,0,1,0,0,0\n")
                               .value();
   EXPECT_EQ(run.bodies[0].recorded, 2);
-  EXPECT_EQ(run.troubles, (std::vector<std::string>{"line 3 is not 9 numbers: left out",
+  EXPECT_EQ(run.warnings, (std::vector<std::string>{"line 3 is not 9 numbers: left out",
                                                     "line 4 is not 9 numbers: left out"}));
 }
 
 TEST_F(ARunFile, IsRefusedWhereItHasNoPoses) {
-  const auto answers_alone = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
-  ASSERT_FALSE(answers_alone);
-  EXPECT_NE(answers_alone.error().message().find("px, py, pz"), std::string::npos);
+  const auto responses_alone = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
+  ASSERT_FALSE(responses_alone);
+  EXPECT_NE(responses_alone.error().message().find("px, py, pz"), std::string::npos);
   const auto of_another_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(of_another_scene);
   EXPECT_NE(of_another_scene.error().message().find("1 rows, none about a body of test scene"),
@@ -132,9 +131,9 @@ TEST_F(ARunFile, IsRefusedWhereItHasNoPoses) {
 
 TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
   for (std::int64_t seq = 0; seq < 10; ++seq) {
-    const Question question = question_at(seq, 0.1 * static_cast<double>(seq));
-    log_question(1'000'000 + 1'000 * seq, question);
-    log_answer(1'000'000 + 1'000 * seq + 250, question);
+    const WrenchRequest request = request_at(seq, 0.1 * static_cast<double>(seq));
+    log_request(1'000'000 + 1'000 * seq, request);
+    log_response(1'000'000 + 1'000 * seq + 250, request);
   }
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 10);
@@ -144,14 +143,14 @@ TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
 }
 
 TEST_F(ARunFile, ThatIsALogCountsARepeatedQuestionOnceAndComputesAnAnswerThatNeverCame) {
-  const Question lost = question_at(0, 0.5);
-  const Question repeated = question_at(1, 0.0);
-  log_question(0, lost);
-  log_question(1'000, repeated);
-  log_question(2'000, repeated);
-  log_answer(2'100, repeated);
-  log_answer(2'200, repeated);
-  log_question(2'300, repeated);
+  const WrenchRequest lost = request_at(0, 0.5);
+  const WrenchRequest repeated = request_at(1, 0.0);
+  log_request(0, lost);
+  log_request(1'000, repeated);
+  log_request(2'000, repeated);
+  log_response(2'100, repeated);
+  log_response(2'200, repeated);
+  log_request(2'300, repeated);
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 1);
@@ -164,9 +163,9 @@ TEST_F(ARunFile, ThatIsALogCountsARepeatedQuestionOnceAndComputesAnAnswerThatNev
 TEST_F(ARunFile, PutsASessionThatStartsItsClockAgainBehindTheOneBefore) {
   for (const std::int64_t session : {1, 2}) {
     for (std::int64_t seq = 0; seq < 3; ++seq) {
-      const Question question = question_at(seq, 0.0, session);
-      log_question(1'000 * seq, question);
-      log_answer(1'000 * seq + 100, question);
+      const WrenchRequest request = request_at(seq, 0.0, session);
+      log_request(1'000 * seq, request);
+      log_response(1'000 * seq + 100, request);
     }
   }
   const RecordedRun run = read_log().value();
@@ -178,12 +177,12 @@ TEST_F(ARunFile, PutsASessionThatStartsItsClockAgainBehindTheOneBefore) {
 }
 
 TEST_F(ARunFile, KeepsItsOrderWhereAnswersNeverCame) {
-  // Nobody answered the first session; of the second every other question.
-  for (std::int64_t seq = 0; seq < 100; ++seq) log_question(1'000 * seq, question_at(seq, 1.0, 11));
+  // Nobody answered the first session; of the second every other request.
+  for (std::int64_t seq = 0; seq < 100; ++seq) log_request(1'000 * seq, request_at(seq, 1.0, 11));
   for (std::int64_t seq = 0; seq < 100; ++seq) {
-    const Question question = question_at(seq, -1.0, 22);
-    log_question(200'000 + 1'000 * seq, question);
-    if (seq % 2 == 0) log_answer(200'000 + 1'000 * seq + 100, question);
+    const WrenchRequest request = request_at(seq, -1.0, 22);
+    log_request(200'000 + 1'000 * seq, request);
+    if (seq % 2 == 0) log_response(200'000 + 1'000 * seq + 100, request);
   }
   const RecordedRun run = read_log().value();
   const std::vector<Row>& rows = run.bodies[0].rows;
@@ -196,18 +195,18 @@ TEST_F(ARunFile, KeepsItsOrderWhereAnswersNeverCame) {
 
 TEST_F(ARunFile, OfTwoAskersAtOnceOrOfOneThatUsesItsSessionAgainIsAsLongAsTheyAre) {
   for (std::int64_t i = 0; i < 100; ++i) {
-    Question one = question_at(i, 0.0, 1);
-    Question other = question_at(i, 0.0, 2);
+    WrenchRequest one = request_at(i, 0.0, 1);
+    WrenchRequest other = request_at(i, 0.0, 2);
     one.key.utime += 7;
-    log_question(1'000 * i, other);
-    log_question(1'000 * i + 7, one);
+    log_request(1'000 * i, other);
+    log_request(1'000 * i + 7, one);
   }
   EXPECT_NEAR(read_log().value().bodies[0].rows.back()[kTime], 0.099, 1e-4);
   log_.clear();
   for (const std::int64_t start : {0, 5'000'000}) {
     for (std::int64_t seq = 0; seq < 3'000; ++seq) {
-      log_question(start + 1'000 * seq, question_at(seq, 0.0));
-      log_answer(start + 1'000 * seq, question_at(seq, 0.0));
+      log_request(start + 1'000 * seq, request_at(seq, 0.0));
+      log_response(start + 1'000 * seq, request_at(seq, 0.0));
     }
   }
   const RecordedRun run = read_log().value();
@@ -221,10 +220,10 @@ TEST_F(ARunFile, WithClocksThatHaveNothingInCommonStaysAsLongAsItWas) {
   for (std::int64_t i = 0; i < 100; ++i) {
     for (const auto& [body, clock] :
          {std::pair(kBox, kLongAgo), {kFastBox, std::int64_t{0}}, {kOffsetBox, kUnixTime}}) {
-      Question question = question_at(i, 0.0, body);
-      question.key.utime += clock;
-      question.bodies[0].body_id = body;
-      log_question(1'000 * i, question);
+      WrenchRequest request = request_at(i, 0.0, body);
+      request.key.utime += clock;
+      request.bodies[0].body_id = body;
+      log_request(1'000 * i, request);
     }
   }
   const RecordedRun run = read_log().value();
@@ -244,7 +243,7 @@ TEST_F(ARunFile, OfWindowsIsReadLikeAnyOther) {
                               "1000,1,0,0,1,1,0,0,0\r\n")
                               .value();
   EXPECT_EQ(run.bodies[0].recorded, 2);
-  EXPECT_TRUE(run.troubles.empty());
+  EXPECT_TRUE(run.warnings.empty());
 }
 
 TEST_F(ARunFile, SaysWhatItsPosesLetTheServiceSkip) {
@@ -256,7 +255,7 @@ TEST_F(ARunFile, SaysWhatItsPosesLetTheServiceSkip) {
                               "3000,1,0,0,0,0,0,0,0\n"   // no turn at all
                               "4000,1,0,0,-50,1,0,0,0\n")
                               .value();
-  const SkippedRows& skipped = run.bodies[0].skipped;
+  const EvaluationCounts& skipped = run.bodies[0].skipped;
   EXPECT_EQ(skipped.unchanged, 1);
   EXPECT_EQ(skipped.dry, 1);
   EXPECT_EQ(skipped.refused, 1);
@@ -266,30 +265,30 @@ TEST_F(ARunFile, SaysWhatItsPosesLetTheServiceSkip) {
 
 TEST_F(ARunFile, HasTheEnergyOfALogWhereTheSceneSaysTheMass) {
   scene_ = scene_of(kOneBoxScene + "[body.client]\ndensity = 500.0\n");
-  Question falling = question_at(0, 10.0);
+  WrenchRequest falling = request_at(0, 10.0);
   falling.bodies[0].linear_velocity = {0.0, 0.0, -2.0};
-  log_question(0, falling);
+  log_request(0, falling);
   const double mass = 24.0 * 500.0;
   EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
 }
 
 TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
   options_.poses = {.channels = {{"POSE", 1, ""}}};
-  PoseQuestions asked(options_.poses, 70);
+  PoseRequestAdapter asked(options_.poses, 70);
   for (std::int64_t i = 0; i < 10; ++i) {
     const bot_core::pose_t pose = upright_pose(0.1 * static_cast<double>(i), 5'000'000 + 1'000 * i);
     log_pose(1'000 * i, pose);
-    const std::vector<std::uint8_t> question = [&] {
-      const auto bytes = asked.question(0, encoded_by_lcm(pose));
+    const std::vector<std::uint8_t> request = [&] {
+      const auto bytes = asked.request(0, encoded_by_lcm(pose));
       return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
     }();
-    log(1'000 * i + 250, kWrenchesChannel, exchange_.answer(question));
+    log(1'000 * i + 250, kWrenchesChannel, handler_.handle(request));
   }
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 10);
   EXPECT_EQ(run.computed, 0);
   EXPECT_EQ(run.sessions, 1);
-  EXPECT_TRUE(run.troubles.empty());
+  EXPECT_TRUE(run.warnings.empty());
   for (const Row& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
   EXPECT_DOUBLE_EQ(run.bodies[0].rows[5][kTime], 5e-3);
   EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
@@ -313,7 +312,7 @@ TEST_F(ARunFile, OfBotCorePosesComputesWhatNobodyAnsweredAndTheRestOfForcesAndTo
       << "as recorded";
   EXPECT_NEAR(answered[kVolume], 12.0, 1e-9) << "of the scene's box";
   EXPECT_NEAR(answered[kRoundTrip], 400e-6, 1e-12);
-  EXPECT_EQ(run.troubles,
+  EXPECT_EQ(run.warnings,
             (std::vector<std::string>{"a pose was left out: fingerprint of another type or version"}));
 }
 
@@ -374,7 +373,7 @@ class ARunOfManyBodies : public testing::Test {
     return read_run(directory_.write("run.csv", text), scene_, 1'000, options_);
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   RunFileOptions options_;
   Scene scene_ = scene_of(many_bodies());
 };

@@ -39,7 +39,7 @@ class RunningView {
     return command_of(std::move(options));
   }
 
-  ScratchDirectory directory_;
+  TempDir directory_;
   ChildProcess child_;
   std::uint16_t port_ = 0;
 };

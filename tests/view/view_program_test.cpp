@@ -52,15 +52,15 @@ TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
       run_to_end(client(service.path("scene.toml"), {"--duration", "0.05"}), kWaitTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   RawLcmSocket socket;
-  ask(socket, one_body(7, 1, 0.0));
+  send_request(socket, one_body(7, 1, 0.0));
   const json snapshot = snapshot_where(events, [](const json& now) {
-    return now["counts"]["answers"].get<int>() > 50 && now["bodies"].size() == 2 &&
+    return now["counts"]["responses"].get<int>() > 50 && now["bodies"].size() == 2 &&
            !now["bodies"][0]["f"].is_null();
   });
   const json& counts = snapshot["counts"];
-  EXPECT_EQ(counts["answers"], counts["questions"]);
-  EXPECT_EQ(counts["answers_without_question"], 0);
-  EXPECT_EQ(counts["questions_missed"], 0);
+  EXPECT_EQ(counts["responses"], counts["requests"]);
+  EXPECT_EQ(counts["responses_without_request"], 0);
+  EXPECT_EQ(counts["requests_missed"], 0);
   EXPECT_EQ(snapshot["service"], "answering");
   EXPECT_GT(snapshot["latency"]["p50"].get<double>(), 0.0);
   EXPECT_LE(snapshot["latency"]["p50"].get<double>(), snapshot["latency"]["max"].get<double>());
@@ -104,7 +104,7 @@ TEST(View, SaysThatAServiceWhichStandsStillDoesNotAnswer) {
   snapshot_where(events, [](const json& now) { return now["service"] == "waiting"; });
   service.stop();
   auto ask_again = [&socket, seq = 0](const json& now) mutable {
-    ask(socket, one_body(7, ++seq, 0.0));
+    send_request(socket, one_body(7, ++seq, 0.0));
     return now["service"] == "not answering";
   };
   snapshot_where(events, ask_again);
@@ -118,11 +118,11 @@ TEST(View, SeesTwoServicesOnOneBusAndTheAnswersThatComeTwice) {
   RunningService one({}, kScene);
   RunningService other({}, kScene);
   RawLcmSocket socket;
-  ask(socket, one_body(7, 1, 0.0));
+  send_request(socket, one_body(7, 1, 0.0));
   const json snapshot = snapshot_where(events, [](const json& now) {
-    return now["services"].size() == 2 && now["counts"]["answers_repeated"].get<int>() > 0;
+    return now["services"].size() == 2 && now["counts"]["responses_repeated"].get<int>() > 0;
   });
-  EXPECT_EQ(snapshot["counts"]["answers"], 1);
+  EXPECT_EQ(snapshot["counts"]["responses"], 1);
 }
 
 TEST(View, ListensToChannelsByOtherNames) {
@@ -131,10 +131,11 @@ TEST(View, ListensToChannelsByOtherNames) {
   RunningService service({"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"},
                          kScene);
   RawLcmSocket socket;
-  ask(socket, one_body(7, 1, 0.0));  // on the channel that it does not hear
+  send_request(socket, one_body(7, 1, 0.0));  // on the channel that it does not hear
   socket.send("S.*", encode_states(one_body(8, 1, 0.0)));
-  const json snapshot = snapshot_where(events, [](const json& now) { return now["counts"]["answers"] == 1; });
-  EXPECT_EQ(snapshot["counts"]["questions"], 1);
+  const json snapshot =
+      snapshot_where(events, [](const json& now) { return now["counts"]["responses"] == 1; });
+  EXPECT_EQ(snapshot["counts"]["requests"], 1);
 }
 
 TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
@@ -150,9 +151,9 @@ TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
     socket.send("HULL_TRUTH", encoded_by_lcm(upright_pose(1.0, 300 + i)));
   }
   const json snapshot =
-      snapshot_where(events, [](const json& now) { return now["counts"]["answers"] == 30; });
-  EXPECT_EQ(snapshot["counts"]["answers_without_question"], 0);
-  EXPECT_EQ(snapshot["counts"]["questions_missed"], 0);
+      snapshot_where(events, [](const json& now) { return now["counts"]["responses"] == 30; });
+  EXPECT_EQ(snapshot["counts"]["responses_without_request"], 0);
+  EXPECT_EQ(snapshot["counts"]["requests_missed"], 0);
   EXPECT_EQ(snapshot["service"], "answering");
   EXPECT_GT(snapshot["latency"]["p50"].get<double>(), 0.0);
   EXPECT_EQ(snapshot["bodies"][0]["p"], json({0.0, 0.0, 0.0}));
@@ -200,7 +201,7 @@ std::set<int> policies_of(const ChildProcess& process) {
 }
 
 TEST(View, RunsWhereAProcessorWouldBeIdleUnlessToldOtherwise) {
-  const ScratchDirectory directory;
+  const TempDir directory;
   ChildProcess view(
       command_of({BUOYANCY_VIEW, "--scene", directory.write("scene.toml", kScene), "--port", "0"}));
   ASSERT_TRUE(view.wait_for_text("ready: ", kWaitTimeout)) << view.standard_error();
@@ -210,7 +211,7 @@ TEST(View, RunsWhereAProcessorWouldBeIdleUnlessToldOtherwise) {
 }
 
 TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
-  ScratchDirectory directory;
+  TempDir directory;
   const std::string scene = directory.write("scene.toml", kScene);
   const auto ended = [&](std::vector<std::string> options) {
     options.insert(options.begin(), BUOYANCY_VIEW);

@@ -1,4 +1,4 @@
-# Writes HEADER with the files FILES (separated by |) as text: page_files.h of page_text.cpp.
+# Writes HEADER with the files FILES (separated by |) as text: page_files.h of page_assets.cpp.
 string(REPLACE "|" ";" files "${FILES}")
 set(text "// Written by embed_page.cmake from view/page.\n#pragma once\n\n#include <array>\n#include <string_view>\n\n")
 string(APPEND text "namespace buoyancy {\n\nstruct PageFile {\n  std::string_view name, text;\n};\n\n")

@@ -45,13 +45,13 @@ Expected<std::string> three_js(const std::filesystem::path& path) {
   if (!is_directory) text.assign(std::istreambuf_iterator<char>(file), {});
   const std::string subject = path.string();
   if (is_directory || !file.is_open() || file.bad()) {
-    return failure({subject, "cannot be read", "three.js as Debian installs it", "it is not installed",
-                    "apt-get install libjs-three, or --three FILE"});
+    return make_error({subject, "cannot be read", "three.js as Debian installs it", "it is not installed",
+                       "apt-get install libjs-three, or --three FILE"});
   }
   if (text.find("WebGLRenderer") == std::string::npos || text.find("</script") != std::string::npos) {
-    return failure({subject, "is not the three.js that a page can hold",
-                    "a classic script (three.min.js) that defines THREE", "another file of that name",
-                    "--three /usr/share/javascript/three/three.min.js"});
+    return make_error({subject, "is not the three.js that a page can hold",
+                       "a classic script (three.min.js) that defines THREE", "another file of that name",
+                       "--three /usr/share/javascript/three/three.min.js"});
   }
   return text;
 }

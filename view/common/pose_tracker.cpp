@@ -6,7 +6,7 @@
 namespace buoyancy {
 namespace {
 
-QuestionKey key_of_pose(std::int32_t body_id, std::int64_t utime) {
+RequestId key_of_pose(std::int32_t body_id, std::int64_t utime) {
   constexpr std::int64_t kSessionOfBodyZero =
       std::numeric_limits<std::int64_t>::min() + (std::int64_t{1} << 32U);
   return {.utime = utime, .session_id = kSessionOfBodyZero + body_id, .seq = utime};
@@ -14,15 +14,15 @@ QuestionKey key_of_pose(std::int32_t body_id, std::int64_t utime) {
 
 }  // namespace
 
-tl::expected<Question, Rejection> HeardPoses::question(std::size_t index, Bytes pose) const {
-  const tl::expected<PosedBody, Rejection> posed = posed_body(poses_, index, pose);
+tl::expected<WrenchRequest, DecodeError> PoseTracker::request(std::size_t index, Bytes pose) const {
+  const tl::expected<StampedBodyState, DecodeError> posed = decode_pose(poses_, index, pose);
   if (!posed) return tl::unexpected(posed.error());
-  return Question{.key = key_of_pose(posed->state.body_id, posed->utime),
-                  .lead_time = poses_.lead_time,
-                  .bodies = {posed->state}};
+  return WrenchRequest{.key = key_of_pose(posed->state.body_id, posed->utime),
+                       .lead_time = poses_.lead_time,
+                       .bodies = {posed->state}};
 }
 
-std::optional<QuestionKey> HeardPoses::asked_by_pose(std::int32_t body_id, std::int64_t utime) const {
+std::optional<RequestId> PoseTracker::request_id_for_pose(std::int32_t body_id, std::int64_t utime) const {
   if (std::ranges::find(poses_.channels, body_id, &PoseChannel::body_id) == poses_.channels.end()) {
     return std::nullopt;
   }

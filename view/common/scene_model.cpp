@@ -36,18 +36,18 @@ Drawing whole_drawing(const TriangleMesh& mesh) {
   return drawing;
 }
 
-void reduce(Drawing& drawing, std::size_t most_triangles) {
-  constexpr float kLargestError = 0.02F;  // of the mesh's extent
+void reduce(Drawing& drawing, std::size_t max_triangles) {
+  constexpr float kMaxError = 0.02F;  // of the mesh's extent
   constexpr std::size_t kVertexBytes = 3 * sizeof(float);
   const std::size_t vertices = drawing.positions.size() / 3;
-  const std::size_t most_indices = 3 * most_triangles;
+  const std::size_t max_indices = 3 * max_triangles;
   std::vector<std::uint32_t> reduced(drawing.indices.size());
   std::size_t count =
       meshopt_simplify(reduced.data(), drawing.indices.data(), drawing.indices.size(),
-                       drawing.positions.data(), vertices, kVertexBytes, most_indices, kLargestError);
-  if (count > most_indices) {  // it keeps the topology, which a soup of small parts does not let it do
+                       drawing.positions.data(), vertices, kVertexBytes, max_indices, kMaxError);
+  if (count > max_indices) {  // it keeps the topology, which a soup of small parts does not let it do
     count = meshopt_simplifySloppy(reduced.data(), drawing.indices.data(), drawing.indices.size(),
-                                   drawing.positions.data(), vertices, kVertexBytes, most_indices, 1.0F);
+                                   drawing.positions.data(), vertices, kVertexBytes, max_indices, 1.0F);
   }
   reduced.resize(count);
   drawing.indices = std::move(reduced);
@@ -61,17 +61,17 @@ void reduce(Drawing& drawing, std::size_t most_triangles) {
 
 // The most triangles that each mesh may show so that all together stay within the budget and the small ones
 // whole.
-std::size_t largest_part(const Scene& scene, std::size_t most_triangles) {
+std::size_t largest_part(const Scene& scene, std::size_t max_triangles) {
   std::vector<std::size_t> sizes;
   for (const auto& prepared : scene.meshes()) sizes.push_back(prepared->mesh.surface.triangles.size());
   std::ranges::sort(sizes);
-  std::size_t left = most_triangles;
+  std::size_t left = max_triangles;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const std::size_t part = left / (sizes.size() - i);
     if (sizes[i] > part) return part;
     left -= sizes[i];
   }
-  return most_triangles;
+  return max_triangles;
 }
 
 std::string file_name_of(const Json& path) {
@@ -91,7 +91,7 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
     const auto& center = scene.bodies()[i].center_of_mass_B;
     model["bodies"][i]["center_of_mass"] = center ? array_of(*center) : Json(nullptr);
   }
-  const std::size_t part = std::max<std::size_t>(4, largest_part(scene, options.most_triangles));
+  const std::size_t part = std::max<std::size_t>(4, largest_part(scene, options.max_triangles));
   for (std::size_t i = 0; i < scene.meshes().size(); ++i) {
     const HydrostaticMesh& mesh = scene.meshes()[i]->mesh;
     Drawing drawing = whole_drawing(mesh.surface);

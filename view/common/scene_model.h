@@ -10,7 +10,7 @@
 namespace buoyancy {
 
 struct SceneModelOptions {
-  std::size_t most_triangles =
+  std::size_t max_triangles =
       60'000;  // of all meshes together; shared among those that have more than their part
 };
 

@@ -9,18 +9,18 @@
 namespace buoyancy {
 namespace {
 
-std::optional<WatchedBody::Pose> pose_of(const BodyState& state) {
-  constexpr double kMostNormError = 1e-3;  // as the service has it
+std::optional<BodyMonitor::Pose> pose_of(const BodyState& state) {
+  constexpr double kMaxNormError = 1e-3;  // as the service has it
   if (!all_finite(state.position)) return std::nullopt;
   double norm = 0.0;
   for (const double part : state.quaternion_wxyz) norm = std::hypot(norm, part);
-  if (!(std::abs(norm - 1.0) <= kMostNormError)) return std::nullopt;
-  return WatchedBody::Pose{state.position, state.quaternion_wxyz};
+  if (!(std::abs(norm - 1.0) <= kMaxNormError)) return std::nullopt;
+  return BodyMonitor::Pose{state.position, state.quaternion_wxyz};
 }
 
 }  // namespace
 
-std::string_view name(ServiceState state) {
+std::string_view to_string(ServiceState state) {
   switch (state) {
     case ServiceState::kAnswering:
       return "answering";
@@ -28,55 +28,55 @@ std::string_view name(ServiceState state) {
       return "waiting";
     case ServiceState::kNotAnswering:
       return "not answering";
-    case ServiceState::kSilent:
+    case ServiceState::kOffline:
       return "silent";
   }
   return "unknown";
 }
 
-BusWatch::BusWatch(const Scene& scene, double now, PoseChannels poses)
+BusMonitor::BusMonitor(const Scene& scene, double now, PoseChannels poses)
     : scene_(&scene), poses_(std::move(poses)), second_begun_(now) {
   for (const Body& body : scene.bodies()) {
-    WatchedBody& watched = bodies_.emplace_back();
+    BodyMonitor& watched = bodies_.emplace_back();
     watched.id = body.id;
   }
 }
 
 template <typename Message>
-bool BusWatch::take(Bytes bytes, Message& message) {
-  const std::optional<Rejection> rejection = decode(bytes, message);
+bool BusMonitor::decode_or_count(Bytes bytes, Message& message) {
+  const std::optional<DecodeError> rejection = decode(bytes, message);
   if (rejection) count_malformed(*rejection);
   return !rejection;
 }
 
-void BusWatch::count_malformed(Rejection cause) {
+void BusMonitor::count_malformed(DecodeError cause) {
   ++counts_.malformed[static_cast<std::size_t>(cause)];
 }
 
-WatchedBody* BusWatch::find(std::int32_t id) {
+BodyMonitor* BusMonitor::find(std::int32_t id) {
   const std::optional<std::size_t> index = scene_->index_of(id);
   return index ? &bodies_[*index] : nullptr;
 }
 
-void BusWatch::hear_question(Bytes bytes, HeardAt arrival) {
-  if (take(bytes, question_)) note_question(question_, arrival, QuestionLedger::Seq::kCounted);
+void BusMonitor::on_request(Bytes bytes, ArrivalTime arrival) {
+  if (decode_or_count(bytes, request_)) note_request(request_, arrival, RequestTracker::Seq::kConsecutive);
 }
 
-void BusWatch::hear_pose(std::size_t index, Bytes bytes, HeardAt arrival) {
-  if (const auto question = poses_.question(index, bytes)) {
-    note_question(*question, arrival, QuestionLedger::Seq::kAnyNumber);
+void BusMonitor::on_pose(std::size_t index, Bytes bytes, ArrivalTime arrival) {
+  if (const auto request = poses_.request(index, bytes)) {
+    note_request(*request, arrival, RequestTracker::Seq::kArbitrary);
   } else {
-    count_malformed(question.error());
+    count_malformed(request.error());
   }
 }
 
-void BusWatch::note_question(const Question& question, HeardAt arrival, QuestionLedger::Seq seq) {
-  ledger_.hear_question(question.key, arrival.utime, arrival.now, seq);
-  const bool asked_lately = question_heard_ && *question_heard_ + kStatusPatience >= arrival.now;
+void BusMonitor::note_request(const WrenchRequest& request, ArrivalTime arrival, RequestTracker::Seq seq) {
+  tracker_.on_request(request.key, arrival.utime, arrival.now, seq);
+  const bool asked_lately = request_received_ && *request_received_ + kStatusTimeout >= arrival.now;
   if (!waiting_since_ || !asked_lately) waiting_since_ = arrival.now;
-  question_heard_ = arrival.now;
-  for (const BodyState& state : question.bodies) {
-    WatchedBody* const body = find(state.body_id);
+  request_received_ = arrival.now;
+  for (const BodyState& state : request.bodies) {
+    BodyMonitor* const body = find(state.body_id);
     if (body == nullptr) {
       ++counts_.bodies_not_in_scene;
       continue;
@@ -86,58 +86,58 @@ void BusWatch::note_question(const Question& question, HeardAt arrival, Question
   }
 }
 
-void BusWatch::hear_answer(Bytes bytes, HeardAt arrival) {
-  if (!take(bytes, answer_)) return;
-  QuestionKey key = answer_.key;
-  if (answer_.bodies.size() == 1 && !ledger_.remembers(key)) {
-    key = poses_.asked_by_pose(answer_.bodies.front().body_id, key.utime).value_or(key);
+void BusMonitor::on_response(Bytes bytes, ArrivalTime arrival) {
+  if (!decode_or_count(bytes, response_)) return;
+  RequestId key = response_.key;
+  if (response_.bodies.size() == 1 && !tracker_.remembers(key)) {
+    key = poses_.request_id_for_pose(response_.bodies.front().body_id, key.utime).value_or(key);
   }
-  note_answer(key, arrival);
-  for (const BodyWrench& wrench : answer_.bodies) {
-    WatchedBody* const body = find(wrench.body_id);
+  note_response(key, arrival);
+  for (const BodyWrench& wrench : response_.bodies) {
+    BodyMonitor* const body = find(wrench.body_id);
     if (body == nullptr) continue;
     body->wrench = wrench;
     body->answered = arrival.now;
-    body->says_force_and_torque_alone = false;
+    body->force_torque_only = false;
   }
 }
 
-void BusWatch::hear_force_torque(std::size_t index, Bytes bytes, HeardAt arrival) {
+void BusMonitor::on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arrival) {
   const auto heard = decode_six_axis_force_torque(bytes);
   if (!heard) return count_malformed(heard.error());
-  const std::int32_t body_id = poses_.asked_on().channels[index].body_id;
-  note_answer(poses_.asked_by_pose(body_id, heard->utime).value(), arrival);
-  WatchedBody* const body = find(body_id);
+  const std::int32_t body_id = poses_.channels().channels[index].body_id;
+  note_response(poses_.request_id_for_pose(body_id, heard->utime).value(), arrival);
+  BodyMonitor* const body = find(body_id);
   if (body == nullptr) return;
   body->wrench = BodyWrench{.body_id = body_id, .force = heard->force, .torque = heard->torque};
   body->answered = arrival.now;
-  body->says_force_and_torque_alone = true;
+  body->force_torque_only = true;
 }
 
-void BusWatch::note_answer(const QuestionKey& key, HeardAt arrival) {
-  answer_heard_ = arrival.now;
+void BusMonitor::note_response(const RequestId& key, ArrivalTime arrival) {
+  response_received_ = arrival.now;
   waiting_since_.reset();
-  if (const auto latency = ledger_.hear_answer(key, arrival.utime)) {
+  if (const auto latency = tracker_.on_response(key, arrival.utime)) {
     latency_.add(*latency);
     latency_of_second_.add(*latency);
   }
 }
 
-void BusWatch::hear_hydrostatics(Bytes bytes) {
-  if (!take(bytes, hydrostatics_)) return;
+void BusMonitor::on_hydrostatics(Bytes bytes) {
+  if (!decode_or_count(bytes, hydrostatics_)) return;
   for (const BodyHydrostatics& heard : hydrostatics_.bodies) {
-    WatchedBody* const body = find(heard.body_id);
+    BodyMonitor* const body = find(heard.body_id);
     if (body == nullptr) continue;
     body->metacenters.reset();
     if (heard.status != BodyStatus::kOk || !std::ranges::all_of(heard.metacenters, all_finite<3>)) continue;
-    body->metacenters = WatchedBody::Metacenters{heard.metacenters, heard.metacentric_heights};
+    body->metacenters = BodyMonitor::Metacenters{heard.metacenters, heard.metacentric_heights};
   }
 }
 
-void BusWatch::hear_status(Bytes bytes, double now) {
-  if (!take(bytes, incoming_status_)) return;
+void BusMonitor::on_status(Bytes bytes, double now) {
+  if (!decode_or_count(bytes, incoming_status_)) return;
   ++counts_.statuses;
-  status_heard_ = now;
+  status_received_ = now;
   const std::int64_t id = incoming_status_.instance_id;
   if (status_) {
     std::swap(*status_, incoming_status_);
@@ -150,22 +150,22 @@ void BusWatch::hear_status(Bytes bytes, double now) {
     return;
   }
   ++counts_.services_started;
-  if (services_.size() == kMostServices)
+  if (services_.size() == kMaxServices)
     services_.erase(std::ranges::min_element(services_, {}, &Service::heard));
   services_.push_back({id, now});
 }
 
-void BusWatch::note_losses(const ReceiveLosses& losses) {
+void BusMonitor::record_drops(const DropCounts& losses) {
   counts_.losses = losses;
 }
 
-void BusWatch::pass_time(double now) {
-  ledger_.give_up_old(now);
+void BusMonitor::tick(double now) {
+  tracker_.expire(now);
   if (now < second_begun_ + 1.0) return;
-  const QuestionLedger::Counts& counted = ledger_.counts();
+  const RequestTracker::Counts& counted = tracker_.counts();
   seconds_.push_back({.number = second_number_++,
-                      .questions = counted.questions - at_second_.questions,
-                      .answers = counted.answers - at_second_.answers,
+                      .requests = counted.requests - at_second_.requests,
+                      .responses = counted.responses - at_second_.responses,
                       .unanswered = counted.unanswered - at_second_.unanswered,
                       .latency = latency_of_second_.percentiles()});
   if (seconds_.size() > kSecondsKept) seconds_.pop_front();
@@ -175,23 +175,23 @@ void BusWatch::pass_time(double now) {
       now < second_begun_ + 2.0 ? second_begun_ + 1.0 : now;  // after a stop: not one per second missed
 }
 
-std::vector<std::int64_t> BusWatch::services(double now) const {
+std::vector<std::int64_t> BusMonitor::services(double now) const {
   std::vector<std::int64_t> heard;
   for (const Service& service : services_) {
-    if (service.heard + kStatusPatience >= now) heard.push_back(service.instance_id);
+    if (service.heard + kStatusTimeout >= now) heard.push_back(service.instance_id);
   }
   return heard;
 }
 
-ServiceState BusWatch::service_state(double now) const {
+ServiceState BusMonitor::service_state(double now) const {
   const auto within = [now](std::optional<double> heard, double patience) {
     return heard && *heard + patience >= now;
   };
-  if (within(answer_heard_, kAnswerPatience)) return ServiceState::kAnswering;
-  if (!within(status_heard_, kStatusPatience)) return ServiceState::kSilent;
-  const bool waits_too_long = waiting_since_ && *waiting_since_ + kAnswerPatience < now;
-  return waits_too_long && within(question_heard_, kStatusPatience) ? ServiceState::kNotAnswering
-                                                                    : ServiceState::kWaiting;
+  if (within(response_received_, kResponseTimeout)) return ServiceState::kAnswering;
+  if (!within(status_received_, kStatusTimeout)) return ServiceState::kOffline;
+  const bool waits_too_long = waiting_since_ && *waiting_since_ + kResponseTimeout < now;
+  return waits_too_long && within(request_received_, kStatusTimeout) ? ServiceState::kNotAnswering
+                                                                     : ServiceState::kWaiting;
 }
 
 }  // namespace buoyancy

@@ -2,7 +2,7 @@
 // how long answers take, what was lost or malformed, which services there are and whether they still answer.
 //
 // Hears bytes and times and knows neither LCM nor a clock. Memory is bounded whatever arrives: by the scene,
-// by QuestionLedger, by kMostServices, and by the largest message that is heard.
+// by RequestTracker, by kMaxServices, and by the largest message that is heard.
 #pragma once
 
 #include <array>
@@ -27,13 +27,13 @@ namespace buoyancy {
 
 // When a message arrived, by two clocks: us since 1970 as the kernel stamped it, and s of a clock that never
 // jumps.
-struct HeardAt {
+struct ArrivalTime {
   std::int64_t utime = 0;
   double now = 0.0;
 };
 
 // The newest that was heard of one body.
-struct WatchedBody {
+struct BodyMonitor {
   struct Pose {
     std::array<double, 3> position;         // m, W; finite
     std::array<double, 4> quaternion_wxyz;  // its norm is within 1e-3 of 1
@@ -44,72 +44,71 @@ struct WatchedBody {
   };
   std::int32_t id = 0;
   std::optional<Pose> pose;          // the newest that could be one: a NaN moves nothing
-  std::optional<double> asked;       // s, when the newest question about it came
+  std::optional<double> asked;       // s, when the newest request about it came
   std::optional<double> answered;    // s, when the newest wrench came
   std::optional<BodyWrench> wrench;  // as answered, also where it is not OK
-  bool says_force_and_torque_alone =
-      false;  // wrench: it came as six_axis_force_torque_t, the rest is unknown
+  bool force_torque_only = false;    // wrench: it came as six_axis_force_torque_t, the rest is unknown
   std::optional<Metacenters> metacenters;
 
   // Is the wrench too old to belong to the pose that is shown?
-  bool answer_is_overdue(double patience) const { return asked && answered && *answered + patience < *asked; }
+  bool response_overdue(double patience) const { return asked && answered && *answered + patience < *asked; }
 };
 
-struct WatchedSecond {
+struct SecondStats {
   std::int64_t number = 0;  // counted from the start
-  std::int64_t questions = 0, answers = 0, unanswered = 0;
-  LatencyPercentiles latency;  // s; zeros where no question was answered
+  std::int64_t requests = 0, responses = 0, unanswered = 0;
+  LatencyPercentiles latency;  // s; zeros where no request was answered
 };
 
 enum class ServiceState {
-  kAnswering,     // questions and answers
+  kAnswering,     // requests and answers
   kWaiting,       // there is a service, and nobody asks
-  kNotAnswering,  // there is a service, and questions stay without an answer
-  kSilent,        // nothing is heard of a service
+  kNotAnswering,  // there is a service, and requests stay without a response
+  kOffline,       // nothing is heard of a service
 };
-std::string_view name(ServiceState state);  // "not answering"
+std::string_view to_string(ServiceState state);  // "not answering"
 
-class BusWatch {
+class BusMonitor {
  public:
-  static constexpr std::size_t kMostServices = 16;
+  static constexpr std::size_t kMaxServices = 16;
   static constexpr std::size_t kSecondsKept = 60;
-  static constexpr double kStatusPatience = 3.0;  // s; a status is due every second
-  static constexpr double kAnswerPatience =
-      1.0;  // s; without an answer for so long, a question waits too long
+  static constexpr double kStatusTimeout = 3.0;  // s; a status is due every second
+  static constexpr double kResponseTimeout =
+      1.0;  // s; without a response for so long, a request waits too long
 
   struct Counts {
-    std::array<std::int64_t, 4> malformed{};  // by Rejection
-    ReceiveLosses losses;
+    std::array<std::int64_t, 4> malformed{};  // by DecodeError
+    DropCounts losses;
     std::int64_t bodies_not_in_scene = 0;  // asked about
     std::int64_t statuses = 0;
     std::int64_t services_started = 0;  // another instance_id than those known; the first one too
   };
 
   // scene must live as long.
-  BusWatch(const Scene& scene, double now, PoseChannels poses = {});
+  BusMonitor(const Scene& scene, double now, PoseChannels poses = {});
 
-  void hear_question(Bytes bytes, HeardAt arrival);
-  void hear_answer(Bytes bytes, HeardAt arrival);
+  void on_request(Bytes bytes, ArrivalTime arrival);
+  void on_response(Bytes bytes, ArrivalTime arrival);
   // On the pose channel of this index; on its channel for force and torque.
-  void hear_pose(std::size_t index, Bytes bytes, HeardAt arrival);
-  void hear_force_torque(std::size_t index, Bytes bytes, HeardAt arrival);
-  void hear_hydrostatics(Bytes bytes);
-  void hear_status(Bytes bytes, double now);
-  void note_losses(const ReceiveLosses& losses);  // so far
+  void on_pose(std::size_t index, Bytes bytes, ArrivalTime arrival);
+  void on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arrival);
+  void on_hydrostatics(Bytes bytes);
+  void on_status(Bytes bytes, double now);
+  void record_drops(const DropCounts& losses);  // so far
 
   // To be called many times a second: gives up what waited too long, closes a second that is over.
-  void pass_time(double now);
+  void tick(double now);
 
-  const std::vector<WatchedBody>& bodies() const { return bodies_; }  // in the scene's order
+  const std::vector<BodyMonitor>& bodies() const { return bodies_; }  // in the scene's order
   const Counts& counts() const { return counts_; }
-  const QuestionLedger::Counts& ledger() const { return ledger_.counts(); }
-  LatencyPercentiles latency() const { return latency_.percentiles(); }     // s, since the start
-  const std::deque<WatchedSecond>& seconds() const { return seconds_; }     // the newest last
-  const std::optional<ServiceStatus>& status() const { return status_; }    // the newest
-  std::optional<double> status_heard() const { return status_heard_; }      // s
-  std::optional<double> answer_heard() const { return answer_heard_; }      // s, of the newest
-  std::optional<double> question_heard() const { return question_heard_; }  // s, of the newest
-  std::vector<std::int64_t> services(double now) const;  // instance_ids heard within kStatusPatience
+  const RequestTracker::Counts& tracker() const { return tracker_.counts(); }
+  LatencyPercentiles latency() const { return latency_.percentiles(); }           // s, since the start
+  const std::deque<SecondStats>& seconds() const { return seconds_; }             // the newest last
+  const std::optional<ServiceStatus>& status() const { return status_; }          // the newest
+  std::optional<double> status_received() const { return status_received_; }      // s
+  std::optional<double> response_received() const { return response_received_; }  // s, of the newest
+  std::optional<double> request_received() const { return request_received_; }    // s, of the newest
+  std::vector<std::int64_t> services(double now) const;  // instance_ids heard within kStatusTimeout
   ServiceState service_state(double now) const;
 
  private:
@@ -119,29 +118,29 @@ class BusWatch {
   };
 
   template <typename Message>
-  bool take(Bytes bytes, Message& message);
-  void count_malformed(Rejection cause);
-  WatchedBody* find(std::int32_t id);
-  void note_question(const Question& question, HeardAt arrival, QuestionLedger::Seq seq);
-  void note_answer(const QuestionKey& key, HeardAt arrival);
+  bool decode_or_count(Bytes bytes, Message& message);
+  void count_malformed(DecodeError cause);
+  BodyMonitor* find(std::int32_t id);
+  void note_request(const WrenchRequest& request, ArrivalTime arrival, RequestTracker::Seq seq);
+  void note_response(const RequestId& key, ArrivalTime arrival);
 
   const Scene* scene_;
-  HeardPoses poses_;
-  std::vector<WatchedBody> bodies_;
-  QuestionLedger ledger_;
+  PoseTracker poses_;
+  std::vector<BodyMonitor> bodies_;
+  RequestTracker tracker_;
   Counts counts_;
   LatencyHistogram latency_;
   LatencyHistogram latency_of_second_;
-  QuestionLedger::Counts at_second_;  // as counted when the second began
+  RequestTracker::Counts at_second_;  // as counted when the second began
   double second_begun_;
   std::int64_t second_number_ = 0;
-  std::deque<WatchedSecond> seconds_;
+  std::deque<SecondStats> seconds_;
   std::optional<ServiceStatus> status_;
-  std::optional<double> status_heard_, answer_heard_, question_heard_;
-  std::optional<double> waiting_since_;  // s, of the oldest question after the newest answer
+  std::optional<double> status_received_, response_received_, request_received_;
+  std::optional<double> waiting_since_;  // s, of the oldest request after the newest response
   std::vector<Service> services_;
-  Question question_;  // reused, as the next three
-  Answer answer_;
+  WrenchRequest request_;  // reused, as the next three
+  WrenchResponse response_;
   BodiesHydrostatics hydrostatics_;
   ServiceStatus incoming_status_;
 };

@@ -19,11 +19,11 @@ std::string model_text(const Scene& scene, const std::string& version) {
 
 }  // namespace
 
-Expected<std::vector<ServedText>> live_page(const Scene& scene, const std::string& version,
-                                            const std::filesystem::path& three) {
+Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::string& version,
+                                                const std::filesystem::path& three) {
   Expected<std::string> three_text = three_js(three);
   if (!three_text) return tl::unexpected(three_text.error());
-  std::vector<ServedText> texts{
+  std::vector<StaticResource> texts{
       {"/", "text/html; charset=utf-8", std::string(page_text("live.html"))},
       {"/model", "application/json", model_text(scene, version)},
       {"/three.js", "text/javascript; charset=utf-8", std::move(*three_text)},

@@ -13,7 +13,7 @@
 namespace buoyancy {
 
 // version: of this program, as shown. Errors: three.js cannot be read.
-Expected<std::vector<ServedText>> live_page(const Scene& scene, const std::string& version,
-                                            const std::filesystem::path& three);
+Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::string& version,
+                                                const std::filesystem::path& three);
 
 }  // namespace buoyancy

@@ -17,7 +17,7 @@ namespace {
 // How often the kernel's buffer is emptied. Where nobody allowed larger ones it holds 400 kB, which is 20
 // messages about a hundred bodies: what comes in 10 ms of a run at 1 kHz.
 constexpr double kListeningPeriod = 0.002;  // s
-constexpr int kMostAtOnce = 2'000;          // packets, so that a flood cannot keep the page from being told
+constexpr int kMaxAtOnce = 2'000;           // packets, so that a flood cannot keep the page from being told
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -34,13 +34,13 @@ timespec to_timespec(double seconds) {
 
 }  // namespace
 
-void give_way_to_others() {
+void use_idle_scheduling() {
   const sched_param none{};
   ::sched_setscheduler(0, SCHED_IDLE, &none);
 }
 
 LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route> routes, PoseChannels poses,
-                   SnapshotHub& hub)
+                   SnapshotBroadcaster& hub)
     : receiver_(std::move(receiver)),
       routes_(std::move(routes)),
       hub_(&hub),
@@ -49,19 +49,20 @@ LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route>
       watch_(scene, start_, std::move(poses)) {}
 
 Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url,
-                                  const WatchedChannels& channels, SnapshotHub& hub) {
+                                  const WatchedChannels& channels, SnapshotBroadcaster& hub) {
   Expected<UdpmReceiver> receiver = UdpmReceiver::open(lcm_url);
   if (!receiver) return tl::unexpected(receiver.error());
-  std::vector<std::pair<std::string, Route>> named{{channels.states, {Carries::kQuestions}},
-                                                   {channels.wrenches, {Carries::kAnswers}},
-                                                   {channels.hydrostatics, {Carries::kHydrostatics}},
-                                                   {channels.status, {Carries::kStatus}}};
-  std::set<std::string> force_torques;  // several channels with poses of one body share its answers' channel
+  std::vector<std::pair<std::string, Route>> named{{channels.states, {MessageKind::kRequests}},
+                                                   {channels.wrenches, {MessageKind::kResponses}},
+                                                   {channels.hydrostatics, {MessageKind::kHydrostatics}},
+                                                   {channels.status, {MessageKind::kStatus}}};
+  std::set<std::string>
+      force_torques;  // several channels with poses of one body share its responses' channel
   for (std::size_t i = 0; i < channels.poses.channels.size(); ++i) {
     const PoseChannel& pose = channels.poses.channels[i];
-    named.emplace_back(pose.channel, Route{Carries::kPoses, i});
+    named.emplace_back(pose.channel, Route{MessageKind::kPoses, i});
     if (!pose.force_torque_channel.empty() && force_torques.insert(pose.force_torque_channel).second) {
-      named.emplace_back(pose.force_torque_channel, Route{Carries::kForceTorques, i});
+      named.emplace_back(pose.force_torque_channel, Route{MessageKind::kForceTorques, i});
     }
   }
   std::vector<Route> routes;
@@ -73,15 +74,15 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
   return LiveView(scene, std::move(*receiver), std::move(routes), channels.poses, hub);
 }
 
-void LiveView::run(const TerminationSignals& termination, const std::function<bool()>& goes_on) {
+void LiveView::run(const TerminationSignals& termination, const std::function<bool()>& keep_running) {
   constexpr double kPeriod = 1.0 / kSnapshotsPerSecond;
   const timespec sleep = to_timespec(kListeningPeriod);
   double next = seconds_now();
-  while (goes_on()) {
+  while (keep_running()) {
     now_ = seconds_now();
     take_in();
     if (now_ >= next) {
-      watch_.pass_time(now_);
+      watch_.tick(now_);
       if (hub_->listeners() > 0) publish();
       // On time again, not faster for a while, after the machine had no time for us.
       next = std::max(next + kPeriod, now_);
@@ -92,28 +93,28 @@ void LiveView::run(const TerminationSignals& termination, const std::function<bo
 }
 
 void LiveView::take_in() {
-  for (int i = 0; i < kMostAtOnce; ++i) {
-    const auto message = receiver_.take(kMostAtOnce);
+  for (int i = 0; i < kMaxAtOnce; ++i) {
+    const auto message = receiver_.receive(kMaxAtOnce);
     if (!message) break;
     hear(routes_[message->channel], message->payload, {message->arrived, now_});
   }
-  watch_.note_losses(receiver_.losses());
+  watch_.record_drops(receiver_.drop_counts());
 }
 
-void LiveView::hear(const Route& route, Bytes bytes, HeardAt arrival) {
+void LiveView::hear(const Route& route, Bytes bytes, ArrivalTime arrival) {
   switch (route.carries) {
-    case Carries::kQuestions:
-      return watch_.hear_question(bytes, arrival);
-    case Carries::kAnswers:
-      return watch_.hear_answer(bytes, arrival);
-    case Carries::kHydrostatics:
-      return watch_.hear_hydrostatics(bytes);
-    case Carries::kStatus:
-      return watch_.hear_status(bytes, arrival.now);
-    case Carries::kPoses:
-      return watch_.hear_pose(route.index, bytes, arrival);
-    case Carries::kForceTorques:
-      return watch_.hear_force_torque(route.index, bytes, arrival);
+    case MessageKind::kRequests:
+      return watch_.on_request(bytes, arrival);
+    case MessageKind::kResponses:
+      return watch_.on_response(bytes, arrival);
+    case MessageKind::kHydrostatics:
+      return watch_.on_hydrostatics(bytes);
+    case MessageKind::kStatus:
+      return watch_.on_status(bytes, arrival.now);
+    case MessageKind::kPoses:
+      return watch_.on_pose(route.index, bytes, arrival);
+    case MessageKind::kForceTorques:
+      return watch_.on_force_torque(route.index, bytes, arrival);
   }
 }
 

@@ -2,8 +2,8 @@
 // somebody looks: one thread.
 //
 // It must not slow down what it looks at: messages do not wake it (UdpmReceiver), and it runs where a
-// processor has nothing better to do (give_way_to_others()). A machine that never has, shows fewer snapshots,
-// and packets that the kernel had to drop.
+// processor has nothing better to do (use_idle_scheduling()). A machine that never has, shows fewer
+// snapshots, and packets that the kernel had to drop.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ struct WatchedChannels {
 };
 
 // This thread, and those that it starts from here on, run only while a processor would otherwise be idle.
-void give_way_to_others();
+void use_idle_scheduling();
 
 class LiveView {
  public:
@@ -38,31 +38,31 @@ class LiveView {
   // scene and hub must live as long. Listens from here on. Errors: as UdpmReceiver::open, and two channels of
   // one name.
   static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
-                                 const WatchedChannels& channels, SnapshotHub& hub);
+                                 const WatchedChannels& channels, SnapshotBroadcaster& hub);
 
-  // Until a signal of termination comes or goes_on says no; once.
-  void run(const TerminationSignals& termination, const std::function<bool()>& goes_on);
+  // Until a signal of termination comes or keep_running says no; once.
+  void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
  private:
   // What a channel of the receiver carries.
-  enum class Carries { kQuestions, kAnswers, kHydrostatics, kStatus, kPoses, kForceTorques };
+  enum class MessageKind { kRequests, kResponses, kHydrostatics, kStatus, kPoses, kForceTorques };
   struct Route {
-    Carries carries;
+    MessageKind carries;
     std::size_t index = 0;  // of the pose channel
   };
 
   LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route> routes, PoseChannels poses,
-           SnapshotHub& hub);
+           SnapshotBroadcaster& hub);
   void take_in();
-  void hear(const Route& route, Bytes bytes, HeardAt arrival);
+  void hear(const Route& route, Bytes bytes, ArrivalTime arrival);
   void publish();
 
   UdpmReceiver receiver_;
   std::vector<Route> routes_;  // by the receiver's number of the channel
-  SnapshotHub* hub_;
+  SnapshotBroadcaster* hub_;
   double start_;  // s, of the steady clock
   double now_;
-  BusWatch watch_;
+  BusMonitor watch_;
   std::int64_t snapshots_ = 0;
 };
 

@@ -48,9 +48,9 @@ class Connections {
   // Waits for the one that gives way, which is at once: its thread is woken, and waits for nobody.
   Connection& add(socket_t socket) {
     std::unique_lock lock(mutex_);
-    if (held_.size() >= most_) give_up_one();
-    room_.wait(lock, [this] { return held_.size() < most_; });
-    Connection& added = held_.emplace_back(socket);
+    if (delay_line_.size() >= most_) give_up_one();
+    room_.wait(lock, [this] { return delay_line_.size() < most_; });
+    Connection& added = delay_line_.emplace_back(socket);
     added.given_up = ended_;
     return added;
   }
@@ -66,7 +66,7 @@ class Connections {
     {
       const std::lock_guard lock(mutex_);  // else its number could be another's when it is given up
       ::close(connection.socket);
-      held_.remove_if([&connection](const Connection& held) { return &held == &connection; });
+      delay_line_.remove_if([&connection](const Connection& held) { return &held == &connection; });
     }
     room_.notify_one();
   }
@@ -75,7 +75,7 @@ class Connections {
   void end() {
     const std::lock_guard lock(mutex_);
     ended_ = true;
-    for (Connection& held : held_) held.given_up = true;
+    for (Connection& held : delay_line_) held.given_up = true;
   }
 
  private:
@@ -83,8 +83,8 @@ class Connections {
   void give_up_one() {
     for (const Phase phase : {Phase::kHead, Phase::kResponse}) {
       const auto oldest = std::ranges::find_if(
-          held_, [phase](const Connection& held) { return held.phase == phase && !held.given_up; });
-      if (oldest == held_.end()) continue;
+          delay_line_, [phase](const Connection& held) { return held.phase == phase && !held.given_up; });
+      if (oldest == delay_line_.end()) continue;
       oldest->given_up = true;
       ::shutdown(oldest->socket, SHUT_RDWR);  // wakes its thread
       return;
@@ -94,7 +94,7 @@ class Connections {
   const std::size_t most_;
   std::mutex mutex_;
   std::condition_variable room_;
-  std::list<Connection> held_;
+  std::list<Connection> delay_line_;
   bool ended_ = false;
 };
 
@@ -141,7 +141,7 @@ bool names_loopback(std::string_view host) {
   return address == "localhost" ? !bracketed : bracketed == is_ipv6(address) && is_loopback(address);
 }
 
-void answer_with(httplib::Response& response, int status, const std::string& text) {
+void response_with(httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   response.set_content(text + "\n", "text/plain; charset=utf-8");
 }
@@ -157,15 +157,16 @@ std::string raw_response(const std::string& status, const std::string& text) {
 Expected<void> check_listen_address(const std::string& address) {
   in6_addr parsed{};
   if (::inet_pton(is_ipv6(address) ? AF_INET6 : AF_INET, address.c_str(), &parsed) == 1) return {};
-  return failure({"--listen " + address, "not an IP address", "digits, such as 127.0.0.1, ::1 or 0.0.0.0",
-                  "a host's name", "Name the address of the interface to listen on"});
+  return make_error({"--listen " + address, "not an IP address", "digits, such as 127.0.0.1, ::1 or 0.0.0.0",
+                     "a host's name", "Name the address of the interface to listen on"});
 }
 
 class PageServer::Http : public httplib::Server {
  public:
-  Http(std::string address, std::vector<ServedText> texts, SnapshotHub& hub, const PageLimits& limits)
+  Http(std::string address, std::vector<StaticResource> texts, SnapshotBroadcaster& hub,
+       const PageLimits& limits)
       : address_(std::move(address)), hub_(hub), limits_(limits), connections_(limits.connections) {
-    for (ServedText& text : texts) {
+    for (StaticResource& text : texts) {
       texts_.emplace(std::move(text.path), Text{std::move(text.content_type),
                                                 std::make_shared<const std::string>(std::move(text.body))});
     }
@@ -188,12 +189,12 @@ class PageServer::Http : public httplib::Server {
          "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
     });
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      answer(request, response);
+      respond(request, response);
       return HandlerResponse::Handled;
     });
     set_exception_handler(
         [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-          answer_with(response, 500, "This request could not be answered.");
+          response_with(response, 500, "This request could not be answered.");
         });
   }
 
@@ -241,7 +242,7 @@ class PageServer::Http : public httplib::Server {
     served = &connection;
     RequestStream stream(
         connection.socket,
-        {limits_.head_bytes, Seconds(limits_.head_patience), Seconds(limits_.write_patience)},
+        {limits_.max_header_bytes, Seconds(limits_.header_timeout), Seconds(limits_.write_timeout)},
         connection.given_up);
     const RequestStream::Head head = stream.read_head();
     if (connections_.set_phase(connection, Connections::Phase::kResponse)) respond(stream, head);
@@ -262,8 +263,9 @@ class PageServer::Http : public httplib::Server {
         break;
       }
       case RequestStream::Head::kTooLarge:
-        stream.write(raw_response("431 Request Header Fields Too Large",
-                                  "A request may have " + std::to_string(limits_.head_bytes) + " bytes."));
+        stream.write(
+            raw_response("431 Request Header Fields Too Large",
+                         "A request may have " + std::to_string(limits_.max_header_bytes) + " bytes."));
         break;
       case RequestStream::Head::kTooSlow:
         stream.write(raw_response("408 Request Timeout", "The request did not come in time."));
@@ -279,17 +281,17 @@ class PageServer::Http : public httplib::Server {
            names_loopback(without_port(request.get_header_value("Host")));
   }
 
-  void answer(const httplib::Request& request, httplib::Response& response) {
+  void respond(const httplib::Request& request, httplib::Response& response) {
     if (!is_host_ours(request)) {
-      answer_with(response, 403,
-                  "The Host of this request is not this machine's loopback. Open "
-                  "http://" +
-                      in_url(address_) + " with the port.");
+      response_with(response, 403,
+                    "The Host of this request is not this machine's loopback. Open "
+                    "http://" +
+                        in_url(address_) + " with the port.");
       return;
     }
     if (request.method != "GET") {
       response.set_header("Allow", "GET");
-      answer_with(response, 405, "Only GET.");
+      response_with(response, 405, "Only GET.");
       return;
     }
     if (request.path == "/events") {
@@ -298,7 +300,7 @@ class PageServer::Http : public httplib::Server {
     }
     const auto found = texts_.find(request.path);
     if (found == texts_.end()) {
-      answer_with(response, 404, "There is nothing here; the page is at /.");
+      response_with(response, 404, "There is nothing here; the page is at /.");
       return;
     }
     const Text& text = found->second;
@@ -311,11 +313,11 @@ class PageServer::Http : public httplib::Server {
   }
 
   void stream_events(httplib::Response& response) {
-    auto listener = std::make_shared<SnapshotHub::Listener>(hub_, limits_.streams);
+    auto listener = std::make_shared<SnapshotBroadcaster::Listener>(hub_, limits_.streams);
     if (!listener->admitted()) {
       response.set_header("Retry-After", "5");
-      answer_with(response, 503,
-                  "Already " + std::to_string(limits_.streams) + " pages show this view: close one.");
+      response_with(response, 503,
+                    "Already " + std::to_string(limits_.streams) + " pages show this view: close one.");
       return;
     }
     if (!connections_.set_phase(*served, Connections::Phase::kStream)) return;
@@ -323,7 +325,7 @@ class PageServer::Http : public httplib::Server {
     response.set_chunked_content_provider(
         "text/event-stream",
         [listener, first = true](std::size_t /*offset*/, httplib::DataSink& sink) mutable {
-          const SnapshotHub::Published published = listener->next();
+          const SnapshotBroadcaster::Published published = listener->next();
           if (published.number == 0) {
             sink.done();
             return true;
@@ -340,7 +342,7 @@ class PageServer::Http : public httplib::Server {
   using Seconds = std::chrono::duration<double>;
 
   std::string address_;
-  SnapshotHub& hub_;
+  SnapshotBroadcaster& hub_;
   PageLimits limits_;
   std::unordered_map<std::string, Text> texts_;
   Connections connections_;
@@ -357,17 +359,18 @@ PageServer::~PageServer() {
 }
 
 Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& address, int port,
-                                                        std::vector<ServedText> texts, SnapshotHub& hub,
-                                                        const PageLimits& limits) {
+                                                        std::vector<StaticResource> texts,
+                                                        SnapshotBroadcaster& hub, const PageLimits& limits) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
   auto http = std::make_unique<Http>(address, std::move(texts), hub, limits);
   const int bound = http->bind(port);
   if (bound < 0) {
     const std::string reason = errno != 0 ? std::generic_category().message(errno) : "it cannot be bound";
-    return failure({"port " + std::to_string(port) + " of " + address, reason, "a free port of this machine",
-                    "another program, perhaps another view, has it, or the address is not this machine's",
-                    "Choose another --port, or 0 for any that is free"});
+    return make_error({"port " + std::to_string(port) + " of " + address, reason,
+                       "a free port of this machine",
+                       "another program, perhaps another view, has it, or the address is not this machine's",
+                       "Choose another --port, or 0 for any that is free"});
   }
   http->start();
   const std::string url = "http://" + in_url(address) + ":" + std::to_string(bound) + "/";

@@ -19,7 +19,7 @@
 
 namespace buoyancy {
 
-struct ServedText {
+struct StaticResource {
   std::string path;          // "/model"
   std::string content_type;  // "application/json"
   std::string body;
@@ -29,11 +29,11 @@ struct ServedText {
 Expected<void> check_listen_address(const std::string& address);
 
 struct PageLimits {
-  int connections = 256;            // at a time, more than streams; a further one has an older one closed
-  int streams = 32;                 // of these, never closed for others; further ones get 503
-  std::size_t head_bytes = 16'384;  // a larger request gets 431
-  double head_patience = 5.0;       // s; a slower request gets 408
-  double write_patience = 5.0;      // s for a chunk, or for any of what waits; a slower reader is dropped
+  int connections = 256;  // at a time, more than streams; a further one has an older one closed
+  int streams = 32;       // of these, never closed for others; further ones get 503
+  std::size_t max_header_bytes = 16'384;  // a larger request gets 431
+  double header_timeout = 5.0;            // s; a slower request gets 408
+  double write_timeout = 5.0;  // s for a chunk, or for any of what waits; a slower reader is dropped
 };
 
 class PageServer {
@@ -41,8 +41,8 @@ class PageServer {
   // Listens and serves from threads of its own, which inherit the signal mask. port: 0 for any that is free.
   // "/events" is the hub's. Errors: the port cannot be had.
   static Expected<std::unique_ptr<PageServer>> start(const std::string& address, int port,
-                                                     std::vector<ServedText> texts, SnapshotHub& hub,
-                                                     const PageLimits& limits = {});
+                                                     std::vector<StaticResource> texts,
+                                                     SnapshotBroadcaster& hub, const PageLimits& limits = {});
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
   ~PageServer();  // closes the hub and every connection

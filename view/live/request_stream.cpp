@@ -46,8 +46,8 @@ RequestStream::Head RequestStream::read_head() {
     const std::size_t before = head_.size();
     head_.append(part.data(), static_cast<std::size_t>(size));
     if (is_whole(head_, before))
-      return head_.size() <= limits_.head_bytes + part.size() ? Head::kRead : Head::kTooLarge;
-    if (head_.size() > limits_.head_bytes) return Head::kTooLarge;
+      return head_.size() <= limits_.max_header_bytes + part.size() ? Head::kRead : Head::kTooLarge;
+    if (head_.size() > limits_.max_header_bytes) return Head::kTooLarge;
   }
   return head_.empty() ? Head::kNothing : Head::kTooSlow;
 }

@@ -16,7 +16,7 @@ namespace buoyancy {
 class RequestStream : public httplib::Stream {
  public:
   struct Limits {
-    std::size_t head_bytes;
+    std::size_t max_header_bytes;
     std::chrono::duration<double> head, chunk;
   };
   enum class Head { kRead, kNothing, kTooLarge, kTooSlow };

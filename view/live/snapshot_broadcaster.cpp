@@ -4,7 +4,7 @@
 
 namespace buoyancy {
 
-SnapshotHub::Listener::Listener(SnapshotHub& hub, int most) : hub_(hub) {
+SnapshotBroadcaster::Listener::Listener(SnapshotBroadcaster& hub, int most) : hub_(hub) {
   const std::lock_guard lock(hub_.mutex_);
   admitted_ = hub_.listeners_ < most;
   if (!admitted_) return;
@@ -12,12 +12,12 @@ SnapshotHub::Listener::Listener(SnapshotHub& hub, int most) : hub_(hub) {
   seen_ = hub_.newest_.number;  // made before this one came, perhaps long before
 }
 
-SnapshotHub::Listener::~Listener() {
+SnapshotBroadcaster::Listener::~Listener() {
   const std::lock_guard lock(hub_.mutex_);
   if (admitted_) --hub_.listeners_;
 }
 
-SnapshotHub::Published SnapshotHub::Listener::next() {
+SnapshotBroadcaster::Published SnapshotBroadcaster::Listener::next() {
   std::unique_lock lock(hub_.mutex_);
   hub_.published_anew_.wait(lock, [this] { return hub_.closed_ || hub_.newest_.number > seen_; });
   if (hub_.closed_) return {};
@@ -25,7 +25,7 @@ SnapshotHub::Published SnapshotHub::Listener::next() {
   return hub_.newest_;
 }
 
-void SnapshotHub::publish(std::string history, std::string snapshot) {
+void SnapshotBroadcaster::publish(std::string history, std::string snapshot) {
   Published next{0, std::make_shared<const std::string>(std::move(history)),
                  std::make_shared<const std::string>(std::move(snapshot))};
   {
@@ -36,12 +36,12 @@ void SnapshotHub::publish(std::string history, std::string snapshot) {
   published_anew_.notify_all();
 }
 
-int SnapshotHub::listeners() const {
+int SnapshotBroadcaster::listeners() const {
   const std::lock_guard lock(mutex_);
   return listeners_;
 }
 
-void SnapshotHub::close() {
+void SnapshotBroadcaster::close() {
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;

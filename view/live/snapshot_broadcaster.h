@@ -11,7 +11,7 @@
 
 namespace buoyancy {
 
-class SnapshotHub {
+class SnapshotBroadcaster {
  public:
   using Text = std::shared_ptr<const std::string>;
   struct Published {
@@ -22,7 +22,7 @@ class SnapshotHub {
   // Somebody who takes. At most `most` at a time.
   class Listener {
    public:
-    Listener(SnapshotHub& hub, int most);
+    Listener(SnapshotBroadcaster& hub, int most);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
     ~Listener();
@@ -31,7 +31,7 @@ class SnapshotHub {
     Published next();
 
    private:
-    SnapshotHub& hub_;
+    SnapshotBroadcaster& hub_;
     bool admitted_;
     std::int64_t seen_ = 0;
   };

@@ -49,10 +49,10 @@ class BodyText {
   std::string& text_;
 };
 
-void append(std::string& text, const WatchedBody& body, double now) {
-  const bool overdue = body.answer_is_overdue(BusWatch::kAnswerPatience);
+void append(std::string& text, const BodyMonitor& body, double now) {
+  const bool overdue = body.response_overdue(BusMonitor::kResponseTimeout);
   const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
-  const bool whole = wrench != nullptr && !body.says_force_and_torque_alone;
+  const bool whole = wrench != nullptr && !body.force_torque_only;
   BodyText out(text);
   out.plain(R"({"id":)").whole_number(body.id).plain(R"(,"status":)");
   if (whole) {
@@ -94,44 +94,44 @@ json percentiles_json(const LatencyPercentiles& latency) {
   return {{"p50", latency.p50}, {"p99", latency.p99}, {"p999", latency.p999}, {"max", latency.max}};
 }
 
-json second_json(const WatchedSecond& second) {
-  const auto where_answered = [&second](double value) { return second.answers > 0 ? json(value) : json(); };
+json second_json(const SecondStats& second) {
+  const auto where_answered = [&second](double value) { return second.responses > 0 ? json(value) : json(); };
   return {{"number", second.number},
-          {"questions", second.questions},
-          {"answers", second.answers},
+          {"requests", second.requests},
+          {"responses", second.responses},
           {"unanswered", second.unanswered},
           {"p50", where_answered(second.latency.p50)},
           {"p99", where_answered(second.latency.p99)},
           {"max", where_answered(second.latency.max)}};
 }
 
-// Of Counters what says something to an onlooker; names as in service_status_t.
+// Of ServiceCounters what says something to an onlooker; names as in service_status_t.
 json status_json(const ServiceStatus& status) {
-  const Counters& counters = status.counters;
+  const ServiceCounters& counters = status.counters;
   json bodies;
   for (int i = 0; i < kBodyStatusCount; ++i) {
-    bodies[name(static_cast<BodyStatus>(i))] = counters.bodies[static_cast<std::size_t>(i)];
+    bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[static_cast<std::size_t>(i)];
   }
   return {{"instance_id", std::to_string(status.instance_id)},
           {"version", status.version},
           {"scene", status.scene},
           {"uptime", status.uptime},
-          {"mode", status.mode == Mode::kLockstep ? "lockstep" : "latest"},
+          {"mode", status.mode == ServiceMode::kLockstep ? "lockstep" : "latest"},
           {"threads", status.threads},
           {"scene_bodies", status.scene_bodies},
           {"reloads", status.reloads},
           {"reloads_failed", status.reloads_failed},
-          {"not_sent", status.not_sent},
+          {"send_failures", status.send_failures},
           {"packets_dropped", status.packets_dropped},
           {"fragments_dropped", status.fragments_dropped},
-          {"questions", counters.questions},
-          {"answered", counters.answered},
-          {"repeated", counters.repeated},
-          {"changed_repeats", counters.changed_repeats},
+          {"requests", counters.requests},
+          {"computed", counters.computed},
+          {"retries", counters.retries},
+          {"conflicting_retries", counters.conflicting_retries},
           {"stale", counters.stale},
-          {"overtaken", counters.overtaken},
+          {"superseded", counters.superseded},
           {"sessions", counters.sessions},
-          {"sessions_forgotten", counters.sessions_forgotten},
+          {"sessions_evicted", counters.sessions_evicted},
           {"rejected", counters.rejected()},
           {"bodies", bodies},
           {"quaternions_normalised", counters.quaternions_normalised},
@@ -144,22 +144,22 @@ json status_json(const ServiceStatus& status) {
           {"queue_wait", status.queue_wait}};
 }
 
-json counts_json(const BusWatch& watch) {
-  const QuestionLedger::Counts& ledger = watch.ledger();
-  const BusWatch::Counts& counts = watch.counts();
+json counts_json(const BusMonitor& watch) {
+  const RequestTracker::Counts& tracker = watch.tracker();
+  const BusMonitor::Counts& counts = watch.counts();
   json malformed;
-  for (const Rejection rejection :
-       {Rejection::kTruncated, Rejection::kFingerprint, Rejection::kCount, Rejection::kLength}) {
-    malformed[describe(rejection)] = counts.malformed[static_cast<std::size_t>(rejection)];
+  for (const DecodeError rejection :
+       {DecodeError::kTruncated, DecodeError::kFingerprint, DecodeError::kCount, DecodeError::kLength}) {
+    malformed[to_string(rejection)] = counts.malformed[static_cast<std::size_t>(rejection)];
   }
-  return {{"questions", ledger.questions},
-          {"questions_repeated", ledger.questions_repeated},
-          {"questions_missed", ledger.questions_missed},
-          {"answers", ledger.answers},
-          {"answers_repeated", ledger.answers_repeated},
-          {"answers_without_question", ledger.answers_without_question},
-          {"unanswered", ledger.unanswered},
-          {"sessions", ledger.sessions},
+  return {{"requests", tracker.requests},
+          {"requests_repeated", tracker.requests_repeated},
+          {"requests_missed", tracker.requests_missed},
+          {"responses", tracker.responses},
+          {"responses_repeated", tracker.responses_repeated},
+          {"responses_without_request", tracker.responses_without_request},
+          {"unanswered", tracker.unanswered},
+          {"sessions", tracker.sessions},
           {"malformed", malformed},
           {"packets_dropped", counts.losses.packets},
           {"fragments_dropped", counts.losses.fragments},
@@ -175,7 +175,7 @@ std::string text_of(const json& value) {
 
 }  // namespace
 
-std::string snapshot_json(const BusWatch& watch, std::int64_t number, double time, double listening,
+std::string snapshot_json(const BusMonitor& watch, std::int64_t number, double time, double listening,
                           double now) {
   const auto age = [now](std::optional<double> heard) { return heard ? or_null(now - *heard) : json(); };
   json services = json::array();
@@ -183,12 +183,12 @@ std::string snapshot_json(const BusWatch& watch, std::int64_t number, double tim
   const json rest{{"number", number},
                   {"time", time},
                   {"listening", listening},
-                  {"service", name(watch.service_state(now))},
+                  {"service", to_string(watch.service_state(now))},
                   {"services", services},
                   {"status", watch.status() ? status_json(*watch.status()) : json()},
-                  {"status_age", age(watch.status_heard())},
-                  {"answer_age", age(watch.answer_heard())},
-                  {"question_age", age(watch.question_heard())},
+                  {"status_age", age(watch.status_received())},
+                  {"response_age", age(watch.response_received())},
+                  {"request_age", age(watch.request_received())},
                   {"second", watch.seconds().empty() ? json() : second_json(watch.seconds().back())},
                   {"latency", percentiles_json(watch.latency())},
                   {"counts", counts_json(watch)}};
@@ -196,7 +196,7 @@ std::string snapshot_json(const BusWatch& watch, std::int64_t number, double tim
   text.back() = ',';  // instead of the closing brace
   text += R"("bodies":[)";
   bool first = true;
-  for (const WatchedBody& body : watch.bodies()) {
+  for (const BodyMonitor& body : watch.bodies()) {
     if (!body.pose) continue;
     if (!std::exchange(first, false)) text += ',';
     append(text, body, now);
@@ -205,9 +205,9 @@ std::string snapshot_json(const BusWatch& watch, std::int64_t number, double tim
   return text;
 }
 
-std::string history_json(const BusWatch& watch) {
+std::string history_json(const BusMonitor& watch) {
   json seconds = json::array();
-  for (const WatchedSecond& second : watch.seconds()) seconds.push_back(second_json(second));
+  for (const SecondStats& second : watch.seconds()) seconds.push_back(second_json(second));
   return text_of(seconds);
 }
 

@@ -1,6 +1,6 @@
-// What BusWatch knows, as the JSON texts that the live page reads. Numbers that are NaN or infinite are null;
-// numbers of bodies have float's precision, which is more than a screen shows; ids of 64 bits are strings,
-// since JavaScript's numbers end at 2^53.
+// What BusMonitor knows, as the JSON texts that the live page reads. Numbers that are NaN or infinite are
+// null; numbers of bodies have float's precision, which is more than a screen shows; ids of 64 bits are
+// strings, since JavaScript's numbers end at 2^53.
 #pragma once
 
 #include <cstdint>
@@ -25,20 +25,20 @@ namespace buoyancy {
 //                    volume, force_bound, torque_bound
 //                    age          s since the body was asked about
 //                  b and m relative to p in W's axes. null: from f to torque_bound what was not answered, not
-//                  yet or not since BusWatch::kAnswerPatience; status, b, volume and the bounds too where a
-//                  six_axis_force_torque_t answered
-//   service        as name(ServiceState)
+//                  yet or not since BusMonitor::kResponseTimeout; status, b, volume and the bounds too where
+//                  a six_axis_force_torque_t answered
+//   service        as to_string(ServiceState)
 //   services       the instance ids heard within 3 s
 //   status         the newest service_status_t, or null
 //   status_age, answer_age, question_age   s, or null
 //   second         the last whole second, as in history_json, or null
 //   latency        p50, p99, p999, max: s, since the start
-//   counts         as BusWatch counts
-std::string snapshot_json(const BusWatch& watch, std::int64_t number, double time, double listening,
+//   counts         as BusMonitor counts
+std::string snapshot_json(const BusMonitor& watch, std::int64_t number, double time, double listening,
                           double now);
 
-// The last minute: an array, the newest last, of {"number", "questions", "answers", "unanswered", "p50",
+// The last minute: an array, the newest last, of {"number", "requests", "answers", "unanswered", "p50",
 // "p99", "max"}; the last three null where nothing was answered.
-std::string history_json(const BusWatch& watch);
+std::string history_json(const BusMonitor& watch);
 
 }  // namespace buoyancy

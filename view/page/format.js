@@ -16,7 +16,7 @@ const statuses = [
   ['NON_FINITE_TWIST', 'NaN or infinity in a velocity'],
   ['BAD_LEAD_TIME', 'the lead time is NaN or infinite'],
   ['OPEN_EDGE_WET', 'the mesh is open and its boundary is not wholly dry'],
-  ['OUT_OF_RANGE', 'the answer is beyond double\'s range'],
+  ['OUT_OF_RANGE', 'the response is beyond double\'s range'],
 ];
 
 function status_text(status) {

@@ -10,7 +10,7 @@
 
   const states = {
     answering: ['●', 'The service answers'],
-    waiting: ['○', 'The service waits for questions'],
+    waiting: ['○', 'The service waits for requests'],
     'not answering': ['▲', 'The service does not answer'],
     silent: ['■', 'The service is silent'],
     connecting: ['…', 'No connection to buoyancy-view; trying again'],
@@ -90,10 +90,10 @@
   };
   const milliseconds = (value) => (value === null ? NaN : 1e3 * value);
   const plots = [
-    { title: 'Question to answer', unit: 'ms', missing: 'no answers yet',
+    { title: 'Request to response', unit: 'ms', missing: 'no responses yet',
       make: bus_series([['median', (second) => milliseconds(second.p50)], ['99 %', (second) => milliseconds(second.p99)]]) },
     { title: 'Messages', unit: 'a second', missing: nothing_yet,
-      make: bus_series([['questions', (second) => second.questions], ['answers', (second) => second.answers], ['unanswered', (second) => second.unanswered]]) },
+      make: bus_series([['requests', (second) => second.requests], ['responses', (second) => second.responses], ['unanswered', (second) => second.unanswered]]) },
     { title: 'Heave of the body', unit: 'm', missing: nothing_yet, make: body_series('origin over the water', 'heave') },
     { title: 'Buoyant force on the body', unit: 'N', missing: nothing_yet, make: body_series('upwards', 'force') },
   ];
@@ -113,17 +113,17 @@
 
   function strip_entries(now) {
     const status = now.status;
-    const second = now.second || { questions: 0, answers: 0, p50: null, p99: null, max: null };
+    const second = now.second || { requests: 0, responses: 0, p50: null, p99: null, max: null };
     const time = (value) => (value === null ? '–' : seconds_text(value));
     const entries = [
-      ['questions', `${count_text(second.questions)} a second`], ['answers', `${count_text(second.answers)} a second`],
+      ['requests', `${count_text(second.requests)} a second`], ['responses', `${count_text(second.responses)} a second`],
       ['median', time(second.p50)], ['99 %', time(second.p99)], ['slowest', time(second.max)],
-      ['unanswered', count_text(now.counts.unanswered)], ['missed by this view', count_text(now.counts.questions_missed)], ['packets dropped', count_text(now.counts.packets_dropped)],
+      ['unanswered', count_text(now.counts.unanswered)], ['missed by this view', count_text(now.counts.requests_missed)], ['packets dropped', count_text(now.counts.packets_dropped)],
     ];
     if (!status) return entries;
     return entries.concat([
       ['service', status.version], ['mode', status.mode], ['up for', seconds_text(status.uptime)],
-      ['status', age_text(now.status_age)], ['rejected', count_text(status.rejected)], ['not sent', count_text(status.not_sent)],
+      ['status', age_text(now.status_age)], ['rejected', count_text(status.rejected)], ['not sent', count_text(status.send_failures)],
     ]);
   }
 
@@ -146,14 +146,14 @@
     const found = [];
     if (now.services.length > 1) {
       found.push(`${now.services.length} services are on this bus (${now.services.join(', ')}): if they hear the same channels, every ` +
-        'question is answered as often. Stop all but one, or give each its own channels.');
+        'request is answered as often. Stop all but one, or give each its own channels.');
     }
     if (now.state === 'silent') {
       found.push(now.status
         ? `Nothing is heard of the service: its last status came ${age_text(now.status_age)}. What is shown is the last that was heard.`
         : 'Nothing is heard of the service, and no status of it since this view was started.');
     }
-    if (now.state === 'not answering') found.push(`Questions are on the bus, and the last answer came ${age_text(now.answer_age)}.`);
+    if (now.state === 'not answering') found.push(`Requests are on the bus, and the last response came ${age_text(now.response_age)}.`);
     if (now.counts.bodies_not_in_scene > 0) {
       found.push(`${plural(now.counts.bodies_not_in_scene, 'time', 'times')} a body was asked about that ${model.scene} has not: is the service's scene another one?`);
     }
@@ -182,15 +182,15 @@
     const body = now.bodies.find((one) => one.id === view.chosen);
     const description = model.bodies.find((one) => one.id === view.chosen);
     if (!body) return table_of(`Body ${description.id} ${description.name}: not asked about yet`, [], []);
-    const vector = (values) => (values ? values.map(number_text).join(', ') : '–');
+    const vector = (values) => (values ? values.map(format_number).join(', ') : '–');
     const rows = [
-      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'asked, not answered yet') : status_text(body.status)],
+      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'requested, no response yet') : status_text(body.status)],
       ['position, m', vector(body.p)], ['quaternion w, x, y, z', vector(body.q)],
       ['force, N', vector(body.f)], ['torque, N m', vector(body.t)],
-      ['error bounds, N and N m', body.force_bound !== null ? `${number_text(body.force_bound)}, ${number_text(body.torque_bound)}` : '–'],
-      ['submerged volume, m³', body.volume !== null ? number_text(body.volume) : '–'],
+      ['error bounds, N and N m', body.force_bound !== null ? `${format_number(body.force_bound)}, ${format_number(body.torque_bound)}` : '–'],
+      ['submerged volume, m³', body.volume !== null ? format_number(body.volume) : '–'],
     ];
-    if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : number_text(height))).join(', ')]);
+    if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : format_number(height))).join(', ')]);
     rows.push(['asked about', age_text(body.age)]);
     return table_of(`Body ${description.id} ${description.name}`, ['', ''], rows);
   }
@@ -198,26 +198,26 @@
   function counter_tables(now) {
     const counts = now.counts;
     const heard = [
-      ['questions', counts.questions], ['repeated questions', counts.questions_repeated], ['answers', counts.answers],
-      ['further answers to a question', counts.answers_repeated], ['answers without a question', counts.answers_without_question],
-      ['unanswered', counts.unanswered], ['numbers missing between questions', counts.questions_missed], ['sessions', counts.sessions],
+      ['requests', counts.requests], ['retries', counts.requests_repeated], ['responses', counts.responses],
+      ['duplicate responses', counts.responses_repeated], ['responses without a request', counts.responses_without_request],
+      ['unanswered', counts.unanswered], ['numbers missing between requests', counts.requests_missed], ['sessions', counts.sessions],
       ...Object.entries(counts.malformed).map(([cause, count]) => [`malformed: ${cause}`, count]),
       ['packets dropped, before this view could take them', counts.packets_dropped], ['fragments of messages that did not come whole', counts.fragments_dropped], ['services started', counts.services_started],
     ];
-    const tables = [table_of('Heard on the bus', ['since this view began', ''], heard)];
+    const tables = [table_of('Observed on the bus', ['since this view began', ''], heard)];
     if (!now.status) return tables;
     const status = now.status;
-    tables.push(table_of('Said by the service', ['since it began', ''], [
-      ['questions', status.questions], ['answered', status.answered], ['repeated', status.repeated], ['changed repeats', status.changed_repeats],
-      ['stale', status.stale], ['overtaken', status.overtaken], ['rejected', status.rejected], ['not sent', status.not_sent],
+    tables.push(table_of('Reported by the service', ['since it began', ''], [
+      ['requests', status.requests], ['computed', status.computed], ['retries', status.retries], ['conflicting retries', status.conflicting_retries],
+      ['stale', status.stale], ['superseded', status.superseded], ['rejected', status.rejected], ['send failures', status.send_failures],
       ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
-      ['sessions', status.sessions], ['sessions forgotten', status.sessions_forgotten], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
+      ['sessions', status.sessions], ['sessions evicted', status.sessions_evicted], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
-    const answered = status.bodies;
-    tables.push(table_of('Bodies it answered', ['', 'count'], [
+    const by_status = status.bodies;
+    tables.push(table_of('Bodies evaluated', ['', 'count'], [
       ['skipped: dry, above the water', status.bodies_dry], ['skipped: wet, below the surface', status.bodies_wet],
       ['skipped: unchanged', status.bodies_unchanged], ['computed: crossing the surface', status.bodies_crossing],
-      ...Object.entries(answered).map(([name, count]) => [name, count]),
+      ...Object.entries(by_status).map(([name, count]) => [name, count]),
       ['quaternions normalised', status.quaternions_normalised], ['hydrostatics', status.hydrostatics],
     ]));
     tables.push(table_of('Its own time', ['from receipt to publication', 'ms'], [

@@ -11,7 +11,7 @@ function round_ticks(low, high, most) {
   return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 
-function number_text(value) {
+function format_number(value) {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';  // minus zero too
   const size = Math.abs(value);
@@ -133,9 +133,9 @@ class Plot {
       const finite = Array.from(values).filter(Number.isFinite);
       if (finite.length === 0) return `${name} was not recorded`;
       const least = finite.reduce((a, b) => Math.min(a, b)), most = finite.reduce((a, b) => Math.max(a, b));
-      return `${name} from ${number_text(least)} to ${number_text(most)}, at the end ${number_text(finite[finite.length - 1])}`;
+      return `${name} from ${format_number(least)} to ${format_number(most)}, at the end ${format_number(finite[finite.length - 1])}`;
     });
-    const span = range.empty ? '' : ` from ${number_text(range.start)} to ${number_text(range.end)} s`;
+    const span = range.empty ? '' : ` from ${format_number(range.start)} to ${format_number(range.end)} s`;
     this.svg.setAttribute('aria-label', `${this.title} in ${this.unit} over time${span}: ${parts.join('; ')}`);
   }
 
@@ -146,7 +146,7 @@ class Plot {
     this.now.setAttribute('x1', this.x(time));
     this.now.setAttribute('x2', this.x(time));
     this.series.forEach(({ name, times, values }, i) => {
-      this.readings[i].textContent = `${name} ${number_text(values[row_at(times, time)])}`;
+      this.readings[i].textContent = `${name} ${format_number(values[row_at(times, time)])}`;
     });
   }
 
@@ -186,7 +186,7 @@ function table_of(caption, heads, rows) {
     const line = body.insertRow();
     row.forEach((value, i) => {
       const cell = line.insertCell();
-      cell.textContent = value === null ? '–' : typeof value === 'number' ? number_text(value) : value;
+      cell.textContent = value === null ? '–' : typeof value === 'number' ? format_number(value) : value;
       if (numeric[i]) cell.className = 'number';
     });
   }

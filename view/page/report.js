@@ -44,7 +44,7 @@
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
-  // stands: where a row's number says something. An answer that is not OK holds zeros.
+  // stands: where a row's number says something. A response that is not OK holds zeros.
   const groups = [
     { key: 'heave', title: 'Heave', unit: 'm', columns: { 'B\'s origin over the water': 'heave' }, stands: is_posed },
     { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' }, stands: is_posed },
@@ -52,7 +52,7 @@
     { key: 'torque', title: 'Buoyant torque', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, stands: is_answered },
     { key: 'energy', title: 'Mechanical energy', unit: 'J', columns: { energy: 'energy' }, stands: is_answered,
       missing: 'not known: needs velocities and the body\'s mass in the scene' },
-    { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'question to answer': 'round_trip' }, stands: () => true, scale: 1e3,
+    { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'request to response': 'round_trip' }, stands: () => true, scale: 1e3,
       missing: 'not recorded: a CSV knows no clock, a log of the bus does' },
   ];
   function series_of(group) {
@@ -151,7 +151,7 @@
   fill_legend(element('legend'), data.model.bodies.some((body) => body.center_of_mass !== null), bodies.some((body) => body.metacentres));
   element('title').textContent = `${data.model.scene}: ${data.file}`;
   document.title = `buoyancy: ${data.file}`;
-  element('subtitle').textContent = `${shown_text(data, bodies)}, ${number_text(end - start)} s`;
+  element('subtitle').textContent = `${shown_text(data, bodies)}, ${format_number(end - start)} s`;
   for (const notice of report_notices(data, bodies)) {
     const line = document.createElement('p');
     line.className = 'notice';

@@ -32,12 +32,12 @@ function report_notices(data, bodies) {
   const absent = data.bodies.filter((body) => body.recorded === 0).length;
   if (absent > 0) notices.push(`${plural(absent, 'body', 'bodies')} of the scene ${absent === 1 ? 'has' : 'have'} no rows in ${data.file}.`);
   if (data.computed > 0) {
-    notices.push(`${plural(data.computed, 'row has', 'rows have')} no recorded answer: force and torque were computed from the scene.`);
+    notices.push(`${plural(data.computed, 'row has', 'rows have')} no recorded response: force and torque were computed from the scene.`);
   }
   if (data.sessions > 1) notices.push(`${plural(data.sessions, 'session', 'sessions')} asked; a clock that began again goes on behind the one before.`);
   if (data.unknown_bodies > 0) notices.push(`${plural(data.unknown_bodies, 'row', 'rows')} about bodies that the scene has not.`);
-  for (const trouble of data.troubles) notices.push(`Could not be read: ${trouble}.`);
-  if (data.more_troubles > 0) notices.push(`${plural(data.more_troubles, 'more place', 'more places')} could not be read.`);
+  for (const warning of data.warnings) notices.push(`Could not be read: ${warning}.`);
+  if (data.suppressed_warnings > 0) notices.push(`${plural(data.suppressed_warnings, 'more place', 'more places')} could not be read.`);
   for (const mesh of data.model.meshes) {
     if (mesh.shown_triangles < mesh.triangles) {
       notices.push(`${mesh.name} is drawn with ${plural(mesh.shown_triangles, 'triangle', 'triangles')}; its forces are those of all ` +
@@ -65,8 +65,8 @@ function skipped_table(bodies) {
     add('crosses the surface: computed', crossing, query);
     add('clear of the water: bounds alone', dry, bounds);
     add('wholly under water: bounds and constants', wet, bounds);
-    add('same pose as before: last answer', unchanged, query === null ? null : Math.min(bounds || 0, query));
-    add('no answer to its pose', refused, null);
+    add('same pose as before: last response', unchanged, query === null ? null : Math.min(bounds || 0, query));
+    add('no response to its pose', refused, null);
   }
   const caption = 'What the poses let the service leave out, and what that saves beside computing every one ' +
     `(costs measured while this page was made; saved in all ${seconds_text(saved)}, spent ${seconds_text(spent)})`;
@@ -85,7 +85,7 @@ function status_table(bodies) {
     }
   }
   if (rows.length === 0) return null;
-  const caption = 'Rows of this page by the status of their answer: one that is not OK holds zeros, which the plots leave out';
+  const caption = 'Rows of this page by the status of their response: one that is not OK holds zeros, which the plots leave out';
   return table_of(caption, ['body', 'status', 'rows', 'share'], rows);
 }
 
@@ -95,7 +95,7 @@ function bodies_table(data) {
   const statuses_text = (body) => {
     const known = body.statuses.reduce((sum, count) => sum + count, 0);
     const parts = body.statuses.map((count, status) => [status < statuses.length ? statuses[status][0] : 'of a later version', count]);
-    return [...parts, ['no answer recorded', body.recorded - known]].filter(([, count]) => count > 0)
+    return [...parts, ['no response recorded', body.recorded - known]].filter(([, count]) => count > 0)
       .map(([name, count]) => `${name} ${count.toLocaleString('en')}`).join(', ') || '–';
   };
   const rows = data.bodies.map((body) => [String(body.id), descriptions.get(body.id).name, body.recorded, statuses_text(body), body.largest_force, body.shown && body.rows > 0 ? 'yes' : 'no']);
@@ -114,16 +114,16 @@ function report_tables(data, bodies) {
   section('What was skipped', ...[skipped_table(bodies), status_table(bodies)].filter((table) => table !== null));
   if (data.status) {
     const status = data.status;
-    section('The service\'s own account', table_of('The last status in the log, totals since its start', ['what', 'value'], [
-      ['version', status.version], ['up for', `${number_text(status.uptime)} s`],
-      ['questions', status.questions.toLocaleString('en')], ['answered', status.answered.toLocaleString('en')],
-      ['repeated', status.repeated.toLocaleString('en')], ['overtaken', status.overtaken.toLocaleString('en')],
+    section('Service status', table_of('The last status in the log, totals since its start', ['what', 'value'], [
+      ['version', status.version], ['up for', `${format_number(status.uptime)} s`],
+      ['requests', status.requests.toLocaleString('en')], ['computed', status.computed.toLocaleString('en')],
+      ['retries', status.retries.toLocaleString('en')], ['superseded', status.superseded.toLocaleString('en')],
       ['rejected', status.rejected.toLocaleString('en')],
       ['bodies dry, wet, crossing, unchanged', [status.dry, status.wet, status.crossing, status.unchanged].map((count) => count.toLocaleString('en')).join(', ')],
-      ['time to answer, median, 99 %, longest', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
+      ['response time, median, 99 %, longest', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
   }
   section('The scene', table_of(
-    `Water: level ${number_text(water.level)} m along [${water.up.join(', ')}], ${number_text(water.density)} kg/m³, gravity ${number_text(water.gravity)} m/s². ` +
+    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
     described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));

@@ -40,8 +40,8 @@ Expected<std::vector<std::size_t>> body_list(const std::string& list, const Scen
     const std::string part(rest.substr(0, comma));
     const std::optional<IdRange> range = range_of(part);
     if (!range) {
-      return failure({subject, "'" + part + "'", "ids and ranges of ids, such as 1-50,900",
-                      "a space, another separator, or a range that begins with its larger id", ""});
+      return make_error({subject, "'" + part + "'", "ids and ranges of ids, such as 1-50,900",
+                         "a space, another separator, or a range that begins with its larger id", ""});
     }
     bool found = false;
     for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
@@ -51,16 +51,16 @@ Expected<std::vector<std::size_t>> body_list(const std::string& list, const Scen
       found = true;
     }
     if (!found) {
-      return failure({subject, "no body has the id " + part, "ids of " + scene.name(),
-                      "the list is of another scene", "buoyancyd --check lists the scene's ids"});
+      return make_error({subject, "no body has the id " + part, "ids of " + scene.name(),
+                         "the list is of another scene", "buoyancyd --check lists the scene's ids"});
     }
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }
-  if (named.size() > kMostBodies) {
-    return failure({subject, std::to_string(named.size()) + " bodies",
-                    "at most " + std::to_string(kMostBodies) + ", which make a page of some 10 MB", "",
-                    "Write several pages"});
+  if (named.size() > kMaxBodies) {
+    return make_error({subject, std::to_string(named.size()) + " bodies",
+                       "at most " + std::to_string(kMaxBodies) + ", which make a page of some 10 MB", "",
+                       "Write several pages"});
   }
   return std::vector<std::size_t>(named.begin(), named.end());
 }

@@ -6,22 +6,22 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kFewestRows = 32;
+constexpr std::size_t kMinRows = 32;
 
 }  // namespace
 
-ThinnedRows::ThinnedRows(std::size_t most_rows)
-    : most_rows_(std::max(most_rows, kFewestRows)), most_cuts_((most_rows_ - 1) / kKeptOfCut / 2 * 2) {}
+DecimatedRows::DecimatedRows(std::size_t max_rows)
+    : max_rows_(std::max(max_rows, kMinRows)), max_cuts_((max_rows_ - 1) / kKeptOfCut / 2 * 2) {}
 
-ThinnedRows::Cut ThinnedRows::cut_of(const Numbered& row) {
+DecimatedRows::Cut DecimatedRows::cut_of(const Numbered& row) {
   Cut cut;
   cut.fill(row);
   return cut;
 }
 
-void ThinnedRows::join(Cut& cut, const Cut& other) {
-  for (std::size_t i = 0; i < kWatchedColumns.size(); ++i) {
-    const Column column = kWatchedColumns[i];
+void DecimatedRows::join(Cut& cut, const Cut& other) {
+  for (std::size_t i = 0; i < kExtremaColumns.size(); ++i) {
+    const Column column = kExtremaColumns[i];
     Numbered& least = cut[1 + 2 * i];
     Numbered& largest = cut[2 + 2 * i];
     const Numbered& other_least = other[1 + 2 * i];
@@ -33,7 +33,7 @@ void ThinnedRows::join(Cut& cut, const Cut& other) {
   }
 }
 
-void ThinnedRows::add(std::int64_t number, const Row& row) {
+void DecimatedRows::add(std::int64_t number, const Row& row) {
   last_ = {number, row};
   ++added_;
   if (!cuts_.empty()) {
@@ -41,33 +41,33 @@ void ThinnedRows::add(std::int64_t number, const Row& row) {
     return;
   }
   all_.push_back(last_);
-  if (all_.size() <= most_rows_) return;
-  rows_of_cut_ = static_cast<std::int64_t>((all_.size() + most_cuts_ - 1) / most_cuts_);
+  if (all_.size() <= max_rows_) return;
+  rows_of_cut_ = static_cast<std::int64_t>((all_.size() + max_cuts_ - 1) / max_cuts_);
   rows_in_last_cut_ = rows_of_cut_;
   for (const Numbered& kept : all_) add_to_cuts(kept);
   all_ = {};
 }
 
-void ThinnedRows::add_to_cuts(const Numbered& row) {
+void DecimatedRows::add_to_cuts(const Numbered& row) {
   if (rows_in_last_cut_ < rows_of_cut_) {
     join(cuts_.back(), cut_of(row));
     ++rows_in_last_cut_;
     return;
   }
-  if (cuts_.size() == most_cuts_) {
-    for (std::size_t i = 0; i < most_cuts_ / 2; ++i) {
+  if (cuts_.size() == max_cuts_) {
+    for (std::size_t i = 0; i < max_cuts_ / 2; ++i) {
       Cut joined = cuts_[2 * i];
       join(joined, cuts_[2 * i + 1]);
       cuts_[i] = joined;
     }
-    cuts_.resize(most_cuts_ / 2);
+    cuts_.resize(max_cuts_ / 2);
     rows_of_cut_ *= 2;
   }
   cuts_.push_back(cut_of(row));
   rows_in_last_cut_ = 1;
 }
 
-std::vector<Row> ThinnedRows::rows() const {
+std::vector<Row> DecimatedRows::rows() const {
   std::vector<Numbered> kept = all_;
   for (const Cut& cut : cuts_) kept.insert(kept.end(), cut.begin(), cut.end());
   if (!cuts_.empty()) kept.push_back(last_);

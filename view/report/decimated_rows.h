@@ -15,12 +15,12 @@
 
 namespace buoyancy {
 
-inline constexpr std::array kWatchedColumns{kHeave, kRoll, kPitch, kForce, kTorque, kEnergy, kRoundTrip};
+inline constexpr std::array kExtremaColumns{kHeave, kRoll, kPitch, kForce, kTorque, kEnergy, kRoundTrip};
 
-class ThinnedRows {
+class DecimatedRows {
  public:
   // At most so many rows are left, and no fewer than 32 where there are as many. Memory: twice that.
-  explicit ThinnedRows(std::size_t most_rows);
+  explicit DecimatedRows(std::size_t max_rows);
 
   // number: place among all rows; rows may come a little out of that order.
   void add(std::int64_t number, const Row& row);
@@ -34,15 +34,15 @@ class ThinnedRows {
     Row row{};
   };
   // The first row and two of each watched column, least and largest; index 0 is the first.
-  static constexpr std::size_t kKeptOfCut = 1 + 2 * kWatchedColumns.size();
+  static constexpr std::size_t kKeptOfCut = 1 + 2 * kExtremaColumns.size();
   using Cut = std::array<Numbered, kKeptOfCut>;
 
   static Cut cut_of(const Numbered& row);
   static void join(Cut& cut, const Cut& other);
   void add_to_cuts(const Numbered& row);
 
-  std::size_t most_rows_;
-  std::size_t most_cuts_;      // even
+  std::size_t max_rows_;
+  std::size_t max_cuts_;       // even
   std::vector<Numbered> all_;  // while they are few
   std::vector<Cut> cuts_;      // then
   std::int64_t rows_of_cut_ = 0;

@@ -34,7 +34,7 @@ Json median_time(const Body& body, const BodyRun& run, Query query) {
   std::vector<double> times;
   const std::size_t stride = std::max<std::size_t>(1, run.rows.size() / kQueriesTimed);
   for (std::size_t i = 0; i < run.rows.size(); i += stride) {
-    const AskedPose asked = asked_pose(state_of(body, run.rows[i]), 0.0);
+    const ValidatedPose asked = validate_pose(state_of(body, run.rows[i]), 0.0);
     if (asked.status != BodyStatus::kOk) continue;
     const Clock::time_point start = Clock::now();
     const bool counts = query(asked);
@@ -48,7 +48,7 @@ Json median_time(const Body& body, const BodyRun& run, Query query) {
 
 // What of this body's rows was skipped, and what a query costs with and without.
 Json skipping_of(const Body& body, const BodyRun& run, const Water& water) {
-  const WhollyWet wet = wholly_wet(body.solver.mesh(), water, body.reference_B);
+  const FullySubmerged wet = fully_submerged(body.solver.mesh(), water, body.reference_B);
   BodyOutcome outcome;
   return {{"unchanged", run.skipped.unchanged},
           {"dry", run.skipped.dry},
@@ -56,12 +56,12 @@ Json skipping_of(const Body& body, const BodyRun& run, const Water& water) {
           {"crossing", run.skipped.crossing},
           {"refused", run.skipped.refused},
           {"bounds_ns", median_time(body, run,
-                                    [&](const AskedPose& asked) {
-                                      return evaluate_by_bounds(body, wet, water, asked, outcome);
+                                    [&](const ValidatedPose& asked) {
+                                      return try_evaluate_from_bounds(body, wet, water, asked, outcome);
                                     })},
-          {"query_ns", median_time(body, run, [&](const AskedPose& asked) {
+          {"query_ns", median_time(body, run, [&](const ValidatedPose& asked) {
              evaluate(body, water, asked, outcome);
-             return outcome.answer.immersion == Immersion::kCrossing;
+             return outcome.response.immersion == Immersion::kPiercing;
            })}};
 }
 
@@ -80,7 +80,7 @@ std::string metacenters_text(const Body& body, const BodyRun& run, const Water& 
   std::vector<float> numbers;
   numbers.reserve(run.rows.size() * 6);
   for (const Row& row : run.rows) {
-    const AskedPose asked = asked_pose(state_of(body, row), 0.0);
+    const ValidatedPose asked = validate_pose(state_of(body, row), 0.0);
     std::optional<Hydrostatics> found;
     if (asked.status == BodyStatus::kOk && row[kStatus] == 0.0) {
       found = hydrostatics(body.solver.mesh(), asked.pose, water, body.reference_B, body.center_of_mass_B);
@@ -94,13 +94,13 @@ std::string metacenters_text(const Body& body, const BodyRun& run, const Water& 
 }
 
 Json status_json(const ServiceStatus& status) {
-  const Counters& counters = status.counters;
+  const ServiceCounters& counters = status.counters;
   return {{"version", status.version},
           {"uptime", status.uptime},
-          {"questions", counters.questions},
-          {"answered", counters.answered},
-          {"repeated", counters.repeated},
-          {"overtaken", counters.overtaken},
+          {"requests", counters.requests},
+          {"computed", counters.computed},
+          {"retries", counters.retries},
+          {"superseded", counters.superseded},
           {"rejected", counters.rejected()},
           {"dry", counters.bodies_dry},
           {"wet", counters.bodies_wet},
@@ -121,8 +121,8 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
             {"sessions", run.sessions},
             {"computed", run.computed},
             {"unknown_bodies", run.unknown_bodies},
-            {"troubles", run.troubles},
-            {"more_troubles", run.more_troubles},
+            {"warnings", run.warnings},
+            {"suppressed_warnings", run.suppressed_warnings},
             {"status", run.status ? status_json(*run.status) : Json(nullptr)},
             {"model", scene_model(scene)},
             {"bodies", Json::array()}};

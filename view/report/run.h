@@ -23,7 +23,7 @@ namespace buoyancy {
 //   kVolume          m^3, submerged
 //   kBx .. kBz       m, from B's origin to the centre of buoyancy
 //   kEnergy          J, mechanical (simulation/rigid_body.h)
-//   kRoundTrip       s, from question to answer, by the clock of whoever recorded them
+//   kRoundTrip       s, from request to answer, by the clock of whoever recorded them
 //   kHeave           m, of B's origin over the water
 //   kRoll, kPitch    degrees from upright (attitude.h)
 //   kForce, kTorque  N, N m: lengths
@@ -62,15 +62,15 @@ inline constexpr std::array<std::string_view, kColumnCount> kColumnNames{
     "bz",   "energy", "round_trip", "heave", "roll", "pitch", "force",  "torque"};
 
 using Row = std::array<double, kColumnCount>;
-inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // What a body's pose let the service leave out, by row.
-struct SkippedRows {
+struct EvaluationCounts {
   std::int64_t unchanged = 0;  // the same pose as the row before, bit for bit: answered from it
   std::int64_t dry = 0;        // clear of the water: answered from the bounds
   std::int64_t wet = 0;        // wholly under water: from the bounds and constants
   std::int64_t crossing = 0;   // computed
-  std::int64_t refused = 0;    // a pose that has no answer
+  std::int64_t refused = 0;    // a pose that has no response
 };
 
 struct BodyRun {
@@ -78,21 +78,21 @@ struct BodyRun {
   // Of these, by BodyStatus, the last for statuses of a later version; fewer than `recorded` where neither
   // the file says the status nor anything was computed.
   std::array<std::int64_t, kBodyStatusCount + 1> statuses{};
-  double largest_force = kNotKnown;  // N, of the rows that are OK
+  double largest_force = kUnknown;  // N, of the rows that are OK
   // Of the bodies that are shown, alone:
   bool shown = false;
   std::vector<Row> rows;  // in order of time; what is left of `recorded`
-  SkippedRows skipped;
+  EvaluationCounts skipped;
 };
 
 struct RecordedRun {
   std::vector<BodyRun> bodies;      // as Scene::bodies()
   std::int64_t unknown_bodies = 0;  // rows about bodies that the scene has not
-  std::int64_t sessions = 0;        // of questions; one after the other on the axis of time
+  std::int64_t sessions = 0;        // of requests; one after the other on the axis of time
   std::int64_t computed =
-      0;  // rows of shown bodies whose file has no answer, computed from the scene instead
-  std::vector<std::string> troubles;  // what could not be read: the first of them
-  std::int64_t more_troubles = 0;
+      0;  // rows of shown bodies whose file has no response, computed from the scene instead
+  std::vector<std::string> warnings;  // what could not be read: the first of them
+  std::int64_t suppressed_warnings = 0;
   std::optional<ServiceStatus> status;  // the last that was recorded
 };
 

@@ -8,8 +8,8 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kMostRowsOfBody = 12'000;
-constexpr std::size_t kTroublesKept = 20;
+constexpr std::size_t kMaxRowsOfBody = 12'000;
+constexpr std::size_t kWarningsKept = 20;
 constexpr std::size_t kSessionsCounted = 10'000;
 constexpr std::size_t kClocksKept = 8;
 constexpr std::int64_t kClockBeganAgain = 1'000'000;          // us: what is back by less came late
@@ -33,7 +33,7 @@ std::int64_t fitting_offset(std::int64_t utime, std::int64_t offset, std::int64_
 }
 
 MeshUp mesh_up_of(const Body& body) {
-  const std::string& axis = body.prepared->report.source.up_axis;
+  const std::string& axis = body.prepared_mesh->report.source.up_axis;
   return axis == "y" ? MeshUp::kY : axis == "x" ? MeshUp::kX : MeshUp::kZ;
 }
 
@@ -41,17 +41,17 @@ MeshUp mesh_up_of(const Body& body) {
 Pose raw_pose(const BodyState& state) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   const Eigen::Quaterniond q(w, x, y, z);
-  return {as_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
+  return {to_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
 }
 
 double energy_of(const RigidBody& rigid, const RecordedState& recorded, const BodyWrench& wrench,
                  const Water& water) {
   const Pose pose = raw_pose(recorded.state);
-  ClientSpec spec;
+  DynamicsSpec spec;
   spec.position = pose.p_WB;
   spec.orientation = pose.q_WB.normalized();
-  spec.linear_velocity = as_vec3(recorded.state.linear_velocity);
-  spec.angular_velocity = as_vec3(recorded.state.angular_velocity);
+  spec.linear_velocity = to_vec3(recorded.state.linear_velocity);
+  spec.angular_velocity = to_vec3(recorded.state.angular_velocity);
   const RigidBodyState state = initial_state(rigid, spec);
   return mechanical_energy(rigid, state, wrench, water);
 }
@@ -61,11 +61,11 @@ void put(Row& row, Column first, const std::array<double, kSize>& values) {
   std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-BodyWrench computed_wrench(const Body& body, const Water& water, const AskedPose& asked) {
+BodyWrench computed_wrench(const Body& body, const Water& water, const ValidatedPose& asked) {
   BodyOutcome outcome;
   outcome.status = asked.status;
   if (asked.status == BodyStatus::kOk) evaluate(body, water, asked, outcome);
-  return wrench_of(body.id, outcome);
+  return to_wrench(body.id, outcome);
 }
 
 void count_row(BodyRun& body, BodyStatus status, double force) {
@@ -77,13 +77,13 @@ void count_row(BodyRun& body, BodyStatus status, double force) {
 }
 
 // Of a body that is not shown: what the file and the pose say, nothing computed.
-void summarize(BodyRun& body, const RecordedState& recorded, const AskedPose& asked) {
+void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose& asked) {
   if (recorded.wrench) {
-    count_row(body, recorded.wrench->status, as_vec3(recorded.wrench->force).norm());
+    count_row(body, recorded.wrench->status, to_vec3(recorded.wrench->force).norm());
   } else if (asked.status != BodyStatus::kOk) {
     count_row(body, asked.status, 0.0);
   } else if (recorded.force_torque) {
-    count_row(body, BodyStatus::kOk, as_vec3(recorded.force_torque->force).norm());
+    count_row(body, BodyStatus::kOk, to_vec3(recorded.force_torque->force).norm());
   } else {
     ++body.recorded;
   }
@@ -91,22 +91,21 @@ void summarize(BodyRun& body, const RecordedState& recorded, const AskedPose& as
 
 }  // namespace
 
-RunCollector::RunCollector(const Scene& scene, std::size_t most_rows,
-                           const std::vector<std::size_t>& selected)
+RunBuilder::RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected)
     : scene_(scene) {
-  const std::size_t most = selected.empty() ? std::min(scene.bodies().size(), kMostBodies) : selected.size();
-  most_rows_of_body_ = std::min(most_rows / most, kMostRowsOfBody);
+  const std::size_t most = selected.empty() ? std::min(scene.bodies().size(), kMaxBodies) : selected.size();
+  max_rows_of_body_ = std::min(max_rows / most, kMaxRowsOfBody);
   run_.bodies.resize(scene.bodies().size());
   bodies_.resize(scene.bodies().size());
   room_ = most;
   for (const std::size_t index : selected) show(index);
 }
 
-RunCollector::Collected* RunCollector::show(std::size_t index) {
+RunBuilder::Collected* RunBuilder::show(std::size_t index) {
   if (bodies_[index] != nullptr || room_ == 0) return bodies_[index].get();
   --room_;
   const Body& body = scene_.bodies()[index];
-  bodies_[index] = std::make_unique<Collected>(most_rows_of_body_);
+  bodies_[index] = std::make_unique<Collected>(max_rows_of_body_);
   bodies_[index]->mesh_up = mesh_up_of(body);
   run_.bodies[index].shown = true;
   if (body.client.given) {
@@ -116,7 +115,7 @@ RunCollector::Collected* RunCollector::show(std::size_t index) {
   return bodies_[index].get();
 }
 
-std::int64_t RunCollector::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
+std::int64_t RunBuilder::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
   const std::optional<std::size_t> index = scene_.index_of(body_id);
   if (!index) return 0;
   if (sessions_.size() < kSessionsCounted) sessions_.insert(session_id);
@@ -149,7 +148,7 @@ std::int64_t RunCollector::time_of(std::int32_t body_id, std::int64_t session_id
   return time;
 }
 
-void RunCollector::classify(Collected& collected, const Body& body, const AskedPose& asked) const {
+void RunBuilder::classify(Collected& collected, const Body& body, const ValidatedPose& asked) const {
   if (asked.status != BodyStatus::kOk) {
     ++collected.skipped.refused;
     collected.last_pose.reset();
@@ -161,27 +160,27 @@ void RunCollector::classify(Collected& collected, const Body& body, const AskedP
     return;
   }
   collected.last_pose = bits;
-  switch (immersion_at_a_glance(body.solver.mesh(), asked.pose, scene_.water())) {
+  switch (quick_immersion(body.solver.mesh(), asked.pose, scene_.water())) {
     case Immersion::kDry:
       ++collected.skipped.dry;
       break;
-    case Immersion::kWet:
+    case Immersion::kSubmerged:
       ++(body.solver.method() == Method::kHierarchical ? collected.skipped.wet : collected.skipped.crossing);
       break;
-    case Immersion::kCrossing:
+    case Immersion::kPiercing:
       ++collected.skipped.crossing;
       break;
   }
 }
 
-void RunCollector::add(const RecordedState& recorded) {
+void RunBuilder::add(const RecordedState& recorded) {
   const std::optional<std::size_t> index = scene_.index_of(recorded.state.body_id);
   if (!index) {
     ++run_.unknown_bodies;
     return;
   }
   const Body& body = scene_.bodies()[*index];
-  const AskedPose asked = asked_pose(recorded.state, recorded.lead_time);
+  const ValidatedPose asked = validate_pose(recorded.state, recorded.lead_time);
   Collected* const shown = show(*index);
   if (shown == nullptr) {
     summarize(run_.bodies[*index], recorded, asked);
@@ -196,7 +195,7 @@ void RunCollector::add(const RecordedState& recorded) {
     wrench.torque = recorded.force_torque->torque;
   }
 
-  count_row(run_.bodies[*index], wrench.status, as_vec3(wrench.force).norm());
+  count_row(run_.bodies[*index], wrench.status, to_vec3(wrench.force).norm());
 
   Row row;
   row[kTime] = 1e-6 * static_cast<double>(recorded.time);
@@ -207,7 +206,7 @@ void RunCollector::add(const RecordedState& recorded) {
   put(row, kTx, wrench.torque);
   row[kVolume] = wrench.submerged_volume;
   put(row, kBx, wrench.center_of_buoyancy);
-  row[kEnergy] = kNotKnown;
+  row[kEnergy] = kUnknown;
   if (recorded.energy) {
     row[kEnergy] = *recorded.energy;
   } else if (recorded.velocities && collected.rigid && wrench.status == BodyStatus::kOk) {
@@ -218,26 +217,26 @@ void RunCollector::add(const RecordedState& recorded) {
   row[kHeave] = lies.heave;
   row[kRoll] = lies.roll;
   row[kPitch] = lies.pitch;
-  row[kForce] = as_vec3(wrench.force).norm();
-  row[kTorque] = as_vec3(wrench.torque).norm();
+  row[kForce] = to_vec3(wrench.force).norm();
+  row[kTorque] = to_vec3(wrench.torque).norm();
   collected.rows.add(number_++, row);
 }
 
-void RunCollector::add_trouble(std::string trouble) {
-  if (run_.troubles.size() < kTroublesKept) {
-    run_.troubles.push_back(std::move(trouble));
+void RunBuilder::add_warning(std::string warning) {
+  if (run_.warnings.size() < kWarningsKept) {
+    run_.warnings.push_back(std::move(warning));
   } else {
-    ++run_.more_troubles;
+    ++run_.suppressed_warnings;
   }
 }
 
-RecordedRun RunCollector::take() {
+RecordedRun RunBuilder::finish() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i] == nullptr) continue;
     BodyRun& body = run_.bodies[i];
     body.rows = bodies_[i]->rows.rows();
     body.skipped = bodies_[i]->skipped;
-    // A question that waited in vain comes late.
+    // A request that waited in vain comes late.
     std::ranges::stable_sort(body.rows, {}, [](const Row& row) { return row[kTime]; });
   }
   run_.sessions = static_cast<std::int64_t>(sessions_.size());

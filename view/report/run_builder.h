@@ -22,26 +22,26 @@
 
 namespace buoyancy {
 
-inline constexpr std::size_t kMostBodies = 1'000;  // that one page shows
+inline constexpr std::size_t kMaxBodies = 1'000;  // that one page shows
 
 // What a file says of one body at one instant.
 struct RecordedState {
-  std::int64_t time = 0;  // us, on the run's axis: as RunCollector::time_of() said when it came
+  std::int64_t time = 0;  // us, on the run's axis: as RunBuilder::time_of() said when it came
   BodyState state;
   double lead_time = 0.0;            // s
   std::optional<BodyWrench> wrench;  // nullopt: to be computed
   std::optional<BotForceTorque>
-      force_torque;               // where nothing else of the wrench is known: the rest is computed
-  std::optional<double> energy;   // J; nullopt: to be computed, where velocities and [body.client] allow it
-  bool velocities = false;        // state has them
-  double round_trip = kNotKnown;  // s
+      force_torque;              // where nothing else of the wrench is known: the rest is computed
+  std::optional<double> energy;  // J; nullopt: to be computed, where velocities and [body.client] allow it
+  bool velocities = false;       // state has them
+  double round_trip = kUnknown;  // s
 };
 
-class RunCollector {
+class RunBuilder {
  public:
-  // scene must outlive this. most_rows: of all bodies together, roughly. selected: the bodies to show, as
-  // indices into scene.bodies(), at most kMostBodies; empty: the first kMostBodies that the run names.
-  RunCollector(const Scene& scene, std::size_t most_rows, const std::vector<std::size_t>& selected = {});
+  // scene must outlive this. max_rows: of all bodies together, roughly. selected: the bodies to show, as
+  // indices into scene.bodies(), at most kMaxBodies; empty: the first kMaxBodies that the run names.
+  RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected = {});
 
   // Where on the run's axis a state of this body stands, us. To be asked once about each, in the order in
   // which they came; 0 of a body that is not shown. The axis begins with the run's first state. A clock that
@@ -50,11 +50,11 @@ class RunCollector {
   std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
   // In any order.
   void add(const RecordedState& recorded);
-  void add_trouble(std::string trouble);
+  void add_warning(std::string warning);
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 
-  // What it all came to; the collector is done for then.
-  RecordedRun take();
+  // What it all came to; the builder is done for then.
+  RecordedRun finish();
 
  private:
   // A session's, as a body knows it.
@@ -64,12 +64,12 @@ class RunCollector {
     std::int64_t latest = 0;  // us, on the axis
   };
   struct Collected {
-    explicit Collected(std::size_t most_rows) : rows(most_rows) {}
+    explicit Collected(std::size_t max_rows) : rows(max_rows) {}
 
-    ThinnedRows rows;
+    DecimatedRows rows;
     std::optional<RigidBody> rigid;
     MeshUp mesh_up = MeshUp::kZ;
-    SkippedRows skipped;
+    EvaluationCounts skipped;
     std::optional<PoseBits> last_pose;
     std::deque<Clock> clocks;    // of its last sessions, the newest in front
     std::int64_t last_time = 0;  // the latest
@@ -77,10 +77,10 @@ class RunCollector {
   };
 
   Collected* show(std::size_t index);  // nullptr: the body is not shown, there is no room for it
-  void classify(Collected& collected, const Body& body, const AskedPose& asked) const;
+  void classify(Collected& collected, const Body& body, const ValidatedPose& asked) const;
 
   const Scene& scene_;
-  std::size_t most_rows_of_body_;
+  std::size_t max_rows_of_body_;
   std::size_t room_ = 0;                            // for further bodies, where none are selected
   std::vector<std::unique_ptr<Collected>> bodies_;  // as Scene::bodies(); nullptr: not shown (yet)
   std::unordered_set<std::int64_t> sessions_;       // up to a bound

@@ -99,11 +99,11 @@ bool read_row(const std::vector<std::string_view>& fields, const Places& places,
 }  // namespace
 
 Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOptions& options,
-                            RunCollector& collector) {
+                            RunBuilder& builder) {
   std::ifstream file(path, std::ios::binary);
   std::string header_line;
   if (!file.is_open() || (!std::getline(file, header_line) && !file.eof())) {
-    return failure(
+    return make_error(
         {path.string(), "cannot be read", "a CSV file", "no such file, or no right to read it", ""});
   }
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -115,7 +115,7 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
       header.places({"status", "fx", "fy", "fz", "tx", "ty", "tz", "volume", "bx", "by", "bz"}),
       header.places({"energy"})};
   if (places.key.empty() || places.pose.empty()) {
-    return failure(
+    return make_error(
         {path.string(), "first line '" + header_line.substr(0, 120) + "'",
          "columns utime, body_id, px, py, pz, qw, qx, qy, qz and what else buoyancy-client --csv writes",
          "answers alone, as buoyancy-replay writes them, have no poses to show",
@@ -129,12 +129,12 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
     RecordedState row;
     std::int64_t utime = 0;
     if (fields.size() != header.size() || !read_row(fields, places, utime, row)) {
-      collector.add_trouble("line " + std::to_string(number) + " is not " + std::to_string(header.size()) +
-                            " numbers: left out");
+      builder.add_warning("line " + std::to_string(number) + " is not " + std::to_string(header.size()) +
+                          " numbers: left out");
       continue;
     }
-    row.time = collector.time_of(row.state.body_id, 0, utime);
-    collector.add(row);
+    row.time = builder.time_of(row.state.body_id, 0, utime);
+    builder.add(row);
     if (number % kRowsBetweenProgress == 0 && options.progress &&
         !options.progress(file.tellg(), bytes, number))
       break;

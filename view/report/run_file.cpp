@@ -8,31 +8,31 @@
 
 namespace buoyancy {
 
-Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
+Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t max_rows,
                                const RunFileOptions& options) {
   const std::string extension = path.extension().string();
   if (extension != ".csv" && extension != ".lcmlog") {
-    return failure({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
+    return make_error({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
   }
   if (extension == ".csv" && !options.poses.channels.empty()) {
-    return failure({"--pose", path.string(), "an .lcmlog as RUN", "CSV has no channels", ""});
+    return make_error({"--pose", path.string(), "an .lcmlog as RUN", "CSV has no channels", ""});
   }
-  RunCollector collector(scene, most_rows, options.bodies);
+  RunBuilder builder(scene, max_rows, options.bodies);
   const Expected<void> read =
-      extension == ".csv" ? read_run_csv(path, options, collector) : read_run_log(path, options, collector);
+      extension == ".csv" ? read_run_csv(path, options, builder) : read_run_log(path, options, builder);
   if (!read) return tl::unexpected(read.error());
-  RecordedRun run = collector.take();
+  RecordedRun run = builder.finish();
   const auto is_recorded = [](const BodyRun& body) { return body.recorded > 0; };
   if (std::ranges::any_of(run.bodies, [&](const BodyRun& body) { return body.shown && is_recorded(body); }))
     return run;
   if (const auto other = std::ranges::find_if(run.bodies, is_recorded); other != run.bodies.end()) {
     const Body& body = scene.bodies()[static_cast<std::size_t>(other - run.bodies.begin())];
-    return failure({path.string(), "no rows about a body of --bodies", "rows about one of them at least", "",
-                    "It has rows about " +
-                        counted(std::ranges::count_if(run.bodies, is_recorded), "body", "bodies") +
-                        " of the scene, the first with the id " + std::to_string(body.id)});
+    return make_error(
+        {path.string(), "no rows about a body of --bodies", "rows about one of them at least", "",
+         "It has rows about " + pluralize(std::ranges::count_if(run.bodies, is_recorded), "body", "bodies") +
+             " of the scene, the first with the id " + std::to_string(body.id)});
   }
-  return failure(
+  return make_error(
       {path.string(), std::to_string(run.unknown_bodies) + " rows, none about a body of " + scene.name(),
        "states of the scene's bodies", "the scene is of another run, or the log's channels have other names",
        "See --states-channel, --pose for poses of bot_core, and buoyancyd --check for the scene's ids"});

@@ -5,9 +5,9 @@
 // of vx..wz; status, fx..tz, volume, bx..bz; energy each group is read where all of it is there. What lacks
 // is computed.
 //
-// Log: questions and answers are matched by session and seq, poses and their answers by body and utime; a
-// repeated question is one, and an answer that never came is computed. Of an answer that is force and torque
-// alone the rest is computed. At most 4,096 questions wait for their answers. What is damaged is passed over
+// Log: requests and answers are matched by session and seq, poses and their responses by body and utime; a
+// repeated request is one, and a response that never came is computed. Of a response that is force and torque
+// alone the rest is computed. At most 4,096 requests wait for their responses. What is damaged is passed over
 // (recording/event_log.h).
 #pragma once
 
@@ -29,7 +29,7 @@ struct RunFileOptions {
   std::string wrenches_channel{kWrenchesChannel};
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log
-  std::vector<std::size_t> bodies;  // to show (RunCollector); empty: the first that the run names
+  std::vector<std::size_t> bodies;  // to show (RunBuilder); empty: the first that the run names
   // Called now and then: bytes read, bytes in all, rows. False: stop reading, what was read is the run.
   std::function<bool(std::int64_t, std::int64_t, std::int64_t)> progress;
 };
@@ -37,7 +37,7 @@ struct RunFileOptions {
 // By the extension: .csv or .lcmlog. Memory does not grow with the file. Errors: another extension, not
 // readable, a first line that is no such header, a .csv where options name pose channels, not one row about a
 // body of the scene, or about those that options name.
-Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t most_rows,
+Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t max_rows,
                                const RunFileOptions& options);
 
 }  // namespace buoyancy

@@ -6,6 +6,6 @@
 namespace buoyancy {
 
 Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOptions& options,
-                            RunCollector& collector);
+                            RunBuilder& builder);
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
 // Asks the installed libraries for the buoyancy of a half-submerged cube, through the core and through the
-// exchange, with a question encoded by the installed message types; and opens a client of a service that
+// handler, with a request encoded by the installed message types; and opens a client of a service that
 // cannot be. Exit code 0 if both answers are right and the client says what is wrong.
 #include <cmath>
 #include <cstdint>
@@ -50,19 +50,19 @@ int main() {
   states.bodies[0] = {};
   states.bodies[0].body_id = 7;
   states.bodies[0].quaternion_wxyz[0] = 1.0;
-  std::vector<std::uint8_t> question(static_cast<std::size_t>(states.getEncodedSize()));
-  states.encode(question.data(), 0, static_cast<int>(question.size()));
+  std::vector<std::uint8_t> request(static_cast<std::size_t>(states.getEncodedSize()));
+  states.encode(request.data(), 0, static_cast<int>(request.size()));
 
-  buoyancy::Exchange exchange(*scene);
-  const buoyancy::Bytes answer = exchange.answer(question);
+  buoyancy::RequestHandler handler(*scene);
+  const buoyancy::Bytes response = handler.handle(request);
   buoyancy::body_wrenches_t wrenches{};
-  if (wrenches.decode(answer.data(), 0, static_cast<int>(answer.size())) < 0) return 1;
+  if (wrenches.decode(response.data(), 0, static_cast<int>(response.size())) < 0) return 1;
   if (wrenches.num_bodies != 1) return 1;
 
-  const bool both = right("core", direct.force_W.z()) & right("exchange", wrenches.bodies[0].force[2]);
+  const bool both = right("core", direct.force_W.z()) & right("handler", wrenches.bodies[0].force[2]);
 
   buoyancy::ClientOptions nowhere;
-  nowhere.link.lcm_url = "nowhere://";
+  nowhere.channel.lcm_url = "nowhere://";
   const auto client = buoyancy::Client::open(nowhere);
   if (client) return 1;
   std::printf("client: %s\n", client.error().message().c_str());

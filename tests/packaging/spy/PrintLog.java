@@ -1,5 +1,5 @@
 // Reads a log of lcm-logger with the types that lcm-spy finds on its class path, in lcm-spy's own way, and prints every
-// event: "<channel> <type>", and for each body of an answer "wrench <utime> <body_id> <fx> <fy> <fz>". Exit code 1: a
+// event: "<channel> <type>", and for each body of a response "wrench <utime> <body_id> <fx> <fy> <fz>". Exit code 1: a
 // message whose type is not on the class path.
 import java.io.DataInput;
 import java.io.EOFException;
