@@ -11,14 +11,14 @@ constexpr std::uint64_t kPose = 0x2e16efb052b0105e;
 constexpr std::uint64_t kRigidTransform = 0xea9ffbf2acc5c5ae;
 constexpr std::uint64_t kSixAxisForceTorque = 0xf70790658aea38ec;
 
-// With their fingerprints.
+// Encoded sizes [bytes], including the fingerprint.
 constexpr std::size_t kPoseSize = 8 + 8 + 16 * sizeof(double);
 constexpr std::size_t kRigidTransformSize = 8 + 8 + 7 * sizeof(double);
 constexpr std::size_t kSixAxisForceTorqueSize = 8 + 8 + 6 * sizeof(double);
 
-constexpr std::array<double, 3> unknown() {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  return {kNone, kNone, kNone};
+constexpr std::array<double, 3> nan_vector() {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  return {kNaN, kNaN, kNaN};
 }
 
 }  // namespace
@@ -38,8 +38,8 @@ tl::expected<BotPose, DecodeError> decode_bot_pose(Bytes bytes) {
     reader(pose.utime, pose.position, pose.velocity, pose.quaternion_wxyz, pose.rotation_rate);
   } else {
     reader(pose.utime, pose.position, pose.quaternion_wxyz);
-    pose.velocity = unknown();
-    pose.rotation_rate = unknown();
+    pose.velocity = nan_vector();
+    pose.rotation_rate = nan_vector();
   }
   return pose;
 }

@@ -1,4 +1,4 @@
-// Vectors as messages have them: checked, and turned into those that we compute with, and back.
+// Converts between the arrays of messages and the vectors of computations, and checks arrays for finiteness.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace buoyancy {
 
-// Without a branch for each: infinity less itself is no number.
+// Tests branch-free: x - x is NaN for infinities and NaN, and 0 for every finite x.
 template <std::size_t kSize>
 bool all_finite(const std::array<double, kSize>& values) {
   double sum = 0.0;

@@ -1,8 +1,9 @@
-// Percentiles of durations in constant memory: logarithmic buckets, 1/32 octave wide, from 1 ns to 4,000 s.
+// Computes percentiles of durations in constant memory, with logarithmic buckets that are 1/32 octave wide and
+// range from 1 ns to 4,000 s.
 //
-// A percentile p is the smallest duration that at least the share p of all durations does not exceed. It is
-// read at the upper end of its bucket: never below the true one, at most 2.2 % (or 1 ns) above it. The
-// maximum is exact. add: O(1), no heap; percentiles: O(buckets).
+// The percentile p is the smallest duration that at least the fraction p of all durations does not exceed.
+// The result is the upper end of its bucket: never below the exact percentile, at most 2.2 % (or 1 ns) above
+// it. The maximum is exact. add: O(1), no heap allocation; percentiles: O(buckets).
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@ namespace buoyancy {
 class LatencyHistogram {
  public:
   void add(double seconds);                // negative and NaN count as 0
-  LatencyPercentiles percentiles() const;  // zeros where nothing was added
+  LatencyPercentiles percentiles() const;  // zeros before the first add()
   std::int64_t count() const { return count_; }
 
  private:
-  // s: of the duration with this rank, counted from 1 at the shortest.
+  // The duration [s] of this rank; the shortest duration has rank 1.
   double value_at(std::int64_t rank) const;
 
   static constexpr int kPerOctave = 32;

@@ -1,4 +1,4 @@
-// Core types of a request and its response: what body_states_t and body_wrenches_t say, without LCM.
+// Core types of a request and its response: the content of body_states_t and body_wrenches_t, without LCM.
 #pragma once
 
 #include <array>
@@ -9,26 +9,26 @@ namespace buoyancy {
 
 struct BodyState {
   std::int32_t body_id = 0;
-  std::array<double, 3> position{};          // m, W
+  std::array<double, 3> position{};          // [m], W frame
   std::array<double, 4> quaternion_wxyz{};   // q_WB
-  std::array<double, 3> linear_velocity{};   // m/s, W, of B's origin
-  std::array<double, 3> angular_velocity{};  // rad/s, W
+  std::array<double, 3> linear_velocity{};   // [m/s], W frame, velocity of B's origin
+  std::array<double, 3> angular_velocity{};  // [rad/s], W frame
 };
 
-// What ties a response to its request.
+// Identifies a request; its response carries the same values.
 struct RequestId {
-  std::int64_t utime = 0;  // us
+  std::int64_t utime = 0;  // [us], the client's clock
   std::int64_t session_id = 0;
   std::int64_t seq = 0;
 };
 
 struct WrenchRequest {
   RequestId key;
-  double lead_time = 0.0;  // s
+  double lead_time = 0.0;  // [s]
   std::vector<BodyState> bodies;
 };
 
-// Values as in body_wrench_t.lcm.
+// The values equal the constants of body_wrench_t.lcm.
 enum class BodyStatus : std::int32_t {
   kOk = 0,
   kUnknownBody = 1,
@@ -40,18 +40,18 @@ enum class BodyStatus : std::int32_t {
   kOutOfRange = 7,
 };
 inline constexpr int kBodyStatusCount = 8;
-// "UNKNOWN_BODY", as in the message definition; "UNKNOWN_STATUS" for a value of a later version.
+// The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other value.
 const char* to_string(BodyStatus status);
 
 struct BodyWrench {
   std::int32_t body_id = 0;
   BodyStatus status = BodyStatus::kOk;
-  std::array<double, 3> force{};               // N, W
-  std::array<double, 3> torque{};              // N m, W
-  double submerged_volume = 0.0;               // m^3
-  std::array<double, 3> center_of_buoyancy{};  // m, W axes, relative to position
-  double force_error_bound = 0.0;              // N
-  double torque_error_bound = 0.0;             // N m
+  std::array<double, 3> force{};               // [N], W frame
+  std::array<double, 3> torque{};              // [N m], W frame
+  double submerged_volume = 0.0;               // [m^3]
+  std::array<double, 3> center_of_buoyancy{};  // [m], W axes, relative to position
+  double force_error_bound = 0.0;              // [N]
+  double torque_error_bound = 0.0;             // [N m]
 };
 
 struct WrenchResponse {

@@ -10,8 +10,8 @@ namespace buoyancy {
 namespace {
 
 struct FixedSizes {
-  std::size_t before_strings;  // with the fingerprint
-  std::size_t strings;         // if all were empty
+  std::size_t before_strings;  // including the fingerprint
+  std::size_t strings;         // with every string empty
   std::size_t after_strings;
 };
 
@@ -28,9 +28,9 @@ FixedSizes fixed_sizes(const ServiceStatus& status) {
   return {before.size(), strings, after.size()};
 }
 
-// Takes a string off the front of bytes: its characters, or what is wrong with it.
-tl::expected<std::string_view, DecodeError> take_string(Bytes& bytes) {
-  std::int32_t size = 0;  // with the final NUL
+// Decodes the string at the front of bytes and removes it from bytes.
+tl::expected<std::string_view, DecodeError> consume_string(Bytes& bytes) {
+  std::int32_t size = 0;  // including the final NUL
   if (bytes.size() < kEmptyString) return tl::unexpected(DecodeError::kLength);
   BigEndianReader{bytes.data()}(size);
   bytes = bytes.subspan(sizeof(size));
@@ -97,18 +97,18 @@ std::optional<DecodeError> decode(Bytes bytes, ServiceStatus& status) {
   if (fingerprint != service_status_t::getHash()) return DecodeError::kFingerprint;
   const Bytes strings =
       bytes.subspan(sizes.before_strings, bytes.size() - sizes.before_strings - sizes.after_strings);
-  Bytes left = strings;
-  std::optional<DecodeError> rejection;
+  Bytes remaining = strings;
+  std::optional<DecodeError> error;
   visit_strings(status, [&](const std::string& /*text*/) {
-    if (rejection) return;
-    if (const auto text = take_string(left); !text) rejection = text.error();
+    if (error) return;
+    if (const auto text = consume_string(remaining); !text) error = text.error();
   });
-  if (!rejection && !left.empty()) rejection = DecodeError::kLength;
-  if (rejection) return rejection;
+  if (!error && !remaining.empty()) error = DecodeError::kLength;
+  if (error) return error;
 
   visit_header(status, reader);
-  left = strings;
-  visit_strings(status, [&left](std::string& text) { text.assign(*take_string(left)); });
+  remaining = strings;
+  visit_strings(status, [&remaining](std::string& text) { text.assign(*consume_string(remaining)); });
   reader.skip(strings.size());
   visit_trailer(status, reader);
   return std::nullopt;

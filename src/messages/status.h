@@ -1,4 +1,4 @@
-// The service's status as core type and on the wire (service_status_t).
+// The service's status: its core type, and its encoding as service_status_t.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-// Totals since the start; one field per counter of service_status_t.lcm, where each is explained.
+// Totals since the start. Each field is a counter of service_status_t.lcm, which documents it.
 struct ServiceCounters {
   std::int64_t requests = 0;
   std::int64_t computed = 0;
@@ -26,7 +26,7 @@ struct ServiceCounters {
   std::int64_t rejected_fingerprint = 0;
   std::int64_t rejected_count = 0;
   std::int64_t rejected_length = 0;
-  std::array<std::int64_t, kBodyStatusCount> bodies{};  // by BodyStatus
+  std::array<std::int64_t, kBodyStatusCount> bodies{};  // indexed by BodyStatus
   std::int64_t quaternions_normalised = 0;
   std::int64_t bodies_dry = 0;
   std::int64_t bodies_wet = 0;
@@ -39,15 +39,15 @@ struct ServiceCounters {
   std::int64_t rejected() const {
     return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length;
   }
-  // Totals add up, of the largest the larger stays.
+  // Adds the totals and takes the maximum of the largest_* fields.
   ServiceCounters& operator+=(const ServiceCounters& other);
 };
 
-struct LatencyPercentiles {  // s
+struct LatencyPercentiles {  // [s]
   double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
 };
 
-// Values as in service_status_t.lcm.
+// The values equal the constants of service_status_t.lcm.
 enum class SimdTarget : std::int32_t {
   kOther = 0,
   kScalar = 1,
@@ -57,20 +57,20 @@ enum class SimdTarget : std::int32_t {
   kAvx3 = 5,
   kNeon = 6,
 };
-// By the name that hydrostatics gives it (wetted_tree_sum.h); kOther for a name that has no value here.
+// Maps the target names of wetted_tree_sum.h, such as "AVX2"; returns kOther for any other name.
 SimdTarget simd_target_from_name(std::string_view name);
 
-// How requests are answered: all in order of arrival, or the newest of each session. Values as in
-// service_status_t.lcm.
+// kLockstep: handle every request in order of arrival. kLatest: handle only the newest pending request of each
+// session. The values equal the constants of service_status_t.lcm.
 enum class ServiceMode : std::int32_t { kLockstep = 0, kLatest = 1 };
 
-// Fields as in service_status_t.lcm, where each is explained.
+// The fields are those of service_status_t.lcm, which documents them.
 struct ServiceStatus {
-  std::int64_t utime = 0;  // us
+  std::int64_t utime = 0;  // [us]
   std::int64_t instance_id = 0;
   std::string version;
   std::string scene;
-  double uptime = 0.0;  // s
+  double uptime = 0.0;  // [s]
   ServiceMode mode = ServiceMode::kLockstep;
   SimdTarget simd_target = SimdTarget::kOther;
   std::int32_t threads = 1;
@@ -82,12 +82,13 @@ struct ServiceStatus {
   std::int64_t fragments_dropped = 0;
   ServiceCounters counters;
   LatencyPercentiles latency;
-  double queue_wait = 0.0;  // s
+  double queue_wait = 0.0;  // [s]
 };
 
-// Encodes into bytes, which is resized. The strings hold no NUL.
+// Replaces bytes by the encoded status. Precondition: the strings contain no NUL.
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
-// Checks as for a request, and each string's length and final NUL. On rejection status is unchanged.
+// Makes the checks of wire.h's decode(), and checks each string's length and final NUL. On an error, status is
+// unchanged.
 std::optional<DecodeError> decode(Bytes bytes, ServiceStatus& status);
 
 }  // namespace buoyancy

@@ -13,7 +13,7 @@
 namespace buoyancy {
 namespace {
 
-// Taken from the generated types, so that it follows the .lcm files.
+// The generated types supply the fingerprint, so that it follows the .lcm files.
 template <typename Message>
 std::int64_t fingerprint() {
   if constexpr (std::is_same_v<Message, WrenchRequest>) return body_states_t::getHash();
@@ -21,7 +21,7 @@ std::int64_t fingerprint() {
   if constexpr (std::is_same_v<Message, BodiesHydrostatics>) return bodies_hydrostatics_t::getHash();
 }
 
-// Bytes before the first body: fingerprint, head, number of bodies.
+// Size [bytes] of everything before the first body: fingerprint, header, number of bodies.
 template <typename Message>
 std::size_t fixed_size() {
   const Message message;
@@ -39,14 +39,14 @@ std::size_t body_size() {
   return layout.size();
 }
 
-// The number of bodies, or what is wrong.
+// Returns the number of bodies.
 template <typename Message>
 tl::expected<std::size_t, DecodeError> validate(Bytes bytes) {
   const std::size_t fixed = fixed_size<Message>();
   if (bytes.size() < fixed) return tl::unexpected(DecodeError::kTruncated);
-  std::int64_t found_fingerprint = 0;
-  BigEndianReader{bytes.data()}(found_fingerprint);
-  if (found_fingerprint != fingerprint<Message>()) return tl::unexpected(DecodeError::kFingerprint);
+  std::int64_t actual_fingerprint = 0;
+  BigEndianReader{bytes.data()}(actual_fingerprint);
+  if (actual_fingerprint != fingerprint<Message>()) return tl::unexpected(DecodeError::kFingerprint);
   std::int32_t count = 0;
   BigEndianReader{bytes.data() + fixed - sizeof(count)}(count);
   if (count < 0) return tl::unexpected(DecodeError::kCount);
@@ -83,8 +83,8 @@ void encode_message(const Message& message, std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-const char* to_string(DecodeError rejection) {
-  switch (rejection) {
+const char* to_string(DecodeError error) {
+  switch (error) {
     case DecodeError::kTruncated:
       return "shorter than the fixed fields";
     case DecodeError::kFingerprint:

@@ -1,5 +1,6 @@
-// Wire bytes <-> core types. Nothing is decoded before its fingerprint, its count and its exact length fit:
-// LCM's generated decoders can be killed by a packet of 20 bytes (count -1), or made to allocate gigabytes.
+// Converts between wire bytes and core types. A message is decoded only after its fingerprint, its count and
+// its exact length have been checked: a 20-byte packet (count -1) can crash LCM's generated decoders, or make
+// them allocate gigabytes.
 #pragma once
 
 #include <cstdint>
@@ -22,26 +23,26 @@ inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 
 using Bytes = std::span<const std::uint8_t>;
 
-// Why bytes are not a message of ours: the first of these that holds.
+// Why bytes are not a message of the expected type. Where several apply, the first one is reported.
 enum class DecodeError {
   kTruncated,    // shorter than the fixed fields
-  kFingerprint,  // of another type, or of another version of the type
+  kFingerprint,  // another type, or another version of the type
   kCount,        // the number of bodies is negative, or a string is shorter than its final NUL
-  kLength,       // too short or too long for the count, or a string that ends elsewhere than its length says
+  kLength,       // too short or too long for the count, or a string does not end at its stated length
 };
-const char* to_string(DecodeError rejection);  // for logs: "shorter than the fixed fields"
+const char* to_string(DecodeError error);  // for logs: "shorter than the fixed fields"
 
-// Decodes into request, whose vector is reused: no heap once it is as large as the largest message.
-// On rejection request is unchanged. The same of the others. Values are not judged: numbers may be NaN, an
-// answer's status may be one that this version does not know. O(length).
+// Decode into the second argument, whose vector is reused: no heap allocation once its capacity suffices for
+// the largest message. On an error, the second argument is unchanged. Values are not validated: numbers may be
+// NaN, and a status may be unknown to this version. O(length).
 std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request);
 std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response);
 std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
 
-// A request's key alone, after the same checks; O(1).
+// Makes the same checks and decodes the request's key only. O(1).
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 
-// Encodes into bytes, which is resized: no heap once it is as large as the largest message.
+// Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest message.
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);

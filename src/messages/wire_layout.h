@@ -1,7 +1,8 @@
-// The byte layout of every message, said once: the fields in the order of the .lcm files. Encoding, decoding
-// and measuring are the same visit with another visitor. LCM's law: a fingerprint of 8 bytes, then the fields
-// without padding, big-endian; a string is its length with the final NUL as int32, then the characters and
-// the NUL.
+// Defines the byte layout of every message once: visitors that encode, decode or measure visit the fields in
+// the order of the .lcm files.
+//
+// LCM's encoding: a fingerprint of 8 bytes, then the fields, big-endian and without padding. A string is its
+// length including the final NUL (int32), then its characters and the NUL.
 #pragma once
 
 #include <array>
@@ -46,24 +47,24 @@ void visit_fields(Body& body, Visitor& visitor) {
           body.stiffness);
 }
 
-// What stands before the number of bodies.
-template <MaybeConst<WrenchRequest> Q, typename Visitor>
-void visit_header(Q& request, Visitor& visitor) {
+// A header holds the fields before the number of bodies.
+template <MaybeConst<WrenchRequest> Message, typename Visitor>
+void visit_header(Message& request, Visitor& visitor) {
   visit_fields(request.key, visitor);
   visitor(request.lead_time);
 }
 
-template <MaybeConst<WrenchResponse> A, typename Visitor>
-void visit_header(A& response, Visitor& visitor) {
+template <MaybeConst<WrenchResponse> Message, typename Visitor>
+void visit_header(Message& response, Visitor& visitor) {
   visit_fields(response.key, visitor);
 }
 
-template <MaybeConst<BodiesHydrostatics> H, typename Visitor>
-void visit_header(H& hydrostatics, Visitor& visitor) {
+template <MaybeConst<BodiesHydrostatics> Message, typename Visitor>
+void visit_header(Message& hydrostatics, Visitor& visitor) {
   visit_fields(hydrostatics.key, visitor);
 }
 
-// What stands before the strings, the strings, and what stands after them.
+// A status consists of a header, its strings and a trailer.
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_header(Status& status, Visitor& visitor) {
   visitor(status.utime, status.instance_id);
@@ -75,7 +76,7 @@ void visit_strings(Status& status, Visitor&& visitor) {
   visitor(status.scene);
 }
 
-// Each counter of one or several, the same one of all of them at a time.
+// Visits each counter; with several ServiceCounters, the same counter of all of them in one call.
 template <typename Visitor, MaybeConst<ServiceCounters>... C>
 void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.requests...);
@@ -111,7 +112,7 @@ void visit_trailer(Status& status, Visitor& visitor) {
   visitor(status.queue_wait);
 }
 
-// Adds up how many bytes the visited fields take.
+// Adds up the sizes [bytes] of the visited fields.
 class LayoutSize {
  public:
   template <typename... Fields>
@@ -134,7 +135,7 @@ inline std::uint32_t big_endian(std::uint32_t value) {
   return std::endian::native == std::endian::big ? value : __builtin_bswap32(value);
 }
 
-// Reads the visited fields from bytes that were found long enough before.
+// Decodes the visited fields. Precondition: bytes holds all of them.
 class BigEndianReader {
  public:
   explicit BigEndianReader(const std::uint8_t* bytes) : bytes_(bytes) {}
@@ -163,7 +164,7 @@ class BigEndianReader {
   const std::uint8_t* bytes_;
 };
 
-// Writes the visited fields to where there is room for them.
+// Encodes the visited fields. Precondition: bytes has room for all of them.
 class BigEndianWriter {
  public:
   explicit BigEndianWriter(std::uint8_t* bytes) : bytes_(bytes) {}
