@@ -159,7 +159,7 @@ void Daemon::on_request(Bytes request) {
 
 void Daemon::on_pose(std::size_t channel, Bytes pose) {
   record_queue_delay();
-  if (const auto request = poses_.request(channel, pose)) {
+  if (const auto request = poses_.make_request(channel, pose)) {
     on_request(*request);
   } else {
     handler_.record_rejected(request.error());

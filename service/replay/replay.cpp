@@ -28,7 +28,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& 
   if (use.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
   if (use.request) batch.add_request(event.timestamp, event.bytes, {});
   if (!use.pose) return;
-  if (const auto request = task.poses.request(*use.pose, event.bytes)) {
+  if (const auto request = task.poses.make_request(*use.pose, event.bytes)) {
     batch.add_request(event.timestamp, *request, task.poses.channels()[*use.pose].force_torque_channel);
   } else {
     batch.add_rejected_pose(event.timestamp, request.error());

@@ -18,12 +18,13 @@ std::array<std::array<double, 3>, 2> to_arrays(const std::array<Vec3, 2>& pair) 
   return {to_array(pair[0]), to_array(pair[1])};
 }
 
-// abs(norm - 1). Components whose squares over- or underflow give infinity or 1: both are far from a unit.
+// |norm - 1|. Components whose squares overflow or underflow yield infinity or 1, both far beyond the
+// tolerance.
 double norm_defect(const std::array<double, 4>& q) {
   return std::abs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1.0);
 }
 
-BodyStatus as_body_status(BuoyancyStatus status) {
+BodyStatus to_body_status(BuoyancyStatus status) {
   switch (status) {
     case BuoyancyStatus::kOk:
       return BodyStatus::kOk;
@@ -35,9 +36,9 @@ BodyStatus as_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-// What goes beside the response that the outcome now holds.
-void judge(const ValidatedPose& validated, BodyOutcome& outcome) {
-  outcome.status = as_body_status(outcome.response.status);
+// Sets the fields that accompany outcome.result.
+void complete_outcome(const ValidatedPose& validated, BodyOutcome& outcome) {
+  outcome.status = to_body_status(outcome.result.status);
   outcome.quaternion_normalised = validated.quaternion_normalised;
   outcome.unchanged = false;
 }
@@ -75,34 +76,34 @@ PoseBits pose_bits(const Pose& pose) {
           bits(pose.q_WB.x()), bits(pose.q_WB.y()), bits(pose.q_WB.z())};
 }
 
-bool same(const PoseBits& a, const PoseBits& b) {
+bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
   std::uint64_t difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];
   return difference == 0;
 }
 
 void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome) {
-  outcome.response = buoyancy(body.solver, validated.pose, water, body.reference_B);
-  judge(validated, outcome);
+  outcome.result = buoyancy(body.solver, validated.pose, water, body.reference_B);
+  complete_outcome(validated, outcome);
 }
 
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& wet, const Water& water,
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
-  if (!try_buoyancy_from_bounds(body.solver, wet, validated.pose, water, outcome.response)) return false;
-  judge(validated, outcome);
+  if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, water, outcome.result)) return false;
+  complete_outcome(validated, outcome);
   return true;
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {
-  const BuoyancyResult& response = outcome.response;
+  const BuoyancyResult& result = outcome.result;
   return {.body_id = body_id,
           .status = outcome.status,
-          .force = to_array(response.force_W),
-          .torque = to_array(response.torque_W),
-          .submerged_volume = response.volume,
-          .center_of_buoyancy = to_array(response.center_of_buoyancy_W),
-          .force_error_bound = response.force_error_bound,
-          .torque_error_bound = response.torque_error_bound};
+          .force = to_array(result.force_W),
+          .torque = to_array(result.torque_W),
+          .submerged_volume = result.volume,
+          .center_of_buoyancy = to_array(result.center_of_buoyancy_W),
+          .force_error_bound = result.force_error_bound,
+          .torque_error_bound = result.torque_error_bound};
 }
 
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
@@ -110,7 +111,7 @@ void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
   counters.quaternions_normalised += static_cast<std::int64_t>(outcome.quaternion_normalised);
   if (outcome.status != BodyStatus::kOk) return;
   counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
-  switch (outcome.response.immersion) {
+  switch (outcome.result.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;
       break;
@@ -121,38 +122,37 @@ void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
       ++counters.bodies_crossing;
       break;
   }
-  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.response.dropped_force);
-  counters.largest_dropped_torque =
-      std::max(counters.largest_dropped_torque, outcome.response.dropped_torque);
+  counters.largest_dropped_force = std::max(counters.largest_dropped_force, outcome.result.dropped_force);
+  counters.largest_dropped_torque = std::max(counters.largest_dropped_torque, outcome.result.dropped_torque);
 }
 
-BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,
-                                      BodyStatus status, ServiceCounters& counters) {
+BodyHydrostatics evaluate_hydrostatics(const Body& body, const Water& water, const Pose& pose,
+                                       BodyStatus status, ServiceCounters& counters) {
   BodyHydrostatics message;
   message.body_id = body.id;
   message.status = status;
   if (status != BodyStatus::kOk) return message;
-  const std::optional<Hydrostatics> found =
+  const std::optional<Hydrostatics> computed =
       hydrostatics(body.solver.mesh(), pose, water, body.reference_B, body.center_of_mass_B);
-  if (!found) {
+  if (!computed) {
     message.status = BodyStatus::kOutOfRange;
     return message;
   }
   ++counters.hydrostatics;
-  message.submerged_volume = found->volume;
-  message.center_of_buoyancy = to_array(found->center_of_buoyancy_W);
-  message.wetted_area = found->wetted_area;
-  message.waterplane_area = found->waterplane_area;
-  message.waterplane_centroid = to_array(found->waterplane_centroid_W);
-  message.waterplane_second_moments = found->waterplane_second_moments;
-  message.waterplane_axes = to_arrays(found->waterplane_axes_W);
-  message.metacentric_radii = found->metacentric_radii;
-  message.metacenters = to_arrays(found->metacenters_W);
-  message.metacentric_heights = found->metacentric_heights;
+  message.submerged_volume = computed->volume;
+  message.center_of_buoyancy = to_array(computed->center_of_buoyancy_W);
+  message.wetted_area = computed->wetted_area;
+  message.waterplane_area = computed->waterplane_area;
+  message.waterplane_centroid = to_array(computed->waterplane_centroid_W);
+  message.waterplane_second_moments = computed->waterplane_second_moments;
+  message.waterplane_axes = to_arrays(computed->waterplane_axes_W);
+  message.metacentric_radii = computed->metacentric_radii;
+  message.metacenters = to_arrays(computed->metacenters_W);
+  message.metacentric_heights = computed->metacentric_heights;
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 6; ++column) {
       message.stiffness[row][column] =
-          found->stiffness(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+          computed->stiffness(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
     }
   }
   return message;
@@ -164,8 +164,8 @@ Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& an
   const double angle = rotation_W.norm();
   const double sine_per_angle = angle > 0.0 ? std::sin(0.5 * angle) / angle : 0.5;
   const Vec3 axis_sine = sine_per_angle * rotation_W;
-  const Eigen::Quaterniond turn{std::cos(0.5 * angle), axis_sine.x(), axis_sine.y(), axis_sine.z()};
-  return {.p_WB = pose.p_WB + seconds * linear_velocity_W, .q_WB = turn * pose.q_WB};
+  const Eigen::Quaterniond rotation{std::cos(0.5 * angle), axis_sine.x(), axis_sine.y(), axis_sine.z()};
+  return {.p_WB = pose.p_WB + seconds * linear_velocity_W, .q_WB = rotation * pose.q_WB};
 }
 
 }  // namespace buoyancy

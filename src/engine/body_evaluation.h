@@ -1,5 +1,5 @@
-// One body's state in, its wrench out: the checks of a pose that came from somebody else, the extrapolation
-// by lead_time, and the query. The main path's link between messages and hydrostatics.
+// Evaluates one body: validates the pose of a received state, extrapolates it by lead_time and computes the
+// wrench. This is the main path's link between messages and hydrostatics.
 #pragma once
 
 #include <array>
@@ -13,50 +13,53 @@
 
 namespace buoyancy {
 
-// abs(norm of quaternion - 1): accepted and normalised up to the first, counted beyond the second.
+// Bounds on |norm - 1| of a quaternion: it is accepted and normalised up to the first, and counted as
+// normalised beyond the second.
 inline constexpr double kQuaternionTolerance = 1e-3;
 inline constexpr double kQuaternionWarnTolerance = 1e-6;
 
-// The pose that a state asks about, or why there is none.
+// The pose that a state requests, or the reason why it is invalid.
 struct ValidatedPose {
   BodyStatus status = BodyStatus::kOk;
-  Pose pose;                           // where status is kOk: finite, |q| within the tolerance of 1
-  bool quaternion_normalised = false;  // beyond kQuaternionWarnTolerance
+  Pose pose;                           // valid only if status is kOk: finite, |q| within the tolerance of 1
+  bool quaternion_normalised = false;  // |norm - 1| > kQuaternionWarnTolerance
 };
 
-// Checks in this order, the first failure is the status: pose not finite, quaternion's norm, lead_time not
-// finite, twist not finite (only where lead_time is not 0), extrapolated pose beyond double's range.
+// Checks in this order, and returns the first failure as the status: pose not finite, quaternion's norm,
+// lead_time [s] not finite, twist not finite (only where lead_time is not 0), extrapolated pose beyond
+// double's range.
 ValidatedPose validate_pose(const BodyState& state, double lead_time);
 
-// Two poses are the same if these are: the bits of p_WB and q_WB.
+// The bits of p_WB and q_WB: poses with equal bits have the same result.
 using PoseBits = std::array<std::uint64_t, 7>;
 PoseBits pose_bits(const Pose& pose);
-bool same(const PoseBits& a, const PoseBits& b);
+// Compares without a branch per component: every body of every request makes this test.
+bool equal_branch_free(const PoseBits& a, const PoseBits& b);
 
-// A body's response, and what the status counts of it.
+// A body's result, and what the service's counters record about it.
 struct BodyOutcome {
   BodyStatus status = BodyStatus::kOk;
   bool quaternion_normalised = false;
-  bool unchanged = false;   // taken from the body's last response
-  BuoyancyResult response;  // status other than kOk: zeros
+  bool unchanged = false;  // the body's last result was reused
+  BuoyancyResult result;   // zeros if status is not kOk
 };
 
-// validated.status: kOk. Allocates nothing.
+// Precondition: validated.status is kOk. No heap allocation.
 void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome);
-// The same where the body's bounds alone say it (try_buoyancy_from_bounds); false: they do not, outcome is as
-// it was.
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& wet, const Water& water,
+// Like evaluate(), but from the body's bounds alone (see try_buoyancy_from_bounds). Returns false, and leaves
+// outcome unchanged, where the bounds do not suffice.
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 
-// The hydrostatics of a body whose outputs name them, at the pose of its wrench. status: of that wrench;
-// anything but kOk leaves zeros. Counts what was computed. Allocates nothing.
-BodyHydrostatics hydrostatics_of_body(const Body& body, const Water& water, const Pose& pose,
-                                      BodyStatus status, ServiceCounters& counters);
+// Computes and counts the hydrostatics of a body at the pose of its wrench. status: the status of that
+// wrench; unless it is kOk, the result holds zeros. No heap allocation.
+BodyHydrostatics evaluate_hydrostatics(const Body& body, const Water& water, const Pose& pose,
+                                       BodyStatus status, ServiceCounters& counters);
 
-// The pose after `seconds` of the constant twist: p + v t, and q turned by w t about W's axes. The quaternion
-// keeps its norm. Not finite where the result, or an angle of more than 1e154, is beyond double.
+// The pose after `seconds` of constant twist: p + v t, and q rotated by w t about W's axes. The quaternion
+// keeps its norm. The pose is not finite where it exceeds double's range, or where |w t| exceeds 1e154 [rad].
 Pose extrapolate(const Pose& pose, const Vec3& linear_velocity_W, const Vec3& angular_velocity_W,
                  double seconds);
 

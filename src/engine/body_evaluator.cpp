@@ -6,13 +6,13 @@
 namespace buoyancy {
 namespace {
 
-// ns. Handing work to other threads costs some 10 us: it has to be a good deal more than that, and what is
-// handed over at once some 10 us too.
-constexpr double kWorthSharing = 5e4;
-constexpr double kShare = 1e4;
+// [ns]. Dispatching work to other threads costs about 10 us: parallel execution has to save several times
+// that, and each dispatched task should take about as long.
+constexpr double kMinParallelWork = 5e4;
+constexpr double kMinTaskWork = 1e4;
 
-// ns, on the processors of docs/measurements.md; twice or half as much changes nothing that matters here.
-double expected_time(const Solver& solver) {
+// [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
+double estimated_time(const Solver& solver) {
   const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
   return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 4.0 * triangles;
 }
@@ -23,19 +23,19 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   scene_ = &scene;
   cached_.assign(scene.bodies().size(), {});
   pending_.clear();
-  expected_time_.clear();
+  estimated_time_.clear();
   fully_submerged_.clear();
-  expected_time_.reserve(scene.bodies().size());
+  estimated_time_.reserve(scene.bodies().size());
   fully_submerged_.reserve(scene.bodies().size());
   for (const Body& body : scene.bodies()) {
-    expected_time_.push_back(expected_time(body.solver));
+    estimated_time_.push_back(estimated_time(body.solver));
     fully_submerged_.push_back(fully_submerged(body.solver.mesh(), scene.water(), body.reference_B));
   }
 }
 
-void BodyEvaluator::CachedResult::evaluated_at(const Pose& at) {
+void BodyEvaluator::CachedResult::set_pose(const Pose& evaluated) {
   valid = outcome.status == BodyStatus::kOk;
-  pose = pose_bits(at);
+  pose = pose_bits(evaluated);
 }
 
 void BodyEvaluator::evaluate_all(const WrenchRequest& request, std::vector<BodyWrench>& wrenches,
@@ -51,13 +51,13 @@ void BodyEvaluator::evaluate_all(const WrenchRequest& request, std::vector<BodyW
     }
   }
   compute_pending();
-  // In order: a request may name a body twice.
+  // In the request's order, since a request may contain a body twice: the last outcome stays cached.
   for (const Pending& pending : pending_) {
     wrenches[pending.state] = to_wrench(request.bodies[pending.state].body_id, pending.outcome);
     add_to_counters(pending.outcome, counters);
     CachedResult& last = cached_[pending.body];
     last.outcome = pending.outcome;
-    last.evaluated_at(pending.validated.pose);
+    last.set_pose(pending.validated.pose);
   }
 }
 
@@ -65,32 +65,32 @@ void BodyEvaluator::clear_cache() {
   for (CachedResult& last : cached_) last.valid = false;
 }
 
-std::optional<std::size_t> BodyEvaluator::body_of(std::int32_t id, std::size_t i) const {
-  // Whoever asks about a whole scene tends to do so in its order.
+std::optional<std::size_t> BodyEvaluator::find_body(std::int32_t id, std::size_t i) const {
+  // Fast path: requests for a whole scene usually list the bodies in the scene's order.
   if (i < scene_->bodies().size() && scene_->bodies()[i].id == id) return i;
   return scene_->index_of(id);
 }
 
 const BodyOutcome* BodyEvaluator::evaluate_or_defer(const BodyState& state, double lead_time, std::size_t i) {
-  const std::optional<std::size_t> index = body_of(state.body_id, i);
+  const std::optional<std::size_t> index = find_body(state.body_id, i);
   if (!index) {
-    refused_ = {.status = BodyStatus::kUnknownBody, .response = {}};
-    return &refused_;
+    rejected_ = {.status = BodyStatus::kUnknownBody, .result = {}};
+    return &rejected_;
   }
   const ValidatedPose validated = validate_pose(state, lead_time);
   if (validated.status != BodyStatus::kOk) {
-    refused_ = {
-        .status = validated.status, .quaternion_normalised = validated.quaternion_normalised, .response = {}};
-    return &refused_;
+    rejected_ = {
+        .status = validated.status, .quaternion_normalised = validated.quaternion_normalised, .result = {}};
+    return &rejected_;
   }
   CachedResult& last = cached_[*index];
-  if (last.valid && same(last.pose, pose_bits(validated.pose))) {
+  if (last.valid && equal_branch_free(last.pose, pose_bits(validated.pose))) {
     last.outcome.unchanged = true;
     return &last.outcome;
   }
   if (try_evaluate_from_bounds(scene_->bodies()[*index], fully_submerged_[*index], scene_->water(), validated,
                                last.outcome)) {
-    last.evaluated_at(validated.pose);
+    last.set_pose(validated.pose);
     return &last.outcome;
   }
   pending_.push_back({.state = i, .body = *index, .validated = validated, .outcome = {}});
@@ -99,14 +99,14 @@ const BodyOutcome* BodyEvaluator::evaluate_or_defer(const BodyState& state, doub
 
 void BodyEvaluator::compute_pending() {
   double work = 0.0;
-  for (const Pending& pending : pending_) work += expected_time_[pending.body];
+  for (const Pending& pending : pending_) work += estimated_time_[pending.body];
   const auto compute = [this](std::size_t n) {
     Pending& pending = pending_[n];
     evaluate(scene_->bodies()[pending.body], scene_->water(), pending.validated, pending.outcome);
   };
-  if (pending_.size() > 1 && work > kWorthSharing && thread_pool_.thread_count() > 1) {
+  if (pending_.size() > 1 && work > kMinParallelWork && thread_pool_.thread_count() > 1) {
     const double each = work / static_cast<double>(pending_.size());
-    thread_pool_.run(pending_.size(), static_cast<std::size_t>(std::max(1.0, kShare / each)), compute);
+    thread_pool_.run(pending_.size(), static_cast<std::size_t>(std::max(1.0, kMinTaskWork / each)), compute);
   } else {
     for (std::size_t n = 0; n < pending_.size(); ++n) compute(n);
   }

@@ -1,9 +1,9 @@
-// The wrenches of one request's bodies, at no more cost than the scene needs.
+// Computes the wrenches on the bodies of one request and skips the work that the scene does not need.
 //
-// A body whose pose is, bit for bit, that of its last response gets that answer again. A dry body, and one
-// that is wholly wet, costs its bounds. What is left is computed, on several threads where there is so much
-// of it that this pays. Each body's response is computed by one thread from its own state alone: the bits do
-// not depend on how many there are.
+// A body whose pose equals, bit for bit, that of its last result gets that result again. A dry or a fully
+// submerged body is evaluated from its bounds. The other bodies are computed, on several threads where the
+// estimated work justifies it. One thread computes each body's result from that body's state alone, so the
+// result's bits do not depend on the number of threads.
 #pragma once
 
 #include <array>
@@ -18,35 +18,33 @@ namespace buoyancy {
 
 class BodyEvaluator {
  public:
-  // scene must outlive this, or be replaced by set_scene(). threads: as ThreadPool has it.
+  // scene must outlive the evaluator or the next set_scene(). threads: see ThreadPool.
   BodyEvaluator(const Scene& scene, unsigned threads) : scene_(&scene), thread_pool_(threads) {
     set_scene(scene);
   }
 
-  // Answers from this scene from now on and forgets the responses of the one before, which is not looked at
-  // again.
+  // Replaces the scene and clears the cached results. The previous scene is not accessed again.
   void set_scene(const Scene& scene);
 
-  // Fills wrenches with one per state, in the request's order. No heap of ours once all is as large as the
-  // largest request.
+  // Replaces wrenches by one wrench per state, in the request's order. Makes no heap allocation of its own
+  // once all buffers are as large as the largest request needs.
   void evaluate_all(const WrenchRequest& request, std::vector<BodyWrench>& wrenches,
                     ServiceCounters& counters);
 
-  // No body's last response is given again.
+  // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
 
   unsigned thread_count() const { return thread_pool_.thread_count(); }
 
  private:
-  // A body's last outcome.
   struct CachedResult {
-    bool valid = false;  // it was kOk: the same pose gets it again
+    bool valid = false;  // outcome.status is kOk and outcome belongs to pose
     PoseBits pose{};
     BodyOutcome outcome;
 
-    void evaluated_at(const Pose& at);  // says that outcome is this pose's
+    void set_pose(const Pose& evaluated);  // records the pose that outcome belongs to
   };
-  // What has to be computed.
+  // A body that compute_pending() has to compute.
   struct Pending {
     std::size_t state = 0;  // index into the request's bodies
     std::size_t body = 0;   // index into the scene's
@@ -54,19 +52,19 @@ class BodyEvaluator {
     BodyOutcome outcome;
   };
 
-  // Valid until the next call; nullptr: left to compute_pending().
+  // Returns the outcome, valid until the next call, or nullptr after deferring the body to compute_pending().
   const BodyOutcome* evaluate_or_defer(const BodyState& state, double lead_time, std::size_t i);
   void compute_pending();
-  // Index into the scene's bodies of the one that a request names in place i; nullopt: there is none.
-  std::optional<std::size_t> body_of(std::int32_t id, std::size_t i) const;
+  // Index into the scene's bodies of the body with this id, which is the i-th body of the request.
+  std::optional<std::size_t> find_body(std::int32_t id, std::size_t i) const;
 
   const Scene* scene_;
   ThreadPool thread_pool_;
   std::vector<FullySubmerged> fully_submerged_;  // by body
-  std::vector<double> expected_time_;            // ns, by body: of a query that crosses the water, roughly
-  std::vector<CachedResult> cached_;
-  std::vector<Pending> pending_;  // of the request at hand
-  BodyOutcome refused_;           // of a state that names no body, or no pose
+  std::vector<double> estimated_time_;           // [ns], by body: rough cost of a partially submerged query
+  std::vector<CachedResult> cached_;             // by body
+  std::vector<Pending> pending_;                 // bodies of the current request
+  BodyOutcome rejected_;                         // outcome of a state with an unknown body or an invalid pose
 };
 
 }  // namespace buoyancy

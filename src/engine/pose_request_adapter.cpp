@@ -19,20 +19,20 @@ std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::arr
 
 tl::expected<StampedBodyState, DecodeError> decode_pose(const PoseChannels& poses, std::size_t index,
                                                         Bytes pose) {
-  const tl::expected<BotPose, DecodeError> read = decode_bot_pose(pose);
-  if (!read) return tl::unexpected(read.error());
-  StampedBodyState posed{read->utime,
-                         {poses.channels[index].body_id, read->position, read->quaternion_wxyz,
-                          read->velocity, read->rotation_rate}};
+  const tl::expected<BotPose, DecodeError> decoded = decode_bot_pose(pose);
+  if (!decoded) return tl::unexpected(decoded.error());
+  StampedBodyState stamped{decoded->utime,
+                           {poses.channels[index].body_id, decoded->position, decoded->quaternion_wxyz,
+                            decoded->velocity, decoded->rotation_rate}};
   if (poses.velocity_frame == VelocityFrame::kBody) {
-    posed.state.linear_velocity = to_world(read->quaternion_wxyz, read->velocity);
-    posed.state.angular_velocity = to_world(read->quaternion_wxyz, read->rotation_rate);
+    stamped.state.linear_velocity = to_world(decoded->quaternion_wxyz, decoded->velocity);
+    stamped.state.angular_velocity = to_world(decoded->quaternion_wxyz, decoded->rotation_rate);
   }
-  return posed;
+  return stamped;
 }
 
 PoseRequestAdapter::PoseRequestAdapter(PoseChannels poses, std::int64_t first_session)
-    : poses_(std::move(poses)), first_session_(first_session), asked_(poses_.channels.size()) {
+    : poses_(std::move(poses)), first_session_(first_session), next_seq_(poses_.channels.size()) {
   request_.lead_time = poses_.lead_time;
   request_.bodies.resize(1);
 }
@@ -43,21 +43,21 @@ const PoseChannel* PoseRequestAdapter::channel_of_session(std::int64_t session_i
   return index < poses_.channels.size() ? &poses_.channels[index] : nullptr;
 }
 
-tl::expected<Bytes, DecodeError> PoseRequestAdapter::request(std::size_t index, Bytes pose) {
-  const tl::expected<StampedBodyState, DecodeError> posed = decode_pose(poses_, index, pose);
-  if (!posed) return tl::unexpected(posed.error());
+tl::expected<Bytes, DecodeError> PoseRequestAdapter::make_request(std::size_t index, Bytes pose) {
+  const tl::expected<StampedBodyState, DecodeError> stamped = decode_pose(poses_, index, pose);
+  if (!stamped) return tl::unexpected(stamped.error());
   const auto session = static_cast<std::uint64_t>(first_session_) + index;
-  request_.key = {posed->utime, static_cast<std::int64_t>(session), asked_[index]++};
-  request_.bodies.front() = posed->state;
+  request_.key = {stamped->utime, static_cast<std::int64_t>(session), next_seq_[index]++};
+  request_.bodies.front() = stamped->state;
   encode(request_, bytes_);
   return Bytes(bytes_);
 }
 
-void encode_force_torque(Bytes response, WrenchResponse& read, std::vector<std::uint8_t>& bytes) {
-  [[maybe_unused]] const auto rejected = decode(response, read);
-  assert(!rejected && read.bodies.size() == 1);
-  const BodyWrench& wrench = read.bodies.front();
-  encode_six_axis_force_torque(read.key.utime, wrench.force, wrench.torque, bytes);
+void encode_force_torque(Bytes response, WrenchResponse& decoded, std::vector<std::uint8_t>& bytes) {
+  [[maybe_unused]] const auto error = decode(response, decoded);
+  assert(!error && decoded.bodies.size() == 1);
+  const BodyWrench& wrench = decoded.bodies.front();
+  encode_six_axis_force_torque(decoded.key.utime, wrench.force, wrench.torque, bytes);
 }
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
-// Bodies whose poses come one by one, each on a channel of its own, as bot_core's messages have them: such a
-// pose turned into a request for RequestHandler, and the response turned into the message that goes back.
+// Adapts bot_core messages, which carry the pose of one body per channel: converts a pose into a request for
+// RequestHandler, and the response into a bot_core force and torque message.
 #pragma once
 
 #include <cstddef>
@@ -13,56 +13,55 @@
 
 namespace buoyancy {
 
-// What a pose's velocities are given in. Read only where lead_time is not 0.
+// The frame of a pose's velocities. It matters only where lead_time is not 0.
 enum class VelocityFrame { kWorld, kBody };
 
 struct PoseChannel {
   std::string channel;
   std::int32_t body_id = 0;
-  std::string force_torque_channel;  // of the response, as six_axis_force_torque_t; empty: as body_wrenches_t
+  std::string force_torque_channel;  // for a six_axis_force_torque_t response; empty: body_wrenches_t instead
 };
 
 struct PoseChannels {
   std::vector<PoseChannel> channels;
-  std::optional<VelocityFrame> velocity_frame{};  // nullopt: not known, velocities mean nothing
-  double lead_time = 0.0;  // s, of every request; not 0: a rigid_transform_t cannot be answered
+  std::optional<VelocityFrame> velocity_frame{};  // nullopt: unknown, the velocities are unusable
+  double lead_time = 0.0;  // [s], of every request; if not 0, a rigid_transform_t cannot be evaluated
 };
 
-// What a pose says of its body.
 struct StampedBodyState {
-  std::int64_t utime = 0;  // us
-  BodyState state;         // velocities in W; as they stand where their frame is not known
+  std::int64_t utime = 0;  // [us]
+  BodyState state;         // velocities in W, or unconverted if their frame is unknown
 };
 
-// What a message on poses.channels[index] says. Causes: as decode_bot_pose().
+// Decodes a message of channel poses.channels[index]. Errors: those of decode_bot_pose().
 tl::expected<StampedBodyState, DecodeError> decode_pose(const PoseChannels& poses, std::size_t index,
                                                         Bytes pose);
 
 class PoseRequestAdapter {
  public:
-  // Channel i asks as session first_session + i, so that each has its own newest request.
+  // Channel i is session first_session + i, so that each channel has its own newest request.
   PoseRequestAdapter(PoseChannels poses, std::int64_t first_session);
 
   const std::vector<PoseChannel>& channels() const { return poses_.channels; }
-  // The channel whose poses ask in this session; nullptr: none. O(1).
+  // The channel of this session, or nullptr. O(1).
   const PoseChannel* channel_of_session(std::int64_t session_id) const;
 
-  // The request that a message on channels()[index] asks, with the pose's utime and the next seq of its
-  // session; valid until the next call. No heap after the first.
-  tl::expected<Bytes, DecodeError> request(std::size_t index, Bytes pose);
+  // Converts a message of channel channels()[index] into a request's bytes, with the pose's utime and the
+  // next seq of its session. Valid until the next call. No heap allocation after the first call.
+  tl::expected<Bytes, DecodeError> make_request(std::size_t index, Bytes pose);
 
  private:
   PoseChannels poses_;
   std::int64_t first_session_;
-  std::vector<std::int64_t> asked_;  // by channel
-  WrenchRequest request_;            // reused
-  std::vector<std::uint8_t> bytes_;  // reused
+  std::vector<std::int64_t> next_seq_;  // by channel
+  WrenchRequest request_;               // reused
+  std::vector<std::uint8_t> bytes_;     // reused
 };
 
-// Replaces bytes by a six_axis_force_torque_t of the one body that answer, the bytes of a body_wrenches_t, is
-// about: force and torque in W, about the body's reference point. Of a body that is not OK zeros, as in the
-// answer: the type has no place for a status.
-// read is room for the decoded answer, for the caller to keep: no heap after the first.
-void encode_force_torque(Bytes response, WrenchResponse& read, std::vector<std::uint8_t>& bytes);
+// Replaces bytes by a six_axis_force_torque_t: force and torque in W, about the body's reference point. It
+// holds zeros if the body's status is not OK, since the type has no status field. Precondition: response is a
+// body_wrenches_t of one body. decoded is a buffer that the caller keeps, so that only the first call
+// allocates heap memory.
+void encode_force_torque(Bytes response, WrenchResponse& decoded, std::vector<std::uint8_t>& bytes);
 
 }  // namespace buoyancy

@@ -13,8 +13,8 @@ bool same_bytes(Bytes a, Bytes b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-// One per body, where any asks.
-std::size_t places_for_hydrostatics(const Scene& scene) {
+// One entry per body, if any body has the hydrostatics output.
+std::size_t hydrostatics_cache_size(const Scene& scene) {
   return scene.any_hydrostatics() ? scene.bodies().size() : 0;
 }
 
@@ -24,19 +24,19 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
     : scene_(&scene),
       max_sessions_(options.max_sessions),
       evaluator_(scene, options.threads),
-      last_hydrostatics_(places_for_hydrostatics(scene)) {
+      cached_hydrostatics_(hydrostatics_cache_size(scene)) {
   assert(max_sessions_ >= 1);
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
   scene_ = &scene;
   evaluator_.set_scene(scene);
-  last_hydrostatics_.assign(places_for_hydrostatics(scene), {});
+  cached_hydrostatics_.assign(hydrostatics_cache_size(scene), {});
 }
 
 Bytes RequestHandler::handle(Bytes request) {
   ++counters_.requests;
-  answered_.reset();
+  last_session_.reset();
   const auto key = peek_request_id(request);
   if (!key) {
     count_decode_error(key.error());
@@ -47,11 +47,11 @@ Bytes RequestHandler::handle(Bytes request) {
   const bool is_new = known == sessions_.end();
   Session& session = is_new ? start_session(*key) : *known;
   session.last_use = ++use_;
-  const auto place = static_cast<std::size_t>(&session - sessions_.data());
+  const auto index = static_cast<std::size_t>(&session - sessions_.data());
   if (!is_new) {
     if (same_bytes(session.last_request, request)) {
       ++counters_.retries;
-      answered_ = place;
+      last_session_ = index;
       return session.last_response;
     }
     if (key->seq == session.last_seq) ++counters_.conflicting_retries;
@@ -61,15 +61,15 @@ Bytes RequestHandler::handle(Bytes request) {
   session.newest_seq = std::max(session.newest_seq, key->seq);
   compute(request, session);
   ++counters_.computed;
-  answered_ = place;
+  last_session_ = index;
   return session.last_response;
 }
 
 void RequestHandler::reset() {
   sessions_.clear();
-  answered_.reset();
+  last_session_.reset();
   evaluator_.clear_cache();
-  for (LastHydrostatics& last : last_hydrostatics_) last.valid = false;
+  for (CachedHydrostatics& cached : cached_hydrostatics_) cached.valid = false;
 }
 
 std::optional<std::int64_t> RequestHandler::newest_seq(std::int64_t session_id) const {
@@ -78,8 +78,8 @@ std::optional<std::int64_t> RequestHandler::newest_seq(std::int64_t session_id) 
   return known->newest_seq;
 }
 
-void RequestHandler::count_decode_error(DecodeError rejection) {
-  switch (rejection) {
+void RequestHandler::count_decode_error(DecodeError error) {
+  switch (error) {
     case DecodeError::kTruncated:
       ++counters_.rejected_truncated;
       break;
@@ -110,11 +110,11 @@ RequestHandler::Session& RequestHandler::start_session(const RequestId& first) {
 }
 
 void RequestHandler::compute(Bytes request, Session& session) {
-  // No request is kept until its response stands: should memory run out in between, a repeat of the old one
-  // would else be answered with what is left of the new response.
+  // The request is stored only when its response is complete. Otherwise, if memory ran out in between, a
+  // retry of the previous request would get parts of the new response.
   session.last_request.clear();
-  [[maybe_unused]] const auto rejection = decode(request, request_);
-  assert(!rejection);  // peek_request_id() made the same checks
+  [[maybe_unused]] const auto error = decode(request, request_);
+  assert(!error);  // peek_request_id() made the same checks
   response_.key = request_.key;
   evaluator_.evaluate_all(request_, response_.bodies, counters_);
   compute_hydrostatics();
@@ -132,16 +132,16 @@ void RequestHandler::compute_hydrostatics() {
     const std::optional<std::size_t> index = scene_->index_of(state.body_id);
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;
     const BodyStatus status = response_.bodies[i].status;
-    LastHydrostatics& last = last_hydrostatics_[*index];
+    CachedHydrostatics& cached = cached_hydrostatics_[*index];
     const Pose pose = validate_pose(state, request_.lead_time).pose;
     const PoseBits bits = pose_bits(pose);
-    if (status != BodyStatus::kOk || !last.valid || !same(last.pose, bits)) {
-      last.hydrostatics =
-          hydrostatics_of_body(scene_->bodies()[*index], scene_->water(), pose, status, counters_);
-      last.pose = bits;
-      last.valid = last.hydrostatics.status == BodyStatus::kOk;
+    if (status != BodyStatus::kOk || !cached.valid || !equal_branch_free(cached.pose, bits)) {
+      cached.hydrostatics =
+          evaluate_hydrostatics(scene_->bodies()[*index], scene_->water(), pose, status, counters_);
+      cached.pose = bits;
+      cached.valid = cached.hydrostatics.status == BodyStatus::kOk;
     }
-    hydrostatics_.bodies.push_back(last.hydrostatics);
+    hydrostatics_.bodies.push_back(cached.hydrostatics);
   }
 }
 

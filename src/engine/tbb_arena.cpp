@@ -14,26 +14,26 @@ namespace buoyancy {
 
 #ifdef BUOYANCY_WITH_TBB
 
-struct TbbArena::Threads {
+struct TbbArena::Impl {
   tbb::task_arena arena;
-  // Where more are asked for than the processor runs at once, TBB would say so on standard error.
-  std::optional<tbb::global_control> more_allowed;
+  // Set above the hardware concurrency only, where TBB would print a warning to standard error.
+  std::optional<tbb::global_control> raised_limit;
 };
 
 TbbArena::TbbArena(unsigned threads)
-    : of_tbb_(new Threads{
-          tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)), {}}) {
+    : impl_(new Impl{tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
+                     {}}) {
   if (threads > std::thread::hardware_concurrency()) {
-    of_tbb_->more_allowed.emplace(tbb::global_control::max_allowed_parallelism, threads);
+    impl_->raised_limit.emplace(tbb::global_control::max_allowed_parallelism, threads);
   }
 }
 
 unsigned TbbArena::thread_count() const {
-  return static_cast<unsigned>(of_tbb_->arena.max_concurrency());
+  return static_cast<unsigned>(impl_->arena.max_concurrency());
 }
 
 void TbbArena::run(std::size_t count, std::size_t grain, Task task, void* context) {
-  of_tbb_->arena.execute([&] {
+  impl_->arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const tbb::blocked_range<std::size_t>& range) { task(context, range.begin(), range.end()); });
@@ -42,7 +42,7 @@ void TbbArena::run(std::size_t count, std::size_t grain, Task task, void* contex
 
 #else
 
-struct TbbArena::Threads {};
+struct TbbArena::Impl {};
 
 TbbArena::TbbArena(unsigned /*threads*/) {}
 

@@ -1,7 +1,8 @@
-// The threads behind ThreadPool: oneTBB where it was there at build time, the caller's thread elsewhere.
+// The threads of ThreadPool: a oneTBB arena, or the caller's thread without oneTBB at build time.
 //
-// By itself in a file, because ThreadSanitizer cannot see into TBB's library and takes what its templates
-// hand over for races: this file alone is compiled without it. ThreadPool makes the hand-over visible.
+// tbb_arena.cpp is a separate file because it is compiled without ThreadSanitizer, which does not see the
+// synchronisation inside TBB's library and reports false races. ThreadPool makes that synchronisation
+// visible.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +12,21 @@ namespace buoyancy {
 
 class TbbArena {
  public:
-  explicit TbbArena(unsigned threads);  // as ThreadPool
+  explicit TbbArena(unsigned threads);  // see ThreadPool
   TbbArena(TbbArena&&) noexcept;
   TbbArena& operator=(TbbArena&&) noexcept;
   ~TbbArena();
 
   unsigned thread_count() const;
-  // Calls task(context, begin, end) for parts of [0, count) of about grain, on any thread; returns when all
-  // are done. No std::function: its own fields would be handed over unseen.
+  // Calls task(context, begin, end) for ranges that partition [0, count) into parts of about grain, on any
+  // thread, and returns when all calls have returned. Task is no std::function, because ThreadSanitizer would
+  // not see how the fields of one are passed on.
   using Task = void (*)(void* context, std::size_t begin, std::size_t end);
   void run(std::size_t count, std::size_t grain, Task task, void* context);
 
  private:
-  struct Threads;
-  std::unique_ptr<Threads> of_tbb_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// Several threads for one loop, where oneTBB was there at build time; this thread alone elsewhere.
+// Runs a loop on several threads. Without oneTBB at build time, the loop runs on the caller's thread.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace buoyancy {
 
 class ThreadPool {
  public:
-  // threads: 1 or more; 0: as many as the processor runs at once. None is started before it is needed.
+  // threads: 0 means the number of hardware threads. Threads start when they are first needed.
   explicit ThreadPool(unsigned threads) : arena_(threads) {}
 
   unsigned thread_count() const { return arena_.thread_count(); }  // 1 without oneTBB
 
-  // Calls task(i) once for every i below count, in any order and on any of the threads, and returns when all
-  // are done. grain: how many are worth handing over to another thread; >= 1. task throws nothing.
+  // Calls task(i) once for every i in [0, count), in any order and on any of the threads, and returns when
+  // all calls have returned. grain: number of calls that make up one unit of work, >= 1. task must not throw.
   void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& task);
 
  private:

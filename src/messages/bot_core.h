@@ -1,13 +1,13 @@
 // Messages of package bot_core, which are common in robot logs: the pose of one body per channel, and the
-// force and torque on it. An LCM type is identified by its fingerprint, a hash of its fields' names and types;
-// the package name is not part of it.
+// force and torque on it. An LCM type is identified by its fingerprint, a hash of its fields' names and
+// types; the package name is not part of it.
 //
 //   pose_t                   int64 utime; double pos[3], vel[3], orientation[4], rotation_rate[3], accel[3]
 //   rigid_transform_t        int64 utime; double trans[3], quat[4]
 //   six_axis_force_torque_t  int64 utime; double force[3], moment[3]
 //
-// Quaternions are (w, x, y, z). The type does not define the frame of vel and rotation_rate: some projects use
-// the world frame, others the body frame.
+// Quaternions are (w, x, y, z). The type does not define the frame of vel and rotation_rate: some projects
+// use the world frame, others the body frame.
 #pragma once
 
 #include <array>

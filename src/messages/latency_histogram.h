@@ -1,5 +1,5 @@
-// Computes percentiles of durations in constant memory, with logarithmic buckets that are 1/32 octave wide and
-// range from 1 ns to 4,000 s.
+// Computes percentiles of durations in constant memory, with logarithmic buckets that are 1/32 octave wide
+// and range from 1 ns to 4,000 s.
 //
 // The percentile p is the smallest duration that at least the fraction p of all durations does not exceed.
 // The result is the upper end of its bucket: never below the exact percentile, at most 2.2 % (or 1 ns) above

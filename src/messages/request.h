@@ -40,7 +40,8 @@ enum class BodyStatus : std::int32_t {
   kOutOfRange = 7,
 };
 inline constexpr int kBodyStatusCount = 8;
-// The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other value.
+// The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other
+// value.
 const char* to_string(BodyStatus status);
 
 struct BodyWrench {

@@ -60,8 +60,8 @@ enum class SimdTarget : std::int32_t {
 // Maps the target names of wetted_tree_sum.h, such as "AVX2"; returns kOther for any other name.
 SimdTarget simd_target_from_name(std::string_view name);
 
-// kLockstep: handle every request in order of arrival. kLatest: handle only the newest pending request of each
-// session. The values equal the constants of service_status_t.lcm.
+// kLockstep: handle every request in order of arrival. kLatest: handle only the newest pending request of
+// each session. The values equal the constants of service_status_t.lcm.
 enum class ServiceMode : std::int32_t { kLockstep = 0, kLatest = 1 };
 
 // The fields are those of service_status_t.lcm, which documents them.
@@ -87,8 +87,8 @@ struct ServiceStatus {
 
 // Replaces bytes by the encoded status. Precondition: the strings contain no NUL.
 void encode(const ServiceStatus& status, std::vector<std::uint8_t>& bytes);
-// Makes the checks of wire.h's decode(), and checks each string's length and final NUL. On an error, status is
-// unchanged.
+// Makes the checks of wire.h's decode(), and checks each string's length and final NUL. On an error, status
+// is unchanged.
 std::optional<DecodeError> decode(Bytes bytes, ServiceStatus& status);
 
 }  // namespace buoyancy

@@ -33,8 +33,8 @@ enum class DecodeError {
 const char* to_string(DecodeError error);  // for logs: "shorter than the fixed fields"
 
 // Decode into the second argument, whose vector is reused: no heap allocation once its capacity suffices for
-// the largest message. On an error, the second argument is unchanged. Values are not validated: numbers may be
-// NaN, and a status may be unknown to this version. O(length).
+// the largest message. On an error, the second argument is unchanged. Values are not validated: numbers may
+// be NaN, and a status may be unknown to this version. O(length).
 std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request);
 std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response);
 std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
@@ -42,7 +42,8 @@ std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics)
 // Makes the same checks and decodes the request's key only. O(1).
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 
-// Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest message.
+// Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest
+// message.
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);

@@ -209,7 +209,7 @@ void send_request(const Packet& packet, RequestHandler& session) {
 
 // As a pose on a channel of its own.
 void ask_pose(const Packet& packet, PoseRequestAdapter& poses, RequestHandler& session) {
-  const auto request = poses.request(0, packet);
+  const auto request = poses.make_request(0, packet);
   law(request.has_value() == decode_bot_pose(packet).has_value(), "a pose asks a request");
   if (!request) {
     session.record_rejected(request.error());

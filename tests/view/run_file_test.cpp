@@ -279,7 +279,7 @@ TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
     const bot_core::pose_t pose = upright_pose(0.1 * static_cast<double>(i), 5'000'000 + 1'000 * i);
     log_pose(1'000 * i, pose);
     const std::vector<std::uint8_t> request = [&] {
-      const auto bytes = asked.request(0, encoded_by_lcm(pose));
+      const auto bytes = asked.make_request(0, encoded_by_lcm(pose));
       return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
     }();
     log(1'000 * i + 250, kWrenchesChannel, handler_.handle(request));

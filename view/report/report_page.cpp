@@ -61,7 +61,7 @@ Json skipping_of(const Body& body, const BodyRun& run, const Water& water) {
                                     })},
           {"query_ns", median_time(body, run, [&](const ValidatedPose& asked) {
              evaluate(body, water, asked, outcome);
-             return outcome.response.immersion == Immersion::kPiercing;
+             return outcome.result.immersion == Immersion::kPiercing;
            })}};
 }
 

@@ -155,7 +155,7 @@ void RunBuilder::classify(Collected& collected, const Body& body, const Validate
     return;
   }
   const PoseBits bits = pose_bits(asked.pose);
-  if (collected.last_pose && same(*collected.last_pose, bits)) {
+  if (collected.last_pose && equal_branch_free(*collected.last_pose, bits)) {
     ++collected.skipped.unchanged;
     return;
   }
