@@ -1,13 +1,13 @@
-// A simulator's end of the service, for simulators that are not ours: states in, wrenches out.
+// Connects a simulator to the buoyancy service: sends body states and receives wrenches.
 //
 //   buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open();
 //   ...
-//   const auto answer = client->request(utime, states);  // in every step: all bodies in one request
-//   if (!answer) return fail(answer.error().message());
-//   for (const buoyancy::BodyWrench& wrench : (*answer)->bodies) ...
+//   const auto response = client->request(utime, states);  // in every step: all bodies in one request
+//   if (!response) return fail(response.error().message());
+//   for (const buoyancy::BodyWrench& wrench : (*response)->bodies) ...
 //
-// A client is a session of its own: it draws its number and counts its requests, so several clients share a
-// service, and one that is started again is answered at once. docs/sidecar.md goes through it line by line.
+// Every client is a session: it draws a session_id and numbers its requests. Several clients can therefore
+// share a service, and a restarted client is served at once. docs/sidecar.md explains this example.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <span>
 #include <variant>
 
+#include "client/free_running_client.h"
 #include "client/lockstep_client.h"
 
 namespace buoyancy {
@@ -22,10 +23,10 @@ namespace buoyancy {
 struct ClientOptions {
   ChannelOptions channel;
   RetryPolicy retry_policy;
-  // s, > 0, of wall-clock time: requests are this far apart, each answered with the newest response there is
-  // (FreeRunningClient). nullopt: lock-step, every request with its own response.
+  // Wall-clock time between requests [s], > 0; each request returns the newest response (FreeRunningClient).
+  // nullopt: lock-step, each request returns its own response (LockstepClient).
   std::optional<double> interval;
-  std::optional<std::int64_t> session_id;  // nullopt: drawn by make_session_id()
+  std::optional<std::int64_t> session_id;  // nullopt: make_session_id()
 };
 
 class Client {
@@ -33,10 +34,10 @@ class Client {
   // Errors: those of LcmConnection::open.
   static Expected<Client> open(const ClientOptions& options = {});
 
-  // The wrenches on bodies in these states: one per state, in the same order, valid until the next call.
-  // utime: us, of the simulation; it comes back in the response's key. lead_time: s, the wrenches are those
-  // at the poses extrapolated by this much; 0 as they are. A body that cannot be answered has a status other
-  // than kOk and zeros; find_failed_body() finds it. Errors: the client's.
+  // Requests the wrenches on bodies in these states and returns one per state, in the same order, valid until
+  // the next call. utime: simulation time [us], which the response's key repeats. lead_time: [s], evaluates
+  // at the poses extrapolated by this much; 0: as given. A body that cannot be evaluated has zeros and a
+  // status other than kOk; see find_failed_body(). Errors: see retry.h.
   Expected<const WrenchResponse*> request(std::int64_t utime, std::span<const BodyState> states,
                                           double lead_time = 0.0);
 
@@ -47,13 +48,13 @@ class Client {
   Client(ClientVariant client, std::int64_t session_id);
 
   ClientVariant client_;
-  WrenchRequest request_;  // reused; its key is that of the next request
+  WrenchRequest request_;  // reused; its key is the next request's
 };
 
-// A number that no other session has, but for a chance of 1 to 2^63; not negative.
+// A random session_id >= 0. The probability that it equals a given other one is 2^-63.
 std::int64_t make_session_id();
 
-// The first wrench that is not one; nullptr: all are OK. A simulator must not go on without a body's force.
+// The first wrench whose status is not kOk, or nullptr. A simulator must not continue without a body's force.
 const BodyWrench* find_failed_body(const WrenchResponse& response);
 
 }  // namespace buoyancy

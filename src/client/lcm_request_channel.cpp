@@ -8,9 +8,9 @@
 namespace buoyancy {
 namespace {
 
-// A stop raised just before poll() goes to sleep is seen after this long.
-constexpr std::chrono::milliseconds kLongestSleep{100};
-// Messages taken in after the deadline: others may fill the channel faster than it can be read.
+// Longest delay until a cancellation that is set just before ppoll() takes effect.
+constexpr std::chrono::milliseconds kMaxSleep{100};
+// Maximum number of messages processed after the deadline: other senders may publish faster than we can read.
 constexpr int kMaxAfterDeadline = 1000;
 
 timespec to_timespec(Clock::duration duration) {
@@ -24,8 +24,8 @@ void LcmRequestChannel::Inbox::receive(Bytes bytes) {
   if (decode(bytes, incoming)) return;
   if (incoming.key.session_id != session_id || incoming.key.seq > last_sent) return;
   arrivals.push_back({incoming.key.seq, Clock::now()});
-  if (has_response && incoming.key.seq <= newest.key.seq) return;
-  std::swap(newest, incoming);
+  if (has_response && incoming.key.seq <= latest.key.seq) return;
+  std::swap(latest, incoming);
   has_response = true;
 }
 
@@ -59,16 +59,16 @@ Expected<void> LcmRequestChannel::resend() {
 }
 
 bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
-  const auto there = [&] { return inbox_->has_response && inbox_->newest.key.seq >= seq; };
+  const auto arrived = [&] { return inbox_->has_response && inbox_->latest.key.seq >= seq; };
   inbox_->arrivals.clear();
   int after_deadline = 0;
-  while (!there()) {
-    const Clock::duration left = std::max(deadline - Clock::now(), Clock::duration::zero());
-    const bool over = left == Clock::duration::zero();
-    if (over && ++after_deadline > kMaxAfterDeadline) return false;
-    if (connection_.handle_one_spinning(left)) continue;
-    if (over || cancelled()) return false;
-    const timespec sleep = to_timespec(std::min<Clock::duration>(left, kLongestSleep));
+  while (!arrived()) {
+    const Clock::duration remaining = std::max(deadline - Clock::now(), Clock::duration::zero());
+    const bool expired = remaining == Clock::duration::zero();
+    if (expired && ++after_deadline > kMaxAfterDeadline) return false;
+    if (connection_.handle_one_spinning(remaining)) continue;
+    if (expired || cancelled()) return false;
+    const timespec sleep = to_timespec(std::min<Clock::duration>(remaining, kMaxSleep));
     pollfd readable{connection_.fileno(), POLLIN, 0};
     ppoll(&readable, 1, &sleep, nullptr);
   }

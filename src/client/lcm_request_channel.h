@@ -1,9 +1,8 @@
-// The asking end of the LCM connection: sends the requests of one session and keeps the newest response to
-// them.
+// The client's end of the LCM connection: sends the requests of one session and keeps its newest response.
 //
-// A response belongs to the session if its session_id is the session's and its seq is that of a request
-// already sent; of those the highest seq is kept. All else on the channel is somebody else's and ignored. One
-// thread.
+// A response belongs to the session if its session_id is the session's and its seq does not exceed that of
+// the last request; the one with the highest seq is kept. Other messages on the channel are ignored. Not
+// thread-safe.
 #pragma once
 
 #include <atomic>
@@ -27,11 +26,11 @@ struct ResponseArrival {
 };
 
 struct ChannelOptions {
-  std::string lcm_url;  // "": as LCM's own tools choose
+  std::string lcm_url;  // "": LCM's default, see resolve_lcm_url()
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
-  bool spin = true;  // look for a response for a moment before going to sleep: quicker, for processor time
-  const std::atomic<bool>* cancelled = nullptr;  // not null: waiting ends soon after it became true
+  bool spin = true;  // poll briefly before sleeping: lower latency for more processor time
+  const std::atomic<bool>* cancelled = nullptr;  // if not null, waiting ends soon after it becomes true
 };
 
 class LcmRequestChannel {
@@ -39,31 +38,32 @@ class LcmRequestChannel {
   // Errors: those of LcmConnection::open.
   static Expected<LcmRequestChannel> open(const ChannelOptions& options);
 
-  // Encodes and publishes. Sessions must not change, seq must not fall. Errors: the transport's.
+  // Encodes and publishes the request. Precondition: session_id is constant, seq does not decrease. Errors:
+  // those of LcmConnection::publish.
   Expected<void> send(const WrenchRequest& request);
-  // The last request once more, the same bytes.
+  // Publishes the bytes of the last request again.
   Expected<void> resend();
 
-  // Waits until a response with at least this seq is there, but not beyond the deadline; takes in what has
-  // already arrived even where the deadline has passed. False: it is not there.
+  // Waits until a response with at least this seq has arrived, at most until the deadline. Processes messages
+  // that have already arrived even if the deadline has passed. Returns false if there is no such response.
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
-  // The session's responses that came in during the last wait_for, duplicates and old ones too.
+  // The session's responses that arrived during the last wait_for(), including duplicates and old ones.
   const std::vector<ResponseArrival>& arrivals() const { return inbox_->arrivals; }
 
   bool has_response() const { return inbox_->has_response; }
-  const WrenchResponse& latest_response() const { return inbox_->newest; }  // only if has_response()
+  const WrenchResponse& latest_response() const { return inbox_->latest; }  // requires has_response()
   bool cancelled() const { return cancelled_ != nullptr && cancelled_->load(); }
 
   // "udpm://239.255.76.67:7667?ttl=0, channels BUOYANCY_STATES and BUOYANCY_WRENCHES", for errors.
   std::string describe_endpoint() const;
 
  private:
-  // At a fixed address, because the connection's handler writes here.
+  // Has a fixed address, because the connection's handler writes to it.
   struct Inbox {
     std::int64_t session_id = 0;
     std::int64_t last_sent = -1;
     bool has_response = false;
-    WrenchResponse newest;
+    WrenchResponse latest;
     WrenchResponse incoming;  // reused
     std::vector<ResponseArrival> arrivals;
 

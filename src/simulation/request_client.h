@@ -1,4 +1,4 @@
-// How the simulator gets a response to its request: over LCM (client/lockstep_client.h), or from the handler
+// How the simulator gets a response to its request: over LCM (client/client.h), or from the handler
 // itself in this process, for machines without a network.
 #pragma once
 
@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/free_running_client.h"
 #include "client/lockstep_client.h"
 #include "engine/request_handler.h"
 

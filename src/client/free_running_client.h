@@ -1,0 +1,44 @@
+// A client that sends one request per interval of wall-clock time and uses the newest response that has
+// arrived by the end of the interval.
+//
+// It never waits longer than the interval, counts how late its responses are, and returns an error when no
+// response has arrived for RetryPolicy::total_timeout(). Contract and errors: see retry.h.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "client/retry.h"
+
+namespace buoyancy {
+
+class FreeRunningClient {
+ public:
+  // interval: [s], > 0.
+  FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval);
+
+  // Waits for the start of the next interval, sends the request, and returns the newest response once it is
+  // the request's own or the interval is over. The first request waits as in lock-step mode, since there is
+  // no earlier response to use.
+  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  ClientStats statistics() const;
+
+ private:
+  struct Sent {
+    std::int64_t seq = 0;
+    Clock::time_point at;
+  };
+
+  bool wait_for(std::int64_t seq, Clock::time_point deadline);
+
+  LcmRequestChannel channel_;
+  RetryPolicy retry_policy_;
+  Clock::duration interval_;
+  Clock::time_point next_send_;
+  std::deque<Sent> unanswered_;      // ascending by seq, none older than total_timeout()
+  Clock::time_point waiting_since_;  // when the first request after the last arrival was sent
+  bool waiting_ = false;             // a request has been sent since the last arrival
+  ClientStats statistics_;
+};
+
+}  // namespace buoyancy

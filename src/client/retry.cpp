@@ -1,0 +1,72 @@
+#include "client/retry.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace buoyancy {
+namespace {
+
+std::string subject(const LcmRequestChannel& channel, std::int64_t seq) {
+  return "request " + std::to_string(seq) + " on " + channel.describe_endpoint();
+}
+
+}  // namespace
+
+Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel, const WrenchRequest& request,
+                                                     const RetryPolicy& retry_policy,
+                                                     ClientStats& statistics) {
+  const Clock::time_point sent_at = Clock::now();
+  ++statistics.requests;
+  Expected<void> sent = channel.send(request);
+  for (std::int64_t retries = 0;; ++retries) {
+    if (channel.wait_for(request.key.seq, Clock::now() + to_duration(retry_policy.timeout))) {
+      statistics.round_trip.add(to_seconds(channel.arrivals().back().at - sent_at));
+      return check_response(channel, request, channel.latest_response());
+    }
+    if (channel.cancelled()) return cancelled_error(channel, request.key.seq);
+    if (retries == retry_policy.max_retries) {
+      ++statistics.unanswered;
+      if (!sent) return make_error(sent.error());
+      return no_response_error(channel, request.key.seq, to_seconds(Clock::now() - sent_at));
+    }
+    ++statistics.retries;
+    sent = channel.resend();
+  }
+}
+
+Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel, const WrenchRequest& request,
+                                               const WrenchResponse& response) {
+  const bool same_bodies = std::equal(
+      request.bodies.begin(), request.bodies.end(), response.bodies.begin(), response.bodies.end(),
+      [](const BodyState& state, const BodyWrench& wrench) { return state.body_id == wrench.body_id; });
+  if (!same_bodies) {
+    return make_error({subject(channel, request.key.seq), "a response with other bodies than requested",
+                       "one wrench per requested body, in the order of the request",
+                       "a program other than buoyancyd publishes on the wrenches channel", ""});
+  }
+  return &response;
+}
+
+tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited) {
+  std::array<char, 64> actual{};
+  std::snprintf(actual.data(), actual.size(), "no response for %.3g s", waited);
+  return make_error({subject(channel, seq), actual.data(), "a response from buoyancyd",
+                     "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
+                     "Start buoyancyd with the same scene, URL and channels, or use --embedded"});
+}
+
+tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq) {
+  return make_error({subject(channel, seq), "cancelled while waiting", "a response from buoyancyd", "", ""});
+}
+
+double to_seconds(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+Clock::duration to_duration(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace buoyancy
