@@ -1,23 +1,19 @@
-// The library that other people's simulators link, against a service that the test plays itself.
+// Tests the library that simulators link, against a fake service.
 #include "client/client.h"
 
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/client/fake_service.h"
-#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-const RetryPolicy kPatient{0.5, std::llround(2.0 * kWaitTimeout)};
-
 Client open_client(ClientOptions options = {}) {
-  options.retry_policy = kPatient;
+  options.retry_policy = kTestRetryPolicy;
   return value_or_die(Client::open(options));
 }
 
@@ -36,12 +32,12 @@ std::array<BodyState, 2> two_states() {
   return states;
 }
 
-TEST(Client, SendsTheStatesAsTheyAreAndCountsItsQuestions) {
-  std::vector<WrenchRequest> heard;
+TEST(Client, SendsStatesUnchangedAndNumbersRequests) {
+  std::vector<WrenchRequest> received;
   {
-    const Peer peer([&](const WrenchRequest& request) {
-      heard.push_back(request);
-      return Replies{bytes_of(response_to(request, static_cast<double>(request.key.seq)))};
+    const FakeService service([&](const WrenchRequest& request) {
+      received.push_back(request);
+      return Responses{encoded(response_to(request, static_cast<double>(request.key.seq)))};
     });
     ClientOptions options;
     options.session_id = 42;
@@ -56,8 +52,8 @@ TEST(Client, SendsTheStatesAsTheyAreAndCountsItsQuestions) {
     EXPECT_EQ(client.statistics().requests, 3);
   }
   std::int64_t expected_seq = 0;
-  for (const WrenchRequest& request : heard) {
-    if (request.key.seq < expected_seq) continue;  // sent again on a busy machine
+  for (const WrenchRequest& request : received) {
+    if (request.key.seq < expected_seq) continue;  // a retry on a busy machine
     EXPECT_EQ(request.key.session_id, 42);
     EXPECT_EQ(request.key.seq, expected_seq++);
     EXPECT_EQ(request.lead_time, 0.25);
@@ -70,11 +66,11 @@ TEST(Client, SendsTheStatesAsTheyAreAndCountsItsQuestions) {
   EXPECT_EQ(expected_seq, 3);
 }
 
-TEST(Client, DrawsASessionOfItsOwnSoThatTwoDoNotHearEachOther) {
+TEST(Client, DrawsDistinctSessionsForTwoClients) {
   std::atomic<std::int64_t> newest_session{-1};
-  const Peer peer([&](const WrenchRequest& request) {
+  const FakeService service([&](const WrenchRequest& request) {
     newest_session = request.key.session_id;
-    return Replies{bytes_of(response_to(request, request.bodies[0].position[0]))};
+    return Responses{encoded(response_to(request, request.bodies[0].position[0]))};
   });
   std::array<Client, 2> clients{open_client(), open_client()};
   std::array<std::int64_t, 2> sessions{};
@@ -90,10 +86,10 @@ TEST(Client, DrawsASessionOfItsOwnSoThatTwoDoNotHearEachOther) {
   EXPECT_NE(sessions[0], sessions[1]);
 }
 
-TEST(Client, TakesTheNewestAnswerThereIsWhereItHasAnIntervalToKeep) {
-  // The first request is answered and no other.
-  const Peer peer([](const WrenchRequest& request) {
-    return request.key.seq == 0 ? Replies{bytes_of(response_to(request, 7.0))} : Replies{};
+TEST(Client, ReturnsNewestResponseInFreeRunningMode) {
+  // Responds to the first request only.
+  const FakeService service([](const WrenchRequest& request) {
+    return request.key.seq == 0 ? Responses{encoded(response_to(request, 7.0))} : Responses{};
   });
   ClientOptions options;
   options.interval = 0.02;
@@ -106,7 +102,7 @@ TEST(Client, TakesTheNewestAnswerThereIsWhereItHasAnIntervalToKeep) {
   EXPECT_EQ(client.statistics().late, 4);
 }
 
-TEST(Client, FindsTheFirstBodyThatIsNotAnswered) {
+TEST(Client, FindsFirstFailedBody) {
   WrenchResponse response;
   response.bodies.resize(3);
   EXPECT_EQ(find_failed_body(response), nullptr);
@@ -115,7 +111,7 @@ TEST(Client, FindsTheFirstBodyThatIsNotAnswered) {
   EXPECT_EQ(find_failed_body(response), &response.bodies[1]);
 }
 
-TEST(Client, SaysWhatIsWrongWithAUrl) {
+TEST(Client, ReportsInvalidUrl) {
   ClientOptions options;
   options.channel.lcm_url = "tcpq://localhost";
   const Expected<Client> client = Client::open(options);

@@ -1,7 +1,8 @@
-// A service that a test plays itself, over UDP multicast in the test's network namespace.
+// A fake buoyancy service for tests, and requests to it, over UDP multicast in the test's network namespace.
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -14,13 +15,18 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
+#include "client/retry.h"
 #include "messages/wire.h"
+#include "tests/support/timeouts.h"
 #include "transport/lcm_connection.h"
 
 namespace buoyancy {
 
-using Replies = std::vector<std::vector<std::uint8_t>>;
-using Reply = std::function<Replies(const WrenchRequest& request)>;
+// Retries for longer than any test waits.
+inline const RetryPolicy kTestRetryPolicy{0.5, std::llround(2.0 * kWaitTimeout)};
+
+using Responses = std::vector<std::vector<std::uint8_t>>;
+using Responder = std::function<Responses(const WrenchRequest& request)>;
 
 template <typename T>
 T value_or_die(Expected<T> expected) {
@@ -31,16 +37,17 @@ T value_or_die(Expected<T> expected) {
   return std::move(*expected);
 }
 
-// Publishes what `reply` makes of every request, from a thread of its own.
-class Peer {
+// Publishes the responder's responses to every request, from its own thread.
+class FakeService {
  public:
-  explicit Peer(Reply reply) : connection_(value_or_die(LcmConnection::open(""))), reply_(std::move(reply)) {
+  explicit FakeService(Responder responder)
+      : connection_(value_or_die(LcmConnection::open(""))), responder_(std::move(responder)) {
     const Expected<void> subscribed =
         connection_.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
           WrenchRequest request;
           if (decode(bytes, request)) return;
           ++requests_;
-          for (const auto& response : reply_(request)) {
+          for (const auto& response : responder_(request)) {
             EXPECT_TRUE(connection_.publish(std::string(kWrenchesChannel), response));
           }
         });
@@ -52,9 +59,9 @@ class Peer {
       }
     });
   }
-  Peer(const Peer&) = delete;
-  Peer& operator=(const Peer&) = delete;
-  ~Peer() {
+  FakeService(const FakeService&) = delete;
+  FakeService& operator=(const FakeService&) = delete;
+  ~FakeService() {
     stop_ = true;
     thread_.join();
   }
@@ -63,11 +70,25 @@ class Peer {
 
  private:
   LcmConnection connection_;
-  Reply reply_;
+  Responder responder_;
   std::atomic<bool> stop_{false};
   std::atomic<int> requests_{0};
   std::thread thread_;
 };
+
+inline LcmRequestChannel open_channel() {
+  return value_or_die(LcmRequestChannel::open({}));
+}
+
+// A request about bodies 5 and 6 in session 77.
+inline WrenchRequest make_request(std::int64_t seq) {
+  WrenchRequest request;
+  request.key = {1000 * seq, 77, seq};
+  request.bodies.resize(2);
+  request.bodies[0].body_id = 5;
+  request.bodies[1].body_id = 6;
+  return request;
+}
 
 inline WrenchResponse response_to(const WrenchRequest& request, double force) {
   WrenchResponse response;
@@ -81,7 +102,7 @@ inline WrenchResponse response_to(const WrenchRequest& request, double force) {
   return response;
 }
 
-inline std::vector<std::uint8_t> bytes_of(const WrenchResponse& response) {
+inline std::vector<std::uint8_t> encoded(const WrenchResponse& response) {
   std::vector<std::uint8_t> bytes;
   encode(response, bytes);
   return bytes;

@@ -1,0 +1,34 @@
+#include "client/free_running_client.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "tests/client/fake_service.h"
+
+namespace buoyancy {
+namespace {
+
+TEST(FreeRunningClient, ReturnsNewestResponseAndCountsItsLag) {
+  // Responds to request 0, and from then on to the request three before: the lag is three.
+  const FakeService service([](const WrenchRequest& request) {
+    WrenchRequest earlier = request;
+    if (request.key.seq != 0) earlier.key.seq -= 3;
+    return Responses{encoded(response_to(earlier, static_cast<double>(earlier.key.seq)))};
+  });
+  FreeRunningClient client(open_channel(), kTestRetryPolicy, 0.05);
+  for (std::int64_t seq = 0; seq <= 10; ++seq) {
+    const Expected<const WrenchResponse*> response = client.request(make_request(seq));
+    ASSERT_TRUE(response) << response.error().message();
+    EXPECT_LE((*response)->key.seq, std::max<std::int64_t>(0, seq - 3));
+  }
+  const ClientStats statistics = client.statistics();
+  EXPECT_EQ(statistics.requests, 11);
+  EXPECT_EQ(statistics.late, 10);
+  EXPECT_GE(statistics.max_lag, 3);
+  EXPECT_GE(statistics.unanswered, 3);
+}
+
+}  // namespace
+}  // namespace buoyancy
