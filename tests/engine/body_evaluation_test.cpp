@@ -26,9 +26,9 @@ const Scene& scene() {
   return the_scene;
 }
 
-BodyWrench response(const BodyState& state, double lead_time = 0.0) {
+BodyWrench evaluate(const BodyState& state, double lead_time = 0.0) {
   ServiceCounters counters;
-  return response_alone(scene(), state, lead_time, counters);
+  return evaluate_alone(scene(), state, lead_time, counters);
 }
 
 void expect_zeros(const BodyWrench& wrench) {
@@ -51,11 +51,11 @@ std::int64_t total(const ServiceCounters& counters) {
   return sum;
 }
 
-class HalfSubmergedBox : public testing::TestWithParam<std::int32_t> {};
-INSTANTIATE_TEST_SUITE_P(BodyExchange, HalfSubmergedBox, testing::Values(kBox, kHierarchicalBox));
+class BodyEvaluationByMethod : public testing::TestWithParam<std::int32_t> {};
+INSTANTIATE_TEST_SUITE_P(ExactAndDefault, BodyEvaluationByMethod, testing::Values(kBox, kHierarchicalBox));
 
-TEST_P(HalfSubmergedBox, DisplacesHalfACubicMetre) {
-  const BodyWrench wrench = response(upright(GetParam(), 0.0));
+TEST_P(BodyEvaluationByMethod, MatchesClosedFormForHalfSubmergedBox) {
+  const BodyWrench wrench = evaluate(upright(GetParam(), 0.0));
   EXPECT_EQ(wrench.body_id, GetParam());
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_GT(wrench.force_error_bound, 0.0);
@@ -70,12 +70,12 @@ TEST_P(HalfSubmergedBox, DisplacesHalfACubicMetre) {
   EXPECT_NEAR(wrench.center_of_buoyancy[2], -0.25, 1e-13);
 }
 
-TEST(BodyExchange, TorqueIsAboutTheBodysReferencePoint) {
-  // Turned by 90 degrees about z, the reference point (0.5, 0.5, -0.5) in B is (-0.5, 0.5, -0.5) in W axes:
-  // the lever to the centre of buoyancy is (0.5, -0.5, 0.25), and torque = lever x (0, 0, F).
+TEST(BodyEvaluation, ComputesTorqueAboutReferencePoint) {
+  // Rotated by 90 degrees about z, the reference point (0.5, 0.5, -0.5) in B is (-0.5, 0.5, -0.5) in W axes:
+  // the lever arm to the centre of buoyancy is (0.5, -0.5, 0.25), and torque = lever arm x (0, 0, F).
   BodyState state = upright(kOffsetBox, 0.0);
   state.quaternion_wxyz = {std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)};
-  const BodyWrench wrench = response(state);
+  const BodyWrench wrench = evaluate(state);
   const double force = 0.5 * kWeight;
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_NEAR(wrench.torque[0], -0.5 * force, 1e-9);
@@ -83,8 +83,8 @@ TEST(BodyExchange, TorqueIsAboutTheBodysReferencePoint) {
   EXPECT_NEAR(wrench.torque[2], 0.0, 1e-9);
 }
 
-TEST(BodyExchange, AnApproximateMethodSaysHowFarItMayBeOff) {
-  const BodyWrench wrench = response(upright(kFastBox, 0.0));
+TEST(BodyEvaluation, BoundsErrorOfApproximateMethod) {
+  const BodyWrench wrench = evaluate(upright(kFastBox, 0.0));
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   const double error = std::abs(wrench.force[2] - 0.5 * kWeight);
   EXPECT_GT(error, 0.0);
@@ -93,11 +93,11 @@ TEST(BodyExchange, AnApproximateMethodSaysHowFarItMayBeOff) {
   EXPECT_GT(wrench.torque_error_bound, 0.0);
 }
 
-TEST(BodyExchange, CountsHowBodiesLieInTheWater) {
+TEST(BodyEvaluation, CountsBodiesByImmersion) {
   ServiceCounters counters;
-  EXPECT_EQ(response_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
-  for (int i = 0; i < 2; ++i) response_alone(scene(), upright(kBox, -10.0), 0.0, counters);
-  for (int i = 0; i < 3; ++i) response_alone(scene(), upright(kBox, 0.2), 0.0, counters);
+  EXPECT_EQ(evaluate_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
+  for (int i = 0; i < 2; ++i) evaluate_alone(scene(), upright(kBox, -10.0), 0.0, counters);
+  for (int i = 0; i < 3; ++i) evaluate_alone(scene(), upright(kBox, 0.2), 0.0, counters);
   EXPECT_EQ(counters.bodies_dry, 1);
   EXPECT_EQ(counters.bodies_wet, 2);
   EXPECT_EQ(counters.bodies_crossing, 3);
@@ -105,32 +105,32 @@ TEST(BodyExchange, CountsHowBodiesLieInTheWater) {
   EXPECT_EQ(total(counters), 6);
 }
 
-TEST(BodyExchange, KeepsTheLargestPartThatAnExactMethodDropped) {
+TEST(BodyEvaluation, RecordsLargestDroppedComponents) {
   ServiceCounters counters;
   BodyState tilted = upright(kBox, 0.1);
   tilted.quaternion_wxyz = {0.9, 0.3, 0.3, 0.1};
   for (int i = 0; i < 20; ++i) {
     tilted.position[2] = -0.5 + 0.05 * i;
-    response_alone(scene(), tilted, 0.0, counters);
+    evaluate_alone(scene(), tilted, 0.0, counters);
   }
   EXPECT_EQ(count(counters, BodyStatus::kOk), 20);
   EXPECT_GT(counters.largest_dropped_force + counters.largest_dropped_torque, 0.0);
   EXPECT_LT(counters.largest_dropped_force, 1e-13);
   EXPECT_LT(counters.largest_dropped_torque, 1e-13);
   const ServiceCounters before = counters;
-  response_alone(scene(), upright(kBox, 10.0), 0.0, counters);
+  evaluate_alone(scene(), upright(kBox, 10.0), 0.0, counters);
   EXPECT_EQ(counters.largest_dropped_force, before.largest_dropped_force);
   EXPECT_EQ(counters.largest_dropped_torque, before.largest_dropped_torque);
 }
 
-struct BadState {
+struct InvalidState {
   const char* name;
-  std::function<void(BodyState&)> spoil;
+  std::function<void(BodyState&)> corrupt;
   double lead_time;
   BodyStatus expected;
 };
 
-std::vector<BadState> bad_states() {
+std::vector<InvalidState> invalid_states() {
   const auto position = [](std::size_t i, double value) {
     return [=](BodyState& s) { s.position[i] = value; };
   };
@@ -150,10 +150,10 @@ std::vector<BadState> bad_states() {
   const auto nothing = [](BodyState&) {};
   using S = BodyStatus;
   return {
-      {"an id that the scene has not", id(kNoBody), 0, S::kUnknownBody},
+      {"an id that is not in the scene", id(kNoBody), 0, S::kUnknownBody},
       {"id 0", id(0), 0, S::kUnknownBody},
       {"id -1", id(-1), 0, S::kUnknownBody},
-      {"the least id", id(std::numeric_limits<std::int32_t>::min()), 0, S::kUnknownBody},
+      {"the smallest id", id(std::numeric_limits<std::int32_t>::min()), 0, S::kUnknownBody},
       {"the largest id", id(std::numeric_limits<std::int32_t>::max()), 0, S::kUnknownBody},
       {"NaN in x", position(0, kNaN), 0, S::kNonFinitePose},
       {"NaN in y", position(1, kNaN), 0, S::kNonFinitePose},
@@ -193,63 +193,63 @@ std::vector<BadState> bad_states() {
   };
 }
 
-TEST(BodyExchange, GivesEveryBadStateItsStatusAndZeros) {
-  for (const BadState& bad : bad_states()) {
-    SCOPED_TRACE(bad.name);
+TEST(BodyEvaluation, ReturnsStatusAndZerosForEveryInvalidState) {
+  for (const InvalidState& invalid : invalid_states()) {
+    SCOPED_TRACE(invalid.name);
     BodyState state = upright(kBox, 0.0);
-    bad.spoil(state);
+    invalid.corrupt(state);
     ServiceCounters counters;
-    const BodyWrench wrench = response_alone(scene(), state, bad.lead_time, counters);
+    const BodyWrench wrench = evaluate_alone(scene(), state, invalid.lead_time, counters);
     EXPECT_EQ(wrench.body_id, state.body_id);
-    EXPECT_STREQ(to_string(wrench.status), to_string(bad.expected));
+    EXPECT_STREQ(to_string(wrench.status), to_string(invalid.expected));
     expect_zeros(wrench);
-    EXPECT_EQ(count(counters, bad.expected), 1);
+    EXPECT_EQ(count(counters, invalid.expected), 1);
     EXPECT_EQ(total(counters), 1);
     EXPECT_EQ(counters.bodies_dry + counters.bodies_wet + counters.bodies_crossing, 0);
     EXPECT_EQ(counters.quaternions_normalised, 0);
   }
 }
 
-TEST(BodyExchange, ReportsTheFirstOfSeveralFaults) {
+TEST(BodyEvaluation, ReportsFirstOfSeveralErrors) {
   BodyState state = upright(kNoBody, kNaN);
   state.quaternion_wxyz = {0, 0, 0, 0};
   state.linear_velocity[0] = kNaN;
-  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kUnknownBody);
+  EXPECT_EQ(evaluate(state, kNaN).status, BodyStatus::kUnknownBody);
   state.body_id = kBox;
-  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kNonFinitePose);
+  EXPECT_EQ(evaluate(state, kNaN).status, BodyStatus::kNonFinitePose);
   state.position[2] = 0.0;
-  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kBadQuaternion);
+  EXPECT_EQ(evaluate(state, kNaN).status, BodyStatus::kBadQuaternion);
   state.quaternion_wxyz[0] = 1.0;
-  EXPECT_EQ(response(state, kNaN).status, BodyStatus::kBadLeadTime);
-  EXPECT_EQ(response(state, 1.0).status, BodyStatus::kNonFiniteTwist);
+  EXPECT_EQ(evaluate(state, kNaN).status, BodyStatus::kBadLeadTime);
+  EXPECT_EQ(evaluate(state, 1.0).status, BodyStatus::kNonFiniteTwist);
   state.linear_velocity[0] = 0.0;
-  EXPECT_EQ(response(state, 1.0).status, BodyStatus::kOk);
+  EXPECT_EQ(evaluate(state, 1.0).status, BodyStatus::kOk);
 }
 
-TEST(BodyExchange, IgnoresVelocitiesWithoutLeadTime) {
+TEST(BodyEvaluation, IgnoresVelocitiesWithoutLeadTime) {
   BodyState state = upright(kBox, 0.1);
-  const BodyWrench at_rest = response(state);
+  const BodyWrench at_rest = evaluate(state);
   state.linear_velocity = {kNaN, kInfinity, -kInfinity};
   state.angular_velocity = {kNaN, kNaN, 1e300};
   for (const double lead_time : {0.0, -0.0}) {
-    const BodyWrench wrench = response(state, lead_time);
+    const BodyWrench wrench = evaluate(state, lead_time);
     EXPECT_EQ(wrench.status, BodyStatus::kOk);
     EXPECT_EQ(wrench.force, at_rest.force);
     EXPECT_EQ(wrench.torque, at_rest.torque);
   }
 }
 
-TEST(BodyExchange, AcceptsDenormalsInAPose) {
+TEST(BodyEvaluation, AcceptsDenormalsInPose) {
   BodyState state = upright(kBox, 0.0);
-  const BodyWrench plain = response(state);
+  const BodyWrench plain = evaluate(state);
   state.position = {kDenormal, -kDenormal, kDenormal};
   state.quaternion_wxyz = {1.0, kDenormal, -kDenormal, kDenormal};
-  const BodyWrench wrench = response(state);
+  const BodyWrench wrench = evaluate(state);
   EXPECT_EQ(wrench.status, BodyStatus::kOk);
   EXPECT_NEAR(wrench.force[2], plain.force[2], 2.0 * plain.force_error_bound);
 }
 
-TEST(BodyExchange, NormalisesQuaternionsUpToTheToleranceAndCountsNoteworthyOnes) {
+TEST(BodyEvaluation, NormalisesQuaternionsWithinTolerance) {
   struct Case {
     double norm;
     BodyStatus expected;
@@ -263,10 +263,10 @@ TEST(BodyExchange, NormalisesQuaternionsUpToTheToleranceAndCountsNoteworthyOnes)
     SCOPED_TRACE(c.norm);
     BodyState state = upright(kBox, 0.1);
     state.quaternion_wxyz = {0.8, 0.0, 0.6, 0.0};
-    const BodyWrench unit = response(state);
+    const BodyWrench unit = evaluate(state);
     for (double& component : state.quaternion_wxyz) component *= c.norm;
     ServiceCounters counters;
-    const BodyWrench wrench = response_alone(scene(), state, 0.0, counters);
+    const BodyWrench wrench = evaluate_alone(scene(), state, 0.0, counters);
     EXPECT_EQ(wrench.status, c.expected);
     EXPECT_EQ(counters.quaternions_normalised, c.normalised);
     if (c.expected != BodyStatus::kOk) continue;
@@ -277,14 +277,14 @@ TEST(BodyExchange, NormalisesQuaternionsUpToTheToleranceAndCountsNoteworthyOnes)
   }
 }
 
-TEST(BodyExchange, NeverAnswersOkWithSomethingThatIsNotFinite) {
+TEST(BodyEvaluation, ReturnsFiniteValuesIfOk) {
   for (const double far : {1e10, 1e100, 1e200, 1e300, kLargest}) {
     for (const double sign : {1.0, -1.0}) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (const std::int32_t id : {kBox, kOffsetBox, kFastBox, kHierarchicalBox}) {
           BodyState state = upright(id, 0.0);
           state.position[axis] = sign * far;
-          const BodyWrench wrench = response(state);
+          const BodyWrench wrench = evaluate(state);
           if (wrench.status == BodyStatus::kOk) {
             for (const double value : wrench.force) EXPECT_TRUE(std::isfinite(value));
             for (const double value : wrench.torque) EXPECT_TRUE(std::isfinite(value));
@@ -302,7 +302,7 @@ TEST(BodyExchange, NeverAnswersOkWithSomethingThatIsNotFinite) {
   }
 }
 
-TEST(BodyExchange, AnOpenHullIsAnsweredWhileItsEdgeIsDry) {
+TEST(BodyEvaluation, EvaluatesOpenHullOnlyWhileItsEdgeIsDry) {
   const std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "open_hull";
   std::filesystem::create_directories(directory);
   std::ofstream(directory / "tub.off")
@@ -320,16 +320,16 @@ TEST(BodyExchange, AnOpenHullIsAnsweredWhileItsEdgeIsDry) {
   )",
                              directory);
   ServiceCounters counters;
-  const BodyWrench afloat = response_alone(tub, upright(1, 0.5), 0.0, counters);
+  const BodyWrench afloat = evaluate_alone(tub, upright(1, 0.5), 0.0, counters);
   EXPECT_EQ(afloat.status, BodyStatus::kOk);
   EXPECT_NEAR(afloat.submerged_volume, 2.0, 1e-12);
-  const BodyWrench sunk = response_alone(tub, upright(1, -1.5), 0.0, counters);
+  const BodyWrench sunk = evaluate_alone(tub, upright(1, -1.5), 0.0, counters);
   EXPECT_EQ(sunk.status, BodyStatus::kOpenEdgeWet);
   expect_zeros(sunk);
   EXPECT_EQ(count(counters, BodyStatus::kOpenEdgeWet), 1);
 }
 
-TEST(BodyExchange, LeadTimeAnswersForTheExtrapolatedPose) {
+TEST(BodyEvaluation, UsesExtrapolatedPoseWithLeadTime) {
   BodyState moving = upright(kBox, 0.3);
   moving.quaternion_wxyz = {0.8, 0.6, 0.0, 0.0};
   moving.linear_velocity = {1.0, 2.0, -3.0};
@@ -340,23 +340,23 @@ TEST(BodyExchange, LeadTimeAnswersForTheExtrapolatedPose) {
   BodyState there = upright(kBox, 0.0);
   there.position = {later.p_WB.x(), later.p_WB.y(), later.p_WB.z()};
   there.quaternion_wxyz = {later.q_WB.w(), later.q_WB.x(), later.q_WB.y(), later.q_WB.z()};
-  const BodyWrench led = response(moving, lead_time);
-  const BodyWrench sent = response(there);
+  const BodyWrench led = evaluate(moving, lead_time);
+  const BodyWrench sent = evaluate(there);
   EXPECT_EQ(led.status, BodyStatus::kOk);
   EXPECT_EQ(led.force, sent.force);
   EXPECT_EQ(led.torque, sent.torque);
-  EXPECT_NE(led.force, response(moving).force);
+  EXPECT_NE(led.force, evaluate(moving).force);
 }
 
-TEST(Extrapolation, MovesByTheVelocityOfTheOrigin) {
+TEST(Extrapolate, MovesByVelocityOfOrigin) {
   const Pose later = extrapolate({.p_WB = {1, 2, 3}}, {0.5, -1.0, 2.0}, {0, 0, 0}, 2.0);
   EXPECT_EQ(later.p_WB, Vec3(2.0, 0.0, 7.0));
   EXPECT_EQ(later.q_WB.coeffs(), Eigen::Quaterniond::Identity().coeffs());
 }
 
-TEST(Extrapolation, TurnsAboutAxesOfTheWorld) {
-  // First lies on its side (B's z points along -y of W), then a quarter turn about W's z: B's z points along
-  // x.
+TEST(Extrapolate, RotatesAboutWorldAxes) {
+  // The body lies on its side (B's z points along -y of W). After a quarter turn about W's z, B's z points
+  // along x of W.
   const double half = std::sqrt(0.5);
   const Pose later = extrapolate({.p_WB = Vec3::Zero(), .q_WB = {half, half, 0.0, 0.0}}, Vec3::Zero(),
                                  {0.0, 0.0, std::numbers::pi / 4.0}, 2.0);
@@ -364,7 +364,7 @@ TEST(Extrapolation, TurnsAboutAxesOfTheWorld) {
   EXPECT_NEAR((z_of_B_W - Vec3::UnitX()).norm(), 0.0, 1e-15);
 }
 
-TEST(Extrapolation, GoesBackWithANegativeTime) {
+TEST(Extrapolate, IsReversedByNegativeTime) {
   const Pose start{.p_WB = {1, 2, 3}, .q_WB = {0.8, 0.0, 0.6, 0.0}};
   const Vec3 v(0.3, -0.2, 0.1);
   const Vec3 w(3.0, 1.0, -2.0);
@@ -373,7 +373,7 @@ TEST(Extrapolation, GoesBackWithANegativeTime) {
   EXPECT_NEAR((back.q_WB.coeffs() - start.q_WB.coeffs()).norm(), 0.0, 1e-15);
 }
 
-TEST(Extrapolation, StaysExactForTheSlowestTurns) {
+TEST(Extrapolate, IsAccurateForTinyRotations) {
   for (const double rate : {kDenormal, 1e-310, 1e-200, 1e-160, 1e-20, 1e-9}) {
     SCOPED_TRACE(rate);
     const Pose later = extrapolate({}, Vec3::Zero(), {0.0, rate, 0.0}, 1.0);
@@ -383,7 +383,7 @@ TEST(Extrapolation, StaysExactForTheSlowestTurns) {
   }
 }
 
-RC_GTEST_PROP(Extrapolation, TwoStepsOfATwistAreOneOfTheirSum, ()) {
+RC_GTEST_PROP(Extrapolate, ComposesStepsOfConstantTwist, ()) {
   const auto number = [] { return *rc::gen::inRange(-1000, 1001) * 1e-3; };
   const Pose start{.p_WB = {number(), number(), number()},
                    .q_WB = Eigen::Quaterniond(1.5, number(), number(), number()).normalized()};

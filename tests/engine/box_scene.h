@@ -1,4 +1,4 @@
-// The scene that the handler is tested with, and requests about it.
+// A scene of unit boxes for tests of the request handling, and requests about its bodies.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace buoyancy {
 
-inline constexpr double kWeight = 1000.0 * 10.0;     // N/m^3: density times gravity of box_scene()
+inline constexpr double kWeight = 1000.0 * 10.0;     // [N/m^3], density times gravity of box_scene()
 inline constexpr std::int32_t kBox = 1;              // unit box about B's origin
-inline constexpr std::int32_t kOffsetBox = 2;        // the same, torque about a corner
-inline constexpr std::int32_t kFastBox = -3;         // the same, by a method without error bound
-inline constexpr std::int32_t kHierarchicalBox = 5;  // the same, by the default method
-inline constexpr std::int32_t kHydrostaticBox = 6;  // as kOffsetBox, but fast; its hydrostatics are asked for
-inline constexpr std::int32_t kNoBody = 4;
+inline constexpr std::int32_t kOffsetBox = 2;        // same, torque about a corner
+inline constexpr std::int32_t kFastBox = -3;         // same, with an approximate method
+inline constexpr std::int32_t kHierarchicalBox = 5;  // same, with the default method
+inline constexpr std::int32_t kHydrostaticBox = 6;   // like kOffsetBox, but fast; with hydrostatics
+inline constexpr std::int32_t kNoBody = 4;           // no body of box_scene() has this id
 
 inline Scene scene_of(std::string_view text, const std::filesystem::path& directory = {}) {
   const auto description = parse_scene(text, "test scene", directory);
@@ -47,7 +47,7 @@ inline Scene box_scene() {
     id = -3
     shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
     method = "fast"
-        [[body]]
+    [[body]]
     id = 5
     shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
     [[body]]
@@ -58,11 +58,10 @@ inline Scene box_scene() {
     outputs = ["wrench", "hydrostatics"]
     [body.client]
     density = 500
-
   )");
 }
 
-// At rest, upright, its middle at the given height over the water.
+// An upright body at rest, its centre at this height over the water [m].
 inline BodyState upright(std::int32_t id, double height) {
   BodyState state;
   state.body_id = id;

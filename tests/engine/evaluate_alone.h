@@ -1,4 +1,4 @@
-// One body's response, asked by itself of an handler that remembers nothing.
+// Evaluates one body on its own, with a BodyEvaluator that has no cached results.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace buoyancy {
 
-inline BodyWrench response_alone(const Scene& scene, const BodyState& state, double lead_time,
+inline BodyWrench evaluate_alone(const Scene& scene, const BodyState& state, double lead_time,
                                  ServiceCounters& counters) {
   BodyEvaluator evaluator(scene, 1);
   std::vector<BodyWrench> wrenches;

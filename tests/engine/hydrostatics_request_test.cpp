@@ -1,4 +1,4 @@
-// Hydrostatics through the handler: what one body's message holds, and which bodies' go with a response.
+// Tests the hydrostatics output: its values for one body, and its selection by the request handler.
 #include <cmath>
 #include <limits>
 
@@ -21,10 +21,11 @@ const Scene& scene() {
 BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
                                  ServiceCounters& counters) {
   const Body* body = scene().find(state.body_id);
-  return hydrostatics_of_body(*body, scene().water(), validate_pose(state, lead_time).pose, status, counters);
+  return evaluate_hydrostatics(*body, scene().water(), validate_pose(state, lead_time).pose, status,
+                               counters);
 }
 
-TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
+TEST(EvaluateHydrostatics, MatchesClosedFormForHalfSubmergedBox) {
   ServiceCounters counters;
   const BodyHydrostatics found =
       hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kOk, counters);
@@ -43,7 +44,7 @@ TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
       EXPECT_NEAR(found.metacenters[axis][i], up ? radius - 0.25 : 0.0, 1e-13);
     }
   }
-  // A square has no axes of its own: any right-handed pair with up.
+  // The principal axes of a square are arbitrary: any pair that is right-handed with up is valid.
   const auto& [first, second] = found.waterplane_axes;
   EXPECT_NEAR(first[0] * second[1] - first[1] * second[0], 1.0, 1e-14);
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -68,7 +69,7 @@ TEST(BodyHydrostatics, CarryWhatAHalfSubmergedBoxHasWhateverItsMethod) {
   }
 }
 
-TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
+TEST(EvaluateHydrostatics, UsesExtrapolatedPose) {
   ServiceCounters counters;
   BodyState rising = upright(kHydrostaticBox, -0.3);
   rising.linear_velocity = {0.0, 0.0, 0.5};
@@ -76,7 +77,7 @@ TEST(BodyHydrostatics, AreThoseOfTheExtrapolatedPose) {
   EXPECT_NEAR(found.submerged_volume, 0.7, 1e-14);
 }
 
-TEST(BodyHydrostatics, OfABodyThatIsNotOkAreItsStatusAndZeros) {
+TEST(EvaluateHydrostatics, ReturnsStatusAndZerosForFailedBody) {
   ServiceCounters counters;
   const BodyHydrostatics found =
       hydrostatics_of(upright(kHydrostaticBox, 0.0), 0.0, BodyStatus::kBadQuaternion, counters);
@@ -88,11 +89,11 @@ TEST(BodyHydrostatics, OfABodyThatIsNotOkAreItsStatusAndZeros) {
   EXPECT_EQ(counters.hydrostatics, 0);
 }
 
-ByteVector copied(Bytes bytes) {
+ByteVector copy_of(Bytes bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-ByteVector asks_nothing(std::int64_t seq) {
+ByteVector request_without_hydrostatics(std::int64_t seq) {
   return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
 }
 
@@ -102,7 +103,7 @@ BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
   return hydrostatics;
 }
 
-TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
+TEST(RequestHandler, ReturnsHydrostaticsInRequestedOrder) {
   RequestHandler handler(scene());
   std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
                                 upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
@@ -121,41 +122,42 @@ TEST(ExchangedHydrostatics, AreThoseOfTheBodiesThatAskInTheAskedOrder) {
   EXPECT_EQ(handler.counters().hydrostatics, 2);
 }
 
-TEST(ExchangedHydrostatics, AreEmptyWhereNoBodyOfTheQuestionAsks) {
+TEST(RequestHandler, ReturnsNoHydrostaticsIfNoBodyHasThisOutput) {
   RequestHandler handler(scene());
   EXPECT_TRUE(handler.last_hydrostatics().empty());
-  const ByteVector asking = request_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
-  handler.handle(asking);
+  const ByteVector with_hydrostatics =
+      request_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
+  handler.handle(with_hydrostatics);
   EXPECT_FALSE(handler.last_hydrostatics().empty());
-  handler.handle(asks_nothing(2));
+  handler.handle(request_without_hydrostatics(2));
   EXPECT_TRUE(handler.last_hydrostatics().empty());
-  handler.handle(asking);
-  handler.handle(asks_nothing(2));
-  handler.handle(asks_nothing(2));
+  handler.handle(with_hydrostatics);
+  handler.handle(request_without_hydrostatics(2));
+  handler.handle(request_without_hydrostatics(2));
   EXPECT_EQ(handler.counters().retries, 1);
-  EXPECT_TRUE(handler.last_hydrostatics().empty()) << "a repeat";
-  handler.handle(asking);
+  EXPECT_TRUE(handler.last_hydrostatics().empty()) << "a retry";
+  handler.handle(with_hydrostatics);
   handler.handle(ByteVector{1, 2, 3});
   EXPECT_TRUE(handler.last_hydrostatics().empty()) << "a rejected request";
-  EXPECT_EQ(handler.counters().hydrostatics, 1) << "of a body that did not move they are computed once";
+  EXPECT_EQ(handler.counters().hydrostatics, 1) << "computed once for an unmoved body";
 }
 
-TEST(ExchangedHydrostatics, OfARepeatAreTheSameBytesWithoutComputing) {
+TEST(RequestHandler, ReturnsSameHydrostaticsForRetry) {
   RequestHandler handler(scene());
-  const auto asked = [](std::int64_t session_id, double height) {
+  const auto make_request = [](std::int64_t session_id, double height) {
     return request_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
   };
-  handler.handle(asked(1, 0.1));
-  const ByteVector first = copied(handler.last_hydrostatics());
-  for (std::int64_t other = 2; other < 20; ++other) handler.handle(asked(other, 0.2));
+  handler.handle(make_request(1, 0.1));
+  const ByteVector first = copy_of(handler.last_hydrostatics());
+  for (std::int64_t other = 2; other < 20; ++other) handler.handle(make_request(other, 0.2));
   const std::int64_t computed = handler.counters().hydrostatics;
-  handler.handle(asked(1, 0.1));
-  EXPECT_EQ(copied(handler.last_hydrostatics()), first);
+  handler.handle(make_request(1, 0.1));
+  EXPECT_EQ(copy_of(handler.last_hydrostatics()), first);
   EXPECT_EQ(handler.counters().retries, 1);
   EXPECT_EQ(handler.counters().hydrostatics, computed);
 }
 
-TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing) {
+TEST(RequestHandler, ReusesHydrostaticsOfUnmovedBody) {
   RequestHandler handler(scene());
   const auto send_request = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
     handler.handle(request_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
@@ -172,7 +174,7 @@ TEST(ExchangedHydrostatics, OfABodyThatDidNotMoveAreTheLastOnesWithoutComputing)
   EXPECT_EQ(again[0].stiffness, first[0].stiffness);
   EXPECT_EQ(again[0].wetted_area, first[0].wetted_area);
 
-  // Named twice, each state gets its own.
+  // Each state of a body that occurs twice gets its own hydrostatics.
   const auto both = send_request(2, {high, low});
   ASSERT_EQ(both.size(), 2U);
   EXPECT_NEAR(both[0].submerged_volume, 0.3, 1e-14);

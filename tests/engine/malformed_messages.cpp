@@ -100,8 +100,8 @@ ByteVector garbage(std::size_t size, unsigned seed) {
   return bytes;
 }
 
-// The fingerprint of a request, and behind it whatever the generator gives.
-ByteVector garbage_behind_fingerprint(std::size_t size, unsigned seed, std::int32_t count) {
+// A request's fingerprint, followed by random bytes and this number of bodies.
+ByteVector garbage_after_fingerprint(std::size_t size, unsigned seed, std::int32_t count) {
   return with_count(joined(first(request_of(0), kFingerprint), garbage(size, seed)), count);
 }
 
@@ -147,12 +147,12 @@ void add_foreign(std::vector<MalformedMessage>& list) {
     std::reverse(bytes.begin(), bytes.end());
     return bytes;
   }());
-  add("a response of ours", response_of(1));
-  add("a response of ours with 1000 bodies", response_of(1000));
-  add("a status of ours", status());
+  add("a body_wrenches_t", response_of(1));
+  add("a body_wrenches_t with 1000 bodies", response_of(1000));
+  add("a service_status_t", status());
   add("a response's fingerprint before a request",
       joined(first(response_of(0), 8), without_fingerprint(request_of(1))));
-  // The short header of LCM: magic, number, channel.
+  // LCM's short message header: magic, number, channel.
   add("a datagram of LCM inside the message", joined(text("LC02....BUOYANCY_STATES."), request_of(1)));
   add("JSON", text(R"({"utime": 0, "session_id": 1, "seq": 1, "bodies": [{"body_id": 1}]})"));
   add("HTTP", text("GET /index.html HTTP/1.1\r\nHost: 239.255.76.67:7667\r\nAccept: */*\r\n\r\n"));
@@ -168,20 +168,20 @@ void add_miscounted(std::vector<MalformedMessage>& list) {
     list.push_back({std::move(name), std::move(bytes), DecodeError::kCount});
   };
   add("-1 bodies", with_count(request_of(1), -1));
-  add("-1 bodies and nothing behind it", with_count(request_of(0), -1));
+  add("-1 bodies and nothing after it", with_count(request_of(0), -1));
   add("-2 bodies", with_count(request_of(2), -2));
   add("INT_MIN bodies", with_count(request_of(1), INT_MIN));
-  add("INT_MIN bodies and nothing behind it", with_count(request_of(0), INT_MIN));
+  add("INT_MIN bodies and nothing after it", with_count(request_of(0), INT_MIN));
   add("INT_MIN + 1 bodies", with_count(request_of(1), INT_MIN + 1));
-  add("a negative number of bodies before garbage", garbage_behind_fingerprint(1000, 4, -1000));
-  add("a negative number of bodies in a large datagram", garbage_behind_fingerprint(kLargeDatagram, 5, -7));
+  add("a negative number of bodies before garbage", garbage_after_fingerprint(1000, 4, -1000));
+  add("a negative number of bodies in a large datagram", garbage_after_fingerprint(kLargeDatagram, 5, -7));
 }
 
-void add_of_wrong_length(std::vector<MalformedMessage>& list) {
+void add_wrong_length(std::vector<MalformedMessage>& list) {
   const auto add = [&](std::string name, ByteVector bytes) {
     list.push_back({std::move(name), std::move(bytes), DecodeError::kLength});
   };
-  add("one body announced, none there", with_count(request_of(0), 1));
+  add("one body announced, none present", with_count(request_of(0), 1));
   add("cut after the first body's id", first(request_of(1), kFixed + 4));
   add("cut within the position", first(request_of(1), kFixed + 15));
   add("cut after the position", first(request_of(1), kFixed + 28));
@@ -189,11 +189,11 @@ void add_of_wrong_length(std::vector<MalformedMessage>& list) {
   add("cut before the velocities", first(request_of(1), kFixed + 60));
   add("one body, its last byte missing", first(request_of(1), kFixed + kBody - 1));
   add("three bodies, the last byte missing", first(request_of(3), kFixed + 3 * kBody - 1));
-  add("three bodies announced, two there", first(request_of(3), kFixed + 2 * kBody));
+  add("three bodies announced, two present", first(request_of(3), kFixed + 2 * kBody));
   add("one body announced too few", with_count(request_of(2), 1));
-  add("no body announced, one there", with_count(request_of(1), 0));
+  add("no body announced, one present", with_count(request_of(1), 0));
   add("INT_MAX bodies", with_count(request_of(1), INT_MAX));
-  add("INT_MAX bodies and nothing behind it", with_count(request_of(0), INT_MAX));
+  add("INT_MAX bodies and nothing after it", with_count(request_of(0), INT_MAX));
   add("a number of bodies in little-endian order", with_count(request_of(1), 1 << 24));
   add("2^30 bodies, which is no byte modulo 2^32", with_count(request_of(0), 1 << 30));
   add("2^30 + 1 bodies, which is one body modulo 2^32", with_count(request_of(1), (1 << 30) + 1));
@@ -201,14 +201,14 @@ void add_of_wrong_length(std::vector<MalformedMessage>& list) {
   add("a zero byte too many", extended(request_of(1), 1, 0x00));
   add("another byte too many", extended(request_of(1), 1, 0x5a));
   add("padded to a multiple of eight bytes", extended(request_of(2), 4, 0x00));
-  add("nearly another body behind the last", extended(request_of(1), kBody - 1, 0x00));
-  add("another body behind the last", extended(request_of(1), kBody, 0x00));
-  add("a byte behind no bodies", extended(request_of(0), 1, 0x00));
+  add("nearly another body after the last", extended(request_of(1), kBody - 1, 0x00));
+  add("another body after the last", extended(request_of(1), kBody, 0x00));
+  add("a byte after no bodies", extended(request_of(0), 1, 0x00));
   add("two requests in one message", joined(request_of(1), request_of(1)));
   add("a request and a response in one message", joined(request_of(1), response_of(1)));
-  add("garbage behind the fingerprint", garbage_behind_fingerprint(1000, 6, 9));
-  add("a large datagram of garbage behind the fingerprint",
-      garbage_behind_fingerprint(kLargeDatagram, 7, 12345));
+  add("garbage after the fingerprint", garbage_after_fingerprint(1000, 6, 9));
+  add("a large datagram of garbage after the fingerprint",
+      garbage_after_fingerprint(kLargeDatagram, 7, 12345));
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ std::vector<MalformedMessage> malformed_messages() {
   add_truncated(list);
   add_foreign(list);
   add_miscounted(list);
-  add_of_wrong_length(list);
+  add_wrong_length(list);
   return list;
 }
 

@@ -1,5 +1,5 @@
-// Bytes that are not a request, one of every kind we could think of, each with the cause that it must be
-// counted by: for the handler itself and for the service behind a real network.
+// A list of malformed requests, each with the error that decoding must return. Tests use it for the request
+// handler itself and for the service over a network.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace buoyancy {
 struct MalformedMessage {
   std::string name;  // unique
   std::vector<std::uint8_t> bytes;
-  DecodeError cause;
+  DecodeError error;  // that decoding returns
 };
 
-// The same list, byte for byte, at every call.
+// Returns the same list, byte for byte, at every call.
 std::vector<MalformedMessage> malformed_messages();
 
 }  // namespace buoyancy

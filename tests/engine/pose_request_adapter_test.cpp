@@ -24,19 +24,19 @@ PoseRequestAdapter two_channels(VelocityFrame frame, double lead_time = 0.0) {
           kFirstSession};
 }
 
-WrenchRequest asked(PoseRequestAdapter& poses, std::size_t channel,
-                    const std::vector<std::uint8_t>& message) {
-  const auto bytes = poses.request(channel, message);
+WrenchRequest decoded_request(PoseRequestAdapter& poses, std::size_t channel,
+                              const std::vector<std::uint8_t>& message) {
+  const auto bytes = poses.make_request(channel, message);
   if (!bytes) throw std::runtime_error(to_string(bytes.error()));
   WrenchRequest request;
   EXPECT_FALSE(decode(*bytes, request));
   return request;
 }
 
-TEST(PoseRequestAdapter, EachChannelAsksAboutItsBodyInASessionOfItsOwn) {
+TEST(PoseRequestAdapter, UsesOneSessionPerChannel) {
   PoseRequestAdapter poses = two_channels(VelocityFrame::kWorld);
   for (std::int64_t i = 0; i < 3; ++i) {
-    const WrenchRequest hull = asked(poses, 0, encoded_by_lcm(upright_pose(0.25, 10 + i)));
+    const WrenchRequest hull = decoded_request(poses, 0, encoded_by_lcm(upright_pose(0.25, 10 + i)));
     EXPECT_EQ(hull.key.utime, 10 + i);
     EXPECT_EQ(hull.key.session_id, kFirstSession);
     EXPECT_EQ(hull.key.seq, i);
@@ -44,13 +44,13 @@ TEST(PoseRequestAdapter, EachChannelAsksAboutItsBodyInASessionOfItsOwn) {
     EXPECT_EQ(hull.bodies[0].body_id, kBox);
     EXPECT_EQ(hull.bodies[0].position[2], 0.25);
   }
-  const WrenchRequest buoy = asked(poses, 1, encoded_by_lcm(upright_pose(0.0, -1)));
+  const WrenchRequest buoy = decoded_request(poses, 1, encoded_by_lcm(upright_pose(0.0, -1)));
   EXPECT_EQ(buoy.key.session_id, kFirstSession + 1);
   EXPECT_EQ(buoy.key.seq, 0);
   EXPECT_EQ(buoy.bodies[0].body_id, kOffsetBox);
 }
 
-TEST(PoseRequestAdapter, ASessionLeadsBackToTheChannelThatAsks) {
+TEST(PoseRequestAdapter, FindsChannelOfSession) {
   const PoseRequestAdapter poses = two_channels(VelocityFrame::kWorld);
   EXPECT_EQ(poses.channel_of_session(kFirstSession), poses.channels().data());
   EXPECT_EQ(poses.channel_of_session(kFirstSession + 1), &poses.channels()[1]);
@@ -61,44 +61,44 @@ TEST(PoseRequestAdapter, ASessionLeadsBackToTheChannelThatAsks) {
   }
 }
 
-TEST(PoseRequestAdapter, VelocitiesAreTurnedIntoTheWorldWhereTheyAreTheBodys) {
+TEST(PoseRequestAdapter, RotatesBodyFrameVelocitiesToWorld) {
   bot_core::pose_t pose = upright_pose(0.0, 1);
   pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);  // a quarter turn about z: x becomes y
   pose.vel[0] = 2.0;
   pose.rotation_rate[0] = 3.0;
-  PoseRequestAdapter of_world = two_channels(VelocityFrame::kWorld, 0.5);
-  const WrenchRequest world = asked(of_world, 0, encoded_by_lcm(pose));
+  PoseRequestAdapter world_adapter = two_channels(VelocityFrame::kWorld, 0.5);
+  const WrenchRequest world = decoded_request(world_adapter, 0, encoded_by_lcm(pose));
   EXPECT_EQ(world.lead_time, 0.5);
   EXPECT_EQ(world.bodies[0].linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
-  PoseRequestAdapter of_body = two_channels(VelocityFrame::kBody, 0.5);
-  const WrenchRequest body = asked(of_body, 0, encoded_by_lcm(pose));
+  PoseRequestAdapter body_adapter = two_channels(VelocityFrame::kBody, 0.5);
+  const WrenchRequest body = decoded_request(body_adapter, 0, encoded_by_lcm(pose));
   EXPECT_NEAR(body.bodies[0].linear_velocity[0], 0.0, 1e-15);
   EXPECT_NEAR(body.bodies[0].linear_velocity[1], 2.0, 1e-15);
   EXPECT_NEAR(body.bodies[0].angular_velocity[1], 3.0, 1e-15);
 }
 
-TEST(PoseRequestAdapter, VelocitiesStandAsTheyAreWhereNobodySaidTheirFrame) {
+TEST(PoseRequestAdapter, KeepsVelocitiesOfUnknownFrame) {
   bot_core::pose_t pose = upright_pose(0.0, 9);
   pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);
   pose.vel[0] = 2.0;
-  const auto posed = decode_pose({.channels = {{"HULL", kBox, ""}}}, 0, encoded_by_lcm(pose));
-  ASSERT_TRUE(posed);
-  EXPECT_EQ(posed->utime, 9);
-  EXPECT_EQ(posed->state.body_id, kBox);
-  EXPECT_EQ(posed->state.linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
+  const auto stamped = decode_pose({.channels = {{"HULL", kBox, ""}}}, 0, encoded_by_lcm(pose));
+  ASSERT_TRUE(stamped);
+  EXPECT_EQ(stamped->utime, 9);
+  EXPECT_EQ(stamped->state.body_id, kBox);
+  EXPECT_EQ(stamped->state.linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
 }
 
-TEST(PoseRequestAdapter, AnsweringAPoseTakesNoHeapOnceItIsWarm) {
+TEST(PoseRequestAdapter, DoesNotAllocateAfterWarmUp) {
   const Scene scene = box_scene();
   RequestHandler handler(scene, {.threads = 1});
   PoseRequestAdapter poses = two_channels(VelocityFrame::kBody, 0.01);
-  WrenchResponse read;
+  WrenchResponse decoded;
   std::vector<std::uint8_t> bytes;
   const auto allocations_at = [&](double height) {
     const std::vector<std::uint8_t> pose = encoded_by_lcm(upright_pose(height, 1));
     const AllocationCount allocations;
-    const auto request = poses.request(1, pose);
-    encode_force_torque(handler.handle(*request), read, bytes);
+    const auto request = poses.make_request(1, pose);
+    encode_force_torque(handler.handle(*request), decoded, bytes);
     return allocations.count();
   };
   for (const double height : {0.1, -3.0, 3.0}) allocations_at(height);

@@ -23,7 +23,7 @@ const Scene& scene() {
   return the_scene;
 }
 
-ByteVector copied(Bytes bytes) {
+ByteVector copy_of(Bytes bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
@@ -43,7 +43,7 @@ std::int64_t bodies_computed(const ServiceCounters& counters) {
   return sum;
 }
 
-TEST(RequestHandler, AnswersCarryTheKeyOfTheQuestion) {
+TEST(RequestHandler, ReturnsResponseWithRequestId) {
   RequestHandler handler(scene());
   const RequestId key{.utime = -5, .session_id = INT64_MIN, .seq = INT64_MAX};
   const WrenchResponse response = decoded(handler.handle(request_bytes(key, {upright(kBox, 0.0)})));
@@ -56,7 +56,7 @@ TEST(RequestHandler, AnswersCarryTheKeyOfTheQuestion) {
   EXPECT_EQ(handler.counters().computed, 1);
 }
 
-TEST(RequestHandler, AnswersBodiesInTheAskedOrderAndAsOftenAsAsked) {
+TEST(RequestHandler, ReturnsBodiesInRequestedOrderWithRepetitions) {
   RequestHandler handler(scene());
   const std::vector<BodyState> bodies{upright(kOffsetBox, 0.1), upright(kBox, -0.2), upright(kNoBody, 0.0),
                                       upright(kOffsetBox, 0.3), upright(kBox, -0.2), upright(kFastBox, 9.0)};
@@ -72,7 +72,7 @@ TEST(RequestHandler, AnswersBodiesInTheAskedOrderAndAsOftenAsAsked) {
   EXPECT_EQ(bodies_computed(handler.counters()), 6);
 }
 
-TEST(RequestHandler, AnswersAQuestionWithoutBodies) {
+TEST(RequestHandler, HandlesRequestWithoutBodies) {
   RequestHandler handler(scene());
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 3, .seq = 9}, {})));
   EXPECT_EQ(response.key.session_id, 3);
@@ -81,7 +81,7 @@ TEST(RequestHandler, AnswersAQuestionWithoutBodies) {
   EXPECT_EQ(handler.counters().computed, 1);
 }
 
-TEST(RequestHandler, AnswersAThousandBodies) {
+TEST(RequestHandler, HandlesThousandBodies) {
   RequestHandler handler(scene());
   std::vector<BodyState> bodies(1000);
   for (int i = 0; i < 1000; ++i) bodies[static_cast<std::size_t>(i)] = upright(kBox, -0.5 + 1e-3 * i);
@@ -92,7 +92,7 @@ TEST(RequestHandler, AnswersAThousandBodies) {
   }
 }
 
-TEST(RequestHandler, ABadBodyDoesNotSpoilItsNeighbours) {
+TEST(RequestHandler, EvaluatesOtherBodiesBesideInvalidOne) {
   RequestHandler handler(scene());
   std::vector<BodyState> bodies(3, upright(kBox, 0.0));
   bodies[1].position[2] = std::numeric_limits<double>::quiet_NaN();
@@ -104,7 +104,7 @@ TEST(RequestHandler, ABadBodyDoesNotSpoilItsNeighbours) {
   EXPECT_EQ(response.bodies[2].force, response.bodies[0].force);
 }
 
-TEST(RequestHandler, ABadLeadTimeIsEveryKnownBodysStatus) {
+TEST(RequestHandler, ReportsBadLeadTimeForEveryKnownBody) {
   RequestHandler handler(scene());
   const std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kNoBody, 0.0), upright(kOffsetBox, 0.0)};
   const WrenchResponse response = decoded(handler.handle(
@@ -115,11 +115,11 @@ TEST(RequestHandler, ABadLeadTimeIsEveryKnownBodysStatus) {
   EXPECT_EQ(response.bodies[2].status, BodyStatus::kBadLeadTime);
 }
 
-TEST(RequestHandler, ARepeatGetsTheSameBytesWithoutComputing) {
+TEST(RequestHandler, ReturnsSameBytesForRetryWithoutComputing) {
   RequestHandler handler(scene());
-  const ByteVector first = copied(handler.handle(request(1, 1)));
+  const ByteVector first = copy_of(handler.handle(request(1, 1)));
   const ServiceCounters before = handler.counters();
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(copied(handler.handle(request(1, 1))), first);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(copy_of(handler.handle(request(1, 1))), first);
   const ServiceCounters& after = handler.counters();
   EXPECT_EQ(after.requests, before.requests + 3);
   EXPECT_EQ(after.retries, 3);
@@ -128,15 +128,15 @@ TEST(RequestHandler, ARepeatGetsTheSameBytesWithoutComputing) {
   EXPECT_EQ(after.bodies_crossing, before.bodies_crossing);
 }
 
-TEST(RequestHandler, ARepeatOfAQuestionWithoutBodiesIsARepeat) {
+TEST(RequestHandler, CountsRetryOfRequestWithoutBodies) {
   RequestHandler handler(scene());
   const ByteVector empty = request_bytes({.session_id = 1, .seq = 1}, {});
-  const ByteVector first = copied(handler.handle(empty));
-  EXPECT_EQ(copied(handler.handle(empty)), first);
+  const ByteVector first = copy_of(handler.handle(empty));
+  EXPECT_EQ(copy_of(handler.handle(empty)), first);
   EXPECT_EQ(handler.counters().retries, 1);
 }
 
-TEST(RequestHandler, TheSameStepWithOtherBytesIsComputedAnew) {
+TEST(RequestHandler, RecomputesConflictingRetry) {
   RequestHandler handler(scene());
   handler.handle(request(1, 1, 0.0));
   const WrenchResponse changed = decoded(handler.handle(request(1, 1, 0.25)));
@@ -145,22 +145,22 @@ TEST(RequestHandler, TheSameStepWithOtherBytesIsComputedAnew) {
   EXPECT_EQ(handler.counters().computed, 2);
   EXPECT_EQ(handler.counters().retries, 0);
   EXPECT_EQ(handler.counters().stale, 0);
-  // What is repeated from now on is the changed one.
+  // From now on, a retry is compared with the changed request.
   EXPECT_NEAR(decoded(handler.handle(request(1, 1, 0.25))).bodies[0].submerged_volume, 0.25, 1e-13);
   EXPECT_EQ(handler.counters().retries, 1);
 }
 
-TEST(RequestHandler, AnswersAStaleStepAndCountsIt) {
+TEST(RequestHandler, HandlesAndCountsStaleRequest) {
   RequestHandler handler(scene());
-  const ByteVector first = copied(handler.handle(request(1, 1)));
+  const ByteVector first = copy_of(handler.handle(request(1, 1)));
   handler.handle(request(1, 2));
-  EXPECT_EQ(copied(handler.handle(request(1, 1))), first);
+  EXPECT_EQ(copy_of(handler.handle(request(1, 1))), first);
   EXPECT_EQ(handler.counters().stale, 1);
   EXPECT_EQ(handler.counters().computed, 3);
   EXPECT_EQ(handler.newest_seq(1), 2);
 }
 
-TEST(RequestHandler, ANewSessionStartsAfresh) {
+TEST(RequestHandler, StartsNewSessionForNewSessionId) {
   RequestHandler handler(scene());
   handler.handle(request(1, 1000));
   EXPECT_EQ(handler.newest_seq(1), 1000);
@@ -172,7 +172,7 @@ TEST(RequestHandler, ANewSessionStartsAfresh) {
   EXPECT_EQ(handler.counters().sessions, 2);
 }
 
-TEST(RequestHandler, SequenceNumbersMayBeNegative) {
+TEST(RequestHandler, AcceptsNegativeSequenceNumbers) {
   RequestHandler handler(scene());
   handler.handle(request(1, INT64_MIN));
   handler.handle(request(1, -4));
@@ -182,11 +182,11 @@ TEST(RequestHandler, SequenceNumbersMayBeNegative) {
   EXPECT_EQ(handler.counters().stale, 1);
 }
 
-TEST(RequestHandler, ForgetsTheLeastRecentlyUsedSession) {
+TEST(RequestHandler, EvictsLeastRecentlyUsedSession) {
   RequestHandler handler(scene(), {.max_sessions = 2});
   handler.handle(request(1, 1));
   handler.handle(request(2, 1));
-  handler.handle(request(1, 1));  // a repeat is a use
+  handler.handle(request(1, 1));  // a retry is a use
   handler.handle(request(3, 1));
   EXPECT_EQ(handler.newest_seq(1), 1);
   EXPECT_EQ(handler.newest_seq(2), std::nullopt);
@@ -195,18 +195,18 @@ TEST(RequestHandler, ForgetsTheLeastRecentlyUsedSession) {
   EXPECT_EQ(handler.counters().sessions_evicted, 1);
 }
 
-TEST(RequestHandler, AForgottenSessionIsAnsweredAsBeforeByComputing) {
+TEST(RequestHandler, RecomputesRetryOfEvictedSession) {
   RequestHandler handler(scene(), {.max_sessions = 1});
-  const ByteVector first = copied(handler.handle(request(1, 5)));
+  const ByteVector first = copy_of(handler.handle(request(1, 5)));
   handler.handle(request(2, 9));
-  EXPECT_EQ(copied(handler.handle(request(1, 5))), first);
+  EXPECT_EQ(copy_of(handler.handle(request(1, 5))), first);
   EXPECT_EQ(handler.counters().computed, 3);
   EXPECT_EQ(handler.counters().retries, 0);
   EXPECT_EQ(handler.counters().sessions, 1);
   EXPECT_EQ(handler.counters().sessions_evicted, 2);
 }
 
-TEST(RequestHandler, KeepsAtMostSoManySessions) {
+TEST(RequestHandler, LimitsNumberOfSessions) {
   RequestHandler handler(scene());
   for (std::int64_t id = 0; id < 1000; ++id) {
     EXPECT_FALSE(handler.handle(request(id, 1)).empty());
@@ -218,7 +218,7 @@ TEST(RequestHandler, KeepsAtMostSoManySessions) {
   EXPECT_EQ(handler.newest_seq(1000 - 64), 1);
 }
 
-// A box of another height, its id in another place of the scene, and one body less.
+// A scene with a taller box at another index, and fewer bodies.
 Scene taller_box_scene() {
   return scene_of(R"(
     [world]
@@ -234,7 +234,7 @@ Scene taller_box_scene() {
   )");
 }
 
-TEST(RequestHandler, AnswersNewQuestionsFromAnotherSceneWithinTheSameSession) {
+TEST(RequestHandler, UsesNewSceneWithinSession) {
   const Scene taller = taller_box_scene();
   RequestHandler handler(scene());
   for (const std::int64_t session_id : {1, 2}) handler.handle(request(session_id, 5));
@@ -250,44 +250,44 @@ TEST(RequestHandler, AnswersNewQuestionsFromAnotherSceneWithinTheSameSession) {
   EXPECT_EQ(gone.bodies[1].status, BodyStatus::kOk);
   EXPECT_EQ(handler.counters().computed, 4);
   EXPECT_EQ(handler.counters().sessions, 2);
-  EXPECT_EQ(handler.counters().bodies_unchanged, 1) << "of the second session's first request alone";
+  EXPECT_EQ(handler.counters().bodies_unchanged, 1) << "only the second session's first request";
 }
 
-TEST(RequestHandler, GivesARepeatTheBytesThatTheSceneBeforeAnsweredItWith) {
-  const ByteVector asked =
+TEST(RequestHandler, ReturnsStoredBytesForRetryAfterSceneChange) {
+  const ByteVector retried =
       request_bytes({.session_id = 1, .seq = 5}, {upright(kBox, 0.1), upright(kHydrostaticBox, 0.1)});
   auto before = std::make_unique<Scene>(box_scene());
   const Scene taller = taller_box_scene();
   RequestHandler handler(*before);
-  const ByteVector first = copied(handler.handle(asked));
-  const ByteVector hydrostatics = copied(handler.last_hydrostatics());
+  const ByteVector first = copy_of(handler.handle(retried));
+  const ByteVector hydrostatics = copy_of(handler.last_hydrostatics());
   ASSERT_FALSE(hydrostatics.empty());
   handler.set_scene(taller);
   before.reset();
-  EXPECT_EQ(copied(handler.handle(asked)), first);
-  EXPECT_EQ(copied(handler.last_hydrostatics()), hydrostatics);
+  EXPECT_EQ(copy_of(handler.handle(retried)), first);
+  EXPECT_EQ(copy_of(handler.last_hydrostatics()), hydrostatics);
   EXPECT_EQ(handler.counters().retries, 1);
   EXPECT_FALSE(handler.handle(request(1, 6)).empty());
   EXPECT_TRUE(handler.last_hydrostatics().empty());
 }
 
-TEST(RequestHandler, RemembersNothingOfTheBodiesOfTheSceneBefore) {
+TEST(RequestHandler, ClearsCachedResultsOnSceneChange) {
   const Scene other = box_scene();
-  const auto asked = [](std::int64_t seq) {
+  const auto make_request = [](std::int64_t seq) {
     return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.1), upright(kHydrostaticBox, 0.1)});
   };
   RequestHandler handler(scene());
-  handler.handle(asked(1));
+  handler.handle(make_request(1));
   handler.set_scene(other);
-  handler.handle(asked(2));
+  handler.handle(make_request(2));
   EXPECT_EQ(handler.counters().bodies_unchanged, 0);
   EXPECT_EQ(handler.counters().hydrostatics, 2);
-  handler.handle(asked(3));
+  handler.handle(make_request(3));
   EXPECT_EQ(handler.counters().bodies_unchanged, 2);
   EXPECT_EQ(handler.counters().hydrostatics, 2);
 }
 
-TEST(RequestHandler, CountsWhatTheModeLatestPassesOver) {
+TEST(RequestHandler, CountsSupersededAndStaleRequests) {
   RequestHandler handler(scene());
   handler.record_superseded();
   handler.record_superseded();
@@ -298,7 +298,7 @@ TEST(RequestHandler, CountsWhatTheModeLatestPassesOver) {
   EXPECT_EQ(handler.counters().computed, 0);
 }
 
-TEST(MalformedMessages, AreManyAndDifferent) {
+TEST(MalformedMessages, HasManyDistinctMessages) {
   const auto list = malformed_messages();
   EXPECT_GE(list.size(), 40U);
   std::set<std::string> names;
@@ -309,8 +309,8 @@ TEST(MalformedMessages, AreManyAndDifferent) {
   }
 }
 
-std::int64_t pluralize(const ServiceCounters& counters, DecodeError cause) {
-  switch (cause) {
+std::int64_t rejections(const ServiceCounters& counters, DecodeError error) {
+  switch (error) {
     case DecodeError::kTruncated:
       return counters.rejected_truncated;
     case DecodeError::kFingerprint:
@@ -323,14 +323,14 @@ std::int64_t pluralize(const ServiceCounters& counters, DecodeError cause) {
   return -1;
 }
 
-TEST(MalformedMessages, AreEachRejectedAndCountedByCauseWithQuestionsInBetweenAnswered) {
+TEST(RequestHandler, RejectsAndCountsMalformedMessages) {
   RequestHandler handler(scene());
   std::int64_t rejected = 0;
   for (const MalformedMessage& message : malformed_messages()) {
     SCOPED_TRACE(message.name);
-    const std::int64_t before = pluralize(handler.counters(), message.cause);
+    const std::int64_t before = rejections(handler.counters(), message.error);
     EXPECT_TRUE(handler.handle(message.bytes).empty());
-    EXPECT_EQ(pluralize(handler.counters(), message.cause), before + 1);
+    EXPECT_EQ(rejections(handler.counters(), message.error), before + 1);
     EXPECT_EQ(handler.counters().rejected(), ++rejected);
 
     const WrenchResponse response = decoded(handler.handle(request(1, rejected)));
@@ -342,17 +342,17 @@ TEST(MalformedMessages, AreEachRejectedAndCountedByCauseWithQuestionsInBetweenAn
   EXPECT_EQ(handler.counters().sessions, 1);
 }
 
-TEST(MalformedMessages, LeaveTheLastAnswerRepeatable) {
+TEST(RequestHandler, KeepsStoredResponseAfterMalformedMessages) {
   RequestHandler handler(scene());
-  const ByteVector first = copied(handler.handle(request(77, 5)));
+  const ByteVector first = copy_of(handler.handle(request(77, 5)));
   for (const MalformedMessage& message : malformed_messages()) {
     handler.handle(message.bytes);
-    ASSERT_EQ(copied(handler.handle(request(77, 5))), first) << message.name;
+    ASSERT_EQ(copy_of(handler.handle(request(77, 5))), first) << message.name;
   }
   EXPECT_EQ(handler.counters().computed, 1);
 }
 
-TEST(MalformedMessages, TakeNothingFromTheHeap) {
+TEST(RequestHandler, DoesNotAllocateForMalformedMessages) {
   const auto list = malformed_messages();
   RequestHandler handler(scene());
   const AllocationCount allocations;
@@ -360,27 +360,27 @@ TEST(MalformedMessages, TakeNothingFromTheHeap) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-TEST(RequestHandler, TakesNothingFromTheHeapAfterWarmUp) {
-  // Two sessions that take turns, with small and large messages and bodies of every method and status.
+TEST(RequestHandler, DoesNotAllocateAfterWarmUp) {
+  // Two sessions alternate, with small and large messages and bodies of several methods and statuses.
   std::vector<BodyState> many(300, upright(kBox, 0.1));
   for (std::size_t i = 0; i < many.size(); ++i) {
     many[i].body_id =
         std::array{kBox, kOffsetBox, kFastBox, kHierarchicalBox, kHydrostaticBox, kNoBody}[i % 6];
     many[i].angular_velocity = {0.1, 0.2, 0.3};
   }
-  const auto asked = [&](std::int64_t session_id, std::int64_t seq, bool large) {
+  const auto make_request = [&](std::int64_t session_id, std::int64_t seq, bool large) {
     return request_bytes({.session_id = session_id, .seq = seq},
                          large ? many : std::vector<BodyState>{upright(kBox, 0.2)}, 1e-3);
   };
   std::vector<ByteVector> requests;
   for (std::int64_t seq = 0; seq < 10; ++seq) {
     for (const std::int64_t session_id : {1, 2}) {
-      requests.push_back(asked(session_id, seq, seq % 2 == 0));
+      requests.push_back(make_request(session_id, seq, seq % 2 == 0));
       requests.push_back(requests.back());
     }
   }
   RequestHandler handler(scene());
-  for (const std::int64_t session_id : {1, 2}) handler.handle(asked(session_id, -1, true));
+  for (const std::int64_t session_id : {1, 2}) handler.handle(make_request(session_id, -1, true));
 
   const AllocationCount allocations;
   for (const ByteVector& bytes : requests) {
@@ -393,21 +393,21 @@ TEST(RequestHandler, TakesNothingFromTheHeapAfterWarmUp) {
 
   const Scene other = box_scene();
   handler.set_scene(other);
-  const AllocationCount after_another_scene;
+  const AllocationCount after_scene_change;
   for (const ByteVector& bytes : requests) handler.handle(bytes);
-  EXPECT_EQ(after_another_scene.count(), 0);
+  EXPECT_EQ(after_scene_change.count(), 0);
 }
 
-// What the header says of sessions, as plainly as possible: whole requests kept in a list, latest used
+// A simple model of the session contract in request_handler.h: a list of whole requests, most recently used
 // first.
 class SessionModel {
  public:
-  explicit SessionModel(std::size_t bound) : bound_(bound) {}
+  explicit SessionModel(std::size_t max_sessions) : max_sessions_(max_sessions) {}
 
-  void send_request(std::int64_t id, std::int64_t seq, const ByteVector& bytes) {
+  void handle(std::int64_t id, std::int64_t seq, const ByteVector& bytes) {
     const auto known =
-        std::find_if(sessions_.begin(), sessions_.end(), [&](const Kept& s) { return s.id == id; });
-    Kept next{.id = id, .newest = seq, .last = seq, .bytes = bytes};
+        std::find_if(sessions_.begin(), sessions_.end(), [&](const StoredSession& s) { return s.id == id; });
+    StoredSession next{.id = id, .newest = seq, .last = seq, .bytes = bytes};
     if (known != sessions_.end()) {
       if (known->bytes == bytes) {
         ++expected.retries;
@@ -418,7 +418,7 @@ class SessionModel {
       if (seq < known->newest) ++expected.stale;
       next.newest = std::max(seq, known->newest);
       sessions_.erase(known);
-    } else if (sessions_.size() == bound_) {
+    } else if (sessions_.size() == max_sessions_) {
       sessions_.pop_back();
       ++expected.sessions_evicted;
     }
@@ -430,25 +430,25 @@ class SessionModel {
   ServiceCounters expected;
 
  private:
-  struct Kept {
+  struct StoredSession {
     std::int64_t id, newest, last;
     ByteVector bytes;
   };
-  std::size_t bound_;
-  std::list<Kept> sessions_;
+  std::size_t max_sessions_;
+  std::list<StoredSession> sessions_;
 };
 
-RC_GTEST_PROP(RequestHandler, KeepsSessionsAsTheModelDoes, ()) {
-  const std::size_t bound = *rc::gen::inRange<std::size_t>(1, 5);
-  RequestHandler handler(scene(), {.max_sessions = bound});
-  SessionModel model(bound);
-  const auto asks = *rc::gen::inRange(0, 200);
-  for (int i = 0; i < asks; ++i) {
+RC_GTEST_PROP(RequestHandler, ManagesSessionsLikeModel, ()) {
+  const std::size_t max_sessions = *rc::gen::inRange<std::size_t>(1, 5);
+  RequestHandler handler(scene(), {.max_sessions = max_sessions});
+  SessionModel model(max_sessions);
+  const auto num_requests = *rc::gen::inRange(0, 200);
+  for (int i = 0; i < num_requests; ++i) {
     const auto id = *rc::gen::inRange<std::int64_t>(0, 7);
     const auto seq = *rc::gen::inRange<std::int64_t>(0, 3);
     const double height = *rc::gen::element(0.0, 0.25);
     const ByteVector bytes = request(id, seq, height);
-    model.send_request(id, seq, bytes);
+    model.handle(id, seq, bytes);
     const WrenchResponse response = decoded(handler.handle(bytes));
     RC_ASSERT(response.key.session_id == id);
     RC_ASSERT(response.key.seq == seq);
@@ -456,7 +456,7 @@ RC_GTEST_PROP(RequestHandler, KeepsSessionsAsTheModelDoes, ()) {
     RC_ASSERT(std::abs(response.bodies[0].submerged_volume - (0.5 - height)) < 1e-13);
   }
   const ServiceCounters& counters = handler.counters();
-  RC_ASSERT(counters.requests == asks);
+  RC_ASSERT(counters.requests == num_requests);
   RC_ASSERT(counters.computed == model.expected.computed);
   RC_ASSERT(counters.retries == model.expected.retries);
   RC_ASSERT(counters.conflicting_retries == model.expected.conflicting_retries);

@@ -28,33 +28,33 @@ bot_core::pose_t pose() {
   return pose;
 }
 
-TEST(BotCore, APoseIsReadAsItsOwnGeneratorWritesIt) {
-  const auto read = decode_bot_pose(encoded_by_lcm(pose()));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->utime, 1'234'567'890'123);
-  EXPECT_EQ(read->position, (Three{1, 2, 3}));
-  EXPECT_EQ(read->quaternion_wxyz, (Four{40, 41, 42, 43}));
-  EXPECT_EQ(read->velocity, (Three{10, 11, 12}));
-  EXPECT_EQ(read->rotation_rate, (Three{20, 21, 22}));
+TEST(BotCore, DecodesPoseOfGeneratedEncoder) {
+  const auto decoded = decode_bot_pose(encoded_by_lcm(pose()));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded->utime, 1'234'567'890'123);
+  EXPECT_EQ(decoded->position, (Three{1, 2, 3}));
+  EXPECT_EQ(decoded->quaternion_wxyz, (Four{40, 41, 42, 43}));
+  EXPECT_EQ(decoded->velocity, (Three{10, 11, 12}));
+  EXPECT_EQ(decoded->rotation_rate, (Three{20, 21, 22}));
 }
 
-TEST(BotCore, ARigidTransformHasNoVelocity) {
+TEST(BotCore, DecodesRigidTransformWithNanVelocities) {
   bot_core::rigid_transform_t transform{};
   transform.utime = -5;
   for (int i = 0; i < 3; ++i) transform.trans[i] = 1.0 + i;
   for (int i = 0; i < 4; ++i) transform.quat[i] = 40.0 + i;
-  const auto read = decode_bot_pose(encoded_by_lcm(transform));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->utime, -5);
-  EXPECT_EQ(read->position, (Three{1, 2, 3}));
-  EXPECT_EQ(read->quaternion_wxyz, (Four{40, 41, 42, 43}));
+  const auto decoded = decode_bot_pose(encoded_by_lcm(transform));
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded->utime, -5);
+  EXPECT_EQ(decoded->position, (Three{1, 2, 3}));
+  EXPECT_EQ(decoded->quaternion_wxyz, (Four{40, 41, 42, 43}));
   for (int i = 0; i < 3; ++i) {
-    EXPECT_TRUE(std::isnan(read->velocity.at(static_cast<std::size_t>(i))));
-    EXPECT_TRUE(std::isnan(read->rotation_rate.at(static_cast<std::size_t>(i))));
+    EXPECT_TRUE(std::isnan(decoded->velocity.at(static_cast<std::size_t>(i))));
+    EXPECT_TRUE(std::isnan(decoded->rotation_rate.at(static_cast<std::size_t>(i))));
   }
 }
 
-TEST(BotCore, ForceAndTorqueAreReadByTheirOwnGenerator) {
+TEST(BotCore, EncodesForceTorqueForGeneratedDecoder) {
   std::vector<std::uint8_t> bytes{9, 9, 9};
   encode_six_axis_force_torque(77, {1, 2, 3}, {4, 5, 6}, bytes);
   bot_core::six_axis_force_torque_t message{};
@@ -64,33 +64,33 @@ TEST(BotCore, ForceAndTorqueAreReadByTheirOwnGenerator) {
     EXPECT_EQ(message.force[i], 1.0 + i);
     EXPECT_EQ(message.moment[i], 4.0 + i);
   }
-  const auto read = decode_six_axis_force_torque(bytes);
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->utime, 77);
-  EXPECT_EQ(read->force, (Three{1, 2, 3}));
-  EXPECT_EQ(read->torque, (Three{4, 5, 6}));
+  const auto decoded = decode_six_axis_force_torque(bytes);
+  ASSERT_TRUE(decoded);
+  EXPECT_EQ(decoded->utime, 77);
+  EXPECT_EQ(decoded->force, (Three{1, 2, 3}));
+  EXPECT_EQ(decoded->torque, (Three{4, 5, 6}));
 }
 
-// Of decode, given a message that it reads.
+// message: one that `decode` accepts.
 template <typename Decode>
-void expect_only_the_exact_length(const Decode& decode, const std::vector<std::uint8_t>& whole) {
-  ASSERT_TRUE(decode(whole));
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_EQ(decode(Bytes(whole).first(size)).error(), DecodeError::kTruncated) << size;
+void expect_exact_length_required(const Decode& decode, const std::vector<std::uint8_t>& message) {
+  ASSERT_TRUE(decode(message));
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    EXPECT_EQ(decode(Bytes(message).first(size)).error(), DecodeError::kTruncated) << size;
   }
-  std::vector<std::uint8_t> longer = whole;
+  std::vector<std::uint8_t> longer = message;
   longer.push_back(0);
   EXPECT_EQ(decode(longer).error(), DecodeError::kLength);
-  std::vector<std::uint8_t> other = whole;
-  ++other[3];
-  EXPECT_EQ(decode(other).error(), DecodeError::kFingerprint);
+  std::vector<std::uint8_t> foreign = message;
+  ++foreign[3];
+  EXPECT_EQ(decode(foreign).error(), DecodeError::kFingerprint);
 }
 
-TEST(BotCore, NothingButAMessageOfItsTypesExactLengthIsRead) {
+TEST(BotCore, RejectsOtherLengthsAndFingerprints) {
   const std::vector<std::uint8_t> force_torque = encoded_by_lcm(bot_core::six_axis_force_torque_t{});
-  expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(pose()));
-  expect_only_the_exact_length(decode_bot_pose, encoded_by_lcm(bot_core::rigid_transform_t{}));
-  expect_only_the_exact_length(decode_six_axis_force_torque, force_torque);
+  expect_exact_length_required(decode_bot_pose, encoded_by_lcm(pose()));
+  expect_exact_length_required(decode_bot_pose, encoded_by_lcm(bot_core::rigid_transform_t{}));
+  expect_exact_length_required(decode_six_axis_force_torque, force_torque);
   EXPECT_EQ(decode_bot_pose(force_torque).error(), DecodeError::kFingerprint);
   EXPECT_EQ(decode_six_axis_force_torque(encoded_by_lcm(pose())).error(), DecodeError::kFingerprint);
 }

@@ -1,4 +1,4 @@
-// A message as the encoder that lcm-gen made for it writes it.
+// Encodes a message with the encoder that lcm-gen generated for it.
 #pragma once
 
 #include <cstdint>

@@ -28,14 +28,14 @@ void randomise(std::array<double, kSize>& values) {
   for (double& value : values) value = random_double();
 }
 
-inline RequestId random_key() {
+inline RequestId random_request_id() {
   return {.utime = random_integer<std::int64_t>(),
           .session_id = random_integer<std::int64_t>(),
           .seq = random_integer<std::int64_t>()};
 }
 
 inline WrenchRequest random_request() {
-  WrenchRequest request{.key = random_key(), .lead_time = random_double(), .bodies = {}};
+  WrenchRequest request{.key = random_request_id(), .lead_time = random_double(), .bodies = {}};
   request.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyState& body : request.bodies) {
     body.body_id = random_integer<std::int32_t>();
@@ -48,7 +48,7 @@ inline WrenchRequest random_request() {
 }
 
 inline WrenchResponse random_response() {
-  WrenchResponse response{.key = random_key(), .bodies = {}};
+  WrenchResponse response{.key = random_request_id(), .bodies = {}};
   response.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyWrench& body : response.bodies) {
     body.body_id = random_integer<std::int32_t>();
@@ -64,7 +64,7 @@ inline WrenchResponse random_response() {
 }
 
 inline BodiesHydrostatics random_hydrostatics() {
-  BodiesHydrostatics hydrostatics{.key = random_key(), .bodies = {}};
+  BodiesHydrostatics hydrostatics{.key = random_request_id(), .bodies = {}};
   hydrostatics.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyHydrostatics& body : hydrostatics.bodies) {
     body.body_id = random_integer<std::int32_t>();

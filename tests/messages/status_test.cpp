@@ -16,9 +16,9 @@ namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
 
-constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset of the version's length
+constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTail = 8 + 4 * 4 + 8 * std::size_t{5 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -145,19 +145,19 @@ void set_length(ByteVector& bytes, std::size_t offset, std::int32_t length) {
   }
 }
 
-RC_GTEST_PROP(StatusMessage, EncodesAsTheGeneratedCodeDoes, ()) {
+RC_GTEST_PROP(ServiceStatus, EncodesLikeGeneratedCode, ()) {
   const ServiceStatus status = random_status();
   RC_ASSERT(encoded(status) == encoded_by_lcm(status));
 }
 
-RC_GTEST_PROP(StatusMessage, DecodesWhatTheGeneratedCodeEncodes, ()) {
+RC_GTEST_PROP(ServiceStatus, DecodesOutputOfGeneratedCode, ()) {
   const ByteVector bytes = encoded_by_lcm(random_status());
   ServiceStatus status = random_status();
   RC_ASSERT(!decode(bytes, status).has_value());
   RC_ASSERT(encoded_by_lcm(status) == bytes);
 }
 
-TEST(StatusMessage, NamesInstructionSetsByTheConstantsOfTheDefinition) {
+TEST(ServiceStatus, MapsSimdTargetsToWireConstants) {
   const auto value = [](const char* name) { return static_cast<std::int32_t>(simd_target_from_name(name)); };
   EXPECT_EQ(value("SCALAR"), service_status_t::SIMD_SCALAR);
   EXPECT_EQ(value("SSSE3"), service_status_t::SIMD_SSSE3);
@@ -168,14 +168,14 @@ TEST(StatusMessage, NamesInstructionSetsByTheConstantsOfTheDefinition) {
   EXPECT_EQ(value("Z80"), service_status_t::SIMD_OTHER);
 }
 
-TEST(StatusMessage, NamesModesByTheConstantsOfTheDefinition) {
+TEST(ServiceStatus, MapsModesToWireConstants) {
   EXPECT_EQ(static_cast<std::int32_t>(ServiceMode::kLockstep), service_status_t::MODE_LOCKSTEP);
   EXPECT_EQ(static_cast<std::int32_t>(ServiceMode::kLatest), service_status_t::MODE_LATEST);
 }
 
-TEST(StatusMessage, RejectsEveryTruncation) {
+TEST(ServiceStatus, RejectsEveryTruncation) {
   const ByteVector whole = with_version("1.2.3");
-  const std::size_t shortest = kVersionLength + 2 * kEmptyString + kTail;
+  const std::size_t shortest = kVersionLength + 2 * kEmptyString + kTrailer;
   ServiceStatus status;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), status),
@@ -184,7 +184,7 @@ TEST(StatusMessage, RejectsEveryTruncation) {
   }
 }
 
-TEST(StatusMessage, RejectsLengthsOfStringsThatDoNotFit) {
+TEST(ServiceStatus, RejectsInvalidStringLengths) {
   struct Case {
     std::int32_t length;
     DecodeError expected;
@@ -203,7 +203,7 @@ TEST(StatusMessage, RejectsLengthsOfStringsThatDoNotFit) {
   }
 }
 
-TEST(StatusMessage, RejectsAStringThatDoesNotEndWhereItsLengthSays) {
+TEST(ServiceStatus, RejectsMisplacedStringTerminator) {
   ServiceStatus status;
   for (const std::size_t text : {kVersionLength + 4, kVersionLength + 4 + 6 + 4}) {
     ByteVector no_nul = with_version("1.2.3", "scene");
@@ -215,7 +215,7 @@ TEST(StatusMessage, RejectsAStringThatDoesNotEndWhereItsLengthSays) {
   }
 }
 
-TEST(StatusMessage, RejectsTrailingBytesAndOtherFingerprints) {
+TEST(ServiceStatus, RejectsTrailingBytesAndOtherFingerprints) {
   ServiceStatus status;
   ByteVector longer = with_version("1");
   longer.push_back(0);
@@ -225,7 +225,7 @@ TEST(StatusMessage, RejectsTrailingBytesAndOtherFingerprints) {
   EXPECT_EQ(decode(foreign, status), DecodeError::kFingerprint);
 }
 
-TEST(StatusMessage, RejectionLeavesTheStatusUnchanged) {
+TEST(ServiceStatus, StaysUnchangedOnDecodeError) {
   ServiceStatus status;
   ASSERT_FALSE(decode(with_version("kept"), status).has_value());
   ByteVector bad = with_version("1.2.3");
@@ -234,9 +234,9 @@ TEST(StatusMessage, RejectionLeavesTheStatusUnchanged) {
   EXPECT_EQ(encoded(status), with_version("kept"));
 }
 
-TEST(StatusMessage, TakesNothingFromTheHeapAfterWarmUp) {
-  const ByteVector whole = with_version("a version that is longer than what strings keep in place",
-                                        "a scene that is longer than what strings keep in place");
+TEST(ServiceStatus, DoesNotAllocateAfterWarmUp) {
+  const ByteVector whole = with_version("a version that is too long for the small-string optimisation",
+                                        "a scene that is too long for the small-string optimisation");
   ServiceStatus status;
   ByteVector bytes;
   ASSERT_FALSE(decode(whole, status).has_value());
@@ -250,7 +250,7 @@ TEST(StatusMessage, TakesNothingFromTheHeapAfterWarmUp) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-TEST(ServiceCounters, RejectedIsTheSumOverTheCauses) {
+TEST(ServiceCounters, SumsRejectionsOverCauses) {
   ServiceCounters counters;
   counters.rejected_truncated = 1;
   counters.rejected_fingerprint = 10;
@@ -259,7 +259,7 @@ TEST(ServiceCounters, RejectedIsTheSumOverTheCauses) {
   EXPECT_EQ(counters.rejected(), 1111);
 }
 
-TEST(ServiceCounters, AreAllOnTheWireAndInASum) {
+TEST(ServiceCounters, VisitsAndAddsEveryField) {
   ServiceCounters one;
   LayoutSize visited;
   visit_counters(visited, one);

@@ -1,4 +1,4 @@
-// Poses of bot_core's as tests send them.
+// bot_core poses for tests.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace buoyancy {
 
-// Upright, at this height over the origin, at rest.
+// An upright body at rest, at this height over the origin [m].
 inline bot_core::pose_t upright_pose(double height, std::int64_t utime) {
   bot_core::pose_t pose{};
   pose.utime = utime;

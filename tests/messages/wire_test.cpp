@@ -23,7 +23,7 @@ constexpr std::size_t kRequestFixed = 44;
 constexpr std::size_t kBodyState = 108;
 constexpr std::size_t kResponseFixed = 36;
 constexpr std::size_t kBodyWrench = 104;
-constexpr std::size_t kBodyHydrostatics = 512;  // behind a head like a response's
+constexpr std::size_t kBodyHydrostatics = 512;  // after a header like a response's
 
 template <typename Message>
 ByteVector encoded(const Message& message) {
@@ -37,7 +37,7 @@ void copy(const std::array<double, kSize>& from, double (&to)[kSize]) {
   std::copy(from.begin(), from.end(), to);
 }
 
-body_states_t as_generated(const WrenchRequest& request) {
+body_states_t to_generated(const WrenchRequest& request) {
   body_states_t message{};
   message.utime = request.key.utime;
   message.session_id = request.key.session_id;
@@ -55,7 +55,7 @@ body_states_t as_generated(const WrenchRequest& request) {
   return message;
 }
 
-body_wrenches_t as_generated(const WrenchResponse& response) {
+body_wrenches_t to_generated(const WrenchResponse& response) {
   body_wrenches_t message{};
   message.utime = response.key.utime;
   message.session_id = response.key.session_id;
@@ -80,7 +80,7 @@ void copy(const std::array<std::array<double, kColumns>, kRows>& from, double (&
   for (std::size_t row = 0; row < kRows; ++row) copy(from[row], to[row]);
 }
 
-bodies_hydrostatics_t as_generated(const BodiesHydrostatics& hydrostatics) {
+bodies_hydrostatics_t to_generated(const BodiesHydrostatics& hydrostatics) {
   bodies_hydrostatics_t message{};
   message.utime = hydrostatics.key.utime;
   message.session_id = hydrostatics.key.session_id;
@@ -118,48 +118,48 @@ void set_count(ByteVector& bytes, std::size_t fixed_size, std::int32_t count) {
   }
 }
 
-RC_GTEST_PROP(Wire, EncodesQuestionsAsTheGeneratedCodeDoes, ()) {
+RC_GTEST_PROP(Wire, EncodesRequestsLikeGeneratedCode, ()) {
   const WrenchRequest request = random_request();
-  RC_ASSERT(encoded(request) == encoded_by_lcm(as_generated(request)));
+  RC_ASSERT(encoded(request) == encoded_by_lcm(to_generated(request)));
 }
 
-RC_GTEST_PROP(Wire, EncodesAnswersAsTheGeneratedCodeDoes, ()) {
+RC_GTEST_PROP(Wire, EncodesResponsesLikeGeneratedCode, ()) {
   const WrenchResponse response = random_response();
-  RC_ASSERT(encoded(response) == encoded_by_lcm(as_generated(response)));
+  RC_ASSERT(encoded(response) == encoded_by_lcm(to_generated(response)));
 }
 
-RC_GTEST_PROP(Wire, DecodesQuestionsOfTheGeneratedCode, ()) {
-  const body_states_t message = as_generated(random_request());
+RC_GTEST_PROP(Wire, DecodesRequestsOfGeneratedCode, ()) {
+  const body_states_t message = to_generated(random_request());
   const ByteVector bytes = encoded_by_lcm(message);
-  WrenchRequest request = random_request();  // what was there before must not matter
+  WrenchRequest request = random_request();  // its previous content must not matter
   RC_ASSERT(!decode(bytes, request).has_value());
   RC_ASSERT(request.key.utime == message.utime);
   RC_ASSERT(request.key.session_id == message.session_id);
   RC_ASSERT(request.key.seq == message.seq);
   RC_ASSERT(request.bodies.size() == message.bodies.size());
-  RC_ASSERT(encoded_by_lcm(as_generated(request)) == bytes);
+  RC_ASSERT(encoded_by_lcm(to_generated(request)) == bytes);
 }
 
-RC_GTEST_PROP(Wire, DecodesAnswersOfTheGeneratedCode, ()) {
-  const ByteVector bytes = encoded_by_lcm(as_generated(random_response()));
+RC_GTEST_PROP(Wire, DecodesResponsesOfGeneratedCode, ()) {
+  const ByteVector bytes = encoded_by_lcm(to_generated(random_response()));
   WrenchResponse response = random_response();
   RC_ASSERT(!decode(bytes, response).has_value());
-  RC_ASSERT(encoded_by_lcm(as_generated(response)) == bytes);
+  RC_ASSERT(encoded_by_lcm(to_generated(response)) == bytes);
 }
 
-RC_GTEST_PROP(Wire, EncodesHydrostaticsAsTheGeneratedCodeDoes, ()) {
+RC_GTEST_PROP(Wire, EncodesHydrostaticsLikeGeneratedCode, ()) {
   const BodiesHydrostatics hydrostatics = random_hydrostatics();
-  RC_ASSERT(encoded(hydrostatics) == encoded_by_lcm(as_generated(hydrostatics)));
+  RC_ASSERT(encoded(hydrostatics) == encoded_by_lcm(to_generated(hydrostatics)));
 }
 
-RC_GTEST_PROP(Wire, DecodesHydrostaticsOfTheGeneratedCode, ()) {
-  const ByteVector bytes = encoded_by_lcm(as_generated(random_hydrostatics()));
+RC_GTEST_PROP(Wire, DecodesHydrostaticsOfGeneratedCode, ()) {
+  const ByteVector bytes = encoded_by_lcm(to_generated(random_hydrostatics()));
   BodiesHydrostatics hydrostatics = random_hydrostatics();
   RC_ASSERT(!decode(bytes, hydrostatics).has_value());
-  RC_ASSERT(encoded_by_lcm(as_generated(hydrostatics)) == bytes);
+  RC_ASSERT(encoded_by_lcm(to_generated(hydrostatics)) == bytes);
 }
 
-RC_GTEST_PROP(Wire, PeeksTheKeyThatDecodingFinds, ()) {
+RC_GTEST_PROP(Wire, PeeksSameRequestIdAsDecode, ()) {
   const WrenchRequest request = random_request();
   const auto key = peek_request_id(encoded(request));
   RC_ASSERT(key.has_value());
@@ -168,7 +168,7 @@ RC_GTEST_PROP(Wire, PeeksTheKeyThatDecodingFinds, ()) {
   RC_ASSERT(key->seq == request.key.seq);
 }
 
-RC_GTEST_PROP(Wire, RandomBytesBehindTheRightFingerprintAreDecodedOrRejectedButNeverCrash, ()) {
+RC_GTEST_PROP(Wire, DecodesOrRejectsRandomBytesAfterValidFingerprint, ()) {
   ByteVector bytes = request_of(0);
   bytes.resize(8);
   const auto garbage = *rc::gen::arbitrary<ByteVector>();
@@ -177,7 +177,7 @@ RC_GTEST_PROP(Wire, RandomBytesBehindTheRightFingerprintAreDecodedOrRejectedButN
   RC_ASSERT(decode(bytes, request).has_value() == !peek_request_id(bytes).has_value());
 }
 
-TEST(Wire, SizesAreThoseOfTheMessageDefinitions) {
+TEST(Wire, EncodesToSizesOfMessageDefinitions) {
   EXPECT_EQ(request_of(0).size(), kRequestFixed);
   EXPECT_EQ(request_of(3).size(), kRequestFixed + 3 * kBodyState);
   EXPECT_EQ(encoded(WrenchResponse{}).size(), kResponseFixed);
@@ -187,7 +187,7 @@ TEST(Wire, SizesAreThoseOfTheMessageDefinitions) {
             kResponseFixed + 2 * kBodyHydrostatics);
 }
 
-TEST(Wire, RejectsEveryTruncationOfAQuestion) {
+TEST(Wire, RejectsEveryTruncationOfRequest) {
   const ByteVector whole = request_of(3);
   WrenchRequest request;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -199,7 +199,7 @@ TEST(Wire, RejectsEveryTruncationOfAQuestion) {
   }
 }
 
-TEST(Wire, RejectsEveryTruncationOfAnAnswer) {
+TEST(Wire, RejectsEveryTruncationOfResponse) {
   const ByteVector whole = encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}});
   WrenchResponse response;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -219,7 +219,7 @@ TEST(Wire, RejectsEveryTruncationOfHydrostatics) {
   }
 }
 
-TEST(Wire, RejectsEveryFlippedBitOfTheFingerprint) {
+TEST(Wire, RejectsEveryFlippedFingerprintBit) {
   const ByteVector whole = request_of(1);
   WrenchRequest request;
   for (std::size_t bit = 0; bit < 64; ++bit) {
@@ -229,7 +229,7 @@ TEST(Wire, RejectsEveryFlippedBitOfTheFingerprint) {
   }
 }
 
-TEST(Wire, RejectsOtherTypesOfOurOwn) {
+TEST(Wire, RejectsOtherBuoyancyTypes) {
   WrenchRequest request;
   WrenchResponse response;
   EXPECT_EQ(decode(encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}}), request),
@@ -238,7 +238,7 @@ TEST(Wire, RejectsOtherTypesOfOurOwn) {
   EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), response), DecodeError::kFingerprint);
 }
 
-TEST(Wire, RejectsCountsThatDoNotFitTheLength) {
+TEST(Wire, RejectsCountsThatDoNotMatchLength) {
   struct Case {
     std::int32_t count;
     DecodeError expected;
@@ -268,7 +268,7 @@ TEST(Wire, RejectsTrailingBytes) {
   }
 }
 
-TEST(Wire, RejectionLeavesTheQuestionUnchanged) {
+TEST(Wire, LeavesRequestUnchangedOnDecodeError) {
   WrenchRequest request;
   ASSERT_FALSE(decode(request_of(3), request).has_value());
   ByteVector bad = request_of(2);
@@ -277,7 +277,7 @@ TEST(Wire, RejectionLeavesTheQuestionUnchanged) {
   EXPECT_EQ(encoded(request), request_of(3));
 }
 
-TEST(Wire, ACountInTheBillionsTakesNoMemory) {
+TEST(Wire, DoesNotAllocateForHugeCount) {
   ByteVector bytes = request_of(0);
   set_count(bytes, kRequestFixed, INT_MAX);
   WrenchRequest request;
@@ -286,7 +286,7 @@ TEST(Wire, ACountInTheBillionsTakesNoMemory) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-TEST(Wire, DecodesFromAnyAddress) {
+TEST(Wire, DecodesFromUnalignedAddresses) {
   const ByteVector whole = request_of(2);
   for (std::size_t shift = 0; shift < 8; ++shift) {
     ByteVector shifted(shift);
@@ -297,7 +297,7 @@ TEST(Wire, DecodesFromAnyAddress) {
   }
 }
 
-TEST(Wire, TakesNothingFromTheHeapAfterWarmUp) {
+TEST(Wire, DoesNotAllocateAfterWarmUp) {
   const ByteVector largest = request_of(1000);
   const ByteVector small = request_of(7);
   WrenchRequest request;
@@ -315,7 +315,7 @@ TEST(Wire, TakesNothingFromTheHeapAfterWarmUp) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-TEST(BodyStatusNames, AreThoseOfTheMessageDefinition) {
+TEST(BodyStatus, ConvertsToNamesOfMessageDefinition) {
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OK}), "OK");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::UNKNOWN_BODY}), "UNKNOWN_BODY");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NON_FINITE_POSE}), "NON_FINITE_POSE");
@@ -327,7 +327,7 @@ TEST(BodyStatusNames, AreThoseOfTheMessageDefinition) {
   EXPECT_STREQ(to_string(BodyStatus{kBodyStatusCount}), "UNKNOWN_STATUS");
 }
 
-TEST(Rejections, AreEachDescribedInOtherWords) {
+TEST(DecodeError, ConvertsToDistinctDescriptions) {
   const std::vector<std::string> descriptions{
       to_string(DecodeError::kTruncated), to_string(DecodeError::kFingerprint),
       to_string(DecodeError::kCount), to_string(DecodeError::kLength)};

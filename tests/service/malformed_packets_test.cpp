@@ -35,7 +35,7 @@ TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestio
   std::int64_t seq = 0;
   for (const MalformedMessage& message : messages) {
     socket.send("BUOYANCY_STATES", message.bytes);
-    ++expected[message.cause];
+    ++expected[message.error];
     expect_an_response(socket, ++seq, message.name);
   }
   const auto asked = static_cast<std::int64_t>(2 * messages.size());

@@ -134,7 +134,7 @@ TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   std::array<std::int64_t, 4> expected{};
   for (const MalformedMessage& malformed : malformed_messages()) {
     watch_.on_request(malformed.bytes, at(0.0));
-    ++expected[static_cast<std::size_t>(malformed.cause)];
+    ++expected[static_cast<std::size_t>(malformed.error)];
   }
   EXPECT_EQ(watch_.counts().malformed, expected);
   EXPECT_EQ(watch_.tracker().requests, 0);
