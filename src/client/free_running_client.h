@@ -1,8 +1,9 @@
 // A client that sends one request per interval of wall-clock time and uses the newest response that has
 // arrived by the end of the interval.
 //
-// It never waits longer than the interval, counts how late its responses are, and returns an error when no
-// response has arrived for RetryPolicy::total_timeout(). Contract and errors: see retry.h.
+// After the first response it never waits longer than the interval, counts how late its responses are, and
+// returns an error when no response has arrived for RetryPolicy::total_timeout(). Contract and errors: see
+// retry.h.
 #pragma once
 
 #include <cstdint>

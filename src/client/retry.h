@@ -41,7 +41,7 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
 Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel, const WrenchRequest& request,
                                                const WrenchResponse& response);
 
-// waited: [s], since the request was sent.
+// waited: time without a response [s].
 tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited);
 tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq);
 
