@@ -108,21 +108,24 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
 }
 
 void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
-  ReplayChannels channels = value_or_exit(ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
+  service::ReplayChannels channels =
+      value_or_exit(service::ReplayChannels::make(std::string(kStatesChannel), {}, {}, {}));
   PoseRequestAdapter poses({}, 1);
-  ReplayInput reader =
-      value_or_exit(ReplayInput::open(input, FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
-  ReplayOutput writer = value_or_exit(ReplayOutput::create(output, FileFormat::kLcmLog));
+  service::ReplayInput reader = value_or_exit(service::ReplayInput::open(
+      input, service::FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
+  service::ReplayOutput writer =
+      value_or_exit(service::ReplayOutput::create(output, service::FileFormat::kLcmLog));
   TerminationSignals signals;
-  const ReplaySummary summary = value_or_exit(replay(
-      {.scene = scene,
-       .input = reader,
-       .channels = channels,
-       .poses = poses,
-       .output = writer,
-       .layout = {FileFormat::kLcmLog, std::string(kWrenchesChannel), std::string(kHydrostaticsChannel)},
-       .jobs = jobs},
-      signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
+  const service::ReplaySummary summary = value_or_exit(
+      service::replay({.scene = scene,
+                       .input = reader,
+                       .channels = channels,
+                       .poses = poses,
+                       .output = writer,
+                       .layout = {service::FileFormat::kLcmLog, std::string(kWrenchesChannel),
+                                  std::string(kHydrostaticsChannel)},
+                       .jobs = jobs},
+                      signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
   if (!summary.complete()) give_up("the replay was not complete");
 }
 

@@ -15,13 +15,12 @@
 #include "service/daemon/daemon_options.h"
 #include "service/daemon/logging.h"
 
+namespace buoyancy::service {
 namespace {
-
-using namespace buoyancy;
 
 int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseChannels poses,
           SignalFd& reload) {
-  TerminationSignals termination;  // before the connection, whose thread must not get them
+  TerminationSignals termination;  // blocks the signals before the connection starts a thread
   Expected<LcmConnection> connection =
       LcmConnection::open(options.lcm_url, {.receive_own = false, .spin = !options.no_spin});
   if (!connection) {
@@ -35,15 +34,12 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseCh
     print_error(app, ended.error());
     exit_code = kFailure;
   }
-  // Nobody waits for a scene that nobody will be answered from: the load's thread ends with the process, and
-  // the child that imports a mesh with the thread.
+  // A load is in progress: exit without joining its thread; the import child dies with it (PR_SET_PDEATHSIG).
   if (daemon.is_loading()) std::_Exit(exit_code);
   return exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("", "buoyancyd");
   DaemonOptions options;
   add_options(app, options);
@@ -55,7 +51,7 @@ int main(int argc, char** argv) {
   init_logging("buoyancyd", options.log_level);
 
   std::optional<SignalFd> reload;
-  if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // one that comes early waits
+  if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // kept pending during the load
   Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
   if (!scene) {
     print_error(app, scene.error());
@@ -73,4 +69,11 @@ int main(int argc, char** argv) {
     return print_output(app, report) ? kSuccess : kFailure;
   }
   return serve(app, options, std::move(*scene), std::move(*poses), *reload);
+}
+
+}  // namespace
+}  // namespace buoyancy::service
+
+int main(int argc, char** argv) {
+  return buoyancy::service::run(argc, argv);
 }

@@ -4,11 +4,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now) {
   struct Cause {
-    DecodeError rejection;
+    DecodeError error;
     std::int64_t ServiceCounters::*counter;
   };
   constexpr std::array kCauses{Cause{DecodeError::kTruncated, &ServiceCounters::rejected_truncated},
@@ -17,16 +17,16 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
                                Cause{DecodeError::kLength, &ServiceCounters::rejected_length}};
   std::vector<LogEvent> warnings;
   for (const Cause& cause : kCauses) {
-    const std::int64_t grown = now.*cause.counter - before.*cause.counter;
-    if (grown > 0) {
-      warnings.push_back({fmt::format("messages rejected, {}", to_string(cause.rejection)), grown, {}});
+    const std::int64_t increase = now.*cause.counter - before.*cause.counter;
+    if (increase > 0) {
+      warnings.push_back({fmt::format("messages rejected, {}", to_string(cause.error)), increase, {}});
     }
   }
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto status = static_cast<BodyStatus>(i);
-    const std::int64_t grown = now.bodies[i] - before.bodies[i];
-    if (status != BodyStatus::kOk && grown > 0) {
-      warnings.push_back({fmt::format("bodies answered with {}", to_string(status)), grown, {}});
+    const std::int64_t increase = now.bodies[i] - before.bodies[i];
+    if (status != BodyStatus::kOk && increase > 0) {
+      warnings.push_back({fmt::format("bodies with status {}", to_string(status)), increase, {}});
     }
   }
   return warnings;
@@ -35,9 +35,9 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now) {
   std::vector<LogEvent> warnings;
   if (now.packets > before.packets) {
-    warnings.push_back({"packets dropped by the kernel before they were read", now.packets - before.packets,
-                        "they came faster than they are read: sysctl -w net.core.rmem_max=4194304 and start "
-                        "again, or a port that carries less else"});
+    warnings.push_back({"packets dropped by the kernel (receive buffer full)", now.packets - before.packets,
+                        "raise the limit with 'sysctl -w net.core.rmem_max=4194304' and restart, or use a "
+                        "port with less traffic"});
   }
   if (now.fragments > before.fragments) {
     warnings.push_back(
@@ -53,11 +53,10 @@ std::string describe_totals(const ServiceCounters& counters, const LatencyPercen
   constexpr double kMicrosecondsPerSecond = 1e6;
   return fmt::format(
       "{} requests: {} computed, {} retries, {} stale, {} superseded, {} rejected; {} bodies, {} of them "
-      "OK; "
-      "latency p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us",
+      "OK; latency p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us",
       counters.requests, counters.computed, counters.retries, counters.stale, counters.superseded,
       counters.rejected(), bodies, ok, latency.p50 * kMicrosecondsPerSecond,
       latency.p99 * kMicrosecondsPerSecond, latency.max * kMicrosecondsPerSecond);
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

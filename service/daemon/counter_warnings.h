@@ -1,4 +1,4 @@
-// What the counters say, in words for the log.
+// Turns the growth of counters into warnings for the log.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 #include "service/daemon/rate_limited_log.h"
 #include "transport/udpm_receiver.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
-// What went wrong between two readings: each cause of rejection, of loss, and each status other than OK whose
-// counter has grown.
+// One event per cause of rejection and per body status other than OK whose counter has grown.
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now);
 
+// One event per kind of loss whose counter has grown.
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now);
 
-// One line of totals: "1200 requests, 1198 answered, ...".
+// One line of totals: "1200 requests: 1198 computed, 2 retries, ...".
 std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -18,10 +18,10 @@
 #include "messages/status.h"
 #include "service/daemon/counter_warnings.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
-constexpr int kDrainedAtOnce = 4096;  // mode latest, so that a flood cannot keep us from answering
+constexpr int kMaxDrained = 4096;  // mode latest: bounds the time that a flood delays the responses
 constexpr std::size_t kMaxSessions = RequestHandlerOptions{}.max_sessions;
 
 double seconds_now() {
@@ -33,21 +33,21 @@ std::int64_t random_id() {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(device()) << 32U | device());
 }
 
-std::string in_words(const std::vector<Body>& bodies) {
+std::string format_body_count(const std::vector<Body>& bodies) {
   return pluralize(static_cast<std::int64_t>(bodies.size()), "body", "bodies");
 }
 
-UniqueFd timer_of(std::chrono::microseconds interval) {
+UniqueFd make_timer(std::chrono::microseconds interval) {
   UniqueFd timer(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC));
   constexpr std::int64_t kPerSecond = 1'000'000;
-  const timespec each{interval.count() / kPerSecond, interval.count() % kPerSecond * 1'000};
-  const itimerspec periodic{each, each};
+  const timespec period{interval.count() / kPerSecond, interval.count() % kPerSecond * 1'000};
+  const itimerspec periodic{period, period};
   if (timer.valid()) ::timerfd_settime(timer.value(), 0, &periodic, nullptr);
   return timer;
 }
 
-// Has the timer run out since the last call?
-bool take_expiration(const UniqueFd& timer) {
+// Has the timer expired since the last call?
+bool consume_expiration(const UniqueFd& timer) {
   std::uint64_t expirations = 0;
   return ::read(timer.value(), &expirations, sizeof expirations) > 0;
 }
@@ -88,72 +88,72 @@ Expected<void> Daemon::subscribe() {
 }
 
 Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
-  const UniqueFd every_second = timer_of(std::chrono::seconds(1));
-  // Where no watchdog waits, as rarely as there is no harm in it.
+  const UniqueFd status_timer = make_timer(std::chrono::seconds(1));
+  // Without a watchdog the timer is not needed: its interval is long enough to cost nothing.
   const auto watchdog = SystemdNotifier::watchdog_interval();
-  const UniqueFd watchdog_timer = timer_of(watchdog.value_or(std::chrono::hours(1)));
-  std::array<pollfd, 6> waiting{
+  const UniqueFd watchdog_timer = make_timer(watchdog.value_or(std::chrono::hours(1)));
+  std::array<pollfd, 6> descriptors{
       pollfd{termination.fileno(), POLLIN, 0},   pollfd{reload.fileno(), POLLIN, 0},
-      pollfd{loader_.fileno(), POLLIN, 0},       pollfd{every_second.value(), POLLIN, 0},
+      pollfd{loader_.fileno(), POLLIN, 0},       pollfd{status_timer.value(), POLLIN, 0},
       pollfd{watchdog_timer.value(), POLLIN, 0}, pollfd{connection_.fileno(), POLLIN, 0}};
-  const auto& [end, hang_up, loaded, second, beat, messages] = waiting;
-  if (std::ranges::any_of(waiting, [](const pollfd& one) { return one.fd < 0; })) {
+  const auto& [stop_signal, reload_signal, loaded, status_due, watchdog_due, messages] = descriptors;
+  if (std::ranges::any_of(descriptors, [](const pollfd& descriptor) { return descriptor.fd < 0; })) {
     return make_error({"timers and signals", std::generic_category().message(errno), "a few file descriptors",
                        "too many open files", ""});
   }
   if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   spdlog::info(
-      "ready: {}; requests on {}, answers on {}, hydrostatics on {}, status on {}; {}, mode {}, "
+      "ready: {}; requests on {}, responses on {}, hydrostatics on {}, status on {}; {}, mode {}, "
       "instance {}",
-      in_words(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
+      format_body_count(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
       channels_.status, connection_.url(), to_string(mode_), instance_id_);
   for (const PoseChannel& pose : poses_.channels()) {
-    spdlog::info("poses of body {} on {}, answered on {}", pose.body_id, pose.channel,
+    spdlog::info("poses of body {} on {}, responses on {}", pose.body_id, pose.channel,
                  pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
   }
-  report();
+  publish_status();
   systemd_.ready();
 
   while (true) {
-    const bool at_work = !latest_.empty() || connection_.handle_one_spinning();
-    const int forever_or_not_at_all = at_work ? 0 : -1;
-    if (::poll(waiting.data(), waiting.size(), forever_or_not_at_all) < 0) {
-      if (errno == EINTR) continue;  // a debugger, a stop and go
+    const bool busy = !latest_.empty() || connection_.handle_one_spinning();
+    const int timeout_ms = busy ? 0 : -1;
+    if (::poll(descriptors.data(), descriptors.size(), timeout_ms) < 0) {
+      if (errno == EINTR) continue;  // interrupted, e.g. by SIGSTOP/SIGCONT or a debugger
       return make_error(
-          {"waiting for messages", std::generic_category().message(errno), "poll to work", "", ""});
+          {"waiting for messages", std::generic_category().message(errno), "poll() to succeed", "", ""});
     }
-    if (end.revents != 0) break;
-    if (hang_up.revents != 0 && reload.consume()) begin_reload();
+    if (stop_signal.revents != 0) break;
+    if (reload_signal.revents != 0 && reload.consume()) begin_reload();
     if (loaded.revents != 0) end_reload();
-    if (second.revents != 0 && take_expiration(every_second)) report();
-    if (beat.revents != 0 && take_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
+    if (status_due.revents != 0 && consume_expiration(status_timer)) publish_status();
+    if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (messages.revents != 0) receive();
-    response_next_waiting();
+    handle_next();
   }
   systemd_.stopping();
-  report();
-  spdlog::info("ended by {}; {}", termination.consume(),
+  publish_status();
+  spdlog::info("received {}, exiting; {}", termination.consume(),
                describe_totals(handler_.counters(), latency_.percentiles()));
   return {};
 }
 
 void Daemon::receive() {
-  const int most = mode_ == ServiceMode::kLatest ? kDrainedAtOnce : 1;
-  for (int received = 0; received < most && connection_.handle_one(); ++received) {
+  const int max_messages = mode_ == ServiceMode::kLatest ? kMaxDrained : 1;
+  for (int received = 0; received < max_messages && connection_.handle_one(); ++received) {
   }
 }
 
 void Daemon::record_queue_delay() {
   constexpr double kSecondsPerMicrosecond = 1e-6;
-  const std::int64_t waited = utime_now() - connection_.received_utime();
-  queue_delay_ = std::max(queue_delay_, static_cast<double>(waited) * kSecondsPerMicrosecond);
+  const std::int64_t delay = utime_now() - connection_.received_utime();
+  queue_delay_ = std::max(queue_delay_, static_cast<double>(delay) * kSecondsPerMicrosecond);
 }
 
 void Daemon::on_request(Bytes request) {
   if (mode_ == ServiceMode::kLockstep) {
-    response(request, seconds_now());
+    handle(request, seconds_now());
   } else {
-    take_in(request, seconds_now());
+    enqueue(request, seconds_now());
   }
 }
 
@@ -166,26 +166,26 @@ void Daemon::on_pose(std::size_t channel, Bytes pose) {
   }
 }
 
-void Daemon::take_in(Bytes request, double arrival) {
+void Daemon::enqueue(Bytes request, double arrival) {
   const auto key = peek_request_id(request);
   if (!key) {
-    response(request, arrival);  // there it is rejected and counted by its cause
+    handle(request, arrival);  // rejects it and counts the cause
     return;
   }
-  LatestRequestQueue::PushResult fate = latest_.push(*key, request, arrival);
-  if (fate == LatestRequestQueue::PushResult::kFull) {
-    response_next_waiting();
-    fate = latest_.push(*key, request, arrival);
+  LatestRequestQueue::PushResult result = latest_.push(*key, request, arrival);
+  if (result == LatestRequestQueue::PushResult::kFull) {
+    handle_next();
+    result = latest_.push(*key, request, arrival);
   }
-  if (fate == LatestRequestQueue::PushResult::kReplaced) handler_.record_superseded();
-  if (fate == LatestRequestQueue::PushResult::kStale) handler_.record_stale();
+  if (result == LatestRequestQueue::PushResult::kReplaced) handler_.record_superseded();
+  if (result == LatestRequestQueue::PushResult::kStale) handler_.record_stale();
 }
 
-void Daemon::response_next_waiting() {
-  latest_.pop_next([this](Bytes request, double arrival) { response(request, arrival); });
+void Daemon::handle_next() {
+  latest_.pop_next([this](Bytes request, double arrival) { handle(request, arrival); });
 }
 
-void Daemon::response(Bytes request, double arrival) {
+void Daemon::handle(Bytes request, double arrival) {
   const ServiceCounters& counters = handler_.counters();
   const std::int64_t sessions_before = counters.sessions + counters.sessions_evicted;
   const Bytes bytes = handler_.handle(request);
@@ -216,11 +216,10 @@ bool Daemon::publish(const std::string& channel, Bytes bytes) {
 }
 
 void Daemon::begin_reload() {
-  if (loader_.is_loading()) spdlog::debug("a load is under way: one more follows it");
+  if (loader_.is_loading()) spdlog::debug("reload requested while another is in progress; queued");
   loader_.request();
   systemd_.reloading();
-  spdlog::info("SIGHUP: loading {} again; the scene at hand answers until the new one is ready",
-               scene_->name());
+  spdlog::info("SIGHUP: reloading {}; serving the current scene until it is ready", scene_->name());
 }
 
 void Daemon::end_reload() {
@@ -229,21 +228,21 @@ void Daemon::end_reload() {
   last_reload_failed_ = !loaded->has_value();
   if (last_reload_failed_) {
     ++reloads_failed_;
-    spdlog::error("reload failed, the scene at hand goes on answering: {}", loaded->error().message());
+    spdlog::error("reload failed; still serving the current scene: {}", loaded->error().message());
   } else {
     ++reloads_;
     const std::size_t bodies_before = scene_->bodies().size();
     handler_.set_scene(***loaded);
     loader_.release(std::exchange(scene_, std::move(**loaded)));
-    spdlog::info("reloaded: {} (before: {}) from {}", in_words(scene_->bodies()), bodies_before,
+    spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
   }
   if (!loader_.is_loading()) systemd_.ready();
 }
 
-void Daemon::report() {
+void Daemon::publish_status() {
   const ServiceCounters& counters = handler_.counters();
-  const DropCounts losses = connection_.drop_counts();
+  const DropCounts drops = connection_.drop_counts();
   const double now = seconds_now();
   encode(ServiceStatus{.utime = utime_now(),
                        .instance_id = instance_id_,
@@ -257,27 +256,27 @@ void Daemon::report() {
                        .reloads = reloads_,
                        .reloads_failed = reloads_failed_,
                        .send_failures = send_failures_,
-                       .packets_dropped = losses.packets,
-                       .fragments_dropped = losses.fragments,
+                       .packets_dropped = drops.packets,
+                       .fragments_dropped = drops.fragments,
                        .counters = counters,
                        .latency = latency_.percentiles(),
                        .queue_wait = std::exchange(queue_delay_, 0.0)},
          status_bytes_);
   publish(channels_.status, status_bytes_);
-  systemd_.status(fmt::format("{}, {} answered{}", in_words(scene_->bodies()),
+  systemd_.status(fmt::format("{}, {} answered{}", format_body_count(scene_->bodies()),
                               pluralize(counters.computed + counters.retries, "request", "requests"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : ""));
   for (const LogEvent& warning : warnings_since(reported_, counters)) warnings_.add(warning, now);
-  for (const LogEvent& warning : warnings_since(reported_losses_, losses)) warnings_.add(warning, now);
+  for (const LogEvent& warning : warnings_since(reported_drops_, drops)) warnings_.add(warning, now);
   for (const std::string& line : warnings_.drain(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : instances_.take_new()) {
     spdlog::warn(
-        "another buoyancyd, instance {}, is on {}: if it also hears {}, every request is answered twice. "
-        "Stop one of the two, or give each its own channels",
+        "another buoyancyd (instance {}) publishes on {}: if it also receives {}, every request gets two "
+        "responses. Stop one of the two, or give each its own channels",
         other, channels_.status, channels_.states);
   }
   reported_ = counters;
-  reported_losses_ = losses;
+  reported_drops_ = drops;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

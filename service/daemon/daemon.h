@@ -1,15 +1,15 @@
-// The live service: waits for requests on LCM, answers them through an RequestHandler, and says once a second
-// how it fares. One thread; SIGINT and SIGTERM end it between two messages.
+// The live service: receives requests over LCM, has a RequestHandler compute the responses, and publishes its
+// status once a second. It runs on one thread; SIGINT and SIGTERM stop it between two messages.
 //
-// Poses of single bodies, on channels of their own, are requests too: each channel is a session.
+// Poses of single bodies on channels of their own are requests too: each channel is a session.
 //
-// SIGHUP: the scene file is read again, by a SceneLoader, while the scene at hand goes on answering. Between
-// two messages the new one takes its place; sessions, repeats and counters do not notice. A scene that cannot
-// be used is said in the log and changes nothing.
+// SIGHUP makes a SceneLoader read the scene file again while requests are handled with the current scene. The
+// new scene replaces it between two messages; sessions, stored responses and counters are kept. A scene that
+// cannot be used is logged as an error and changes nothing.
 //
-// Mode lockstep: every request is answered, in order of arrival. Mode latest: all that has arrived is looked
-// at, then the newest request of the session that has waited longest is answered (see LatestRequestQueue),
-// and so on: what arrives meanwhile still overtakes what waits.
+// Mode lockstep: every request is handled, in order of arrival. Mode latest: all messages that have arrived
+// are read, then the newest request of the session that has waited longest is handled (LatestRequestQueue),
+// and so on: a request that arrives meanwhile still supersedes a pending one of its session.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@
 #include "service/daemon/systemd_notifier.h"
 #include "transport/lcm_connection.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 std::string_view to_string(ServiceMode mode);  // "lockstep"
 
@@ -45,17 +45,18 @@ struct ChannelNames {
 
 class Daemon {
  public:
-  // scene: as loaded from the file that it is named after, which a reload reads again. Not nullptr. threads:
-  // as RequestHandlerOptions has it. Starts a thread (SceneLoader): block signals before.
+  // scene must not be nullptr; a reload reads the file scene->name(). threads: see RequestHandlerOptions.
+  // Starts a thread (SceneLoader): block signals before the construction.
   Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, ServiceMode mode,
          ChannelNames channels, PoseChannels poses, unsigned threads);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Answers until a signal of termination comes; once. reload: SIGHUP. Errors: the connection ended.
+  // Handles requests until a termination signal arrives; call it once. reload: SIGHUP.
+  // Errors: the connection ended.
   Expected<void> run(TerminationSignals& termination, SignalFd& reload);
 
-  // Is a scene being loaded? The destructor waits for it then, as long as that takes.
+  // Is a scene being loaded? Then the destructor waits until the load has finished.
   bool is_loading() const { return loader_.is_loading(); }
 
  private:
@@ -63,17 +64,17 @@ class Daemon {
   void receive();
   void record_queue_delay();
   void on_request(Bytes request);
-  void on_pose(std::size_t channel, Bytes pose);  // channel: of poses_
-  void take_in(Bytes request, double arrival);
-  void response_next_waiting();
-  void response(Bytes request, double arrival);
-  bool publish_response(Bytes response);                  // that handler_ gave last
-  bool publish(const std::string& channel, Bytes bytes);  // false: troubles_ says why
+  void on_pose(std::size_t channel, Bytes pose);  // channel: an index into poses_.channels()
+  void enqueue(Bytes request, double arrival);
+  void handle_next();  // the request at the front of latest_, if there is one
+  void handle(Bytes request, double arrival);
+  bool publish_response(Bytes response);                  // response: the last one from handler_
+  bool publish(const std::string& channel, Bytes bytes);  // false: not sent, and added to warnings_
   void begin_reload();
   void end_reload();
-  void report();
+  void publish_status();  // and logs the warnings that are due
 
-  std::unique_ptr<const Scene> scene_;  // that handler_ answers from
+  std::unique_ptr<const Scene> scene_;  // used by handler_
   SceneLoader loader_;
   ServiceMode mode_;
   ChannelNames channels_;
@@ -82,21 +83,21 @@ class Daemon {
   PoseRequestAdapter poses_;
   LatestRequestQueue latest_;
   LatencyHistogram latency_;
-  double start_;  // s, as all times here of the steady clock
+  double start_;  // [s], steady clock, like all times here
   std::int64_t instance_id_;
   std::int64_t reloads_ = 0;
   std::int64_t reloads_failed_ = 0;
   bool last_reload_failed_ = false;
   std::int64_t send_failures_ = 0;
-  double queue_delay_ = 0.0;  // s, the longest since the last report
+  double queue_delay_ = 0.0;  // [s], longest since the last status
   InstanceMonitor instances_;
   RateLimitedLog warnings_;
   SystemdNotifier systemd_;
   ServiceCounters reported_;
-  DropCounts reported_losses_;
+  DropCounts reported_drops_;
   std::vector<std::uint8_t> status_bytes_;        // reused
-  WrenchResponse response_;                       // reused, of poses
+  WrenchResponse response_;                       // reused, for poses
   std::vector<std::uint8_t> force_torque_bytes_;  // reused
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

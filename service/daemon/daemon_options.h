@@ -10,7 +10,7 @@
 #include "cli/pose_options.h"
 #include "service/daemon/daemon.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 struct DaemonOptions {
   std::filesystem::path scene;
@@ -18,18 +18,18 @@ struct DaemonOptions {
   ServiceMode mode = ServiceMode::kLockstep;
   ChannelNames channels;
   PoseOptions poses;
-  unsigned threads = 0;            // for the bodies of one request; 0: as many as the processor runs at once
-  bool no_spin = false;            // sleep at once where no message waits
-  std::string log_level = "info";  // as spdlog names them
-  bool check = false;              // print the scene's report and end
+  unsigned threads = 0;            // per request; 0: number of hardware threads
+  bool no_spin = false;            // sleep at once when no message is pending
+  std::string log_level = "info";  // a level name of spdlog
+  bool check = false;              // print the scene's report and exit
   bool json = false;               // with check
 };
 
-// Declares the options on app; parsing fills options, which must live as long.
+// Declares the options on app; parsing fills options, which must outlive app.
 void add_options(CLI::App& app, DaemonOptions& options);
 
-// What no single option shows. Errors: an LCM URL that is none, channels that are the same or too long,
-// --json without --check.
+// Checks the options that depend on each other. Errors: an invalid LCM URL, channels that are equal or too
+// long, --json without --check.
 Expected<void> check_options(const DaemonOptions& options);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

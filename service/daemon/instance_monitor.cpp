@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 void InstanceMonitor::observe(Bytes message) {
-  if (known_.size() == kMost || decode(message, status_)) return;
+  if (known_.size() == kMaxInstances || decode(message, status_)) return;
   const std::int64_t id = status_.instance_id;
   if (id == own_ || std::ranges::find(known_, id) != known_.end()) return;
   known_.push_back(id);
@@ -17,4 +17,4 @@ std::vector<std::int64_t> InstanceMonitor::take_new() {
   return std::exchange(new_, {});
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

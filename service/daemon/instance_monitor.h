@@ -1,5 +1,5 @@
-// Other services on our bus, known by the status messages that they send as we do. Two that answer the same
-// channels answer every request twice, perhaps from different scenes, and nobody notices: so it is said.
+// Detects other services on the same status channel by the instance_id of their status messages. Two services
+// on the same request channel send two responses to every request, perhaps computed from different scenes.
 #pragma once
 
 #include <cstddef>
@@ -8,19 +8,19 @@
 
 #include "messages/status.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 class InstanceMonitor {
  public:
-  // Instances told apart; of more nothing is said, so that forged statuses fill neither memory nor log.
-  static constexpr std::size_t kMost = 16;
+  // Further instances are ignored, so that forged status messages fill neither memory nor log.
+  static constexpr std::size_t kMaxInstances = 16;
 
   explicit InstanceMonitor(std::int64_t own_instance_id) : own_(own_instance_id) {}
 
-  // A message on the status channel. Our own and what is no status are ignored.
+  // message: received on the status channel. Own status messages and invalid ones are ignored.
   void observe(Bytes message);
 
-  // The instance_id of each that was first heard since the last call.
+  // The instance_id of each instance first observed since the last call.
   std::vector<std::int64_t> take_new();
 
  private:
@@ -30,4 +30,4 @@ class InstanceMonitor {
   ServiceStatus status_;  // reused
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

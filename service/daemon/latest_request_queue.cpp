@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cassert>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 bool supersedes(std::int64_t later, std::int64_t earlier) {
   if (later >= earlier) return true;
-  // Unsigned: the distance of two int64 may not fit an int64.
+  // The difference of two int64 may overflow an int64, so it is computed unsigned.
   return static_cast<std::uint64_t>(earlier) - static_cast<std::uint64_t>(later) > kRestartGap;
 }
 
 LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions) : max_sessions_(max_sessions) {
   assert(max_sessions >= 1);
   sessions_.reserve(max_sessions);
-  waiting_.reserve(max_sessions);
+  pending_.reserve(max_sessions);
 }
 
 LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& key, Bytes request, double arrival) {
@@ -23,18 +23,18 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& key, By
       arrival <= session->arrival + kRestartIdleTime) {
     return PushResult::kStale;
   }
-  if (session == nullptr) session = place_for_new();
+  if (session == nullptr) session = claim_session();
   if (session == nullptr) return PushResult::kFull;
 
-  const bool overtakes = session->waits;
-  if (!overtakes) waiting_.push_back(static_cast<std::size_t>(session - sessions_.data()));
+  const bool replaces = session->pending;
+  if (!replaces) pending_.push_back(static_cast<std::size_t>(session - sessions_.data()));
   session->id = key.session_id;
   session->newest_seq = key.seq;
-  session->waits = true;
+  session->pending = true;
   session->arrival = arrival;
   session->last_use = ++use_;
   session->request.assign(request.begin(), request.end());
-  return overtakes ? PushResult::kReplaced : PushResult::kQueued;
+  return replaces ? PushResult::kReplaced : PushResult::kQueued;
 }
 
 LatestRequestQueue::Session* LatestRequestQueue::find(std::int64_t id) {
@@ -43,13 +43,13 @@ LatestRequestQueue::Session* LatestRequestQueue::find(std::int64_t id) {
   return found == sessions_.end() ? nullptr : &*found;
 }
 
-LatestRequestQueue::Session* LatestRequestQueue::place_for_new() {
+LatestRequestQueue::Session* LatestRequestQueue::claim_session() {
   if (sessions_.size() < max_sessions_) return &sessions_.emplace_back();
   Session* oldest = nullptr;
   for (Session& session : sessions_) {
-    if (!session.waits && (oldest == nullptr || session.last_use < oldest->last_use)) oldest = &session;
+    if (!session.pending && (oldest == nullptr || session.last_use < oldest->last_use)) oldest = &session;
   }
   return oldest;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

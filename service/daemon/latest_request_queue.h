@@ -1,13 +1,14 @@
-// Mode latest: of every session the newest request that waits, and nothing else.
+// The queue of mode latest: the newest pending request of every session, and nothing else.
 //
-// The law, per session: a request with a seq at least as high as another's is newer (of equals the last to
-// arrive). A client that starts over counts from the beginning: so is one whose seq is lower by more than
-// kRestartGap, or that comes more than kRestartIdleTime after the other. What is lower by less and comes
-// sooner was overtaken on the way and is stale. What waits when a newer one arrives is overtaken, and the
-// newer one takes its place in the line: whoever asks fastest would else never be answered.
+// Rules, per session: a request is newer than an earlier arrival if its seq is not lower. A restarted client
+// counts from the beginning, so a request is also newer if its seq is lower by more than kRestartGap, or if
+// it arrives more than kRestartIdleTime after the other. Any other request with a lower seq was reordered by
+// the network and is stale. A newer request replaces the pending one and takes its place in the queue:
+// otherwise a client that sends faster than it is served would never get a response.
 //
-// Memory is bounded: by max_sessions times the largest message. Of sessions with nothing waiting the least
-// recently used is forgotten, which costs only the knowledge of what would be stale.
+// Memory is bounded by max_sessions times the largest message. If all places are taken, the least recently
+// used session without a pending request is evicted; only its newest seq is lost, by which stale requests are
+// recognised.
 #pragma once
 
 #include <cstdint>
@@ -15,63 +16,63 @@
 
 #include "messages/wire.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 inline constexpr std::uint64_t kRestartGap = 64;
-inline constexpr double kRestartIdleTime = 0.2;  // s
+inline constexpr double kRestartIdleTime = 0.2;  // [s]
 
-// Is a request with seq `later`, which arrived after one with seq `earlier`, to be preferred to it?
+// Is a request with seq `later` newer than one with seq `earlier` that arrived before it, by seq alone?
 bool supersedes(std::int64_t later, std::int64_t earlier);
 
 class LatestRequestQueue {
  public:
   enum class PushResult {
-    kQueued,    // nothing of its session waited
-    kReplaced,  // waits, in the place of an older one of its session
-    kStale,     // not kept: a newer one of its session waits or was taken
-    kFull,      // not kept: a request waits in each of max_sessions sessions; take one and push it again
+    kQueued,    // queued; its session had no pending request
+    kReplaced,  // queued in the place of an older request of its session
+    kStale,     // dropped: a newer request of its session is pending or was popped
+    kFull,      // dropped: max_sessions sessions have a pending request; pop one and push again
   };
 
   explicit LatestRequestQueue(std::size_t max_sessions);  // >= 1
 
-  // No heap once the session's buffer is as large as its largest message. arrival: seconds, on any clock; it
-  // comes back with the request.
+  // Does not allocate once the session's buffer is as large as its largest message. arrival: [s], of any
+  // monotonic clock; pop_next() returns it with the request.
   PushResult push(const RequestId& key, Bytes request, double arrival);
 
-  // Hands the request of the session that has waited longest to answer(Bytes request, double arrival); it
-  // waits no longer. False: none waited. answer must not call push.
+  // Removes the request of the session that has waited longest and calls handle(Bytes request,
+  // double arrival), which must not call push(). False: the queue is empty.
   template <typename Handler>
   bool pop_next(Handler&& handle);
 
-  bool empty() const { return waiting_.empty(); }
+  bool empty() const { return pending_.empty(); }
 
  private:
   struct Session {
     std::int64_t id = 0;
-    std::int64_t newest_seq = 0;  // of what waits, or else of what was taken last
-    bool waits = false;
-    double arrival = 0.0;  // of the same
+    std::int64_t newest_seq = 0;  // of the pending request, or of the last one popped
+    bool pending = false;
+    double arrival = 0.0;  // of the same request [s]
     std::uint64_t last_use = 0;
     std::vector<std::uint8_t> request;
   };
 
   Session* find(std::int64_t id);
-  Session* place_for_new();
+  Session* claim_session();  // an unused or evicted one; nullptr: every session has a pending request
 
   std::size_t max_sessions_;
   std::vector<Session> sessions_;
-  std::vector<std::size_t> waiting_;  // indices into sessions_; the first has waited longest
+  std::vector<std::size_t> pending_;  // indices into sessions_; the first has waited longest
   std::uint64_t use_ = 0;
 };
 
 template <typename Handler>
 bool LatestRequestQueue::pop_next(Handler&& handle) {
-  if (waiting_.empty()) return false;
-  Session& session = sessions_[waiting_.front()];
-  waiting_.erase(waiting_.begin());
-  session.waits = false;
+  if (pending_.empty()) return false;
+  Session& session = sessions_[pending_.front()];
+  pending_.erase(pending_.begin());
+  session.pending = false;
   handle(Bytes(session.request), session.arrival);
   return true;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -1,10 +1,10 @@
-// Keeps a trouble that lasts from filling the log: it is said at once, then with the number of its
-// occurrences since, at intervals that grow.
+// Limits the rate of repeated warnings: an event is logged at once, then at growing intervals with the number
+// of its occurrences since the last line.
 //
-// The law, per trouble: what occurs for the first time is said by the next take(). What occurs after the n-th
-// line is said by the first take() that is at least the n-th of kRepeatIntervals after it, the last of them
-// from then on. A trouble that has not occurred for the longest interval, all of it said, is forgotten: it
-// starts afresh. A trouble of a day comes to less than 150 lines.
+// Contract, per event: the first occurrence is returned by the next drain(). Occurrences after the n-th line
+// are returned by the first drain() at least kRepeatIntervals[n - 1] after that line; the last interval
+// repeats. An event with nothing pending that has not occurred for the longest interval is removed, so that
+// its next occurrence counts as the first. An event that lasts a day produces fewer than 150 lines.
 #pragma once
 
 #include <array>
@@ -12,33 +12,33 @@
 #include <string>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
-inline constexpr std::array<double, 4> kRepeatIntervals{1.0, 10.0, 60.0, 600.0};  // s
+inline constexpr std::array<double, 4> kRepeatIntervals{1.0, 10.0, 60.0, 600.0};  // [s]
 
 struct LogEvent {
-  std::string what;        // names it: equal for all that is counted together; few different ones
-  std::int64_t count = 0;  // of occurrences
-  std::string detail;      // of the newest occurrence; empty: what says it all
+  std::string message;     // identifies the event: occurrences with equal messages are counted together
+  std::int64_t count = 0;  // occurrences
+  std::string detail;      // of the newest occurrence; may be empty
 };
 
 class RateLimitedLog {
  public:
-  // count of 0: nothing happened.
-  void add(const LogEvent& warning, double now);
+  // An event with count 0 is ignored. now: [s], of any monotonic clock, the same for drain(). The number of
+  // different messages must be small: each takes memory until it is removed.
+  void add(const LogEvent& event, double now);
 
-  // The lines that are due: "what: 12; detail", later "what: 3400 in 60 s; detail". now: s, of any
-  // clock that does not go back; the same as add()'s.
+  // The lines that are due: "message: 12; detail", later "message: 3400 in 60 s; detail".
   std::vector<std::string> drain(double now);
 
  private:
   struct ActiveEvent {
     LogEvent pending;
-    std::size_t lines = 0;  // said so far
+    std::size_t lines = 0;  // logged so far
     double last_line = 0.0;
     double last_occurrence = 0.0;
   };
-  std::vector<ActiveEvent> lasting_;
+  std::vector<ActiveEvent> active_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

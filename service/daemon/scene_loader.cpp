@@ -6,7 +6,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 SceneLoader::Loaded load(const std::filesystem::path& path) {
@@ -15,9 +15,9 @@ SceneLoader::Loaded load(const std::filesystem::path& path) {
     if (!scene) return tl::unexpected(std::move(scene.error()));
     return std::make_unique<const Scene>(std::move(*scene));
   } catch (const std::bad_alloc&) {
-    return make_error({path.string(), "memory ran out while it was loaded",
-                       "room for two scenes at a time: the old one responses until the new one is there", "",
-                       "Start the service again with the new scene, or give it more memory"});
+    return make_error({path.string(), "out of memory while loading it",
+                       "enough memory for two scenes: the current one is served until the new one is ready",
+                       "", "Restart the service with the new scene, or give it more memory"});
   }
 }
 
@@ -50,8 +50,8 @@ bool SceneLoader::is_loading() const {
 
 std::optional<SceneLoader::Loaded> SceneLoader::poll() {
   const std::lock_guard lock(mutex_);
-  ::eventfd_t ends = 0;
-  ::eventfd_read(ended_.value(), &ends);
+  ::eventfd_t finished_loads = 0;
+  ::eventfd_read(ended_.value(), &finished_loads);
   return std::exchange(loaded_, std::nullopt);
 }
 
@@ -82,9 +82,9 @@ void SceneLoader::run() {
     loaded_.swap(loaded);
     ::eventfd_write(ended_.value(), 1);
     lock.unlock();
-    loaded.reset();  // what nobody took
+    loaded.reset();  // an earlier result that poll() did not fetch
     lock.lock();
   }
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -1,10 +1,10 @@
-// Loads a scene anew on a thread of its own while the service goes on answering from the one it has: meshes
-// may take seconds, and a request does not wait for them.
+// Loads a scene on a background thread while the service handles requests with the current one: importing
+// meshes may take seconds, and no request waits for it.
 //
-// The law: after a request a load begins that sees the files as they are then or later. A request that comes
-// while a load is under way is answered by one more load after it, however many requests there were. What a
-// load brought waits in poll(); a newer one replaces what nobody took. Nothing else is shared with the
-// thread, and a loaded scene is handed over whole.
+// Contract: after request() a load begins that reads the files as they are then or later. Any number of
+// requests during a load cause exactly one further load. The result of a load is kept for poll(); the result
+// of a later load replaces it. Nothing else is shared with the thread: ownership of the scene moves to the
+// caller.
 #pragma once
 
 #include <condition_variable>
@@ -18,30 +18,30 @@
 #include "base/unique_fd.h"
 #include "scene/scene.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 class SceneLoader {
  public:
   using Loaded = Expected<std::unique_ptr<const Scene>>;
 
-  // The scene file. Starts the thread, which inherits the caller's signal mask.
+  // path: the scene file. Starts the thread, which inherits the caller's signal mask.
   explicit SceneLoader(std::filesystem::path path);
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
-  // Waits for the load under way, which may take as long as the scene's limits allow: a program that ends
-  // asks is_loading() and ends without.
+  // Waits for a load in progress, which may take as long as the scene's limits allow. A program that has to
+  // exit at once checks is_loading() and exits without running the destructor.
   ~SceneLoader();
 
   void request();           // returns at once
-  bool is_loading() const;  // is a load under way or about to begin?
+  bool is_loading() const;  // is a load in progress or requested?
 
-  // Readable when poll() has something: for poll(). Negative: the system gave no descriptor.
+  // A descriptor for poll(2), readable when poll() has a result. Negative: the system provided none.
   int fileno() const { return ended_.value(); }
-  // The scene of the load that ended, or why there is none; nullopt: none has ended since the last call.
-  // std::bad_alloc of the load is such a reason.
+  // The scene of the load that has finished, or why it failed (std::bad_alloc included); nullopt: no load has
+  // finished since the last call.
   std::optional<Loaded> poll();
 
-  // Frees a scene on the thread: the memory of large meshes takes milliseconds to give back.
+  // Destroys a scene on the thread: freeing the memory of large meshes takes milliseconds.
   void release(std::unique_ptr<const Scene> scene);
 
  private:
@@ -51,7 +51,7 @@ class SceneLoader {
   UniqueFd ended_;  // an eventfd
   mutable std::mutex mutex_;
   std::condition_variable work_;
-  bool requested_ = false;  // as are all below: under mutex_
+  bool requested_ = false;  // mutex_ guards this and the members below
   bool loading_ = false;
   bool stop_ = false;
   std::optional<Loaded> loaded_;
@@ -59,4 +59,4 @@ class SceneLoader {
   std::thread thread_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

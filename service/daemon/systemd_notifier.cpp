@@ -8,7 +8,7 @@
 #include <systemd/sd-daemon.h>
 #endif
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 #ifdef BUOYANCY_WITH_SYSTEMD
@@ -16,7 +16,7 @@ void notify(const std::string& state) {
   ::sd_notify(0, state.c_str());
 }
 
-// Of CLOCK_MONOTONIC, by which systemd tells this reload from an earlier one.
+// systemd orders reloads by this time, which is of CLOCK_MONOTONIC.
 std::string monotonic_microseconds() {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -61,4 +61,4 @@ void SystemdNotifier::ping_watchdog() {
   notify("WATCHDOG=1");
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

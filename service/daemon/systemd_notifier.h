@@ -1,30 +1,29 @@
-// What a service manager is told of the daemon, systemd above all: by datagrams to $NOTIFY_SOCKET
-// (sd_notify(3)), through libsystemd where it was there at build time. Where nobody listens, or without
-// libsystemd, nothing is done and nothing fails: a service that answers does not end for want of somebody to
-// tell.
+// Reports the daemon's state to its service manager by datagrams to $NOTIFY_SOCKET (sd_notify(3)), through
+// libsystemd if it was found at build time. Without libsystemd or a socket every call does nothing; a
+// notification that cannot be sent is ignored and never stops the service.
 #pragma once
 
 #include <chrono>
 #include <optional>
 #include <string>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 class SystemdNotifier {
  public:
-  void ready();      // requests are answered from here on; ends what reloading() began
+  void ready();      // requests are handled from now on; also ends the state of reloading()
   void reloading();  // a new scene is being loaded
   void stopping();
   void status(const std::string& line);  // for `systemctl status`
 
-  // How often ping_watchdog() is wanted: half the time after which the manager takes us for hung
-  // ($WATCHDOG_USEC). nullopt: never.
+  // The interval at which ping_watchdog() has to be called: half of $WATCHDOG_USEC, the time after which the
+  // manager regards the service as hung. nullopt: no watchdog.
   static std::optional<std::chrono::microseconds> watchdog_interval();
-  // From the loop that does the work and from nowhere else: that it comes round is what is said.
+  // Call this from the event loop only: it reports that the loop still runs.
   void ping_watchdog();
 
  private:
-  std::string last_status_;  // the last status line, which is not said twice
+  std::string last_status_;  // an unchanged status is not sent again
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -8,28 +8,28 @@
 #include "engine/thread_pool.h"
 #include "service/replay/replay_batch.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
-// For each thread, where there are several: so that one that has a slow batch keeps no other waiting long.
+// With several threads, each gets several batches, so that a slow batch does not keep the others idle.
 constexpr std::size_t kBatchesPerThread = 4;
 
-// What is read, then answered, then written at once. While one is answered, the next is read and the one
-// before is written.
+// The batches of one pipeline step. While one round is evaluated, the next is read and the previous one is
+// written.
 struct Round {
   std::vector<ReplayBatch> batches;
-  std::size_t filled = 0;  // of them
+  std::size_t filled = 0;  // the first `filled` batches are in use
 };
 
 void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch) {
-  // Of CSV, which has no channels, everything is a request.
-  const ReplayChannels::Use use = event.channel.empty() ? ReplayChannels::Use{.request = true, .pose = {}}
-                                                        : task.channels.use_of(event.channel);
-  if (use.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
-  if (use.request) batch.add_request(event.timestamp, event.bytes, {});
-  if (!use.pose) return;
-  if (const auto request = task.poses.make_request(*use.pose, event.bytes)) {
-    batch.add_request(event.timestamp, *request, task.poses.channels()[*use.pose].force_torque_channel);
+  // CSV has no channels: every event is a request.
+  const ReplayChannels::Role role = event.channel.empty() ? ReplayChannels::Role{.request = true, .pose = {}}
+                                                          : task.channels.role_of(event.channel);
+  if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
+  if (role.request) batch.add_request(event.timestamp, event.bytes, {});
+  if (!role.pose) return;
+  if (const auto request = task.poses.make_request(*role.pose, event.bytes)) {
+    batch.add_request(event.timestamp, *request, task.poses.channels()[*role.pose].force_torque_channel);
   } else {
     batch.add_rejected_pose(event.timestamp, request.error());
   }
@@ -41,9 +41,9 @@ bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& corrupt_sect
   while (!batch.full()) {
     LogItem item = task.input.next();
     if (std::holds_alternative<EndOfLog>(item)) return false;
-    if (auto* damage = std::get_if<CorruptSection>(&item)) {
+    if (auto* corrupt = std::get_if<CorruptSection>(&item)) {
       ++corrupt_sections;
-      batch.add_warning(std::move(damage->description));
+      batch.add_input_error(std::move(corrupt->description));
     } else {
       add_event(task, std::get<RecordedEvent>(item), batch);
     }
@@ -51,19 +51,19 @@ bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& corrupt_sect
   return true;
 }
 
-enum class Reading { kOn, kAtEnd, kStopped };
+enum class ReadState { kReading, kAtEnd, kStopped };
 
-// Reads as many batches as there are, until the input ends or a signal comes. The signal stays pending, for
-// the thread that writes to see it too.
+// Fills the round's batches until the input ends or a signal arrives. The signal stays pending, so that the
+// writing thread sees it too.
 void read(const ReplayTask& task, const TerminationSignals& signals, Round& round, ReplaySummary& summary,
-          Reading& reading) {
+          ReadState& state) {
   round.filled = 0;
-  while (reading == Reading::kOn && round.filled < round.batches.size()) {
+  while (state == ReadState::kReading && round.filled < round.batches.size()) {
     if (signals.pending()) {
-      reading = Reading::kStopped;
+      state = ReadState::kStopped;
     } else {
       const bool more = fill(task, round.batches[round.filled++], summary.corrupt_sections);
-      if (!more) reading = Reading::kAtEnd;
+      if (!more) state = ReadState::kAtEnd;
     }
   }
 }
@@ -74,22 +74,22 @@ Expected<void> write(const ReplayTask& task, Round& round) {
     if (Expected<void> written = task.output.write(batch.records()); !written) return written;
     if (task.comparison != nullptr) {
       batch.each_response([&task](Bytes response) { task.comparison->add(response); });
-      batch.each_hydrostatics([&task](Bytes message) { task.comparison->take_hydrostatics(message); });
+      batch.each_hydrostatics([&task](Bytes message) { task.comparison->add_hydrostatics(message); });
     }
   }
   return {};
 }
 
-void tell(const Round& round, const ReplayListener& listener) {
+void report_input_errors(const Round& round, const ReplayCallbacks& callbacks) {
   for (std::size_t i = 0; i < round.filled; ++i) {
-    for (const std::string& warning : round.batches[i].warnings()) listener.on_input_error(warning);
+    for (const std::string& error : round.batches[i].input_errors()) callbacks.on_input_error(error);
   }
 }
 
 }  // namespace
 
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
-                               const ReplayListener& listener) {
+                               const ReplayCallbacks& callbacks) {
   const auto start = std::chrono::steady_clock::now();
   ReplaySummary summary;
   ThreadPool workers(task.jobs);
@@ -113,32 +113,32 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   };
 
   task.output.give_up_after(signals.fileno());
-  Reading reading = Reading::kOn;
-  read(task, signals, rounds[0], summary, reading);
+  ReadState state = ReadState::kReading;
+  read(task, signals, rounds[0], summary, state);
   Expected<void> written;
   std::size_t number = 0;
   for (; rounds[number % 3].filled > 0; ++number) {
-    Round& before = rounds[(number + 2) % 3];
-    Round& now = rounds[number % 3];
+    Round& previous = rounds[(number + 2) % 3];
+    Round& current = rounds[number % 3];
     Round& next = rounds[(number + 1) % 3];
-    tell(before, listener);
-    workers.run(now.filled + 2, 1, [&](std::size_t i) {
+    report_input_errors(previous, callbacks);
+    workers.run(current.filled + 2, 1, [&](std::size_t i) {
       if (i == 0) {
-        read(task, signals, next, summary, reading);
+        read(task, signals, next, summary, state);
       } else if (i == 1) {
-        written = write(task, before);
+        written = write(task, previous);
       } else {
-        now.batches[i - 2].response();
+        current.batches[i - 2].evaluate();
       }
     });
     if (!written) return tl::unexpected(written.error());
-    listener.on_progress(task.input.offset(), task.input.size(), total().counters.requests);
+    callbacks.on_progress(task.input.offset(), task.input.size(), total().counters.requests);
   }
   Round& last = rounds[(number + 2) % 3];
-  tell(last, listener);
+  report_input_errors(last, callbacks);
   if (written = write(task, last); !written) return tl::unexpected(written.error());
   if (Expected<void> flushed = task.output.flush(); !flushed) return tl::unexpected(flushed.error());
-  if (reading == Reading::kStopped) summary.stopped_by = signals.consume();
+  if (state == ReadState::kStopped) summary.stopped_by = signals.consume();
   if (task.comparison != nullptr) task.comparison->finish();
   const ReplaySummary sum = total();
   summary.counters = sum.counters;
@@ -147,4 +147,4 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   return summary;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

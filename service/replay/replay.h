@@ -1,6 +1,6 @@
-// The replay: every recorded request through the same RequestHandler as in the live service, offline, as fast
-// as it goes, on as many threads as there are. The same input gives the same output, byte for byte, whatever
-// their number.
+// The replay: handles every recorded request with the same RequestHandler as the live service, offline, at
+// full speed, on several threads. The same input gives the same output, byte for byte, on any number of
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -17,25 +17,25 @@
 #include "service/replay/replay_input.h"
 #include "service/replay/replay_output.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 struct ReplaySummary {
   ServiceCounters counters;
   std::int64_t copied = 0;            // events
-  std::int64_t corrupt_sections = 0;  // places of the input that could not be read
-  const char* stopped_by = "";        // a signal's name; empty: the end of the input
+  std::int64_t corrupt_sections = 0;  // of the input
+  const char* stopped_by = "";        // the name of a signal; empty: the end of the input
   double seconds = 0.0;
 
-  // Has every request of the input its response in the output?
+  // Does the output hold a response to every request of the input?
   bool complete() const { return corrupt_sections == 0 && counters.rejected() == 0 && *stopped_by == '\0'; }
 };
 
-struct ReplayListener {
-  std::function<void(const std::string&)> on_input_error;  // what was damaged or rejected, one by one
+struct ReplayCallbacks {
+  std::function<void(const std::string&)> on_input_error;  // per corrupt section or rejected event
   std::function<void(std::int64_t offset, std::int64_t size, std::int64_t requests)> on_progress;
 };
 
-// What a replay works with; all outlive it.
+// The arguments of replay(); all of them must outlive it.
 struct ReplayTask {
   const Scene& scene;
   ReplayInput& input;
@@ -44,12 +44,12 @@ struct ReplayTask {
   ReplayOutput& output;
   OutputLayout layout;
   ReplayComparison* comparison = nullptr;  // nullptr: none
-  unsigned jobs = 0;                       // threads: 1 or more; 0: as many as the processor runs at once
+  unsigned jobs = 0;                       // threads; 0: number of hardware threads
 };
 
-// Ends at the end of the input or, between two requests, after a signal. Memory: jobs times a bounded number
-// of requests. Errors: the output cannot be written; it is a pipe that nobody reads, after a signal.
+// Stops at the end of the input or, between two requests, after a signal. Memory: jobs times a bounded number
+// of requests. Errors: the output cannot be written; after a signal, the output is a pipe without a reader.
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
-                               const ReplayListener& listener);
+                               const ReplayCallbacks& callbacks);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

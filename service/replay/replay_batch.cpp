@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
     : handler_(scene, {.threads = 1}), keep_responses_(keep_responses), records_(layout) {}
@@ -11,7 +11,7 @@ void ReplayBatch::clear() {
   items_.clear();
   bytes_.clear();
   records_.clear();
-  warnings_.clear();
+  input_errors_.clear();
   responses_.clear();
   hydrostatics_.clear();
 }
@@ -27,7 +27,7 @@ ReplayBatch::Item& ReplayBatch::add(Kind kind, std::int64_t timestamp, Bytes mes
 }
 
 void ReplayBatch::add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel) {
-  add(Kind::kRequest, timestamp, request).channel = force_torque_channel;
+  add(Kind::kRequest, timestamp, request).force_torque_channel = force_torque_channel;
 }
 
 void ReplayBatch::add_rejected_pose(std::int64_t timestamp, DecodeError cause) {
@@ -38,40 +38,40 @@ void ReplayBatch::add_copy(std::int64_t timestamp, std::string_view channel, Byt
   add(Kind::kCopy, timestamp, bytes).text = channel;
 }
 
-void ReplayBatch::add_warning(std::string warning) {
-  add(Kind::kWarning, 0, {}).text = std::move(warning);
+void ReplayBatch::add_input_error(std::string error) {
+  add(Kind::kInputError, 0, {}).text = std::move(error);
 }
 
-void ReplayBatch::response() {
+void ReplayBatch::evaluate() {
   handler_.reset();
   for (Item& item : items_) {
     switch (item.kind) {
       case Kind::kRequest:
-        response_request(item);
+        handle_request(item);
         break;
       case Kind::kRejectedPose:
         handler_.record_rejected(item.cause);
-        reject(item, "pose", item.cause);
+        report_invalid(item, "pose", item.cause);
         break;
       case Kind::kCopy:
         records_.add_event(item.timestamp, item.text, message_of(item));
         ++copied_;
         break;
-      case Kind::kWarning:
-        warnings_.push_back(std::move(item.text));
+      case Kind::kInputError:
+        input_errors_.push_back(std::move(item.text));
         break;
     }
   }
 }
 
-void ReplayBatch::response_request(const Item& item) {
+void ReplayBatch::handle_request(const Item& item) {
   const Bytes request = message_of(item);
   const Bytes response = handler_.handle(request);
   if (response.empty()) {
-    reject(item, "request", peek_request_id(request).error());
+    report_invalid(item, "request", peek_request_id(request).error());
     return;
   }
-  records_.add_response(item.timestamp, response, handler_.last_hydrostatics(), item.channel);
+  records_.add_response(item.timestamp, response, handler_.last_hydrostatics(), item.force_torque_channel);
   if (keep_responses_) {
     responses_.add(response);
     if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {
@@ -80,9 +80,9 @@ void ReplayBatch::response_request(const Item& item) {
   }
 }
 
-void ReplayBatch::reject(const Item& item, const char* what, DecodeError cause) {
-  warnings_.push_back("event at " + std::to_string(item.timestamp) + " us is no " + what + ": " +
-                      to_string(cause));
+void ReplayBatch::report_invalid(const Item& item, const char* expected, DecodeError cause) {
+  input_errors_.push_back("event at " + std::to_string(item.timestamp) + " us is not a valid " + expected +
+                          ": " + to_string(cause));
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -1,8 +1,9 @@
-// A stretch of a recording: filled in the recording's order, answered on any thread, then written in order.
+// Consecutive events of a recording: filled in the recording's order, evaluated on any thread, then written
+// in order.
 //
-// Each batch is answered by an handler that begins anew, so that answers, and what is counted of them,
-// depend on the batch alone and not on who answered what before. (A repeat of a request in the batch before
-// is computed again: the same bytes, counted as answered.)
+// The handler is reset before each evaluation, so that responses and counters depend on the batch alone and
+// not on earlier batches. (A retry of a request of the previous batch is computed again: it gives the same
+// bytes and is counted as computed.)
 #pragma once
 
 #include <cstdint>
@@ -14,56 +15,56 @@
 #include "scene/scene.h"
 #include "service/replay/replay_output.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 class ReplayBatch {
  public:
-  // scene must outlive the batch. keep_answers: for answers().
+  // scene must outlive the batch. keep_responses: for each_response() and each_hydrostatics().
   ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
   void clear();
-  // No further request should be added: enough to be worth a thread's while.
+  // Is the batch large enough to be evaluated on a thread? Then no further event should be added.
   bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
 
-  // force_torque_channel: what it is answered as; empty: as body_wrenches_t. Outlives the batch.
+  // force_torque_channel: the channel of the response as a six_axis_force_torque_t; empty: the response is a
+  // body_wrenches_t. It must outlive the batch.
   void add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel);
   void add_rejected_pose(std::int64_t timestamp, DecodeError cause);
   void add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes);
-  void add_warning(std::string warning);
+  void add_input_error(std::string error);
 
-  void response();
+  void evaluate();
 
-  // Of what answer() made.
+  // The results of evaluate().
   OutputRecords& records() { return records_; }
-  const std::vector<std::string>& warnings() const { return warnings_; }  // in the recording's order
-  // Calls see(bytes of a body_wrenches_t) for every response in order, where answers were to be kept.
-  template <typename See>
-  void each_response(See&& see) const {
-    responses_.each(see);
+  const std::vector<std::string>& input_errors() const { return input_errors_; }  // in the recording's order
+  // Calls visit(bytes of a body_wrenches_t) for every response in order; only with keep_responses.
+  template <typename Visit>
+  void each_response(Visit&& visit) const {
+    responses_.each(visit);
   }
-  // The same of the bodies_hydrostatics_t that went with them.
-  template <typename See>
-  void each_hydrostatics(See&& see) const {
-    hydrostatics_.each(see);
+  // The same for the bodies_hydrostatics_t that belong to the responses.
+  template <typename Visit>
+  void each_hydrostatics(Visit&& visit) const {
+    hydrostatics_.each(visit);
   }
-  const ServiceCounters& counters() const {
-    return handler_.counters();
-  }                                                // of all that this was ever filled with
-  std::int64_t copied() const { return copied_; }  // likewise
+  // Totals since the construction; clear() keeps them.
+  const ServiceCounters& counters() const { return handler_.counters(); }
+  std::int64_t copied() const { return copied_; }
 
  private:
   static constexpr std::size_t kMaxItems = 1024;
   static constexpr std::size_t kMaxBytes = 262'144;
 
-  enum class Kind { kRequest, kRejectedPose, kCopy, kWarning };
+  enum class Kind { kRequest, kRejectedPose, kCopy, kInputError };
   struct Item {
     Kind kind = Kind::kRequest;
     std::int64_t timestamp = 0;
-    std::size_t start = 0;     // of its message, in bytes_
-    std::size_t size = 0;      // of its message
-    std::string_view channel;  // of a request: its force_torque_channel
-    DecodeError cause{};       // of a rejected pose
-    std::string text;          // of a copy: its channel; of trouble: what it is
+    std::size_t start = 0;                  // of the message, in bytes_
+    std::size_t size = 0;                   // of the message
+    std::string_view force_torque_channel;  // kRequest
+    DecodeError cause{};                    // kRejectedPose
+    std::string text;                       // kCopy: the channel; kInputError: the description
   };
 
   class Messages {
@@ -76,11 +77,11 @@ class ReplayBatch {
       bytes_.insert(bytes_.end(), message.begin(), message.end());
       ends_.push_back(bytes_.size());
     }
-    template <typename See>
-    void each(See& see) const {
+    template <typename Visit>
+    void each(Visit& visit) const {
       std::size_t start = 0;
       for (const std::size_t end : ends_) {
-        see(Bytes(bytes_).subspan(start, end - start));
+        visit(Bytes(bytes_).subspan(start, end - start));
         start = end;
       }
     }
@@ -92,8 +93,8 @@ class ReplayBatch {
 
   Item& add(Kind kind, std::int64_t timestamp, Bytes message);
   Bytes message_of(const Item& item) const { return Bytes(bytes_).subspan(item.start, item.size); }
-  void response_request(const Item& item);
-  void reject(const Item& item, const char* what, DecodeError cause);
+  void handle_request(const Item& item);
+  void report_invalid(const Item& item, const char* expected, DecodeError cause);
 
   RequestHandler handler_;
   bool keep_responses_;
@@ -101,9 +102,9 @@ class ReplayBatch {
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
   OutputRecords records_;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> input_errors_;
   Messages responses_;
   Messages hydrostatics_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

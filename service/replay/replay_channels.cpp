@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
-constexpr std::size_t kMaxKnown = 4096;  // a damaged log may hold any number of names
+constexpr std::size_t kMaxCachedRoles = 4096;  // a corrupt log may hold any number of channel names
 
 }  // namespace
 
@@ -35,13 +35,13 @@ ReplayChannels::ReplayChannels(std::string states_channel, const std::vector<Pos
   saw_poses_.resize(poses_.size());
 }
 
-ReplayChannels::Use ReplayChannels::use_of(std::string_view channel) {
-  if (const auto known = known_.find(channel); known != known_.end()) return known->second;
-  if (known_.size() >= kMaxKnown) known_.clear();
-  const Use use = look_up(channel);
-  if (use.request) saw_states_ = true;
-  if (use.pose) saw_poses_[*use.pose] = true;
-  return known_.emplace(channel, use).first->second;
+ReplayChannels::Role ReplayChannels::role_of(std::string_view channel) {
+  if (const auto known = roles_.find(channel); known != roles_.end()) return known->second;
+  if (roles_.size() >= kMaxCachedRoles) roles_.clear();
+  const Role role = compute_role(channel);
+  if (role.request) saw_states_ = true;
+  if (role.pose) saw_poses_[*role.pose] = true;
+  return roles_.emplace(channel, role).first->second;
 }
 
 std::vector<std::string> ReplayChannels::unseen_channels() const {
@@ -53,17 +53,17 @@ std::vector<std::string> ReplayChannels::unseen_channels() const {
   return names;
 }
 
-ReplayChannels::Use ReplayChannels::look_up(std::string_view channel) const {
-  Use use;
-  use.request = channel == states_channel_;
+ReplayChannels::Role ReplayChannels::compute_role(std::string_view channel) const {
+  Role role;
+  role.request = channel == states_channel_;
   if (const auto pose = std::ranges::find(poses_, channel); pose != poses_.end()) {
-    use.pose = static_cast<std::size_t>(pose - poses_.begin());
+    role.pose = static_cast<std::size_t>(pose - poses_.begin());
   }
-  use.copied = std::ranges::find(responses_, channel) == responses_.end() &&
-               std::ranges::any_of(copied_, [channel](const std::regex& expression) {
-                 return std::regex_match(channel.begin(), channel.end(), expression);
-               });
-  return use;
+  role.copied = std::ranges::find(responses_, channel) == responses_.end() &&
+                std::ranges::any_of(copied_, [channel](const std::regex& expression) {
+                  return std::regex_match(channel.begin(), channel.end(), expression);
+                });
+  return role;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

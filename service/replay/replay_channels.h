@@ -1,4 +1,4 @@
-// Which of a log's events a replay looks at, and as what.
+// Maps the channels of a log to their roles in a replay: request, pose or copied event.
 #pragma once
 
 #include <functional>
@@ -12,30 +12,30 @@
 #include "base/error.h"
 #include "engine/pose_request_adapter.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 class ReplayChannels {
  public:
-  struct Use {
-    bool request = false;             // a body_states_t
-    std::optional<std::size_t> pose;  // of this channel of the PoseRequestAdapter
+  struct Role {
+    bool request = false;             // body_states_t
+    std::optional<std::size_t> pose;  // index of the channel in the PoseRequestAdapter
     bool copied = false;
 
     bool any() const { return request || pose || copied; }
   };
 
-  // copied: regular expressions, of which one has to match a whole name, as LCM's tools have it. answers: the
-  // channels that the replay itself writes, which are never copied: old and new responses could not be told
-  // apart. Errors: not a regular expression.
+  // copied: regular expressions; an event is copied if one of them matches the full channel name, as in LCM's
+  // tools. responses: the channels that the replay writes; they are never copied, since recorded and new
+  // responses could not be distinguished. Errors: an invalid regular expression.
   static Expected<ReplayChannels> make(std::string states_channel, const std::vector<PoseChannel>& poses,
                                        const std::vector<std::string>& copied,
                                        std::vector<std::string> responses);
 
-  // O(1) for a name seen before.
-  Use use_of(std::string_view channel);
+  // O(1) for a channel that was looked up before.
+  Role role_of(std::string_view channel);
 
-  // The channels that were named for requests and poses, and that use_of() was never asked about: misspelt,
-  // perhaps. That of the requests only where there are no poses.
+  // The configured request and pose channels that role_of() was never called with, perhaps because they are
+  // misspelt. The request channel is included only if there are no pose channels.
   std::vector<std::string> unseen_channels() const;
 
  private:
@@ -45,15 +45,15 @@ class ReplayChannels {
 
   ReplayChannels(std::string states_channel, const std::vector<PoseChannel>& poses,
                  std::vector<std::regex> copied, std::vector<std::string> responses);
-  Use look_up(std::string_view channel) const;
+  Role compute_role(std::string_view channel) const;
 
   bool saw_states_ = false;
-  std::vector<bool> saw_poses_;  // as poses_
+  std::vector<bool> saw_poses_;  // parallel to poses_
   std::string states_channel_;
   std::vector<std::string> poses_;
   std::vector<std::regex> copied_;
   std::vector<std::string> responses_;
-  std::unordered_map<std::string, Use, Hash, std::equal_to<>> known_;  // a bounded number
+  std::unordered_map<std::string, Role, Hash, std::equal_to<>> roles_;  // a cache of bounded size
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
-bool same(const RequestId& a, const RequestId& b) {
+bool same_id(const RequestId& a, const RequestId& b) {
   return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A number is infinitely far from what is none.
+// The distance to NaN or infinity is infinite.
 double distance(double a, double b) {
   const double difference = std::abs(a - b);
   return std::isfinite(difference) ? difference : kInfinity;
@@ -26,16 +26,16 @@ double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
   return std::isnan(length) ? kInfinity : length;
 }
 
-// 0 / 0 is 0: both are exact and the same. A bound that is no number bounds nothing.
+// 0 / 0 is 0: both values are exact and equal. The ratio to a bound that is not finite is infinite.
 double in_bounds(double difference, double bounds) {
   if (!std::isfinite(bounds)) return kInfinity;
   if (difference == 0.0) return 0.0;
   return bounds > 0.0 ? difference / bounds : kInfinity;
 }
 
-// m. The centre is M/V with |dM| <= lever dV, and no farther from the reference point than the lever, which
-// is torque bound / force bound; so its error is at most 2 lever dV / V. kAnyCenter where V may be nothing
-// but error.
+// [m]. The centre is M/V with |dM| <= lever dV, and no farther from the reference point than the lever, which
+// is torque bound / force bound; so its error is at most 2 lever dV / V. kAnyCenter if V does not exceed its
+// error bound.
 constexpr double kAnyCenter = 1e300;
 double center_bound(const BodyWrench& wrench) {
   const double force = std::hypot(wrench.force[0], wrench.force[1], wrench.force[2]);
@@ -43,16 +43,16 @@ double center_bound(const BodyWrench& wrench) {
   return 2.0 * wrench.torque_error_bound / force;
 }
 
-void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utime,
+void compare(const BodyWrench& now, const BodyWrench& baseline, std::int64_t utime,
              BodyDifferences& differences) {
   ++differences.responses;
-  if (now.status != earlier.status) ++differences.status_changes;
-  const double force = distance(now.force, earlier.force);
-  const double torque = distance(now.torque, earlier.torque);
-  const double force_in_bounds = in_bounds(force, now.force_error_bound + earlier.force_error_bound);
-  const double torque_in_bounds = in_bounds(torque, now.torque_error_bound + earlier.torque_error_bound);
-  const double center = distance(now.center_of_buoyancy, earlier.center_of_buoyancy);
-  const double center_in_bounds = in_bounds(center, center_bound(now) + center_bound(earlier));
+  if (now.status != baseline.status) ++differences.status_changes;
+  const double force = distance(now.force, baseline.force);
+  const double torque = distance(now.torque, baseline.torque);
+  const double force_in_bounds = in_bounds(force, now.force_error_bound + baseline.force_error_bound);
+  const double torque_in_bounds = in_bounds(torque, now.torque_error_bound + baseline.torque_error_bound);
+  const double center = distance(now.center_of_buoyancy, baseline.center_of_buoyancy);
+  const double center_in_bounds = in_bounds(center, center_bound(now) + center_bound(baseline));
   if (std::max({force_in_bounds, torque_in_bounds, center_in_bounds}) >
       std::max({differences.force_in_bounds, differences.torque_in_bounds, differences.center_in_bounds})) {
     differences.worst_utime = utime;
@@ -61,32 +61,33 @@ void compare(const BodyWrench& now, const BodyWrench& earlier, std::int64_t utim
   differences.center_in_bounds = std::max(differences.center_in_bounds, center_in_bounds);
   differences.force = std::max(differences.force, force);
   differences.torque = std::max(differences.torque, torque);
-  differences.volume = std::max(differences.volume, distance(now.submerged_volume, earlier.submerged_volume));
+  differences.volume =
+      std::max(differences.volume, distance(now.submerged_volume, baseline.submerged_volume));
   differences.force_in_bounds = std::max(differences.force_in_bounds, force_in_bounds);
   differences.torque_in_bounds = std::max(differences.torque_in_bounds, torque_in_bounds);
 }
 
 constexpr double kRounding = 128.0 * std::numeric_limits<double>::epsilon();  // of two results
 
-// The largest of a body's hydrostatics over their tolerances.
+// The largest ratio of difference to tolerance over the fields of a body's hydrostatics.
 class FieldDifferences {
  public:
-  // The sizes may be numbers or vectors.
+  // Values are numbers or vectors.
   template <typename Value>
-  void add(std::string_view field, const Value& now, const Value& earlier, double tolerance) {
-    note(field, distance(now, earlier), tolerance + kRounding * std::max(size(now), size(earlier)));
+  void add(std::string_view field, const Value& now, const Value& baseline, double tolerance) {
+    update(field, distance(now, baseline), tolerance + kRounding * std::max(size(now), size(baseline)));
   }
-  // NaN in both is no difference: the field is undefined of such a pose.
+  // NaN in both is no difference: the field is undefined for this pose.
   template <typename Value>
-  void add_if_defined(std::string_view field, const Value& now, const Value& earlier, double tolerance) {
-    if (!undefined(now) || !undefined(earlier)) add(field, now, earlier, tolerance);
+  void add_if_defined(std::string_view field, const Value& now, const Value& baseline, double tolerance) {
+    if (!undefined(now) || !undefined(baseline)) add(field, now, baseline, tolerance);
   }
-  // Of axes, which have no sign.
+  // Axes have no sign: opposite directions are equal.
   void add_axis(std::string_view field, const std::array<double, 3>& now,
-                const std::array<double, 3>& earlier, double tolerance) {
-    if (undefined(now) && undefined(earlier)) return;
-    const std::array<double, 3> turned{-earlier[0], -earlier[1], -earlier[2]};
-    note(field, std::min(distance(now, earlier), distance(now, turned)), tolerance);
+                const std::array<double, 3>& baseline, double tolerance) {
+    if (undefined(now) && undefined(baseline)) return;
+    const std::array<double, 3> reversed{-baseline[0], -baseline[1], -baseline[2]};
+    update(field, std::min(distance(now, baseline), distance(now, reversed)), tolerance);
   }
 
   void add_to(BodyDifferences& differences) const {
@@ -104,7 +105,7 @@ class FieldDifferences {
     return std::ranges::all_of(value, [](double number) { return std::isnan(number); });
   }
 
-  void note(std::string_view field, double difference, double tolerance) {
+  void update(std::string_view field, double difference, double tolerance) {
     const double relative = in_bounds(difference, tolerance);
     if (relative <= worst_) return;
     worst_ = relative;
@@ -115,9 +116,9 @@ class FieldDifferences {
   std::string_view field_;
 };
 
-// Two results, each off by the rounding of sums over the body's surface: of its area, and of that times as
-// many lengths as the field has beyond an area. docs/replay.md lists the tolerances.
-void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const Body& body,
+// Each result carries the rounding error of sums over the body's surface: proportional to the area, times one
+// length per dimension of the field beyond an area. docs/replay.md lists the tolerances.
+void compare(const BodyHydrostatics& now, const BodyHydrostatics& baseline, const Body& body,
              const Water& water, BodyDifferences& differences) {
   const HydrostaticMesh& mesh = body.solver.mesh();
   const double length = mesh.diagonal;
@@ -125,37 +126,37 @@ void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const
   const double second_moment = 4.0 * area * length * length;
   const double volume = 2.0 * mesh.volume_tolerance() + area * length;
   const double point = kRounding * mesh.max_lever_arm(Vec3::Zero());
-  const double smaller_volume = std::min(now.submerged_volume, earlier.submerged_volume);
-  const double smaller_plane = std::min(now.waterplane_area, earlier.waterplane_area);
+  const double smaller_volume = std::min(now.submerged_volume, baseline.submerged_volume);
+  const double smaller_plane = std::min(now.waterplane_area, baseline.waterplane_area);
   const double center = 2.0 * volume * length / smaller_volume + point;
 
   FieldDifferences fields;
-  fields.add("submerged_volume", now.submerged_volume, earlier.submerged_volume, volume);
-  fields.add_if_defined("center_of_buoyancy", now.center_of_buoyancy, earlier.center_of_buoyancy, center);
-  fields.add("wetted_area", now.wetted_area, earlier.wetted_area, area);
-  fields.add("waterplane_area", now.waterplane_area, earlier.waterplane_area, area);
-  fields.add_if_defined("waterplane_centroid", now.waterplane_centroid, earlier.waterplane_centroid,
+  fields.add("submerged_volume", now.submerged_volume, baseline.submerged_volume, volume);
+  fields.add_if_defined("center_of_buoyancy", now.center_of_buoyancy, baseline.center_of_buoyancy, center);
+  fields.add("wetted_area", now.wetted_area, baseline.wetted_area, area);
+  fields.add("waterplane_area", now.waterplane_area, baseline.waterplane_area, area);
+  fields.add_if_defined("waterplane_centroid", now.waterplane_centroid, baseline.waterplane_centroid,
                         2.0 * area * length / smaller_plane + point);
   const double gap = std::min(now.waterplane_second_moments[1] - now.waterplane_second_moments[0],
-                              earlier.waterplane_second_moments[1] - earlier.waterplane_second_moments[0]);
+                              baseline.waterplane_second_moments[1] - baseline.waterplane_second_moments[0]);
   for (std::size_t i = 0; i < 2; ++i) {
     fields.add("waterplane_second_moments", now.waterplane_second_moments[i],
-               earlier.waterplane_second_moments[i], second_moment);
-    // Axes of a waterplane that is as long one way as the other may lie anywhere.
+               baseline.waterplane_second_moments[i], second_moment);
+    // The axes are arbitrary if both second moments are equal within their error.
     if (!(2.0 * second_moment >= gap)) {
-      fields.add_axis("waterplane_axes", now.waterplane_axes[i], earlier.waterplane_axes[i],
+      fields.add_axis("waterplane_axes", now.waterplane_axes[i], baseline.waterplane_axes[i],
                       2.0 * second_moment / gap + kRounding);
-    } else if (!std::ranges::equal(now.waterplane_axes[i], earlier.waterplane_axes[i],
+    } else if (!std::ranges::equal(now.waterplane_axes[i], baseline.waterplane_axes[i],
                                    [](double a, double b) { return std::isnan(a) == std::isnan(b); })) {
-      fields.add("waterplane_axes", now.waterplane_axes[i], earlier.waterplane_axes[i], 0.0);
+      fields.add("waterplane_axes", now.waterplane_axes[i], baseline.waterplane_axes[i], 0.0);
     }
     const double radius =
-        (second_moment + std::max(now.metacentric_radii[i], earlier.metacentric_radii[i]) * volume) /
+        (second_moment + std::max(now.metacentric_radii[i], baseline.metacentric_radii[i]) * volume) /
         smaller_volume;
-    fields.add_if_defined("metacentric_radii", now.metacentric_radii[i], earlier.metacentric_radii[i],
+    fields.add_if_defined("metacentric_radii", now.metacentric_radii[i], baseline.metacentric_radii[i],
                           radius);
-    fields.add_if_defined("metacenters", now.metacenters[i], earlier.metacenters[i], center + radius);
-    fields.add_if_defined("metacentric_heights", now.metacentric_heights[i], earlier.metacentric_heights[i],
+    fields.add_if_defined("metacenters", now.metacenters[i], baseline.metacenters[i], center + radius);
+    fields.add_if_defined("metacentric_heights", now.metacentric_heights[i], baseline.metacentric_heights[i],
                           center + radius);
   }
   const double lever = mesh.max_lever_arm(body.reference_B) + length;
@@ -165,7 +166,7 @@ void compare(const BodyHydrostatics& now, const BodyHydrostatics& earlier, const
       double tolerance = weight * area;
       if ((row < 3) != (column < 3)) tolerance *= 2.0 * lever;
       if (row >= 3 && column >= 3) tolerance = weight * (4.0 * area * lever + 2.0 * volume) * lever;
-      fields.add("stiffness", now.stiffness[row][column], earlier.stiffness[row][column], tolerance);
+      fields.add("stiffness", now.stiffness[row][column], baseline.stiffness[row][column], tolerance);
     }
   }
   fields.add_to(differences);
@@ -178,13 +179,13 @@ const Body* body_of(const Scene& scene, std::int32_t id) {
 
 }  // namespace
 
-Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& earlier,
+Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& baseline,
                                                   const std::string& wrenches_channel,
                                                   const std::string& hydrostatics_channel,
                                                   const Scene& scene) {
-  Expected<EventLogReader> responses = EventLogReader::open(earlier, only_channel(wrenches_channel));
+  Expected<EventLogReader> responses = EventLogReader::open(baseline, only_channel(wrenches_channel));
   if (!responses) return tl::unexpected(responses.error());
-  Expected<EventLogReader> hydrostatics = EventLogReader::open(earlier, only_channel(hydrostatics_channel));
+  Expected<EventLogReader> hydrostatics = EventLogReader::open(baseline, only_channel(hydrostatics_channel));
   if (!hydrostatics) return tl::unexpected(hydrostatics.error());
   return ReplayComparison(std::move(*responses), std::move(*hydrostatics), scene);
 }
@@ -192,7 +193,7 @@ Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& e
 template <typename Message>
 bool ReplayComparison::Channel<Message>::read_one() {
   while (true) {
-    const LogItem item = earlier.next();
+    const LogItem item = baseline.next();
     if (std::holds_alternative<EndOfLog>(item)) return false;
     const auto* event = std::get_if<RecordedEvent>(&item);
     if (event == nullptr) {
@@ -201,15 +202,15 @@ bool ReplayComparison::Channel<Message>::read_one() {
     }
     if (!decode(event->bytes, ahead.emplace_back())) return true;
     ahead.pop_back();
-    ++unreadable;
+    ++invalid_messages;
   }
 }
 
 template <typename Message>
-std::optional<Message> ReplayComparison::Channel<Message>::find() {
+std::optional<Message> ReplayComparison::Channel<Message>::pop_counterpart() {
   for (std::size_t i = 0; i < kMatchWindow; ++i) {
     if (i == ahead.size() && !read_one()) break;
-    if (!same(ahead[i].key, now.key)) continue;
+    if (!same_id(ahead[i].key, now.key)) continue;
     std::optional<Message> found = std::move(ahead[i]);
     unmatched_baseline += static_cast<std::int64_t>(i);
     ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(i) + 1);
@@ -225,19 +226,19 @@ void ReplayComparison::Channel<Message>::finish() {
   for (ahead.clear(); read_one(); ahead.clear()) ++unmatched_baseline;
 }
 
-// Calls compare_body for each body that both have in the same place.
+// Calls compare_body for each body at the same index in both messages.
 template <typename Message, typename CompareBody>
 void ReplayComparison::add(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body) {
   [[maybe_unused]] const auto rejected = decode(bytes, channel.now);
-  assert(!rejected);  // we encoded it
-  const std::optional<Message> earlier = channel.find();
-  if (!earlier) return;
+  assert(!rejected);  // the handler encoded it
+  const std::optional<Message> baseline = channel.pop_counterpart();
+  if (!baseline) return;
   const auto& now = channel.now.bodies;
-  const std::size_t both = std::min(now.size(), earlier->bodies.size());
-  bool same_bodies = now.size() == earlier->bodies.size();
+  const std::size_t both = std::min(now.size(), baseline->bodies.size());
+  bool same_bodies = now.size() == baseline->bodies.size();
   for (std::size_t i = 0; i < both; ++i) {
-    if (now[i].body_id == earlier->bodies[i].body_id) {
-      compare_body(now[i], earlier->bodies[i], bodies_[now[i].body_id]);
+    if (now[i].body_id == baseline->bodies[i].body_id) {
+      compare_body(now[i], baseline->bodies[i], bodies_[now[i].body_id]);
     } else {
       same_bodies = false;
     }
@@ -249,19 +250,19 @@ void ReplayComparison::add(Channel<Message>& channel, Bytes bytes, const Compare
 
 void ReplayComparison::add(Bytes response) {
   add(responses_, response,
-      [this](const BodyWrench& now, const BodyWrench& earlier, BodyDifferences& differences) {
-        compare(now, earlier, responses_.now.key.utime, differences);
+      [this](const BodyWrench& now, const BodyWrench& baseline, BodyDifferences& differences) {
+        compare(now, baseline, responses_.now.key.utime, differences);
       });
 }
 
-void ReplayComparison::take_hydrostatics(Bytes hydrostatics) {
+void ReplayComparison::add_hydrostatics(Bytes hydrostatics) {
   add(hydrostatics_, hydrostatics,
-      [this](const BodyHydrostatics& now, const BodyHydrostatics& earlier, BodyDifferences& differences) {
+      [this](const BodyHydrostatics& now, const BodyHydrostatics& baseline, BodyDifferences& differences) {
         const Body* const body = body_of(*scene_, now.body_id);
-        if (now.status != earlier.status) {
+        if (now.status != baseline.status) {
           ++differences.status_changes;
         } else if (now.status == BodyStatus::kOk && body != nullptr) {
-          compare(now, earlier, *body, scene_->water(), differences);
+          compare(now, baseline, *body, scene_->water(), differences);
         }
       });
 }
@@ -272,8 +273,8 @@ void ReplayComparison::finish() {
 }
 
 bool ReplayComparison::agrees() const {
-  return unmatched_new() == 0 && unmatched_baseline() == 0 && unreadable() == 0 &&
+  return unmatched_new() == 0 && unmatched_baseline() == 0 && decode_errors() == 0 &&
          std::ranges::all_of(bodies_, [](const auto& body) { return body.second.within_bounds(); });
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -1,9 +1,9 @@
-// A replay's answers beside those of an earlier one: what changed since then, body by body.
+// Compares the responses of a replay with those of an earlier one, the baseline, body by body.
 //
-// Every response says how far it can be from the truth. Two right ones are never farther from each other than
-// both bounds together; so that is what a difference is held to, and no tolerance has to be chosen.
-// Hydrostatics carry no bounds: they are exact to rounding, and held to what rounding makes of the body's
-// size.
+// Every response carries an error bound. Two correct results differ by at most the sum of both bounds, so
+// this sum is the limit of a difference and no tolerance has to be chosen. Hydrostatics carry no bounds: they
+// are exact to rounding, and their tolerances are the rounding errors for a body of that size
+// (docs/replay.md).
 #pragma once
 
 #include <cmath>
@@ -21,23 +21,23 @@
 #include "recording/event_log.h"
 #include "scene/scene.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 // The largest differences of one body.
 struct BodyDifferences {
   std::int64_t responses = 0;       // compared
-  std::int64_t status_changes = 0;  // of them, where one is OK and the other is not, or not in the same way
-  double force = 0.0;               // N
-  double torque = 0.0;              // N m
-  double volume = 0.0;              // m^3
-  double center = 0.0;              // m, of the centres of buoyancy
-  double force_in_bounds = 0.0;     // difference over the sum of both bounds: at most 1 where both are right
-  double torque_in_bounds = 0.0;
-  // Likewise. A centre is known to 2 torque bound / force: it is the volume's first moment by the volume.
+  std::int64_t status_changes = 0;  // of them, with different statuses
+  double force = 0.0;               // [N]
+  double torque = 0.0;              // [N m]
+  double volume = 0.0;              // [m^3]
+  double center = 0.0;              // [m], centre of buoyancy
+  double force_in_bounds = 0.0;     // difference / sum of both bounds: <= 1 if both results are correct
+  double torque_in_bounds = 0.0;    // the same for the torque
+  // The same for the centre, the volume's first moment over the volume. Its bound: 2 torque bound / force.
   double center_in_bounds = 0.0;
-  std::int64_t worst_utime = 0;         // us: of the answer with the largest of these three
-  std::int64_t hydrostatics = 0;        // messages' bodies compared
-  double hydrostatics_in_bounds = 0.0;  // the largest difference of any field over its tolerance
+  std::int64_t worst_utime = 0;         // [us], of the response with the largest of these three ratios
+  std::int64_t hydrostatics = 0;        // bodies compared
+  double hydrostatics_in_bounds = 0.0;  // largest difference / tolerance of any field
   std::string_view worst_field;         // of the hydrostatics; empty: no difference
 
   bool within_bounds() const {
@@ -48,49 +48,52 @@ struct BodyDifferences {
 
 class ReplayComparison {
  public:
-  // earlier: an LCM log with body_wrenches_t on wrenches_channel and bodies_hydrostatics_t on
-  // hydrostatics_channel. scene: what the replay answers from; outlives the comparison. Errors: not readable.
-  static Expected<ReplayComparison> open(const std::filesystem::path& earlier,
+  // baseline: an LCM log with body_wrenches_t on wrenches_channel and bodies_hydrostatics_t on
+  // hydrostatics_channel. scene: the scene of the replay; it must outlive the comparison. Errors: not
+  // readable.
+  static Expected<ReplayComparison> open(const std::filesystem::path& baseline,
                                          const std::string& wrenches_channel,
                                          const std::string& hydrostatics_channel, const Scene& scene);
 
-  // The replay's next response: bytes of a body_wrenches_t. Its counterpart has the same utime, session_id
-  // and seq, and is looked for among the earlier log's next kMatchWindow answers.
+  // Compares the replay's next response, the bytes of a body_wrenches_t, with its counterpart: the one with
+  // the same utime, session_id and seq among the next kMatchWindow responses of the baseline.
   void add(Bytes response);
-  // The same of a bodies_hydrostatics_t.
-  void take_hydrostatics(Bytes hydrostatics);
-  // After the last one.
+  // The same for a bodies_hydrostatics_t.
+  void add_hydrostatics(Bytes hydrostatics);
+  // Call this after the last response: counts the rest of the baseline as unmatched.
   void finish();
 
   const std::map<std::int32_t, BodyDifferences>& bodies() const { return bodies_; }  // by id
-  // Answers and hydrostatics without counterpart.
+  // Responses and hydrostatics without a counterpart.
   std::int64_t unmatched_new() const { return responses_.unmatched_new + hydrostatics_.unmatched_new; }
   std::int64_t unmatched_baseline() const {
     return responses_.unmatched_baseline + hydrostatics_.unmatched_baseline;
   }
-  std::int64_t unreadable() const {  // places and messages of the earlier log
-    return responses_.corrupt_sections + responses_.unreadable + hydrostatics_.unreadable;
+  // Corrupt sections and invalid messages of the baseline.
+  std::int64_t decode_errors() const {
+    return responses_.corrupt_sections + responses_.invalid_messages + hydrostatics_.invalid_messages;
   }
-  // Nothing lost, nothing new, and no body beyond its bounds.
+  // Is every message matched and decoded, and every body within its bounds?
   bool agrees() const;
 
  private:
   static constexpr std::size_t kMatchWindow = 4096;
 
-  // One channel of the earlier log.
+  // One channel of the baseline.
   template <typename Message>
   struct Channel {
-    EventLogReader earlier;
-    std::deque<Message> ahead{};  // read, not yet matched; at most kMatchWindow
-    Message now{};                // reused
+    EventLogReader baseline;
+    std::deque<Message> ahead{};  // read but not yet matched; at most kMatchWindow
+    Message now{};                // the new message; reused
     std::int64_t unmatched_new = 0;
     std::int64_t unmatched_baseline = 0;
-    std::int64_t corrupt_sections = 0;  // of the log: the same for each channel
-    std::int64_t unreadable = 0;
+    std::int64_t corrupt_sections = 0;  // of the whole log: equal for all channels
+    std::int64_t invalid_messages = 0;
 
     bool read_one();  // into ahead; false: the log has ended
-    // The counterpart of `now`, and only that, is taken out of `ahead`. nullopt: it has none.
-    std::optional<Message> find();
+    // Removes the counterpart of `now` and all messages before it from `ahead` and returns the counterpart.
+    // nullopt: there is none, and `ahead` keeps its messages.
+    std::optional<Message> pop_counterpart();
     void finish();
   };
 
@@ -105,4 +108,4 @@ class ReplayComparison {
   std::map<std::int32_t, BodyDifferences> bodies_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 Expected<ReplayInput> ReplayInput::open(const std::filesystem::path& path, FileFormat format,
                                         ChannelFilter wanted) {
@@ -16,4 +16,4 @@ Expected<ReplayInput> ReplayInput::open(const std::filesystem::path& path, FileF
   return ReplayInput(std::move(*reader));
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

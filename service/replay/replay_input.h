@@ -1,5 +1,5 @@
-// What a replay reads: recorded messages from an LCM log, or requests from CSV, and word of what could not
-// be read.
+// The input of a replay: recorded messages from an LCM log, or requests from CSV, and a description of each
+// section that could not be read.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 #include "recording/event_log.h"
 #include "recording/state_csv.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 enum class FileFormat { kCsv, kLcmLog };
 
 class ReplayInput {
  public:
-  // wanted: of a log's channels. Errors: not readable, a CSV header that is none.
+  // wanted: the channels to read from a log. Errors: not readable, an invalid CSV header.
   static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
                                     ChannelFilter wanted);
 
@@ -37,4 +37,4 @@ class ReplayInput {
   Reader reader_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -11,7 +11,7 @@
 #include "hydrostatics/solver.h"
 #include "transport/lcm_connection.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 std::string method_names() {
@@ -30,7 +30,7 @@ Expected<FileFormat> format_by_extension(const std::filesystem::path& path) {
   return make_error({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
 }
 
-// A device or a pipe (/dev/stdout, /dev/full) has no extension: what is written there is what was read.
+// A device or a pipe (/dev/stdout, /dev/full) has no extension: its format is that of the input.
 Expected<FileFormat> output_format(const std::filesystem::path& path, FileFormat input_format) {
   std::error_code no_such_file;
   if (std::filesystem::is_other(path, no_such_file) && path.extension().empty()) return input_format;
@@ -50,8 +50,8 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
     return make_error({"--copy", options.input.string() + " to " + options.output.string(),
                        "an .lcmlog as INPUT and as OUTPUT", "", ""});
   }
-  if (!options.earlier.empty() && !options.poses.force_torques.empty()) {
-    return make_error({"--compare", "together with --force-torque", "answers as body_wrenches_t",
+  if (!options.baseline.empty() && !options.poses.force_torques.empty()) {
+    return make_error({"--compare", "together with --force-torque", "responses as body_wrenches_t",
                        "a six_axis_force_torque_t has no error bound to compare by", ""});
   }
   return {};
@@ -61,36 +61,35 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
 
 void add_options(CLI::App& app, ReplayOptions& options) {
   app.description(
-      "Answers recorded body poses with the buoyant force and torque on each body, as buoyancyd would.\n"
-      "CSV in: utime,body_id,px,py,pz,qw,qx,qy,qz and, if they are there, vx,vy,vz,wx,wy,wz; a row per row "
-      "comes\n"
-      "out; rows with the same utime are one request. LCM logs: the requests on one channel, and poses of "
-      "single\n"
-      "bodies on others (--pose); answers keep the timestamps of what they answer; other channels are copied "
-      "on\n"
-      "request (--copy).\n"
+      "Compute the buoyant force and torque for recorded body poses, exactly as buoyancyd does.\n"
+      "CSV input: utime,body_id,px,py,pz,qw,qx,qy,qz[,vx,vy,vz,wx,wy,wz]; rows with equal utime are one\n"
+      "request; writes one row per input row. LCM log input: requests on one channel, poses of single\n"
+      "bodies on others (--pose); responses keep the timestamps of their requests; --copy copies other\n"
+      "channels.\n"
       "Exit codes: 0 every request of INPUT has its response in OUTPUT, 1 it ran and some have not, or they "
       "do "
       "not\n"
       "agree with those compared with, 2 wrong arguments, scene, mesh or INPUT.");
   app.set_version_flag("--version", "buoyancy-replay " BUOYANCY_VERSION);
-  auto* from = app.add_option_group("scene", "What floats: one of");
-  from->add_option("--scene", options.scene, "The scene file (TOML): water and bodies");
+  auto* from = app.add_option_group("scene", "Input geometry (exactly one)");
+  from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
   CLI::Option* mesh =
       from->add_option("--mesh", options.mesh,
                        "One mesh as body 1, in water of level 0, density 1025 kg/m^3, gravity 9.80665 m/s^2");
   from->require_option(1);
-  app.add_option("--method", options.method, "With --mesh: " + method_names())
+  app.add_option("--method", options.method, "With --mesh: one of " + method_names())
       ->needs(mesh)
-      ->option_text("METHOD [" + std::string(to_string(BodyDescription{}.method)) + "]");
+      ->type_name("METHOD")
+      ->default_str(std::string(to_string(BodyDescription{}.method)));
   app.add_option("--tolerance", options.tolerance,
-                 "With --mesh: error allowed, relative to the whole displacement's weight; 0: exact")
+                 "With --mesh: allowed error relative to the weight of the full displacement (0 = exact)")
       ->needs(mesh)
       ->check(CLI::Range(0.0, 1.0))
-      ->option_text("0..1 [0]");
+      ->type_name("RATIO")
+      ->capture_default_str();
   app.add_option(
          "--open", options.open,
-         "With --mesh: dry_boundary accepts a mesh with holes and answers it while their edges are dry")
+         "With --mesh: dry_boundary accepts a mesh with holes and evaluates it while their edges are dry")
       ->needs(mesh)
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
@@ -107,22 +106,23 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
-         "Copies the events of channels whose whole name matches, of an LCM log to an LCM log; '.*' copies "
-         "all but the channels that answers go to. May be given again")
+         "Copy events whose channel name fully matches REGEX from the input log to the output log; '.*' "
+         "matches every channel. Repeatable. Response channels are never copied")
       ->allow_extra_args(false)
       ->option_text("REGEX");
   app.add_option(
-         "--compare", options.earlier,
-         "An earlier OUTPUT, an LCM log: prints the largest differences by body, hydrostatics included, and "
-         "fails where they exceed the error bounds of both answers")
+         "--compare", options.baseline,
+         "Compare with an earlier OUTPUT, an LCM log: print the largest differences per body, hydrostatics "
+         "included, and fail if one exceeds the sum of both error bounds")
       ->option_text("LCMLOG");
   app.add_option("--jobs", options.jobs,
-                 "Threads; 0: as many as the processor runs at once. OUTPUT does not depend on it")
+                 "Worker threads (0 = number of hardware threads). OUTPUT does not depend on this setting")
       ->check(CLI::Range(0, 1024))
-      ->option_text("N [0]");
-  app.add_flag("--json", options.json, "The summary as JSON");
-  app.add_option("INPUT", options.input, "A .csv or .lcmlog file")->required();
-  app.add_option("OUTPUT", options.output, "A .csv or .lcmlog file; overwritten")->required();
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "Print the summary as JSON");
+  app.add_option("INPUT", options.input, ".csv or .lcmlog file")->required();
+  app.add_option("OUTPUT", options.output, ".csv or .lcmlog file; overwritten")->required();
 }
 
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
@@ -138,7 +138,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
     return tl::unexpected(checked.error());
   }
   if (const Expected<void> checked = check_output_is_its_own(
-          options.output, {options.input, options.scene, options.mesh, options.earlier});
+          options.output, {options.input, options.scene, options.mesh, options.baseline});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -163,7 +163,7 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   Expected<PoseChannels> poses = pose_channels(
       options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
   if (!poses) return tl::unexpected(poses.error());
-  // Their sessions are counted from the first: the same whatever the order of the options.
+  // Session ids follow the order of the channels: sorting makes them independent of the order of the options.
   std::ranges::sort(poses->channels, {}, &PoseChannel::channel);
   for (const PoseChannel& pose : poses->channels) {
     if (!pose.force_torque_channel.empty()) responses.push_back(pose.force_torque_channel);
@@ -174,4 +174,4 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -16,11 +16,11 @@
 #include "service/replay/replay_channels.h"
 #include "service/replay/replay_input.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 struct ReplayOptions {
-  std::filesystem::path scene;  // this
-  std::filesystem::path mesh;   // or this, then with
+  std::filesystem::path scene;  // either scene
+  std::filesystem::path mesh;   // or mesh with the next three options
   std::string method;           // empty: the default of a scene's body
   double tolerance = 0.0;
   OpenPolicy open = OpenPolicy::kRefuse;
@@ -31,17 +31,17 @@ struct ReplayOptions {
   std::string hydrostatics_channel{kHydrostaticsChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions
-  std::filesystem::path earlier;    // an earlier OUTPUT to compare with; empty: none
-  unsigned jobs = 0;                // 0: as many as the processor runs at once
+  std::filesystem::path baseline;   // an earlier OUTPUT to compare with; empty: none
+  unsigned jobs = 0;                // 0: number of hardware threads
   bool json = false;
 };
 
-// Declares the options on app; parsing fills options, which must live as long.
+// Declares the options on app; parsing fills options, which must outlive app.
 void add_options(CLI::App& app, ReplayOptions& options);
 
-// What the options come to.
+// The checked options.
 struct ReplayPlan {
-  std::optional<SceneDescription> single_mesh;  // nullopt: the scene file
+  std::optional<SceneDescription> single_mesh;  // nullopt: use the scene file
   FileFormat input_format = FileFormat::kCsv;
   FileFormat output_format = FileFormat::kCsv;
 };
@@ -50,13 +50,13 @@ struct ReplayPlan {
 // carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
 
-// Where a log's events come from and go to.
+// The channels of a log's events.
 struct ReplayRoutes {
   PoseChannels poses;
   ReplayChannels channels;
 };
 
-// Errors: as pose_channels() and ReplayChannels::make() say.
+// Errors: see pose_channels() and ReplayChannels::make().
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -7,7 +7,7 @@
 #include "recording/event_log.h"
 #include "service/replay/wrench_csv.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 Bytes bytes_of(std::string_view text) {
@@ -44,7 +44,7 @@ void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes h
     return;
   }
   [[maybe_unused]] const auto rejected = decode(response, response_);
-  assert(!rejected);  // we encoded it
+  assert(!rejected);  // the handler encoded it
   for (const BodyWrench& wrench : response_.bodies) {
     format_wrench_row(response_.key.utime, wrench, row_);
     append(bytes_of(row_));
@@ -74,4 +74,4 @@ Expected<void> ReplayOutput::write(OutputRecords& records) {
   return {};
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

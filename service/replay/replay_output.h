@@ -1,5 +1,6 @@
-// What a replay writes: answers, to an LCM log or as CSV. Made into records on any thread, written in order.
-// Hydrostatics, of bodies that ask for them, go to a log alone: a row of the CSV is a wrench.
+// The output of a replay: responses, to an LCM log or as CSV. Records are encoded on any thread and written
+// in order. Hydrostatics of the bodies that request them are written to a log only: a row of the CSV is a
+// wrench.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +15,26 @@
 #include "recording/record_writer.h"
 #include "service/replay/replay_input.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
-// How answers are written.
 struct OutputLayout {
   FileFormat format = FileFormat::kCsv;
-  std::string wrenches_channel;  // of the events, in a log
+  std::string wrenches_channel;  // both channels: logs only
   std::string hydrostatics_channel;
 };
 
-// Events or rows, one after the other.
+// Encoded events or CSV rows, in order.
 class OutputRecords {
  public:
   explicit OutputRecords(OutputLayout layout) : layout_(std::move(layout)) {}
 
   void clear();
-  // timestamp: of the log's events; answer and hydrostatics as the service would publish them, of these
-  // nothing where they are empty. force_torque_channel: where, in a log, the response goes as a
-  // six_axis_force_torque_t; empty: it goes as it is.
+  // timestamp: of the log's events [us]. response and hydrostatics: the bytes that the service would publish;
+  // empty hydrostatics are not written. force_torque_channel: the channel of a log to which the response is
+  // written as a six_axis_force_torque_t; empty: it is written as a body_wrenches_t.
   void add_response(std::int64_t timestamp, Bytes response, Bytes hydrostatics,
                     std::string_view force_torque_channel);
-  // An event as it was. To a log only.
+  // Copies an event unchanged; to a log only.
   void add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes);
 
  private:
@@ -44,7 +44,7 @@ class OutputRecords {
 
   OutputLayout layout_;
   std::vector<std::uint8_t> bytes_;
-  std::vector<std::size_t> ends_;      // of the records, in bytes_
+  std::vector<std::size_t> ends_;      // end of each record in bytes_
   std::vector<std::uint8_t> event_;    // reused
   std::vector<std::uint8_t> message_;  // reused
   WrenchResponse response_;            // reused
@@ -53,13 +53,13 @@ class OutputRecords {
 
 class ReplayOutput {
  public:
-  // Creates or empties the file. Errors: as of RecordWriter.
+  // Creates or truncates the file. Errors: see RecordWriter.
   static Expected<ReplayOutput> create(const std::filesystem::path& path, FileFormat format);
 
-  // As RecordWriter has it.
+  // See RecordWriter.
   void give_up_after(int signal) { file_.give_up_after(signal); }
 
-  // Numbers a log's events. Errors: disk full, given up.
+  // Sets the event numbers of a log. Errors: disk full, given up.
   Expected<void> write(OutputRecords& records);
   Expected<void> flush() { return file_.flush(); }
 
@@ -71,4 +71,4 @@ class ReplayOutput {
   std::int64_t events_ = 0;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

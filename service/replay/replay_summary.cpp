@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
-std::int64_t all_bodies(const ServiceCounters& counters) {
+std::int64_t count_bodies(const ServiceCounters& counters) {
   std::int64_t sum = 0;
   for (const std::int64_t count : counters.bodies) sum += count;
   return sum;
@@ -36,13 +36,13 @@ std::string comparison_text(const ReplayComparison& comparison) {
   const auto line = [&text](const char* what, std::int64_t count) {
     if (count > 0) text += fmt::format("{:>12} {}\n", count, what);
   };
-  line("answers have no counterpart in the earlier log", comparison.unmatched_new());
-  line("answers of the earlier log have no counterpart now", comparison.unmatched_baseline());
-  line("places of the earlier log could not be read", comparison.unreadable());
+  line("new responses have no counterpart in the baseline", comparison.unmatched_new());
+  line("responses of the baseline have no counterpart in this run", comparison.unmatched_baseline());
+  line("sections or messages of the baseline could not be decoded", comparison.decode_errors());
   text += comparison.agrees()
-              ? "Force, torque, centre and status of every response agree with the earlier one "
-                "within their bounds.\n"
-              : "The responses do NOT agree with the earlier ones within their bounds.\n";
+              ? "Force, torque, centre and status of every response agree with the baseline within their "
+                "bounds.\n"
+              : "The responses do NOT agree with the baseline within their bounds.\n";
   return text;
 }
 
@@ -67,7 +67,7 @@ nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
   return {{"agrees", comparison.agrees()},
           {"unmatched_new", comparison.unmatched_new()},
           {"unmatched_baseline", comparison.unmatched_baseline()},
-          {"unreadable", comparison.unreadable()},
+          {"decode_errors", comparison.decode_errors()},
           {"bodies", bodies}};
 }
 
@@ -82,12 +82,12 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   line("computed", counters.computed);
   line("retries", counters.retries);
   line("rejected", counters.rejected());
-  text += fmt::format("{:<22}{:>12}\n", "bodies", all_bodies(counters));
+  text += fmt::format("{:<22}{:>12}\n", "bodies", count_bodies(counters));
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     if (i == 0 || counters.bodies[i] > 0) line(to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
   }
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
-  text += fmt::format("{:<22}{:>12}\n", "damaged places", summary.corrupt_sections);
+  text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
   text +=
       fmt::format("{:<22}{:>12.0f}\n", "requests per second", per_second(counters.requests, summary.seconds));
@@ -113,11 +113,11 @@ std::string summary_json(const ReplaySummary& summary, const ReplayComparison* c
                                 {"length", counters.rejected_length}}},
                               {"bodies", bodies},
                               {"copied", summary.copied},
-                              {"damaged_places", summary.corrupt_sections},
+                              {"corrupt_sections", summary.corrupt_sections},
                               {"seconds", summary.seconds},
                               {"requests_per_second", per_second(counters.requests, summary.seconds)}};
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

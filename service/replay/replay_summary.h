@@ -1,4 +1,4 @@
-// What a replay says at its end, for people and for programs.
+// Formats the summary of a replay as text and as JSON.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 #include "service/replay/replay.h"
 #include "service/replay/replay_comparison.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
-// comparison: nullptr where there was none. Lines for a terminal, with a final newline.
+// Lines for a terminal, with a final newline. comparison: nullptr without --compare.
 std::string summary_text(const ReplaySummary& summary, const ReplayComparison* comparison);
-// One JSON object, with a final newline. A difference over bounds of 0 is null.
+// One JSON object, with a final newline. The ratio of a difference to a bound of 0 is null.
 std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

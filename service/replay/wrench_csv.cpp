@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 constexpr int kSignificantDigits = 17;
@@ -38,4 +38,4 @@ void format_wrench_row(std::int64_t utime, const BodyWrench& wrench, std::string
   row += '\n';
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -1,5 +1,5 @@
-// Wrenches as CSV: a row per body, numbers with 17 significant digits, which is what it takes to read the
-// same double back. status is the number that the message carries, 0 for OK.
+// Wrenches as CSV: one row per body, numbers with 17 significant digits, so that reading them back gives the
+// same double. status is the number in the message, 0 for OK.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 #include "messages/request.h"
 
-namespace buoyancy {
+namespace buoyancy::service {
 
 inline constexpr std::string_view kWrenchCsvHeader =
     "utime,body_id,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,force_error_bound,torque_error_bound\n";
 
-// Replaces row by one line with its newline. bx, by, bz: the centre of buoyancy, relative to the body's
-// position.
+// Sets row to one line including its newline. bx, by, bz: the centre of buoyancy relative to the body's
+// position [m].
 void format_wrench_row(std::int64_t utime, const BodyWrench& wrench, std::string& row);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::service

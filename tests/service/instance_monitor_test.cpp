@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 std::vector<std::uint8_t> status_of(std::int64_t instance_id) {
@@ -44,4 +44,4 @@ TEST(InstanceMonitor, AreNotSaidBeyondAsManyAsAreToldApart) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::service

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 using PushResult = LatestRequestQueue::PushResult;
@@ -139,4 +139,4 @@ TEST(LatestRequestQueue, GivesBackTheTimeOfArrival) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::service

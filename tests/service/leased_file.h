@@ -13,9 +13,9 @@ namespace buoyancy {
 
 // By a lease of Linux's (fcntl(2)), which blocks the open() of others until it is given up, or for
 // /proc/sys/fs/lease-break-time, 45 s where nobody changed it.
-class HeldFile {
+class LeasedFile {
  public:
-  explicit HeldFile(const std::string& path) : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
+  explicit LeasedFile(const std::string& path) : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
     // The kernel says that somebody waits, by a signal that would end us: by one that does not.
     delay_line_ =
         ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;

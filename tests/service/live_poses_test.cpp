@@ -19,7 +19,7 @@ RawBytes pose_at(double height, std::int64_t utime) {
   return encoded_by_lcm(upright_pose(height, utime));
 }
 
-bot_core::six_axis_force_torque_t hear_force(RawLcmSocket& socket, const std::string& channel) {
+bot_core::six_axis_force_torque_t receive_force_torque(RawLcmSocket& socket, const std::string& channel) {
   const std::optional<RawBytes> bytes = socket.receive(channel, kWaitTimeout);
   if (!bytes) throw std::runtime_error("no response on " + channel);
   bot_core::six_axis_force_torque_t message{};
@@ -46,7 +46,7 @@ TEST_P(LivePoses, AreAnsweredAsWrenchesOrAsForceAndTorqueBesideQuestions) {
     EXPECT_NEAR(response.bodies[0].force[2], force_at(height), 1e-6);
 
     socket.send("HULL_ESTIMATE", pose_at(0.5 * height, 200 + i));
-    const auto message = hear_force(socket, "BUOYANCY_OF_2");
+    const auto message = receive_force_torque(socket, "BUOYANCY_OF_2");
     EXPECT_EQ(message.utime, 200 + i);
     EXPECT_NEAR(message.force[2], force_at(0.5 * height), 1e-6);
 

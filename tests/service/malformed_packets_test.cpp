@@ -19,14 +19,14 @@ std::map<DecodeError, std::int64_t> rejected(const ServiceCounters& counters) {
           {DecodeError::kLength, counters.rejected_length}};
 }
 
-void expect_an_response(RawLcmSocket& socket, std::int64_t seq, const std::string& after) {
+void expect_response(RawLcmSocket& socket, std::int64_t seq, const std::string& after) {
   send_request(socket, one_body(1, seq, 0.0));
   EXPECT_EQ(receive(socket).seq, seq) << "after " << after;
 }
 
-class HostilePackets : public testing::TestWithParam<std::string> {};
+class MalformedPackets : public testing::TestWithParam<std::string> {};
 
-TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestionAnswered) {
+TEST_P(MalformedPackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestionAnswered) {
   const std::vector<MalformedMessage> messages = malformed_messages();
   ASSERT_GE(messages.size(), 40U);
   RunningService service({"--mode", GetParam()});
@@ -36,7 +36,7 @@ TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestio
   for (const MalformedMessage& message : messages) {
     socket.send("BUOYANCY_STATES", message.bytes);
     ++expected[message.error];
-    expect_an_response(socket, ++seq, message.name);
+    expect_response(socket, ++seq, message.name);
   }
   const auto asked = static_cast<std::int64_t>(2 * messages.size());
   const auto status =
@@ -47,10 +47,10 @@ TEST_P(HostilePackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestio
   EXPECT_TRUE(service.child().wait_for_text("messages rejected", kWaitTimeout)) << service.log();
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, HostilePackets, testing::Values("lockstep", "latest"),
+INSTANTIATE_TEST_SUITE_P(Modes, MalformedPackets, testing::Values("lockstep", "latest"),
                          [](const auto& mode) { return mode.param; });
 
-TEST(HostilePackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
+TEST(MalformedPackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
   RunningService service;
   RawLcmSocket socket;
   const std::vector<RawBytes> packets{
@@ -68,11 +68,11 @@ TEST(HostilePackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
   std::int64_t seq = 0;
   for (std::size_t i = 0; i < packets.size(); ++i) {
     socket.send_packet(packets[i]);
-    expect_an_response(socket, ++seq, "packet " + std::to_string(i));
+    expect_response(socket, ++seq, "packet " + std::to_string(i));
   }
 }
 
-TEST(HostilePackets, APacketThatEndsBeforeItsChannelsNameDoesIsNoMessage) {
+TEST(MalformedPackets, APacketThatEndsBeforeItsChannelsNameDoesIsNoMessage) {
   RunningService service;
   RawLcmSocket socket;
   // Where the receiver's memory is read on behind a packet, the name's end is found in it.
@@ -80,13 +80,13 @@ TEST(HostilePackets, APacketThatEndsBeforeItsChannelsNameDoesIsNoMessage) {
   RawBytes packet{'L', 'C', '0', '2', 0, 0, 0, 0};
   for (const char c : std::string("BUOYANCY_STATES")) packet.push_back(static_cast<std::uint8_t>(c));
   socket.send_packet(packet);
-  expect_an_response(socket, 1, "the packet");
+  expect_response(socket, 1, "the packet");
   const auto status = on_status(socket, [](const ServiceStatus& s) { return s.counters.requests > 0; });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->counters.requests, 1);
 }
 
-TEST(HostilePackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
+TEST(MalformedPackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
   RunningService service;
   RawLcmSocket socket;
   constexpr std::int32_t kJustBelow4GB = -8;
@@ -97,34 +97,34 @@ TEST(HostilePackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
     packet.bytes.insert(packet.bytes.end(), channel.begin(), channel.end());
     packet.bytes.resize(packet.bytes.size() + 200, 0xAB);
     socket.send_packet(packet.bytes);
-    expect_an_response(socket, 1 + number, "fragment " + std::to_string(number));
+    expect_response(socket, 1 + number, "fragment " + std::to_string(number));
   }
   EXPECT_TRUE(on_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
       << "the other belongs to no message";
   EXPECT_TRUE(service.child().wait_for_text("fragments of incomplete", kWaitTimeout)) << service.log();
 }
 
-TEST(HostilePackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
+TEST(MalformedPackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
   RunningService service;
   RawLcmSocket socket;
   constexpr int kNames = 50'000;
-  constexpr std::int64_t kMayGrow = 1'024;  // kB; each name would take 126 bytes in liblcm
+  constexpr std::int64_t kMaxGrowth = 1'024;  // kB; each name would take 126 bytes in liblcm
   std::int64_t before = 0;
   for (int name = 0; name < 2 * kNames; ++name) {
     socket.send("SOMEBODY_ELSES_CHANNEL_" + std::to_string(name), {});
-    if (name % 100 == 0) expect_an_response(socket, name, "names");
+    if (name % 100 == 0) expect_response(socket, name, "names");
     if (name == kNames) before = resident_kb(service.child().pid());
   }
-  EXPECT_LE(resident_kb(service.child().pid()) - before, kMayGrow);
+  EXPECT_LE(resident_kb(service.child().pid()) - before, kMaxGrowth);
 }
 
-TEST(HostilePackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
+TEST(MalformedPackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
   RunningService service;
   RawLcmSocket socket;
   constexpr int kMessages = 5'000;
   for (int i = 0; i < kMessages; ++i) {
     socket.send("BUOYANCY_STATES", {1, 2, 3});
-    if (i % 100 == 99) expect_an_response(socket, i, "a flood");
+    if (i % 100 == 99) expect_response(socket, i, "a flood");
   }
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);

@@ -38,7 +38,7 @@ namespace {
 
 constexpr std::int64_t kBatch = 64;        // packets between two requests: far fewer than the queues hold
 constexpr std::int64_t kWarmUp = 250'000;  // packets until every buffer is as large as it gets
-constexpr std::int64_t kMayGrow = 1'024;   // kB
+constexpr std::int64_t kMaxGrowth = 1'024;   // kB
 
 struct Rejected {
   std::int64_t truncated = 0, fingerprint = 0, count = 0, length = 0;
@@ -283,7 +283,7 @@ bool forgets_names(RawLcmSocket& socket, CheckedClient& client, RunningService& 
   client.send_request();
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::int64_t after = resident_kb(service.child().pid());
-  const bool flat = after - before <= kMayGrow;
+  const bool flat = after - before <= kMaxGrowth;
   std::printf("\n%" PRId64 " channel names in %.1f s: memory %" PRId64 " kB before, %" PRId64 " kB after%s\n",
               names, took, before, after, flat ? "" : ": GROWS");
   return flat;
@@ -317,7 +317,7 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
       on_status(status_socket, [least](const ServiceStatus& now) { return now.counters.requests >= least; });
   if (!status) throw std::runtime_error("the service's counters stay below what was sent: packets were lost");
   bool holds = counters_add_up(status->counters, attacker.sent(), client);
-  const bool flat = after - warm <= kMayGrow;
+  const bool flat = after - warm <= kMaxGrowth;
   std::printf("memory (VmRSS): %" PRId64 " kB after the first %" PRId64 " packets, %" PRId64
               " kB at the end%s\n",
               warm, std::min(kWarmUp, packets / 2), after, flat ? "" : ": GROWS");

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace buoyancy {
+namespace buoyancy::service {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -74,4 +74,4 @@ TEST(RateLimitedLog, SaysNothingOfWhatDidNotHappen) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::service

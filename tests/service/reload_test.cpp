@@ -68,13 +68,13 @@ TEST(Reload, GivesARepeatOfWhatTheOldSceneAnsweredTheSameBytes) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
-  const auto first = hear_bytes(socket);
+  const auto first = receive_bytes(socket);
   ASSERT_TRUE(first);
   reload(service, box_scene(500.0, 4.0), "reloaded:");
   send_request(socket, one_body(1, 5, 0.3));
-  EXPECT_EQ(hear_bytes(socket), first);
+  EXPECT_EQ(receive_bytes(socket), first);
   send_request(socket, one_body(1, 6, 0.3));
-  const auto next = hear_bytes(socket);
+  const auto next = receive_bytes(socket);
   ASSERT_TRUE(next);
   EXPECT_NEAR(decode_wrenches(*next).bodies[0].force[2], 0.5 * decode_wrenches(*first).bodies[0].force[2],
               1e-6);
@@ -121,7 +121,7 @@ TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAga
   RawLcmSocket socket;
   service.write("tetrahedron.obj", tetrahedron::obj());
   service.write("scene.toml", "[[body]]\nid = 1\nmesh = \"tetrahedron.obj\"\n");
-  HeldFile mesh(service.path("tetrahedron.obj"));
+  LeasedFile mesh(service.path("tetrahedron.obj"));
   if (!mesh.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
   service.child().send_signal(SIGHUP);
   std::int64_t seq = 0;
@@ -148,7 +148,7 @@ TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAga
 
 TEST(Reload, LetsTheServiceEndWhileASceneLoads) {
   RunningService service({}, kBefore);
-  HeldFile scene(service.path("scene.toml"));
+  LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kWaitTimeout)) << service.log();

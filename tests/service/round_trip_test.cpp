@@ -103,7 +103,7 @@ TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
 INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
 
 // One answer is several times as large as the buffer.
-TEST(RoundTripOfHydrostatics, DropsNothingBecauseOfTheServicesOwnPackets) {
+TEST(HydrostaticsRoundTrip, DropsNothingBecauseOfTheServicesOwnPackets) {
   const RunningService service({"-l", "udpm://239.255.76.67:7667?recv_buf_size=106496"},
                                kHydrostaticBoxScene);
   RawLcmSocket socket;
@@ -129,7 +129,7 @@ TEST(RoundTripOfOneBody, IsAnsweredByAServiceThatDoesNotSpin) {
   }
 }
 
-TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAndStiffnessOfABox) {
+TEST(HydrostaticsRoundTrip, TellsAnIndependentClientTheWaterplaneMetacentresAndStiffnessOfABox) {
   const RunningService service({}, kHydrostaticBoxScene);
   RawLcmSocket socket;
   RawStates states = one_body(9, 3, 0.5);
@@ -176,7 +176,7 @@ TEST(RoundTripOfHydrostatics, TellsAnIndependentClientTheWaterplaneMetacentresAn
       on_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
 }
 
-TEST(RoundTripOfHydrostatics, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsks) {
+TEST(HydrostaticsRoundTrip, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsks) {
   const RunningService service({"--hydrostatics-channel", "H"}, kHydrostaticBoxScene);
   RawLcmSocket socket;
   RawStates asking = one_body(1, 1, 0.3);
@@ -198,11 +198,11 @@ TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
-  const auto first = hear_bytes(socket);
+  const auto first = receive_bytes(socket);
   ASSERT_TRUE(first);
   for (int repeat = 0; repeat < 3; ++repeat) {
     send_request(socket, one_body(1, 5, 0.3));
-    EXPECT_EQ(hear_bytes(socket), first);
+    EXPECT_EQ(receive_bytes(socket), first);
   }
   EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
     const LatencyPercentiles& latency = status.latency;
@@ -253,7 +253,7 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
   {
     RunningService service;
     send_request(socket, one_body(1, 5, 0.3));
-    before = hear_bytes(socket);
+    before = receive_bytes(socket);
     status_before = on_status(socket, [](const ServiceStatus&) { return true; });
     service.child().send_signal(SIGKILL);
     EXPECT_EQ(service.child().wait(kWaitTimeout), 128 + SIGKILL);
@@ -262,7 +262,7 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
   const RunningService service;
   send_request(socket, one_body(1, 5, 0.3));
   ASSERT_TRUE(before);
-  EXPECT_EQ(hear_bytes(socket), before);
+  EXPECT_EQ(receive_bytes(socket), before);
   ASSERT_TRUE(status_before);
   const std::int64_t first_instance = status_before->instance_id;
   EXPECT_TRUE(on_status(socket, [first_instance](const ServiceStatus& status) {

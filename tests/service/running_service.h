@@ -95,13 +95,13 @@ inline void send_request(RawLcmSocket& socket, const RawStates& states) {
   socket.send("BUOYANCY_STATES", encode_states(states));
 }
 
-inline std::optional<RawBytes> hear_bytes(RawLcmSocket& socket, double seconds = kWaitTimeout) {
+inline std::optional<RawBytes> receive_bytes(RawLcmSocket& socket, double seconds = kWaitTimeout) {
   return socket.receive("BUOYANCY_WRENCHES", seconds);
 }
 
 // Throws where no response comes.
 inline RawWrenches receive(RawLcmSocket& socket) {
-  const std::optional<RawBytes> bytes = hear_bytes(socket);
+  const std::optional<RawBytes> bytes = receive_bytes(socket);
   if (!bytes) throw std::runtime_error("no response");
   return decode_wrenches(*bytes);
 }

@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::int64_t kBetweenLooks = 10'000;  // requests
 constexpr std::int64_t kWarmUp = 100'000;       // requests until every buffer is as large as it gets
-constexpr std::int64_t kMayGrow = 1'024;        // kB
+constexpr std::int64_t kMaxGrowth = 1'024;        // kB
 constexpr double kBetweenReports = 10.0;        // s
 
 std::atomic<bool> stop_requested{false};
@@ -115,7 +115,7 @@ bool run(std::int64_t requests, Record& record) {
   const ClientStats asked = client->statistics();
   const bool complete = record.done() >= requests;
   const bool flat =
-      warm.service > 0 && last.service - warm.service <= kMayGrow && last.client - warm.client <= kMayGrow;
+      warm.service > 0 && last.service - warm.service <= kMaxGrowth && last.client - warm.client <= kMaxGrowth;
   std::printf("%" PRId64 " of %" PRId64 " requests, %" PRId64 " of them in this run; %" PRId64
               " asked again, %" PRId64 " not answered; round trip p50 %.1f us, p99 %.1f us, max %.0f us\n",
               record.done(), requests, asked.requests, asked.retries, asked.unanswered,

@@ -61,10 +61,10 @@ class NotifySocket {
   UniqueFd socket_;
 };
 
-class ServiceManaged : public testing::Test {
+class SystemdNotifierTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!BUOYANCY_TALKS_TO_SYSTEMD) GTEST_SKIP() << "built without libsystemd";
+    if (!BUOYANCY_EXPECT_SYSTEMD) GTEST_SKIP() << "built without libsystemd";
   }
   std::vector<std::string> environment(const std::string& watchdog_usec = "") const {
     std::vector<std::string> entries{"NOTIFY_SOCKET=" + systemd_.path()};
@@ -76,7 +76,7 @@ class ServiceManaged : public testing::Test {
   RawLcmSocket socket_;
 };
 
-TEST_F(ServiceManaged, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
+TEST_F(SystemdNotifierTest, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
   const RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   send_request(socket_, one_body(1, 1, 0.0));
@@ -84,9 +84,9 @@ TEST_F(ServiceManaged, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 1 request answered"));
 }
 
-TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
+TEST_F(SystemdNotifierTest, IsNotReadyBeforeTheSceneIsLoaded) {
   const TempDir directory;
-  HeldFile scene(directory.write("scene.toml", kBoxScene));
+  LeasedFile scene(directory.write("scene.toml", kBoxScene));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
   ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
   command.environment = environment();
@@ -97,7 +97,7 @@ TEST_F(ServiceManaged, IsNotReadyBeforeTheSceneIsLoaded) {
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(ServiceManaged, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
+TEST_F(SystemdNotifierTest, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGHUP);
@@ -118,7 +118,7 @@ TEST_F(ServiceManaged, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 0 requests answered; the last reload failed"));
 }
 
-TEST_F(ServiceManaged, HearsThatItStopsBeforeItEnds) {
+TEST_F(SystemdNotifierTest, HearsThatItStopsBeforeItEnds) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGTERM);
@@ -126,7 +126,7 @@ TEST_F(ServiceManaged, HearsThatItStopsBeforeItEnds) {
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }
 
-TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
+TEST_F(SystemdNotifierTest, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
   RunningService service({}, kBoxScene, environment("100000"));
   for (int beat = 0; beat < 5; ++beat) ASSERT_TRUE(systemd_.has_received("WATCHDOG=1"));
   service.stop();
@@ -137,9 +137,9 @@ TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
   EXPECT_TRUE(systemd_.has_received("WATCHDOG=1"));
 }
 
-TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileASceneLoads) {
+TEST_F(SystemdNotifierTest, HearsTheWatchdogsBeatWhileASceneLoads) {
   RunningService service({}, kBoxScene, environment("100000"));
-  HeldFile scene(service.path("scene.toml"));
+  LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(systemd_.has_received("RELOADING=1"));
@@ -152,7 +152,7 @@ TEST_F(ServiceManaged, HearsTheWatchdogsBeatWhileASceneLoads) {
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(ServiceManaged, HearsNoBeatWhereNoWatchdogWaits) {
+TEST_F(SystemdNotifierTest, HearsNoBeatWhereNoWatchdogWaits) {
   const RunningService service({}, kBoxScene, environment());
   const std::vector<std::string> heard = systemd_.receive_until("STATUS=2 bodies, 0");
   ASSERT_TRUE(systemd_.has_received("READY=1"));
