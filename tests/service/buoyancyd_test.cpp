@@ -1,4 +1,4 @@
-// buoyancyd as a program: arguments, exit codes, signals, what it says where.
+// buoyancyd as a program: arguments, exit codes, signals, log and status.
 #include <algorithm>
 #include <csignal>
 #include <set>
@@ -17,8 +17,8 @@ FinishedProcess run(std::vector<std::string> arguments) {
   return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
 }
 
-// Exit code, nothing on stdout, one line on stderr that says `text`.
-void expect_refusal(const FinishedProcess& finished, int exit_code, const std::string& text) {
+// Expects this exit code, nothing on stdout, and one line on stderr that contains `text`.
+void expect_failure(const FinishedProcess& finished, int exit_code, const std::string& text) {
   EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error;
   EXPECT_EQ(finished.standard_output, "");
   const std::string& error = finished.standard_error;
@@ -27,9 +27,9 @@ void expect_refusal(const FinishedProcess& finished, int exit_code, const std::s
   EXPECT_NE(error.find(text), std::string::npos) << error;
 }
 
-class Ended : public testing::TestWithParam<int> {};
+class BuoyancydTermination : public testing::TestWithParam<int> {};
 
-TEST_P(Ended, BySignalItSaysWhatItDidAndExitsWith0) {
+TEST_P(BuoyancydTermination, LogsTotalsAndExitsWithSuccess) {
   RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1, 0.0));
@@ -37,15 +37,15 @@ TEST_P(Ended, BySignalItSaysWhatItDidAndExitsWith0) {
   service.child().send_signal(GetParam());
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
-  EXPECT_NE(log.find(GetParam() == SIGINT ? "ended by SIGINT" : "ended by SIGTERM"), std::string::npos)
+  EXPECT_NE(log.find(GetParam() == SIGINT ? "received SIGINT" : "received SIGTERM"), std::string::npos)
       << log;
   EXPECT_NE(log.find("1 requests: 1 computed"), std::string::npos) << log;
   EXPECT_EQ(service.child().standard_output(), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Buoyancyd, Ended, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Signals, BuoyancydTermination, testing::Values(SIGINT, SIGTERM));
 
-TEST(Buoyancyd, SaysWhatItListensToWhenItIsReady) {
+TEST(Buoyancyd, LogsItsConfigurationWhenReady) {
   RunningService service({"-l", "udpm://239.255.76.67:7667?ttl=0", "--mode", "latest"});
   const std::string log = service.log();
   for (const char* text : {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_HYDROSTATICS",
@@ -54,48 +54,48 @@ TEST(Buoyancyd, SaysWhatItListensToWhenItIsReady) {
   }
 }
 
-TEST(Buoyancyd, RefusesWrongArgumentsWithOneLineAnd2) {
+TEST(Buoyancyd, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
-  expect_refusal(run({}), 2, "--scene");
-  expect_refusal(run({"--scene"}), 2, "--scene");
-  expect_refusal(run({"--scene", scene, "--no-such-option"}), 2, "--no-such-option");
-  expect_refusal(run({"--scene", scene, "more"}), 2, "more");
-  expect_refusal(run({"--scene", scene, "--mode", "fast"}), 2, "--mode");
-  expect_refusal(run({"--scene", scene, "--log-level", "loud"}), 2, "--log-level");
-  expect_refusal(run({"--scene", scene, "--json"}), 2, "--check");
-  expect_refusal(run({"--scene", scene, "-l", "tcpq://127.0.0.1:7700"}), 2, "tcpq://");
-  expect_refusal(run({"--scene", scene, "-l", "udpm://1.2.3.4:7667"}), 2, "1.2.3.4");
-  expect_refusal(run({"--scene", scene, "--states-channel", ""}), 2, "0 characters");
-  expect_refusal(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
-  expect_refusal(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "same");
-  expect_refusal(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "same");
+  expect_failure(run({}), 2, "--scene");
+  expect_failure(run({"--scene"}), 2, "--scene");
+  expect_failure(run({"--scene", scene, "--no-such-option"}), 2, "--no-such-option");
+  expect_failure(run({"--scene", scene, "more"}), 2, "more");
+  expect_failure(run({"--scene", scene, "--mode", "fast"}), 2, "--mode");
+  expect_failure(run({"--scene", scene, "--log-level", "loud"}), 2, "--log-level");
+  expect_failure(run({"--scene", scene, "--json"}), 2, "--check");
+  expect_failure(run({"--scene", scene, "-l", "tcpq://127.0.0.1:7700"}), 2, "tcpq://");
+  expect_failure(run({"--scene", scene, "-l", "udpm://1.2.3.4:7667"}), 2, "1.2.3.4");
+  expect_failure(run({"--scene", scene, "--states-channel", ""}), 2, "0 characters");
+  expect_failure(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
+  expect_failure(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "same");
+  expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "same");
 }
 
-TEST(Buoyancyd, RefusesScenesAndMeshesItCannotUseWithOneLineAnd2) {
+TEST(Buoyancyd, RejectsInvalidScenesAndMeshesWithUsageError) {
   const TempDir directory;
-  expect_refusal(run({"--scene", directory.path("missing.toml")}), 2, "missing.toml");
-  expect_refusal(run({"--scene", directory.path(".")}), 2, directory.path("."));
-  expect_refusal(run({"--scene", directory.write("bad.toml", "[[body]]\nid = ")}), 2, "bad.toml");
+  expect_failure(run({"--scene", directory.path("missing.toml")}), 2, "missing.toml");
+  expect_failure(run({"--scene", directory.path(".")}), 2, directory.path("."));
+  expect_failure(run({"--scene", directory.write("bad.toml", "[[body]]\nid = ")}), 2, "bad.toml");
   directory.write("bad.stl", "solid nothing at all");
-  expect_refusal(run({"--scene", directory.write("scene.toml", "[[body]]\nid = 1\nmesh = \"bad.stl\"\n")}), 2,
+  expect_failure(run({"--scene", directory.write("scene.toml", "[[body]]\nid = 1\nmesh = \"bad.stl\"\n")}), 2,
                  "bad.stl");
-  expect_refusal(
+  expect_failure(
       run({"--scene", directory.write("scene.toml", "[[body]]\nid = 1\nmesh = \"gone.stl\"\n"), "--check"}),
       2, "gone.stl");
 }
 
-TEST(Buoyancyd, SaysWhatMendsAMissingMulticastRoute) {
+TEST(Buoyancyd, PrintsTheFixForAMissingMulticastRoute) {
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess finished =
       run_to_end(command_of({"unshare", "-n", "sh", "-c", "ip link set lo up && exec \"$0\" --scene \"$1\"",
                              BUOYANCYD, scene}),
                  kWaitTimeout);
-  expect_refusal(finished, 1, "ip route add 224.0.0.0/4 dev lo");
+  expect_failure(finished, 1, "ip route add 224.0.0.0/4 dev lo");
 }
 
-TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
+TEST(Buoyancyd, LogsALostRouteAndRecoversWhenItReturns) {
   RunningService service;
   const std::vector<std::string> route{"224.0.0.0/4", "dev", "lo"};
   ASSERT_EQ(
@@ -109,20 +109,20 @@ TEST(Buoyancyd, SaysWhenTheNetworkGoesAndAnswersWhenItIsBack) {
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1, 0.0));
   EXPECT_EQ(receive(socket).seq, 1);
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.send_failures > 0; }));
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) { return status.send_failures > 0; }));
 }
 
-TEST(Buoyancyd, SaysThatAnotherOneIsOnItsChannels) {
+TEST(Buoyancyd, WarnsAboutAnotherInstanceOnItsChannels) {
   RunningService first;
   RawLcmSocket bus;
-  for (int heard = 0; heard < 3; ++heard) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kWaitTimeout));
+  for (int received = 0; received < 3; ++received) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kWaitTimeout));
   EXPECT_EQ(first.log().find("another buoyancyd"), std::string::npos) << first.log();  // its own status
   RunningService second;
   EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kWaitTimeout)) << first.log();
   EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kWaitTimeout)) << second.log();
 }
 
-// The words of a log line's level, as spdlog writes them, that stand in the log.
+// The spdlog level names that occur in the log.
 std::set<std::string> levels_in(const std::string& log) {
   std::set<std::string> found;
   for (const char* level : {"debug", "info", "warning", "error"}) {
@@ -133,19 +133,19 @@ std::set<std::string> levels_in(const std::string& log) {
 
 class LogLevel : public testing::TestWithParam<std::pair<const char*, std::set<std::string>>> {};
 
-TEST_P(LogLevel, SaysWhatItIsAskedForAndWhatIsGraver) {
+TEST_P(LogLevel, LogsItsOwnAndMoreSevereLines) {
   const auto& [level, expected] = GetParam();
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   ChildProcess child(command_of({BUOYANCYD, "--scene", scene, "--log-level", level}));
   RawLcmSocket socket;
-  ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it says
-  socket.send("BUOYANCY_STATES", {1, 2, 3});                     // a trouble
+  ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it logs
+  socket.send("BUOYANCY_STATES", {1, 2, 3});                     // causes a warning
   send_request(socket, one_body(7, 3, 0.0));
   EXPECT_EQ(receive(socket).seq, 3);
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
-  ASSERT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.rejected() == 1 && status.reloads_failed == 1;
   }));
   child.send_signal(SIGTERM);
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Levels, LogLevel,
                                          std::pair{"off", std::set<std::string>{}}),
                          [](const auto& level) { return level.param.first; });
 
-TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
+TEST(Buoyancyd, PrefixesJournalLinesWithTheirLevelWithoutTime) {
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const auto started = [&scene](const std::string& journal_stream) {
@@ -181,19 +181,19 @@ TEST(Buoyancyd, GivesTheJournalTheLevelOfEachLineAndLeavesItTheTime) {
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
   EXPECT_TRUE(child.wait_for_text("\n<3>reload failed", kWaitTimeout)) << child.standard_error();
-  ChildProcess refused(started("$(stat -L -c %d:%i /dev/stderr)"));
-  EXPECT_EQ(refused.wait(kWaitTimeout), 2);
-  EXPECT_TRUE(refused.standard_error().starts_with("<3>buoyancyd: ")) << refused.standard_error();
+  ChildProcess failed(started("$(stat -L -c %d:%i /dev/stderr)"));
+  EXPECT_EQ(failed.wait(kWaitTimeout), 2);
+  EXPECT_TRUE(failed.standard_error().starts_with("<3>buoyancyd: ")) << failed.standard_error();
 
   directory.write("scene.toml", kBoxScene);
   ChildProcess redirected(started("1:2"));
   ASSERT_TRUE(redirected.wait_for_text("[info] ready:", kWaitTimeout)) << redirected.standard_error();
 }
 
-TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
+TEST(Buoyancyd, PublishesConfigurationAndUptimeInItsStatus) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
-  const auto first = on_status(socket, [](const ServiceStatus&) { return true; });
+  const auto first = wait_for_status(socket, [](const ServiceStatus&) { return true; });
   ASSERT_TRUE(first);
   EXPECT_EQ(first->version, BUOYANCY_VERSION);
   EXPECT_EQ(first->scene, service.path("scene.toml"));
@@ -202,19 +202,20 @@ TEST(Buoyancyd, SaysInItsStatusWhatItIsAndHowLongItHasBeenThere) {
   EXPECT_GE(first->uptime, 0.0);
   EXPECT_LT(first->uptime, kWaitTimeout);
   service.child().send_signal(SIGHUP);
-  const auto reloaded = on_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
+  const auto reloaded =
+      wait_for_status(socket, [](const ServiceStatus& status) { return status.reloads == 1; });
   ASSERT_TRUE(reloaded);
   EXPECT_EQ(reloaded->reloads_failed, 0);
   EXPECT_GT(reloaded->uptime, first->uptime);
 }
 
-TEST(Buoyancyd, SaysInItsStatusHowLongQuestionsLayInTheQueue) {
+TEST(Buoyancyd, PublishesTheLongestQueueWaitOfTheLastSecond) {
   const RunningService service;
   RawLcmSocket socket;
   RawStates states = one_body(1, 0, 0.0);
   states.bodies.resize(500, states.bodies[0]);
-  // A burst: the last of it waits for those before. Several, since we may be put to sleep in the middle of
-  // one.
+  // The last request of a burst waits for those before it. There are several bursts, since the test may be
+  // suspended during one.
   bool waited = false;
   for (int burst = 0; burst < 20 && !waited; ++burst) {
     for (int request = 0; request < 100; ++request) {
@@ -222,15 +223,15 @@ TEST(Buoyancyd, SaysInItsStatusHowLongQuestionsLayInTheQueue) {
       for (RawState& body : states.bodies) body.position[2] = 0.001 * static_cast<double>(states.seq);
       send_request(socket, states);
     }
-    const std::int64_t asked = states.seq;
-    EXPECT_TRUE(on_status(socket, [&waited, asked](const ServiceStatus& status) {
+    const std::int64_t requests = states.seq;
+    EXPECT_TRUE(wait_for_status(socket, [&waited, requests](const ServiceStatus& status) {
       waited = waited || status.queue_wait > 3 * status.latency.p50;
-      return status.counters.requests == asked;
+      return status.counters.requests == requests;
     }));
   }
   EXPECT_TRUE(waited);
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.queue_wait == 0.0; }))
-      << "of the last second alone";
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) { return status.queue_wait == 0.0; }))
+      << "covers the last second only";
 }
 
 TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
@@ -245,15 +246,15 @@ TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
   EXPECT_TRUE(nlohmann::json::parse(json.standard_output).is_object());
 }
 
-TEST(Buoyancyd, FailsWhereItsReportCannotBeWritten) {
+TEST(Buoyancyd, FailsIfItsReportCannotBeWritten) {
   const TempDir directory;
   ChildCommand command =
       command_of({BUOYANCYD, "--scene", directory.write("scene.toml", kBoxScene), "--check"});
   command.standard_output = "/dev/full";
-  expect_refusal(run_to_end(command, kWaitTimeout), 1, "standard output");
+  expect_failure(run_to_end(command, kWaitTimeout), 1, "standard output");
 }
 
-TEST(Buoyancyd, TellsItsVersion) {
+TEST(Buoyancyd, PrintsVersionAndHelp) {
   const FinishedProcess finished = run({"--version"});
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_EQ(finished.standard_output, "buoyancyd " BUOYANCY_VERSION "\n");

@@ -16,71 +16,71 @@ Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-PushResult push(LatestRequestQueue& latest, std::int64_t session, std::int64_t seq, const std::string& text) {
-  return latest.push({0, session, seq}, bytes_of(text), 0.0);
+PushResult push(LatestRequestQueue& queue, std::int64_t session, std::int64_t seq, const std::string& text) {
+  return queue.push({0, session, seq}, bytes_of(text), 0.0);
 }
 
-std::vector<std::string> take_all(LatestRequestQueue& latest) {
-  std::vector<std::string> taken;
-  while (latest.pop_next([&](Bytes bytes, double) { taken.emplace_back(bytes.begin(), bytes.end()); })) {
+std::vector<std::string> pop_all(LatestRequestQueue& queue) {
+  std::vector<std::string> popped;
+  while (queue.pop_next([&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); })) {
   }
-  return taken;
+  return popped;
 }
 
 using Strings = std::vector<std::string>;
 
 TEST(LatestRequestQueue, KeepsTheNewestOfEachSession) {
-  LatestRequestQueue latest(8);
-  EXPECT_EQ(push(latest, 1, 10, "a10"), PushResult::kQueued);
-  EXPECT_EQ(push(latest, 2, 5, "b5"), PushResult::kQueued);
-  EXPECT_EQ(push(latest, 1, 11, "a11"), PushResult::kReplaced);
-  EXPECT_EQ(push(latest, 2, 4, "b4"), PushResult::kStale);
-  EXPECT_EQ(take_all(latest), (Strings{"a11", "b5"})) << "who has waited longest comes first";
-  EXPECT_TRUE(latest.empty());
-  EXPECT_EQ(take_all(latest), Strings{});
+  LatestRequestQueue queue(8);
+  EXPECT_EQ(push(queue, 1, 10, "a10"), PushResult::kQueued);
+  EXPECT_EQ(push(queue, 2, 5, "b5"), PushResult::kQueued);
+  EXPECT_EQ(push(queue, 1, 11, "a11"), PushResult::kReplaced);
+  EXPECT_EQ(push(queue, 2, 4, "b4"), PushResult::kStale);
+  EXPECT_EQ(pop_all(queue), (Strings{"a11", "b5"})) << "the session that has waited longest comes first";
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(pop_all(queue), Strings{});
 }
 
-TEST(LatestRequestQueue, PrefersTheLastToArriveOfEqualSeq) {
-  LatestRequestQueue latest(8);
-  push(latest, 1, 10, "first");
-  EXPECT_EQ(push(latest, 1, 10, "second"), PushResult::kReplaced);
-  EXPECT_EQ(take_all(latest), Strings{"second"});
-  EXPECT_EQ(push(latest, 1, 10, "third"), PushResult::kQueued) << "a repeat of what was answered is answered";
+TEST(LatestRequestQueue, KeepsTheLastArrivalOfEqualSeqs) {
+  LatestRequestQueue queue(8);
+  push(queue, 1, 10, "first");
+  EXPECT_EQ(push(queue, 1, 10, "second"), PushResult::kReplaced);
+  EXPECT_EQ(pop_all(queue), Strings{"second"});
+  EXPECT_EQ(push(queue, 1, 10, "third"), PushResult::kQueued) << "a retry of a popped request is queued";
 }
 
-TEST(LatestRequestQueue, KnowsWhatIsStaleAfterTheNewestWasTaken) {
-  LatestRequestQueue latest(8);
-  push(latest, 1, 100, "a");
-  take_all(latest);
-  EXPECT_EQ(push(latest, 1, 99, "b"), PushResult::kStale);
-  EXPECT_EQ(push(latest, 1, 36, "c"), PushResult::kStale);
-  EXPECT_EQ(push(latest, 1, 35, "d"), PushResult::kQueued) << "so far back that the client started over";
-  EXPECT_EQ(take_all(latest), Strings{"d"});
-  EXPECT_EQ(push(latest, 1, 36, "e"), PushResult::kQueued) << "and counts on from there";
+TEST(LatestRequestQueue, DropsStaleRequestsAfterTheNewestWasPopped) {
+  LatestRequestQueue queue(8);
+  push(queue, 1, 100, "a");
+  pop_all(queue);
+  EXPECT_EQ(push(queue, 1, 99, "b"), PushResult::kStale);
+  EXPECT_EQ(push(queue, 1, 36, "c"), PushResult::kStale);
+  EXPECT_EQ(push(queue, 1, 35, "d"), PushResult::kQueued) << "low enough for a restarted client";
+  EXPECT_EQ(pop_all(queue), Strings{"d"});
+  EXPECT_EQ(push(queue, 1, 36, "e"), PushResult::kQueued) << "the session continues from there";
 }
 
-TEST(LatestRequestQueue, TakesALowerSeqAfterASilenceForAnAskerThatStartedOver) {
-  LatestRequestQueue latest(8);
-  latest.push({0, 1, 30}, bytes_of("old"), 10.0);
-  take_all(latest);
-  EXPECT_EQ(latest.push({0, 1, 0}, bytes_of("late"), 10.1), PushResult::kStale);
-  EXPECT_EQ(latest.push({0, 1, 0}, bytes_of("new"), 10.3), PushResult::kQueued);
-  EXPECT_EQ(latest.push({0, 1, 1}, bytes_of("newer"), 10.301), PushResult::kReplaced)
-      << "and counts on from there";
-  EXPECT_EQ(take_all(latest), Strings{"newer"});
+TEST(LatestRequestQueue, AcceptsALowerSeqAfterTheRestartIdleTime) {
+  LatestRequestQueue queue(8);
+  queue.push({0, 1, 30}, bytes_of("old"), 10.0);
+  pop_all(queue);
+  EXPECT_EQ(queue.push({0, 1, 0}, bytes_of("late"), 10.1), PushResult::kStale);
+  EXPECT_EQ(queue.push({0, 1, 0}, bytes_of("new"), 10.3), PushResult::kQueued);
+  EXPECT_EQ(queue.push({0, 1, 1}, bytes_of("newer"), 10.301), PushResult::kReplaced)
+      << "the session continues from there";
+  EXPECT_EQ(pop_all(queue), Strings{"newer"});
 }
 
-TEST(LatestRequestQueue, AnswersEveryStepOfAnAskerThatStartedOver) {
-  LatestRequestQueue latest(8);
-  push(latest, 1, 1000, "old");
-  take_all(latest);
+TEST(LatestRequestQueue, QueuesEveryRequestOfARestartedClient) {
+  LatestRequestQueue queue(8);
+  push(queue, 1, 1000, "old");
+  pop_all(queue);
   for (std::int64_t seq = 0; seq < 1100; ++seq) {
-    ASSERT_EQ(push(latest, 1, seq, "new"), PushResult::kQueued) << seq;
-    take_all(latest);
+    ASSERT_EQ(push(queue, 1, seq, "new"), PushResult::kQueued) << seq;
+    pop_all(queue);
   }
 }
 
-TEST(LatestRequestQueue, ComparesSeqsAtTheEndsOfTheirRange) {
+TEST(LatestRequestQueue, ComparesSeqsAtTheLimitsOfTheirRange) {
   constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kHighest = std::numeric_limits<std::int64_t>::max();
   EXPECT_TRUE(supersedes(kHighest, kLowest));
@@ -91,51 +91,51 @@ TEST(LatestRequestQueue, ComparesSeqsAtTheEndsOfTheirRange) {
   EXPECT_TRUE(supersedes(kLowest, kLowest));
 }
 
-TEST(LatestRequestQueue, SaysWhenEverySessionWaits) {
-  LatestRequestQueue latest(2);
-  push(latest, 1, 1, "a");
-  push(latest, 2, 1, "b");
-  EXPECT_EQ(push(latest, 3, 1, "c"), PushResult::kFull);
-  EXPECT_EQ(push(latest, 2, 2, "b2"), PushResult::kReplaced) << "known sessions need no room";
-  EXPECT_EQ(take_all(latest), (Strings{"a", "b2"}));
-  EXPECT_EQ(push(latest, 3, 1, "c"), PushResult::kQueued);
-  EXPECT_EQ(take_all(latest), Strings{"c"});
+TEST(LatestRequestQueue, ReportsFullIfEverySessionHasAPendingRequest) {
+  LatestRequestQueue queue(2);
+  push(queue, 1, 1, "a");
+  push(queue, 2, 1, "b");
+  EXPECT_EQ(push(queue, 3, 1, "c"), PushResult::kFull);
+  EXPECT_EQ(push(queue, 2, 2, "b2"), PushResult::kReplaced) << "a known session needs no place";
+  EXPECT_EQ(pop_all(queue), (Strings{"a", "b2"}));
+  EXPECT_EQ(push(queue, 3, 1, "c"), PushResult::kQueued);
+  EXPECT_EQ(pop_all(queue), Strings{"c"});
 }
 
-TEST(LatestRequestQueue, AnswersEverySessionInTurnHoweverFastTheOthersAsk) {
-  LatestRequestQueue latest(8);
-  Strings taken;
+TEST(LatestRequestQueue, ServesSessionsInTurnWhateverTheirRequestRates) {
+  LatestRequestQueue queue(8);
+  Strings popped;
   std::int64_t seq = 0;
-  push(latest, 1, 1, "slow");
-  for (int answered = 0; answered < 6; ++answered) {
+  push(queue, 1, 1, "slow");
+  for (int round = 0; round < 6; ++round) {
     for (int i = 0; i < 10; ++i) {
       ++seq;
-      push(latest, 2, seq, "fast" + std::to_string(seq));
-      push(latest, 3, seq, "faster" + std::to_string(seq));
+      push(queue, 2, seq, "fast" + std::to_string(seq));
+      push(queue, 3, seq, "faster" + std::to_string(seq));
     }
-    latest.pop_next([&](Bytes bytes, double) { taken.emplace_back(bytes.begin(), bytes.end()); });
-    push(latest, 1, seq, "slow");
+    queue.pop_next([&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); });
+    push(queue, 1, seq, "slow");
   }
-  EXPECT_EQ(taken, (Strings{"slow", "fast20", "faster30", "slow", "fast50", "faster60"}));
+  EXPECT_EQ(popped, (Strings{"slow", "fast20", "faster30", "slow", "fast50", "faster60"}));
 }
 
-TEST(LatestRequestQueue, ForgetsTheSessionThatWasUsedLeastRecently) {
-  LatestRequestQueue latest(2);
-  push(latest, 1, 50, "a");
-  push(latest, 2, 50, "b");
-  push(latest, 1, 51, "a");
-  take_all(latest);
-  push(latest, 3, 1, "c");  // in the place of 2
-  take_all(latest);
-  EXPECT_EQ(push(latest, 1, 50, "a"), PushResult::kStale) << "1 is still known";
-  EXPECT_EQ(push(latest, 2, 49, "b"), PushResult::kQueued) << "2 is not";
+TEST(LatestRequestQueue, EvictsTheLeastRecentlyUsedSession) {
+  LatestRequestQueue queue(2);
+  push(queue, 1, 50, "a");
+  push(queue, 2, 50, "b");
+  push(queue, 1, 51, "a");
+  pop_all(queue);
+  push(queue, 3, 1, "c");  // evicts session 2
+  pop_all(queue);
+  EXPECT_EQ(push(queue, 1, 50, "a"), PushResult::kStale) << "1 is still known";
+  EXPECT_EQ(push(queue, 2, 49, "b"), PushResult::kQueued) << "2 is not";
 }
 
-TEST(LatestRequestQueue, GivesBackTheTimeOfArrival) {
-  LatestRequestQueue latest(2);
-  latest.push({0, 1, 1}, bytes_of("a"), 1.5);
-  latest.push({0, 1, 2}, bytes_of("b"), 2.5);
-  EXPECT_TRUE(latest.pop_next([](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
+TEST(LatestRequestQueue, ReturnsTheArrivalTimeOfTheNewestRequest) {
+  LatestRequestQueue queue(2);
+  queue.push({0, 1, 1}, bytes_of("a"), 1.5);
+  queue.push({0, 1, 2}, bytes_of("b"), 2.5);
+  EXPECT_TRUE(queue.pop_next([](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A file that whoever opens it has to wait for: what makes a load last exactly as long as a test wants.
+// A file that blocks every process that opens it: a test uses it to make a load last as long as it wants.
 #pragma once
 
 #include <csignal>
@@ -11,23 +11,22 @@
 
 namespace buoyancy {
 
-// By a lease of Linux's (fcntl(2)), which blocks the open() of others until it is given up, or for
-// /proc/sys/fs/lease-break-time, 45 s where nobody changed it.
+// Holds a Linux file lease (fcntl(2)), which blocks open() in other processes until it is released, at most
+// for /proc/sys/fs/lease-break-time (45 s by default).
 class LeasedFile {
  public:
   explicit LeasedFile(const std::string& path) : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-    // The kernel says that somebody waits, by a signal that would end us: by one that does not.
-    delay_line_ =
-        ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;
+    // The kernel signals that a process waits with SIGIO, which would end the test; SIGURG is ignored.
+    held_ = ::fcntl(file_.value(), F_SETSIG, SIGURG) == 0 && ::fcntl(file_.value(), F_SETLEASE, F_WRLCK) == 0;
   }
-  bool held() const { return delay_line_; }  // false: the file system has no leases
-  // Does somebody wait for it?
+  bool held() const { return held_; }  // false: the file system has no leases
+  // Does a process wait for the file?
   bool awaited() const { return ::fcntl(file_.value(), F_GETLEASE) != F_WRLCK; }
-  void let_go() { ::fcntl(file_.value(), F_SETLEASE, F_UNLCK); }
+  void release() { ::fcntl(file_.value(), F_SETLEASE, F_UNLCK); }
 
  private:
   UniqueFd file_;
-  bool delay_line_ = false;
+  bool held_ = false;
 };
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// bot_core's poses, live: what a robot's bus already carries, answered over real UDP.
+// Live bot_core poses over UDP: buoyancyd receives them and publishes wrenches or forces and torques.
 #include <bot_core/six_axis_force_torque_t.hpp>
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-// Of the box in kBoxScene, N: half of its 4 m of height are under water where its origin is at the surface.
+// [N], for the box of kBoxScene, which is 4 m high and centred on its origin.
 double force_at(double height) {
   return kDensity * kGravity * 6.0 * (2.0 - height);
 }
@@ -30,7 +30,7 @@ bot_core::six_axis_force_torque_t receive_force_torque(RawLcmSocket& socket, con
 
 class LivePoses : public testing::TestWithParam<const char*> {};
 
-TEST_P(LivePoses, AreAnsweredAsWrenchesOrAsForceAndTorqueBesideQuestions) {
+TEST_P(LivePoses, PublishesWrenchesAndForceTorqueBesideRequests) {
   RunningService service({"--mode", GetParam(), "--pose", "HULL=1", "--pose", "HULL_ESTIMATE=2",
                           "--force-torque", "BUOYANCY_OF_2=2"},
                          kHydrostaticBoxScene);
@@ -53,23 +53,23 @@ TEST_P(LivePoses, AreAnsweredAsWrenchesOrAsForceAndTorqueBesideQuestions) {
     send_request(socket, one_body(1, i, height));
     EXPECT_EQ(receive(socket).session_id, 1);
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.computed == 60 && status.counters.sessions == 3 &&
            status.counters.hydrostatics == 20;
   }));
 }
 
-TEST_P(LivePoses, WhatIsNoPoseIsCountedByItsCause) {
+TEST_P(LivePoses, CountsInvalidPosesByCause) {
   RunningService service({"--mode", GetParam(), "--pose", "HULL=1"});
   RawLcmSocket socket;
-  RawBytes longer = pose_at(0.0, 1);
-  longer.push_back(0);
-  RawBytes other = pose_at(0.0, 1);
-  ++other[0];
-  for (const RawBytes& wrong : {RawBytes{1, 2, 3}, longer, other}) socket.send("HULL", wrong);
+  RawBytes too_long = pose_at(0.0, 1);
+  too_long.push_back(0);
+  RawBytes other_type = pose_at(0.0, 1);
+  ++other_type[0];
+  for (const RawBytes& invalid : {RawBytes{1, 2, 3}, too_long, other_type}) socket.send("HULL", invalid);
   socket.send("HULL", pose_at(0.0, 2));
   EXPECT_EQ(receive(socket).utime, 2);
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     const ServiceCounters& counters = status.counters;
     return counters.requests == 4 && counters.computed == 1 && counters.rejected_truncated == 1 &&
            counters.rejected_length == 1 && counters.rejected_fingerprint == 1;

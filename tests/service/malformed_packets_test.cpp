@@ -1,4 +1,4 @@
-// What is no request must not keep the service from answering those that are.
+// The service keeps handling valid requests among malformed messages and packets.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ void expect_response(RawLcmSocket& socket, std::int64_t seq, const std::string& 
 
 class MalformedPackets : public testing::TestWithParam<std::string> {};
 
-TEST_P(MalformedPackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuestionAnswered) {
+TEST_P(MalformedPackets, CountsThemByCauseAndHandlesTheNextRequest) {
   const std::vector<MalformedMessage> messages = malformed_messages();
   ASSERT_GE(messages.size(), 40U);
   RunningService service({"--mode", GetParam()});
@@ -38,9 +38,9 @@ TEST_P(MalformedPackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuest
     ++expected[message.error];
     expect_response(socket, ++seq, message.name);
   }
-  const auto asked = static_cast<std::int64_t>(2 * messages.size());
+  const auto requests = static_cast<std::int64_t>(2 * messages.size());
   const auto status =
-      on_status(socket, [asked](const ServiceStatus& s) { return s.counters.requests == asked; });
+      wait_for_status(socket, [requests](const ServiceStatus& s) { return s.counters.requests == requests; });
   ASSERT_TRUE(status);
   EXPECT_EQ(rejected(status->counters), expected);
   EXPECT_EQ(status->counters.computed, seq);
@@ -50,7 +50,7 @@ TEST_P(MalformedPackets, EveryMalformedMessageIsCountedByItsCauseAndTheNextQuest
 INSTANTIATE_TEST_SUITE_P(Modes, MalformedPackets, testing::Values("lockstep", "latest"),
                          [](const auto& mode) { return mode.param; });
 
-TEST(MalformedPackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
+TEST(MalformedPackets, IgnoresBytesThatAreNotAnLcmPacket) {
   RunningService service;
   RawLcmSocket socket;
   const std::vector<RawBytes> packets{
@@ -72,21 +72,21 @@ TEST(MalformedPackets, BytesThatAreNoLcmPacketLeaveTheServiceAnswering) {
   }
 }
 
-TEST(MalformedPackets, APacketThatEndsBeforeItsChannelsNameDoesIsNoMessage) {
+TEST(MalformedPackets, IgnoresAPacketWithAnUnterminatedChannelName) {
   RunningService service;
   RawLcmSocket socket;
-  // Where the receiver's memory is read on behind a packet, the name's end is found in it.
+  // If the receiver reads past the end of a packet, it finds the end of the name in this one.
   socket.send_packet(RawBytes(60'000, 0));
   RawBytes packet{'L', 'C', '0', '2', 0, 0, 0, 0};
   for (const char c : std::string("BUOYANCY_STATES")) packet.push_back(static_cast<std::uint8_t>(c));
   socket.send_packet(packet);
   expect_response(socket, 1, "the packet");
-  const auto status = on_status(socket, [](const ServiceStatus& s) { return s.counters.requests > 0; });
+  const auto status = wait_for_status(socket, [](const ServiceStatus& s) { return s.counters.requests > 0; });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->counters.requests, 1);
 }
 
-TEST(MalformedPackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
+TEST(MalformedPackets, DropsAndCountsFragmentsThatCrashLiblcm) {
   RunningService service;
   RawLcmSocket socket;
   constexpr std::int32_t kJustBelow4GB = -8;
@@ -99,16 +99,16 @@ TEST(MalformedPackets, FragmentsThatKillLiblcmAreDroppedAndCounted) {
     socket.send_packet(packet.bytes);
     expect_response(socket, 1 + number, "fragment " + std::to_string(number));
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
-      << "the other belongs to no message";
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& s) { return s.fragments_dropped == 1; }))
+      << "the second belongs to no message";
   EXPECT_TRUE(service.child().wait_for_text("fragments of incomplete", kWaitTimeout)) << service.log();
 }
 
-TEST(MalformedPackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
+TEST(MalformedPackets, KeepsNoUnsubscribedChannelNameInMemory) {
   RunningService service;
   RawLcmSocket socket;
   constexpr int kNames = 50'000;
-  constexpr std::int64_t kMaxGrowth = 1'024;  // kB; each name would take 126 bytes in liblcm
+  constexpr std::int64_t kMaxGrowth = 1'024;  // [kB]; liblcm would take 126 bytes per name
   std::int64_t before = 0;
   for (int name = 0; name < 2 * kNames; ++name) {
     socket.send("SOMEBODY_ELSES_CHANNEL_" + std::to_string(name), {});
@@ -118,7 +118,7 @@ TEST(MalformedPackets, NoChannelsNameThatNobodyAskedForStaysInMemory) {
   EXPECT_LE(resident_kb(service.child().pid()) - before, kMaxGrowth);
 }
 
-TEST(MalformedPackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
+TEST(MalformedPackets, LogsAFloodOfMalformedMessagesInFewLines) {
   RunningService service;
   RawLcmSocket socket;
   constexpr int kMessages = 5'000;
@@ -130,7 +130,7 @@ TEST(MalformedPackets, AFloodOfMalformedMessagesBecomesAFewLinesOfLog) {
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
   EXPECT_NE(log.find("messages rejected"), std::string::npos);
-  EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100) << "one line a second at most";
+  EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100) << "at most one line per second";
 }
 
 }  // namespace

@@ -1,17 +1,17 @@
-// A real buoyancyd under packets that are no requests, for as long as one likes.
+// Sends malformed packets to a running buoyancyd and checks its responses, counters and memory.
 //
 //   malformed_traffic [--packets N] [--seed S] [--channel-names N]
 //
-// Sends N packets in batches, each followed by a valid request that must be answered. A packet is a valid
-// request damaged at random, one of the malformed messages of the test suite, a fragment of a message that
-// never becomes whole, bytes with a wrong LCM header, or a message on a channel that nobody asked for. Then
-// counts what the service says of itself beside what was sent, by cause, and its memory before and after.
+// Sends N packets in batches, each followed by a valid request that must get its response. A packet is a
+// randomly corrupted request, one of the malformed messages of the test suite, a fragment of a message that
+// is never completed, bytes with an invalid LCM header, or a message on an unsubscribed channel. Then the
+// counters of the service are compared with the packets sent, by cause, and its memory before and after.
 //
-// After that, with --channel-names, as many messages as that on channels of different names, of which nothing
-// may be kept.
+// With --channel-names, sends that many messages on channels of different names afterwards and checks that
+// the service keeps none of the names.
 //
-// To be run in a network namespace with a multicast route (scripts/attack_service). Exit codes: 0 all
-// requests were answered, the counters add up, memory did not grow; 1 not so; 2 wrong arguments.
+// Run it in a network namespace with a multicast route (scripts/attack_service). Exit status: 0 if every
+// request got its response, the counters match and memory did not grow; 1 if not; 2 on invalid arguments.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -36,27 +36,27 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::int64_t kBatch = 64;        // packets between two requests: far fewer than the queues hold
-constexpr std::int64_t kWarmUp = 250'000;  // packets until every buffer is as large as it gets
-constexpr std::int64_t kMaxGrowth = 1'024;   // kB
+constexpr std::int64_t kBatch = 64;         // packets between two requests; the queues hold far more
+constexpr std::int64_t kWarmUp = 250'000;   // packets until every buffer has its final size
+constexpr std::int64_t kMaxGrowth = 1'024;  // [kB]
 
 struct Rejected {
   std::int64_t truncated = 0, fingerprint = 0, count = 0, length = 0;
 };
 
-// Everything that is sent on the channel of the requests, by what must become of it.
+// The packets sent, by their expected effect.
 struct Sent {
   Rejected rejected;
-  std::int64_t requests = 0;   // damaged, but still a request: answered
-  std::int64_t elsewhere = 0;  // never reaches the service: another channel's, or no whole message
+  std::int64_t requests = 0;   // corrupted, but still valid: handled
+  std::int64_t unrelated = 0;  // not delivered to the service: another channel or an incomplete message
 
   std::int64_t on_channel() const {
     return rejected.truncated + rejected.fingerprint + rejected.count + rejected.length + requests;
   }
 };
 
-// What docs/messages.md promises, written anew.
-void expect_of(const RawBytes& message, Sent& sent) {
+// Counts the effect that docs/messages.md specifies, implemented independently of the service.
+void count_expected(const RawBytes& message, Sent& sent) {
   constexpr std::size_t kFixed = 44;
   constexpr std::size_t kBody = 108;
   if (message.size() < kFixed) {
@@ -88,16 +88,16 @@ class Attacker {
   void send() {
     switch (below(8)) {
       case 0:
-        return on_our_channel(malformed_[below(malformed_.size())]);
+        return send_on_request_channel(malformed_[below(malformed_.size())]);
       case 1:
         return send_fragment();
       case 2:
         return send_wrong_header();
       case 3:
-        ++sent_.elsewhere;
+        ++sent_.unrelated;
         return socket_.send("OTHER_" + std::to_string(below(100)), garbage(below(200)));
       default:
-        return on_our_channel(damaged(valid_request()));
+        return send_on_request_channel(corrupted(valid_request()));
     }
   }
 
@@ -123,9 +123,9 @@ class Attacker {
     return encode_states(states);
   }
 
-  RawBytes damaged(RawBytes bytes) {
+  RawBytes corrupted(RawBytes bytes) {
     switch (below(7)) {
-      case 0:  // some bits anywhere
+      case 0:  // random bits
         for (std::size_t i = 0; i <= below(8); ++i) {
           bytes[below(bytes.size())] ^= static_cast<std::uint8_t>(1U << below(8));
         }
@@ -144,10 +144,10 @@ class Attacker {
       case 4:  // the fingerprint
         bytes[below(8)] = byte();
         break;
-      case 5:  // everything behind the fixed fields: NaN, infinities, any body
+      case 5:  // everything after the fixed fields: NaN, infinities, any body
         for (std::size_t i = 44; i < bytes.size(); ++i) bytes[i] = byte();
         break;
-      default:  // a stretch of it is missing in the middle
+      default:  // bytes removed from the middle
         const std::size_t start = below(bytes.size());
         const std::size_t end = start + below(bytes.size() - start + 1);
         bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(start),
@@ -157,18 +157,18 @@ class Attacker {
     return bytes;
   }
 
-  void on_our_channel(const RawBytes& message) {
-    expect_of(message, sent_);
+  void send_on_request_channel(const RawBytes& message) {
+    count_expected(message, sent_);
     socket_.send("BUOYANCY_STATES", message);
   }
 
-  // Of a message that never becomes whole.
+  // The message of the fragment is never completed.
   void send_fragment() {
-    ++sent_.elsewhere;
+    ++sent_.unrelated;
     const auto size = static_cast<std::int32_t>(below(2) == 0 ? below(1'000'000) : random_());
     const auto count = static_cast<std::int16_t>(below(20) == 0 ? random_() : 2 + below(30));
     const auto number = static_cast<std::int16_t>(below(2) == 0 ? 0 : below(40));
-    // liblcm dies of those just below 2^32.
+    // Offsets just below 2^32 crash liblcm.
     const auto offset = static_cast<std::int32_t>(below(2) == 0 ? below(2'000'000) : ~below(100));
     RawWriter packet;
     packet.int32(0x4c433033).int32(static_cast<std::int32_t>(random_())).int32(size).int32(offset);
@@ -184,22 +184,22 @@ class Attacker {
     static constexpr std::array<std::uint8_t, 4> kMagic{'L', 'C', '0', '2'};
     RawBytes packet = garbage(below(64));
     switch (below(3)) {
-      case 0:  // no header of LCM, or a part of one
+      case 0:  // no LCM header, or part of one
         std::copy_n(kMagic.begin(), std::min(below(4), packet.size()), packet.begin());
-        ++sent_.elsewhere;
+        ++sent_.unrelated;
         break;
-      case 1:  // a channel's name that is too long
+      case 1:  // a channel name that is too long
         packet.assign(kMagic.begin(), kMagic.end());
         packet.resize(8 + 64 + below(200), 'N');
         packet.push_back(0);
-        ++sent_.elsewhere;
+        ++sent_.unrelated;
         break;
-      default:  // our channel's name, or a part of it, without its end: no room for any data
+      default:  // the request channel's name or part of it, unterminated and without data
         const std::string name = "BUOYANCY_STATES";
         packet.assign(kMagic.begin(), kMagic.end());
         packet.resize(8);
         packet.insert(packet.end(), name.begin(), name.end() - static_cast<std::ptrdiff_t>(below(3)));
-        ++sent_.elsewhere;
+        ++sent_.unrelated;
         break;
     }
     socket_.send_packet(packet);
@@ -211,27 +211,27 @@ class Attacker {
   Sent sent_;
 };
 
-// A client in lock-step, with its own retries. Throws where a request gets no response, or a wrong one.
+// A lock-step client with retries. Throws if a request gets no response or a wrong one.
 class CheckedClient {
  public:
   void send_request() {
-    const double height = 0.001 * static_cast<double>(++asked_ % 1000);
+    const double height = 0.001 * static_cast<double>(++requests_ % 1000);
     BodyState state{.body_id = 1,
                     .position = {1.0, 2.0, height},
                     .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0},
                     .linear_velocity = {},
                     .angular_velocity = {}};
-    const auto response = client_.request(asked_, {&state, 1});
+    const auto response = client_.request(requests_, {&state, 1});
     if (!response) throw std::runtime_error(response.error().message());
     const double force = kDensity * kGravity * 6.0 * (2.0 - height);
     if (std::abs((*response)->bodies[0].force[2] - force) > 1e-9 * force) {
-      throw std::runtime_error("request " + std::to_string(asked_) + " was answered wrongly");
+      throw std::runtime_error("request " + std::to_string(requests_) + " got a wrong response");
     }
   }
 
-  std::int64_t sent() const { return asked_ + repeats(); }
-  std::int64_t asked() const { return asked_; }
-  std::int64_t repeats() const { return client_.statistics().retries; }
+  std::int64_t sent() const { return requests_ + retries(); }
+  std::int64_t requests() const { return requests_; }
+  std::int64_t retries() const { return client_.statistics().retries; }
 
  private:
   static Client open() {
@@ -241,7 +241,7 @@ class CheckedClient {
   }
 
   Client client_ = open();
-  std::int64_t asked_ = 0;
+  std::int64_t requests_ = 0;
 };
 
 bool print_row(const char* what, std::int64_t sent, std::int64_t counted) {
@@ -257,17 +257,18 @@ bool counters_add_up(const ServiceCounters& counters, const Sent& sent, const Ch
   holds &= print_row("rejected_count", sent.rejected.count, counters.rejected_count);
   holds &= print_row("rejected_length", sent.rejected.length, counters.rejected_length);
   holds &=
-      print_row("answered and repeated", sent.requests + client.sent(), counters.computed + counters.retries);
+      print_row("computed and retries", sent.requests + client.sent(), counters.computed + counters.retries);
   holds &= print_row("requests", sent.on_channel() + client.sent(), counters.requests);
   holds &= print_row("requests, sum of the above", counters.rejected() + counters.computed + counters.retries,
                      counters.requests);
-  std::printf("%-28s %12" PRId64 "\n%-28s %12s %12" PRId64 "\n", "not for the service", sent.elsewhere,
-              "sessions forgotten", "", counters.sessions_evicted);
+  std::printf("%-28s %12" PRId64 "\n%-28s %12s %12" PRId64 "\n", "not delivered to the service",
+              sent.unrelated, "sessions evicted", "", counters.sessions_evicted);
   return holds;
 }
 
-// Does no channel's name stay in memory?
-bool forgets_names(RawLcmSocket& socket, CheckedClient& client, RunningService& service, std::int64_t names) {
+// Does the memory of the service stay the same while channel names change?
+bool keeps_no_names(RawLcmSocket& socket, CheckedClient& client, RunningService& service,
+                    std::int64_t names) {
   const std::int64_t before = resident_kb(service.child().pid());
   const auto start = std::chrono::steady_clock::now();
   {
@@ -281,11 +282,11 @@ bool forgets_names(RawLcmSocket& socket, CheckedClient& client, RunningService& 
     }
   }
   client.send_request();
-  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::int64_t after = resident_kb(service.child().pid());
   const bool flat = after - before <= kMaxGrowth;
   std::printf("\n%" PRId64 " channel names in %.1f s: memory %" PRId64 " kB before, %" PRId64 " kB after%s\n",
-              names, took, before, after, flat ? "" : ": GROWS");
+              names, duration, before, after, flat ? "" : ": GROWS");
   return flat;
 }
 
@@ -306,26 +307,28 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
       if (warm == 0 && packet >= std::min(kWarmUp, packets / 2)) warm = resident_kb(service.child().pid());
     }
   }
-  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::int64_t after = resident_kb(service.child().pid());
   std::printf("%" PRId64 " packets, seed %" PRIu64 ", in %.1f s; %" PRId64
-              " requests between them, all answered, %" PRId64 " asked again\n",
-              packets, seed, took, client.asked(), client.repeats());
-  const std::int64_t least = attacker.sent().on_channel() + client.sent();
-  RawLcmSocket status_socket;  // the other's is full of what it sent
-  const auto status =
-      on_status(status_socket, [least](const ServiceStatus& now) { return now.counters.requests >= least; });
-  if (!status) throw std::runtime_error("the service's counters stay below what was sent: packets were lost");
+              " requests between them, all with a response, %" PRId64 " retries\n",
+              packets, seed, duration, client.requests(), client.retries());
+  const std::int64_t min_requests = attacker.sent().on_channel() + client.sent();
+  RawLcmSocket status_socket;  // the buffer of the other socket is full of its own packets
+  const auto status = wait_for_status(status_socket, [min_requests](const ServiceStatus& now) {
+    return now.counters.requests >= min_requests;
+  });
+  if (!status)
+    throw std::runtime_error("the counters of the service stay below the packets sent: packets were lost");
   bool holds = counters_add_up(status->counters, attacker.sent(), client);
   const bool flat = after - warm <= kMaxGrowth;
   std::printf("memory (VmRSS): %" PRId64 " kB after the first %" PRId64 " packets, %" PRId64
               " kB at the end%s\n",
               warm, std::min(kWarmUp, packets / 2), after, flat ? "" : ": GROWS");
   holds &= flat;
-  if (names > 0) holds &= forgets_names(socket, client, service, names);
+  if (names > 0) holds &= keeps_no_names(socket, client, service, names);
   service.child().send_signal(SIGTERM);
   if (service.child().wait(kWaitTimeout) != 0)
-    throw std::runtime_error("buoyancyd did not end well: " + service.log());
+    throw std::runtime_error("buoyancyd did not exit with 0: " + service.log());
   return holds;
 }
 
@@ -333,20 +336,20 @@ bool run(std::int64_t packets, std::uint64_t seed, std::int64_t names) {
 }  // namespace buoyancy
 
 int main(int argc, char** argv) {
-  buoyancy::ToolCommandLine command_line("Packets that are no requests, at a real buoyancyd",
+  buoyancy::ToolCommandLine command_line("Send malformed packets to a running buoyancyd",
                                          "malformed_traffic");
   std::int64_t packets = 3'000'000;
   std::uint64_t seed = 1;
   std::int64_t names = 1'000'000;
-  command_line.add_number("--packets", packets, std::int64_t{1}, std::int64_t{1} << 40U, "How many");
-  command_line.add_option("--seed", seed, "Of the random numbers");
+  command_line.add_number("--packets", packets, std::int64_t{1}, std::int64_t{1} << 40U, "Number of packets");
+  command_line.add_option("--seed", seed, "Seed of the random numbers");
   command_line.add_number("--channel-names", names, std::int64_t{0}, std::int64_t{1} << 40U,
-                          "Then so many channels of different names");
+                          "Number of different channel names sent afterwards");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   try {
     return buoyancy::run(packets, seed, names) ? 0 : 1;
-  } catch (const std::exception& failed) {
-    std::fprintf(stderr, "malformed_traffic: %s\n", failed.what());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "malformed_traffic: %s\n", error.what());
     return 1;
   }
 }

@@ -1,5 +1,5 @@
-// Logs damaged at random, one place each, given to buoyancy-replay as a program: it never crashes, and
-// answers every event before and behind the damage as in the log that is whole.
+// Runs buoyancy-replay on logs with one random mutation each: it never crashes, and handles every event
+// before and after the mutation as in the original log.
 #include <algorithm>
 #include <map>
 #include <random>
@@ -24,7 +24,7 @@ constexpr const char* kScene = "[[body]]\nid = 1\nshape = { type = \"rock\", fre
 
 struct Log {
   std::string bytes;
-  std::vector<std::size_t> starts;  // of the events, and behind the last one
+  std::vector<std::size_t> starts;  // of the events, and the end of the last one
 };
 
 std::vector<std::uint8_t> request(int number) {
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> request(int number) {
   state.position = {1.0 * number, 0.0, 0.01 * number - 0.3};
   state.quaternion_wxyz = {0.8, 0.6, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
-  // Of several lengths, so that no damage happens to leave the events in step.
+  // Different lengths, so that no mutation leaves the following events aligned by chance.
   encode(WrenchRequest{.key = {number, 7, number},
                        .lead_time = 0.0,
                        .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)},
@@ -41,7 +41,7 @@ std::vector<std::uint8_t> request(int number) {
   return bytes;
 }
 
-Log whole_log() {
+Log original_log() {
   Log log;
   std::vector<std::uint8_t> event;
   for (int number = 0; number < kEvents; ++number) {
@@ -54,14 +54,14 @@ Log whole_log() {
   return log;
 }
 
-// The bytes [begin, end) of the whole log are replaced.
-struct CorruptSection {
+// Replaces the bytes [begin, end) of the original log.
+struct Mutation {
   std::string kind;
   std::size_t begin = 0, end = 0;
   std::string replacement;
 };
 
-CorruptSection damage_of(const Log& log, unsigned seed) {
+Mutation make_mutation(const Log& log, unsigned seed) {
   std::mt19937 random(seed);
   const auto below = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
@@ -71,43 +71,43 @@ CorruptSection damage_of(const Log& log, unsigned seed) {
     for (char& value : bytes) value = static_cast<char>(below(256));
     return bytes;
   };
-  CorruptSection damage;
-  damage.begin = below(log.bytes.size());
-  damage.end = std::min(damage.begin + 1 + below(600), log.bytes.size());
+  Mutation mutation;
+  mutation.begin = below(log.bytes.size());
+  mutation.end = std::min(mutation.begin + 1 + below(600), log.bytes.size());
   switch (seed % 6) {
     case 0:
-      damage.kind = "a bit";
-      damage.end = damage.begin + 1;
-      damage.replacement = {static_cast<char>(log.bytes[damage.begin] ^ (1 << below(8)))};
+      mutation.kind = "a bit";
+      mutation.end = mutation.begin + 1;
+      mutation.replacement = {static_cast<char>(log.bytes[mutation.begin] ^ (1 << below(8)))};
       break;
     case 1:
-      damage.kind = "overwritten";
-      damage.replacement = garbage(damage.end - damage.begin);
+      mutation.kind = "overwritten";
+      mutation.replacement = garbage(mutation.end - mutation.begin);
       break;
     case 2:
-      damage.kind = "zeros, as after a crash of the machine";
-      damage.replacement = std::string(damage.end - damage.begin, '\0');
+      mutation.kind = "zeros, as after a crash of the machine";
+      mutation.replacement = std::string(mutation.end - mutation.begin, '\0');
       break;
     case 3:
-      damage.kind = "inserted";
-      damage.end = damage.begin;
-      damage.replacement = garbage(1 + below(2000));
+      mutation.kind = "inserted";
+      mutation.end = mutation.begin;
+      mutation.replacement = garbage(1 + below(2000));
       break;
     case 4:
-      damage.kind = "missing";
+      mutation.kind = "missing";
       break;
     default:
-      damage.kind = "cut off";
-      damage.end = log.bytes.size();
+      mutation.kind = "cut off";
+      mutation.end = log.bytes.size();
       break;
   }
-  return damage;
+  return mutation;
 }
 
-// The responses of a CSV by their request's utime.
+// The rows of a CSV by the utime of their request.
 using Responses = std::map<int, std::string>;
 
-class MutatedLogs : public testing::Test {
+class ReplayMutatedLogs : public testing::Test {
  protected:
   FinishedProcess replay(const std::string& log) const {
     return run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene_, directory_.write("in.lcmlog", log),
@@ -128,34 +128,34 @@ class MutatedLogs : public testing::Test {
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
 
-TEST_F(MutatedLogs, AreAnsweredBeforeAndBehindTheDamageAsIfThereWereNone) {
-  const Log log = whole_log();
+TEST_F(ReplayMutatedLogs, KeepsResponsesBeforeAndAfterTheMutation) {
+  const Log log = original_log();
   ASSERT_EQ(replay(log.bytes).exit_code, 0);
-  const Responses whole = responses();
-  ASSERT_EQ(whole.size(), std::size_t{kEvents} * 4 / 5);
-  int damaged = 0;
+  const Responses expected = responses();
+  ASSERT_EQ(expected.size(), std::size_t{kEvents} * 4 / 5);
+  int reported = 0;
   for (unsigned seed = 0; seed < kLogs; ++seed) {
-    const CorruptSection damage = damage_of(log, seed);
+    const Mutation mutation = make_mutation(log, seed);
     std::string bytes = log.bytes;
-    bytes.replace(damage.begin, damage.end - damage.begin, damage.replacement);
+    bytes.replace(mutation.begin, mutation.end - mutation.begin, mutation.replacement);
     const FinishedProcess finished = replay(bytes);
-    const std::string what = damage.kind + " at byte " + std::to_string(damage.begin) + " to " +
-                             std::to_string(damage.end) + ", seed " + std::to_string(seed);
+    const std::string description = mutation.kind + " at byte " + std::to_string(mutation.begin) + " to " +
+                                    std::to_string(mutation.end) + ", seed " + std::to_string(seed);
     ASSERT_TRUE(finished.exit_code == 0 || finished.exit_code == 1)
-        << what << ": " << finished.standard_error;
-    if (finished.exit_code == 1) ++damaged;
+        << description << ": " << finished.standard_error;
+    if (finished.exit_code == 1) ++reported;
     const Responses found = responses();
     for (int number = 0; number < kEvents; ++number) {
-      const auto place = static_cast<std::size_t>(number);
-      const bool before = log.starts[place + 1] <= damage.begin;
-      const bool behind = log.starts[place] >= damage.end;
-      if ((!before && !behind) || whole.count(number) == 0) continue;
+      const auto index = static_cast<std::size_t>(number);
+      const bool before = log.starts[index + 1] <= mutation.begin;
+      const bool after = log.starts[index] >= mutation.end;
+      if ((!before && !after) || expected.count(number) == 0) continue;
       ASSERT_EQ(found.count(number), 1U)
-          << "event " << number << " at byte " << log.starts[place] << "; " << what;
-      EXPECT_EQ(found.at(number), whole.at(number)) << "event " << number << "; " << what;
+          << "event " << number << " at byte " << log.starts[index] << "; " << description;
+      EXPECT_EQ(found.at(number), expected.at(number)) << "event " << number << "; " << description;
     }
   }
-  EXPECT_GT(damaged, static_cast<int>(kLogs) / 2) << "most corrupt_sections are reported";
+  EXPECT_GT(reported, static_cast<int>(kLogs) / 2) << "most mutations are reported";
 }
 
 }  // namespace

@@ -17,9 +17,10 @@ constexpr const char* kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
 constexpr std::int32_t kShortMagic = 0x4c433032;  // "LC02"
 constexpr std::int32_t kLongMagic = 0x4c433033;   // "LC03"
-constexpr std::size_t kLongestShortMessage = 65'499;
-constexpr std::size_t kFragmentSize = 60'000;  // any that fits a datagram; liblcm's is another
-// Root gets it, others what net.core.rmem_max permits: a test that is kept from the processor loses nothing.
+constexpr std::size_t kMaxShortMessage = 65'499;
+constexpr std::size_t kFragmentSize = 60'000;  // any size that fits a datagram; liblcm uses another
+// Large enough that a test that is not scheduled for a while loses nothing. Without root net.core.rmem_max
+// limits it.
 constexpr int kReceiveBuffer = 4'000'000;
 constexpr std::size_t kMaxDatagram = 65'536;
 
@@ -31,8 +32,7 @@ sockaddr_in address(const char* host) {
   return result;
 }
 
-// LCM's type fingerprint: over the fields' names, their types where those are primitive, and their
-// dimensions.
+// LCM's type fingerprint: a hash of the names, primitive types and dimensions of the fields.
 class Fingerprint {
  public:
   Fingerprint& field(const std::string& name, const std::string& primitive_type) {
@@ -46,7 +46,7 @@ class Fingerprint {
                       const std::string& columns) {
     return text(name).text(primitive_type).byte(2).byte(0).text(rows).byte(0).text(columns);
   }
-  // The elements' own fingerprint is added in value(); their type's name does not count.
+  // value() adds the fingerprint of the elements; the name of their type is not hashed.
   Fingerprint& counted_array_of_structs(const std::string& name, const std::string& count,
                                         std::int64_t element) {
     nested_ += static_cast<std::uint64_t>(element);
@@ -126,11 +126,11 @@ std::int64_t hydrostatics_fingerprint() {
   return response_fingerprint(body);
 }
 
-// What every response begins with, and room for its bodies.
-template <typename WrenchResponse>
-WrenchResponse read_head(RawReader& reader, std::int64_t fingerprint) {
-  if (reader.int64() != fingerprint) throw std::runtime_error("a message of another type");
-  WrenchResponse response;
+// Reads the header that all responses share and allocates the bodies.
+template <typename Response>
+Response read_header(RawReader& reader, std::int64_t fingerprint) {
+  if (reader.int64() != fingerprint) throw std::runtime_error("wrong message type");
+  Response response;
   response.utime = reader.int64();
   response.session_id = reader.int64();
   response.seq = reader.int64();
@@ -148,7 +148,7 @@ RawLcmSocket::RawLcmSocket()
   const sockaddr_in any = address("0.0.0.0");
   ip_mreq membership{};
   membership.imr_multiaddr = address(kGroup).sin_addr;
-  const bool good =
+  const bool ok =
       ::setsockopt(sender_.value(), IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl) == 0 &&
       ::setsockopt(receiver_.value(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
       (::setsockopt(receiver_.value(), SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBuffer, sizeof kReceiveBuffer) ==
@@ -156,7 +156,7 @@ RawLcmSocket::RawLcmSocket()
        ::setsockopt(receiver_.value(), SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer) == 0) &&
       ::bind(receiver_.value(), reinterpret_cast<const sockaddr*>(&any), sizeof any) == 0 &&
       ::setsockopt(receiver_.value(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) == 0;
-  if (!good) throw std::runtime_error("no multicast socket");
+  if (!ok) throw std::runtime_error("cannot open a multicast socket");
 }
 
 void RawLcmSocket::send_packet(const RawBytes& packet) {
@@ -171,14 +171,14 @@ void RawLcmSocket::send(const std::string& channel, const RawBytes& payload) {
   RawBytes rest(channel.begin(), channel.end());
   rest.push_back(0);
   rest.insert(rest.end(), payload.begin(), payload.end());
-  if (rest.size() <= kLongestShortMessage) {
+  if (rest.size() <= kMaxShortMessage) {
     RawWriter packet;
     packet.int32(kShortMagic).int32(sequence);
     packet.bytes.insert(packet.bytes.end(), rest.begin(), rest.end());
     send_packet(packet.bytes);
     return;
   }
-  // Offsets count the payload alone, sizes of fragments the channel with it.
+  // Offsets count the payload only; the size of a fragment includes the channel.
   const std::size_t count = (rest.size() + kFragmentSize - 1) / kFragmentSize;
   const std::size_t head = channel.size() + 1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -209,7 +209,7 @@ std::optional<RawMessage> RawLcmSocket::receive_any(double seconds) {
     if (size < 0) continue;
     packet.resize(static_cast<std::size_t>(size));
     const std::uint64_t sender = std::uint64_t{from.sin_addr.s_addr} << 16U | from.sin_port;
-    if (std::optional<RawMessage> message = take_packet(packet, sender)) return message;
+    if (std::optional<RawMessage> message = push_packet(packet, sender)) return message;
   }
 }
 
@@ -223,7 +223,7 @@ std::optional<RawBytes> RawLcmSocket::receive(const std::string& channel, double
   }
 }
 
-std::optional<RawMessage> RawLcmSocket::take_packet(const RawBytes& packet, std::uint64_t sender) {
+std::optional<RawMessage> RawLcmSocket::push_packet(const RawBytes& packet, std::uint64_t sender) {
   constexpr std::size_t kShortHeader = 8;
   constexpr std::size_t kLongHeader = 20;
   constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 28U;  // liblcm's limit
@@ -311,7 +311,7 @@ RawBytes encode_states(const RawStates& states) {
 
 RawWrenches decode_wrenches(const RawBytes& bytes) {
   RawReader reader(bytes);
-  auto wrenches = read_head<RawWrenches>(reader, wrenches_fingerprint());
+  auto wrenches = read_header<RawWrenches>(reader, wrenches_fingerprint());
   for (RawWrench& wrench : wrenches.bodies) {
     wrench.body_id = reader.int32();
     wrench.status = reader.int32();
@@ -322,13 +322,13 @@ RawWrenches decode_wrenches(const RawBytes& bytes) {
     wrench.force_error_bound = reader.real();
     wrench.torque_error_bound = reader.real();
   }
-  if (reader.left() != 0) throw std::runtime_error("bytes behind the message");
+  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
   return wrenches;
 }
 
 RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
   RawReader reader(bytes);
-  auto hydrostatics = read_head<RawHydrostatics>(reader, hydrostatics_fingerprint());
+  auto hydrostatics = read_header<RawHydrostatics>(reader, hydrostatics_fingerprint());
   for (RawBodyHydrostatics& body : hydrostatics.bodies) {
     body.body_id = reader.int32();
     body.status = reader.int32();
@@ -344,7 +344,7 @@ RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
     reader.reals(body.metacentric_heights);
     reader.reals(body.stiffness);
   }
-  if (reader.left() != 0) throw std::runtime_error("bytes behind the message");
+  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
   return hydrostatics;
 }
 

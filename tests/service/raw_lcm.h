@@ -1,5 +1,6 @@
-// An LCM client that knows nothing of ours and nothing of liblcm: LCM's UDP packets and its message encoding,
-// written from their definitions (the wire protocol of LCM's udpm provider; the fields of lcmtypes/*.lcm).
+// An LCM client that shares no code with the project or with liblcm: LCM's UDP packets and message encoding,
+// implemented from their definitions (the wire protocol of LCM's udpm provider; the fields of
+// lcmtypes/*.lcm).
 #pragma once
 
 #include <array>
@@ -21,16 +22,16 @@ struct RawMessage {
   RawBytes payload;
 };
 
-// Sends to and hears 239.255.76.67:7667 with ttl 0.
+// Sends to and receives from 239.255.76.67:7667 with ttl 0.
 class RawLcmSocket {
  public:
   RawLcmSocket();
 
-  // In one packet, or in fragments where it is too long for one. The payload as LCM would send it.
+  // Sends one packet, or fragments if the payload is too long for one. payload: LCM-encoded bytes.
   void send(const std::string& channel, const RawBytes& payload);
-  void send_packet(const RawBytes& packet);  // any bytes at all
+  void send_packet(const RawBytes& packet);  // any bytes
 
-  // The next message on the channel; others are dropped. nullopt: none within `seconds`.
+  // The next message on the channel; messages on others are dropped. nullopt: none within `seconds`.
   std::optional<RawBytes> receive(const std::string& channel, double seconds);
 
   // The next message on any channel that has already arrived, or arrives within `seconds`.
@@ -42,7 +43,7 @@ class RawLcmSocket {
     RawBytes payload;
     std::size_t received = 0;
   };
-  std::optional<RawMessage> take_packet(const RawBytes& packet, std::uint64_t sender);
+  std::optional<RawMessage> push_packet(const RawBytes& packet, std::uint64_t sender);
 
   UniqueFd sender_;
   UniqueFd receiver_;
@@ -50,7 +51,7 @@ class RawLcmSocket {
   std::map<std::pair<std::uint64_t, std::uint32_t>, Fragments> incomplete_;
 };
 
-// Big-endian, as LCM writes numbers.
+// Encodes numbers in big-endian order, as LCM does.
 class RawWriter {
  public:
   RawWriter& int16(std::int16_t value) { return unsigned_number(static_cast<std::uint16_t>(value), 2); }
@@ -90,7 +91,7 @@ class RawReader {
   std::size_t left() const { return bytes_.size() - position_; }
 
  private:
-  std::uint64_t unsigned_number(std::size_t size);  // throws where bytes are missing
+  std::uint64_t unsigned_number(std::size_t size);  // throws if bytes are missing
 
   const RawBytes& bytes_;
   std::size_t position_ = 0;
@@ -131,7 +132,7 @@ struct RawWrenches {
   std::int64_t seq = 0;
   std::vector<RawWrench> bodies;
 };
-RawWrenches decode_wrenches(const RawBytes& bytes);  // throws where they are none
+RawWrenches decode_wrenches(const RawBytes& bytes);  // throws if bytes are not such a message
 
 // body_hydrostatics_t.lcm
 struct RawBodyHydrostatics {
@@ -155,6 +156,6 @@ struct RawHydrostatics {
   std::int64_t seq = 0;
   std::vector<RawBodyHydrostatics> bodies;
 };
-RawHydrostatics decode_hydrostatics(const RawBytes& bytes);  // throws where they are none
+RawHydrostatics decode_hydrostatics(const RawBytes& bytes);  // throws if bytes are not such a message
 
 }  // namespace buoyancy

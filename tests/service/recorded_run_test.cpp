@@ -1,4 +1,4 @@
-// A live run, recorded by LCM's own logger and replayed.
+// Records a live run with LCM's own logger and replays it.
 #include <csignal>
 #include <filesystem>
 
@@ -11,14 +11,14 @@
 namespace buoyancy {
 namespace {
 
-// Of a log that may be being written: what is not whole yet is left out.
+// The messages of a channel in a log that may still be written; incomplete events are skipped.
 std::vector<RawBytes> events(const std::string& path, const std::string& channel) {
   std::vector<RawBytes> found;
   for (LoggedEvent& event : events_of(path, only_channel(channel))) found.push_back(std::move(event.bytes));
   return found;
 }
 
-TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
+TEST(RecordedRun, ReplaysToTheSameBytesAsTheLiveRun) {
   const TempDir directory;
   const std::string recorded = directory.path("live.lcmlog");
   const std::string replayed = directory.path("replayed.lcmlog");
@@ -32,15 +32,15 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
     ASSERT_FALSE(logger.wait(0.01)) << logger.standard_error();
   }
 
-  // lcm-logger drops messages when more than 30 wait for it: it is waited for. It flushes its file only when
-  // it writes, and not twice in a millisecond, so that what it has may show with the next message alone.
+  // lcm-logger drops messages if more than 30 are pending, so the test waits for it. It flushes its file only
+  // when it writes, at most once per millisecond, so a message may appear only with the next one.
   std::size_t checkpoints = 0;
-  const auto wait_for_the_logger = [&] {
-    constexpr std::size_t kMaxWaiting = 3;
+  const auto wait_for_logger = [&] {
+    constexpr std::size_t kMaxPending = 3;
     const std::size_t wanted = checkpoints + 1;
     std::size_t written = 0;
     while (written < wanted) {
-      if (checkpoints < written + kMaxWaiting) {
+      if (checkpoints < written + kMaxPending) {
         socket.send("CHECKPOINT", {1});
         ++checkpoints;
       }
@@ -52,21 +52,21 @@ TEST(RecordedRun, ReplaysToTheLiveRunsAnswersByteForByte) {
   constexpr std::int64_t kCheckpoint = 5;
   for (std::int64_t seq = 0; seq < 300; ++seq) {
     if (seq % kCheckpoint == 0) {
-      ASSERT_TRUE(wait_for_the_logger()) << logger.standard_error();
+      ASSERT_TRUE(wait_for_logger()) << logger.standard_error();
     }
     RawStates states = one_body(seq / 100, seq, 0.01 * static_cast<double>(seq) - 1.0);
     states.bodies.resize(static_cast<std::size_t>(1 + seq % 7), states.bodies[0]);
-    states.bodies.back().body_id = static_cast<std::int32_t>(seq % 4);  // unknown ones among them
+    states.bodies.back().body_id = static_cast<std::int32_t>(seq % 4);  // some of them unknown
     states.bodies.back().quaternion_wxyz = {0.8, 0.36, 0.48, 0.0};
     states.lead_time = seq % 5 == 0 ? 0.01 : 0.0;
     states.bodies.back().linear_velocity = {0.1, 0.2, -0.3};
-    const int repeats = seq % 10 == 3 ? 2 : 1;
-    for (int repeat = 0; repeat < repeats; ++repeat) {
+    const int attempts = seq % 10 == 3 ? 2 : 1;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
       send_request(socket, states);
       ASSERT_EQ(receive(socket).seq, seq);
     }
   }
-  ASSERT_TRUE(wait_for_the_logger()) << logger.standard_error();
+  ASSERT_TRUE(wait_for_logger()) << logger.standard_error();
   logger.send_signal(SIGINT);
   ASSERT_TRUE(logger.wait(kWaitTimeout));
 

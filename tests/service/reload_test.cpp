@@ -1,4 +1,4 @@
-// SIGHUP: another scene in the middle of a session, over real UDP.
+// SIGHUP during a session over UDP: buoyancyd replaces its scene.
 #include <cmath>
 #include <csignal>
 
@@ -12,16 +12,16 @@
 namespace buoyancy {
 namespace {
 
-// One body, a box of 2 x 3 m and the height given, in water of the density given.
+// One body: a box of 2 x 3 m and this height [m], in water of this density [kg/m^3].
 std::string box_scene(double density, double height) {
   return "[world]\ngravity = 10.0\n[water]\ndensity = " + std::to_string(density) +
          "\n[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, " + std::to_string(height) +
          "], segments = [1, 1, 1] }\n";
 }
 const std::string kBefore = box_scene(1000.0, 4.0);
-constexpr double kForceBefore = 120'000.0;  // N, half submerged
+constexpr double kForceBefore = 120'000.0;  // [N], half submerged
 
-constexpr double kHalfSubmerged = 0.0;  // m, of the body's origin
+constexpr double kHalfSubmerged = 0.0;  // [m], height of the body's origin
 constexpr double kSubmerged = -100.0;
 
 double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kHalfSubmerged) {
@@ -38,8 +38,8 @@ void reload(RunningService& service, const std::string& scene, const std::string
   ASSERT_TRUE(service.child().wait_for_text(until, kWaitTimeout)) << service.log();
 }
 
-// A sanitizer's findings too are an exit code.
-void expect_a_clean_end(RunningService& service) {
+// The exit code also shows the findings of a sanitizer.
+void expect_clean_exit(RunningService& service) {
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();
 }
@@ -50,7 +50,7 @@ std::size_t lines_with(const std::string& text, const std::string& log) {
   return count;
 }
 
-TEST(Reload, AnswersTheVerySameSessionFromTheNewSceneWithItsNextStep) {
+TEST(Reload, UsesTheNewSceneFromTheNextRequestOfTheSession) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
@@ -59,12 +59,12 @@ TEST(Reload, AnswersTheVerySameSessionFromTheNewSceneWithItsNextStep) {
   reload(service, box_scene(500.0, 8.0) + "[[body]]\nid = 2\nshape = { type = \"box\", size = [1, 1, 1] }\n",
          "reloaded: 2 bodies (before: 1)");
   EXPECT_NEAR(vertical_force(socket, 3), kForceBefore, 1e-6);
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.computed == 3 && status.counters.sessions == 1 && status.counters.stale == 0;
   }));
 }
 
-TEST(Reload, GivesARepeatOfWhatTheOldSceneAnsweredTheSameBytes) {
+TEST(Reload, KeepsResponsesOfTheOldSceneForRetries) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
@@ -80,7 +80,7 @@ TEST(Reload, GivesARepeatOfWhatTheOldSceneAnsweredTheSameBytes) {
               1e-6);
 }
 
-TEST(Reload, LeavesTheOldSceneAnsweringWhereTheNewOneIsBad) {
+TEST(Reload, KeepsTheOldSceneIfTheNewOneIsInvalid) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
@@ -94,7 +94,7 @@ TEST(Reload, LeavesTheOldSceneAnsweringWhereTheNewOneIsBad) {
   EXPECT_EQ(lines_with("reload failed", service.log()), 2U) << service.log();
 }
 
-TEST(Reload, LosesNoAnswerOfASteadyStream) {
+TEST(Reload, LosesNoResponseOfASteadyStream) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   constexpr std::int64_t kRequests = 4000;
@@ -109,14 +109,14 @@ TEST(Reload, LosesNoAnswerOfASteadyStream) {
         << force;
   }
   EXPECT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.computed == kRequests && status.counters.retries == 0 &&
            status.counters.sessions == 1;
   }));
-  expect_a_clean_end(service);
+  expect_clean_exit(service);
 }
 
-TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAgain) {
+TEST(Reload, UsesTheOldSceneWhileLoadingAndQueuesOneReload) {
   RunningService service({"--log-level", "debug"}, kBefore);
   RawLcmSocket socket;
   service.write("tetrahedron.obj", tetrahedron::obj());
@@ -130,33 +130,33 @@ TEST(Reload, AnswersFromTheOldSceneWhileTheNewOneLoadsAndLoadsOnceMoreIfAskedAga
   for (const std::int64_t end = seq + 100; seq < end; ++seq) {
     ASSERT_NEAR(vertical_force(socket, seq), kForceBefore, 1e-6);
   }
-  // The scene with the mesh has been read, the mesh has not.
+  // The scene that names the mesh has been read, the mesh has not.
   service.write("scene.toml", box_scene(500.0, 4.0));
   for (int again = 0; again < 3; ++again) {
     service.child().send_signal(SIGHUP);
     EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   }
-  ASSERT_TRUE(service.child().wait_for_text("one more follows", kWaitTimeout)) << service.log();
+  ASSERT_TRUE(service.child().wait_for_text("in progress; queued", kWaitTimeout)) << service.log();
   EXPECT_EQ(service.log().find("reloaded:"), std::string::npos) << service.log();
-  mesh.let_go();
+  mesh.release();
   double force = kForceBefore;
   while (std::abs(force - 0.5 * kForceBefore) > 1e-6 && seq < 100'000) force = vertical_force(socket, seq++);
-  EXPECT_NEAR(force, 0.5 * kForceBefore, 1e-6) << "of the scene as it was when asked last: " << service.log();
-  expect_a_clean_end(service);
-  EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three that came meanwhile";
+  EXPECT_NEAR(force, 0.5 * kForceBefore, 1e-6) << "the scene file as of the last SIGHUP: " << service.log();
+  expect_clean_exit(service);
+  EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three requests during the first";
 }
 
-TEST(Reload, LetsTheServiceEndWhileASceneLoads) {
+TEST(Reload, LetsTheServiceExitDuringALoad) {
   RunningService service({}, kBefore);
   LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
   service.child().send_signal(SIGHUP);
-  ASSERT_TRUE(service.child().wait_for_text("SIGHUP: loading", kWaitTimeout)) << service.log();
-  expect_a_clean_end(service);
-  EXPECT_NE(service.log().find("ended by SIGTERM"), std::string::npos) << service.log();
+  ASSERT_TRUE(service.child().wait_for_text("SIGHUP: reloading", kWaitTimeout)) << service.log();
+  expect_clean_exit(service);
+  EXPECT_NE(service.log().find("received SIGTERM"), std::string::npos) << service.log();
 }
 
-TEST(Reload, ImportsMeshesAgainBesideTheRunningThreads) {
+TEST(Reload, ImportsMeshesWhileWorkerThreadsRun) {
   RunningService service({"--threads", "2"}, kBefore);
   RawLcmSocket socket;
   service.write("tetrahedron.obj", tetrahedron::obj());
@@ -174,7 +174,7 @@ TEST(Reload, ImportsMeshesAgainBesideTheRunningThreads) {
     EXPECT_NEAR(vertical_force(socket, seq++, kSubmerged), 1e4 * scale * scale * scale / 6, 1e-6)
         << service.log();
   }
-  expect_a_clean_end(service);
+  expect_clean_exit(service);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// buoyancy-replay as a program, on logs made here.
+// Runs buoyancy-replay as a program on generated logs.
 #pragma once
 
 #include <cstdint>
@@ -66,13 +66,13 @@ inline std::string log_of_requests(int count) {
   return log;
 }
 
-// What a log holds on the channels that are wanted.
 struct LoggedEvent {
   std::int64_t timestamp = 0;
   std::string channel;
   std::vector<std::uint8_t> bytes;
 };
 
+// The events of a log on the wanted channels.
 inline std::vector<LoggedEvent> events_of(const std::string& path, ChannelFilter wanted) {
   auto reader = EventLogReader::open(path, std::move(wanted));
   if (!reader) throw std::runtime_error(reader.error().message());

@@ -1,4 +1,4 @@
-// Logs of other projects: bot_core's poses, as their own generator writes them.
+// Runs buoyancy-replay on logs of bot_core poses, encoded by LCM's own generator.
 #include <cmath>
 #include <limits>
 
@@ -26,7 +26,7 @@ std::string log_of_poses(int count) {
   return log;
 }
 
-// Of the box of 2 x 3 x 4 m, N.
+// [N], for the partially submerged box of kOneBoxScene.
 double force_at(double height) {
   return 10'000.0 * 6.0 * (2.0 - height);
 }
@@ -39,7 +39,7 @@ std::vector<WrenchResponse> responses_in(const std::string& path) {
   return responses;
 }
 
-TEST_F(ReplayPoses, AreAnsweredAsWrenchesOfTheBodyThatTheirChannelIsGivenTo) {
+TEST_F(ReplayPoses, WritesWrenchesOfTheBodyOfEachPoseChannel) {
   write("in.lcmlog", log_of_poses(20));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
@@ -56,12 +56,11 @@ TEST_F(ReplayPoses, AreAnsweredAsWrenchesOfTheBodyThatTheirChannelIsGivenTo) {
   }
 }
 
-TEST_F(ReplayPoses, ABodyIsNamedByItsIdOrItsName) {
+TEST_F(ReplayPoses, AcceptsBodiesByIdOrName) {
   write("scene.toml", "[[body]]\nid = 7\nname = \"hull=A\"\nshape = { type = \"box\", size = [1, 1, 1] }\n");
   write("in.lcmlog", log_of_poses(2));
   for (const char* body : {"POSE=7", "POSE=hull=A"}) {
-    // The last '=' parts channel and body, so that a channel may hold one; a name that holds one cannot be
-    // used.
+    // The last '=' separates channel and body: a channel may contain one, a body's name may not.
     const bool has_two = std::string(body) == "POSE=hull=A";
     const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", body});
     EXPECT_EQ(finished.exit_code, has_two ? 2 : 0) << finished.standard_error;
@@ -71,7 +70,7 @@ TEST_F(ReplayPoses, ABodyIsNamedByItsIdOrItsName) {
   EXPECT_EQ(responses_in(path("out.lcmlog")).at(0).bodies.at(0).body_id, 7);
 }
 
-TEST_F(ReplayPoses, RigidTransformsAreAnsweredAsForceAndTorqueOnTheirOwnChannel) {
+TEST_F(ReplayPoses, WritesForceTorqueMessagesOnTheirOwnChannel) {
   std::string log;
   for (int i = 0; i < 5; ++i) {
     bot_core::rigid_transform_t transform{};
@@ -99,8 +98,8 @@ TEST_F(ReplayPoses, RigidTransformsAreAnsweredAsForceAndTorqueOnTheirOwnChannel)
   }
 }
 
-TEST_F(ReplayPoses, VelocitiesAreReadInTheFrameThatTheUserSays) {
-  // Turned by a quarter about y: the body's -x is the world's +z.
+TEST_F(ReplayPoses, ReadsVelocitiesInTheFrameOfTheOption) {
+  // Rotated by 90 degrees about y: the body's -x is the world's +z.
   bot_core::pose_t pose = upright_pose(0.0, 1);
   pose.orientation[0] = pose.orientation[2] = std::sqrt(0.5);
   pose.vel[0] = -1.0;
@@ -117,7 +116,7 @@ TEST_F(ReplayPoses, VelocitiesAreReadInTheFrameThatTheUserSays) {
   EXPECT_NEAR(volume("body"), 12.0 - 12.0 * 0.5, 1e-9) << "rises by 0.5 m";
 }
 
-TEST_F(ReplayPoses, ALeadTimeNeedsVelocities) {
+TEST_F(ReplayPoses, ReportsNonFiniteTwistForALeadTimeWithoutVelocity) {
   bot_core::rigid_transform_t transform{};
   transform.quat[0] = 1.0;
   write("in.lcmlog", event("POSE", 1, encoded_by_lcm(transform)));
@@ -128,15 +127,15 @@ TEST_F(ReplayPoses, ALeadTimeNeedsVelocities) {
   EXPECT_EQ(responses_in(path("out.lcmlog")).at(0).bodies.at(0).status, BodyStatus::kNonFiniteTwist);
 }
 
-TEST_F(ReplayPoses, MessagesThatAreNoPoseAreReportedAndCounted) {
+TEST_F(ReplayPoses, ReportsAndCountsInvalidPoses) {
   write("in.lcmlog", pose_event(1, 0.0) + event("POSE", 2, {1, 2, 3}) + event("POSE", 3, request(1, 0.0)) +
                          pose_event(4, 0.0));
   const FinishedProcess finished =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--json"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("event at 2 us is no pose: shorter"), std::string::npos)
+  EXPECT_NE(finished.standard_error.find("event at 2 us is not a valid pose: shorter"), std::string::npos)
       << finished.standard_error;
-  EXPECT_NE(finished.standard_error.find("event at 3 us is no pose: fingerprint"), std::string::npos)
+  EXPECT_NE(finished.standard_error.find("event at 3 us is not a valid pose: fingerprint"), std::string::npos)
       << finished.standard_error;
   const auto summary = nlohmann::json::parse(finished.standard_output);
   EXPECT_EQ(summary["requests"], 4);
@@ -145,7 +144,7 @@ TEST_F(ReplayPoses, MessagesThatAreNoPoseAreReportedAndCounted) {
   EXPECT_EQ(summary["rejected"]["fingerprint"], 1);
 }
 
-TEST_F(ReplayPoses, APoseBeforeADamageIsAnsweredAndTheDamageHasItsOffset) {
+TEST_F(ReplayPoses, HandlesPosesAroundACorruptSectionAndReportsIt) {
   const std::string before = log_of_poses(10);
   write("in.lcmlog", before + "garbage" + log_of_poses(10));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
@@ -156,7 +155,7 @@ TEST_F(ReplayPoses, APoseBeforeADamageIsAnsweredAndTheDamageHasItsOffset) {
   EXPECT_EQ(responses_in(path("out.lcmlog")).size(), 20U);
 }
 
-TEST_F(ReplayPoses, OtherChannelsAreCopiedOnRequestInTheirPlace) {
+TEST_F(ReplayPoses, CopiesMatchingChannelsInOrderOnRequest) {
   write("in.lcmlog", event("LIDAR", 1, {1, 2}) + pose_event(2, 0.0) + event("BUOYANCY_WRENCHES", 3, {3}) +
                          event("LIDAR_STATUS", 4, {4}) + pose_event(5, 1.0));
   const auto channels = [&](const std::vector<std::string>& options) {
@@ -173,10 +172,10 @@ TEST_F(ReplayPoses, OtherChannelsAreCopiedOnRequestInTheirPlace) {
   EXPECT_EQ(channels({"--copy", "LIDAR"}), "LIDAR@1 BUOYANCY_WRENCHES@2 BUOYANCY_WRENCHES@5 ");
   EXPECT_EQ(channels({"--copy", ".*"}),
             "LIDAR@1 POSE@2 BUOYANCY_WRENCHES@2 LIDAR_STATUS@4 POSE@5 BUOYANCY_WRENCHES@5 ")
-      << "a response of the recording's own service is not taken along";
+      << "a recorded response is not copied";
 }
 
-TEST_F(ReplayPoses, OutputAndSummaryDoNotDependOnTheNumberOfJobs) {
+TEST_F(ReplayPoses, WritesTheSameOutputForAnyNumberOfJobs) {
   std::string log;
   for (int i = 0; i < 6000; ++i) {
     log += pose_event(i, 0.001 * i - 3.0);
@@ -194,12 +193,12 @@ TEST_F(ReplayPoses, OutputAndSummaryDoNotDependOnTheNumberOfJobs) {
     return read_file(path("out.lcmlog")) + finished.standard_error +
            summary.substr(0, summary.find("seconds"));
   };
-  const std::string of_one = outcome("1");
-  EXPECT_GT(of_one.size(), 1'000'000U);
-  for (const char* jobs : {"2", "3", "8"}) EXPECT_TRUE(outcome(jobs) == of_one) << jobs << " jobs";
+  const std::string of_one_job = outcome("1");
+  EXPECT_GT(of_one_job.size(), 1'000'000U);
+  for (const char* jobs : {"2", "3", "8"}) EXPECT_TRUE(outcome(jobs) == of_one_job) << jobs << " jobs";
 }
 
-TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
+TEST_F(ReplayPoses, ComparesWithABaselineBodyByBody) {
   write("in.lcmlog", log_of_poses(3000));
   ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
   const auto compared = [&](const std::string& earlier, int exit_code) {
@@ -213,7 +212,7 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   EXPECT_EQ(same["bodies"][0]["responses"], 3000);
   EXPECT_EQ(same["bodies"][0]["force"], 0.0);
 
-  // Another exact method differs by rounding, an approximation by what its bound allows, other water by more.
+  // Another exact method differs by rounding, denser water by more than the bounds.
   const std::string scene = read_file(scene_);
   const auto with = [&](const std::string& what, const std::string& instead) {
     std::string changed = scene;
@@ -225,7 +224,7 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   with("density = 1000.0", "density = 1001.0");
   const auto denser = compared("earlier.lcmlog", 1);
   EXPECT_EQ(denser["agrees"], false);
-  EXPECT_NEAR(denser["bodies"][0]["force"], 24.0 * 10.0, 1e-6) << "a thousandth of the whole displacement";
+  EXPECT_NEAR(denser["bodies"][0]["force"], 24.0 * 10.0, 1e-6) << "a thousandth of the full displacement";
   EXPECT_EQ(denser["bodies"][0]["volume"], 0.0);
   EXPECT_GT(denser["bodies"][0]["force_in_bounds"], 1e6);
   write("scene.toml", scene);
@@ -237,10 +236,10 @@ TEST_F(ReplayPoses, ComparesWithAnEarlierRunBodyByBody) {
   write("longer.lcmlog", earlier + event("BUOYANCY_WRENCHES", 1, {1}) + earlier.substr(0, one));
   const auto longer = compared("longer.lcmlog", 1);
   EXPECT_EQ(longer["unmatched_baseline"], 1);
-  EXPECT_EQ(longer["unreadable"], 1);
+  EXPECT_EQ(longer["decode_errors"], 1);
 }
 
-TEST_F(ReplayPoses, DifferFromEarlierAnswersThatHoldNoNumbers) {
+TEST_F(ReplayPoses, ReportsDifferencesFromNonFiniteBaselines) {
   write("in.lcmlog", log_of_poses(3));
   ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
   for (double BodyWrench::*bound : {&BodyWrench::force_error_bound, &BodyWrench::torque_error_bound}) {
@@ -265,45 +264,45 @@ TEST_F(ReplayPoses, DifferFromEarlierAnswersThatHoldNoNumbers) {
   }
 }
 
-TEST_F(ReplayPoses, AreTheSameBytesInWhateverOrderTheirChannelsAreNamed) {
+TEST_F(ReplayPoses, WritesTheSameBytesForAnyOrderOfPoseOptions) {
   write("in.lcmlog", log_of_poses(5) + event("HULL", 900, encoded_by_lcm(upright_pose(0.5, 9'000))));
   ASSERT_EQ(run({"--scene", scene_, "--pose", "POSE=1", "--pose", "HULL=1", path("in.lcmlog"),
                  path("a.lcmlog"), "--jobs", "1"})
                 .exit_code,
             0)
-      << "an option takes one value: INPUT is none of its";
+      << "an option takes one value, so INPUT is not a value of --pose";
   ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog"), {"--pose", "HULL=1", "--pose", "POSE=1"}).exit_code,
             0);
   EXPECT_TRUE(read_file(path("a.lcmlog")) == read_file(path("b.lcmlog")));
 }
 
-TEST_F(ReplayPoses, OnAChannelThatTheLogDoesNotHaveAreWarnedAbout) {
+TEST_F(ReplayPoses, WarnsAboutChannelsThatAreNotInTheLog) {
   write("in.lcmlog", log_of_poses(2));
   const FinishedProcess misspelt =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--pose", "POZE=1"});
   EXPECT_EQ(misspelt.exit_code, 0);
-  EXPECT_NE(misspelt.standard_error.find("warning: channel POZE: no event"), std::string::npos)
+  EXPECT_NE(misspelt.standard_error.find("warning: channel POZE: no events"), std::string::npos)
       << misspelt.standard_error;
   EXPECT_EQ(misspelt.standard_error.find("POSE:"), std::string::npos);
   EXPECT_NE(replay(path("in.lcmlog"), path("out.lcmlog")).standard_error.find("channel BUOYANCY_STATES"),
             std::string::npos);
 }
 
-TEST_F(ReplayPoses, OfANameThatTwoBodiesHaveAreRefused) {
+TEST_F(ReplayPoses, RejectsANameThatTwoBodiesShare) {
   write("scene.toml",
         "[[body]]\nid = 1\nname = \"a\"\nshape = { type = \"box\", size = [1, 1, 1] }\n"
         "[[body]]\nid = 2\nname = \"a\"\nshape = { type = \"box\", size = [2, 2, 2] }\n");
   write("in.lcmlog", log_of_poses(1));
-  const FinishedProcess refused = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=a"});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.standard_error.find("2 bodies are named 'a'"), std::string::npos)
-      << refused.standard_error;
+  const FinishedProcess rejected = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=a"});
+  EXPECT_EQ(rejected.exit_code, 2);
+  EXPECT_NE(rejected.standard_error.find("2 bodies are named 'a'"), std::string::npos)
+      << rejected.standard_error;
 }
 
-TEST_F(ReplayPoses, WrongChannelsAndBodiesAreRefusedWith2) {
+TEST_F(ReplayPoses, RejectsInvalidChannelsAndBodiesWithUsageError) {
   const std::string in = write("in.lcmlog", log_of_poses(1));
   const std::string out = path("out.lcmlog");
-  const std::vector<std::vector<std::string>> wrong{
+  const std::vector<std::vector<std::string>> invalid{
       {"--pose", "POSE"},
       {"--pose", "=1"},
       {"--pose", "POSE=2"},
@@ -326,7 +325,7 @@ TEST_F(ReplayPoses, WrongChannelsAndBodiesAreRefusedWith2) {
       {"--pose", "POSE=1", "--force-torque", "FT=1", "--compare", in},
   };
   write("out.lcmlog", "");
-  for (const std::vector<std::string>& options : wrong) {
+  for (const std::vector<std::string>& options : invalid) {
     const FinishedProcess finished = replay(in, out, options);
     std::string shown;
     for (const std::string& option : options) shown += option + " ";

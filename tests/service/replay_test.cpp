@@ -1,4 +1,4 @@
-// buoyancy-replay as a program, on files made here.
+// Runs buoyancy-replay as a program on generated files.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -28,19 +28,19 @@ constexpr const char* kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
 constexpr const char* kWrenchHeader =
     "utime,body_id,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,force_error_bound,torque_error_bound\n";
 
-// A unit cube about its origin, as OBJ.
+// A unit cube centred on its origin, as OBJ.
 constexpr const char* kCube =
     "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5\n"
     "v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5\n"
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-using Row = std::vector<std::string>;
+using CsvRow = std::vector<std::string>;
 
-std::vector<Row> rows(const std::string& csv) {
-  std::vector<Row> result;
+std::vector<CsvRow> rows(const std::string& csv) {
+  std::vector<CsvRow> result;
   std::istringstream lines(csv);
   for (std::string line; std::getline(lines, line);) {
-    Row& row = result.emplace_back();
+    CsvRow& row = result.emplace_back();
     std::istringstream fields(line);
     for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
   }
@@ -53,7 +53,7 @@ std::string pose_row(int utime, double height) {
   return row.str();
 }
 
-TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
+TEST_F(Replay, MatchesArchimedesPrincipleForEachCsvRow) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 50; ++i) poses += pose_row(i / 2, 0.1 * i - 2.5);
   poses += "99,77,0,0,0,1,0,0,0\n99,1,nan,0,0,1,0,0,0\n";
@@ -62,10 +62,10 @@ TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
   EXPECT_EQ(finished.standard_error, "");
   const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U) << csv;
-  const std::vector<Row> responses = rows(csv);
+  const std::vector<CsvRow> responses = rows(csv);
   ASSERT_EQ(responses.size(), 53U);
   for (std::size_t i = 0; i < 50; ++i) {
-    const Row& row = responses[i + 1];
+    const CsvRow& row = responses[i + 1];
     ASSERT_EQ(row.size(), 15U);
     const double depth = std::clamp(2.0 - (0.1 * static_cast<double>(i) - 2.5), 0.0, 4.0);
     EXPECT_EQ(row[0], std::to_string(i / 2));
@@ -79,12 +79,12 @@ TEST_F(Replay, AnswersCsvRowByRowWithArchimedesLaw) {
   EXPECT_EQ(std::stod(responses[52][5]), 0.0);
 }
 
-TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
+TEST_F(Replay, WritesNumbersThatRoundTripExactly) {
   replay(write("in.csv", std::string(kPoseHeader) + "0,1,0,0,0.1,0.9998,0.02,0,0\n"), path("out.csv"));
   replay(path("in.csv"), path("out.lcmlog"));
   WrenchResponse response;
   ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, response));
-  const Row row = rows(read_file(path("out.csv"))).at(1);
+  const CsvRow row = rows(read_file(path("out.csv"))).at(1);
   const BodyWrench& wrench = response.bodies.at(0);
   EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
   EXPECT_EQ(std::stod(row[6]), wrench.torque[0]);
@@ -94,7 +94,7 @@ TEST_F(Replay, WritesNumbersThatReadBackAsTheSameDoubles) {
   EXPECT_EQ(std::stod(row[13]), wrench.force_error_bound);
 }
 
-TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
+TEST_F(Replay, KeepsTimestampsAndCopiesNoOtherChannel) {
   const std::string log = event("OTHER", 1, {1, 2}) + event("BUOYANCY_STATES", 2, request(20, 0.0)) +
                           event("BUOYANCY_WRENCHES", 3, {3}) + event("BUOYANCY_STATES", 4, request(40, 1.0));
   ASSERT_EQ(replay(write("in.lcmlog", log), path("out.lcmlog")).exit_code, 0);
@@ -111,16 +111,17 @@ TEST_F(Replay, KeepsTheTimestampsOfALogAndCopiesNoOtherChannel) {
   }
 }
 
-TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
-  const std::string asking =
-      write("asking.toml", kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n");
-  const auto replay_asking = [&](const std::string& output, const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"--scene", asking, path("in.lcmlog"), output};
+TEST_F(Replay, WritesRequestedHydrostaticsToLogsOnly) {
+  const std::string hydrostatics_scene =
+      write("hydrostatics.toml", kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n");
+  const auto replay_with_hydrostatics = [&](const std::string& output,
+                                            const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"--scene", hydrostatics_scene, path("in.lcmlog"), output};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return run(std::move(arguments)).exit_code;
   };
   write("in.lcmlog", log_of_requests(3));
-  ASSERT_EQ(replay_asking(path("out.lcmlog"), {"--hydrostatics-channel", "H"}), 0);
+  ASSERT_EQ(replay_with_hydrostatics(path("out.lcmlog"), {"--hydrostatics-channel", "H"}), 0);
   const std::vector<LoggedEvent> found = events_of(path("out.lcmlog"), only_channel("H"));
   ASSERT_EQ(found.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -132,28 +133,28 @@ TEST_F(Replay, WritesHydrostaticsOfBodiesThatAskIntoALogAndLeavesThemOutOfCsv) {
     EXPECT_DOUBLE_EQ(hydrostatics.bodies.at(0).waterplane_area, 6.0);
   }
 
-  ASSERT_EQ(replay_asking(path("asked.csv"), {}), 0);
-  ASSERT_EQ(replay(path("in.lcmlog"), path("not_asked.csv")).exit_code, 0);
-  EXPECT_EQ(read_file(path("asked.csv")), read_file(path("not_asked.csv")));
-  EXPECT_EQ(replay_asking(path("x.lcmlog"), {"--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2);
+  ASSERT_EQ(replay_with_hydrostatics(path("requested.csv"), {}), 0);
+  ASSERT_EQ(replay(path("in.lcmlog"), path("not_requested.csv")).exit_code, 0);
+  EXPECT_EQ(read_file(path("requested.csv")), read_file(path("not_requested.csv")));
+  EXPECT_EQ(replay_with_hydrostatics(path("x.lcmlog"), {"--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2);
 }
 
-// Partly, fully and not submerged.
+// The three poses are partially, fully and not submerged.
 TEST_F(Replay, ComparesCentresAndHydrostatics) {
-  const std::string asking =
-      write("asking.toml",
+  const std::string hydrostatics_scene =
+      write("hydrostatics.toml",
             kOneBoxScene + "outputs = [\"wrench\", \"hydrostatics\"]\n" + "[body.client]\nmass = 9e3\n");
   std::string log;
   for (const double height : {0.3, -9.0, 9.0}) log += event("BUOYANCY_STATES", 1, request(1, height));
   write("in.lcmlog", log);
-  ASSERT_EQ(run({"--scene", asking, path("in.lcmlog"), path("earlier.lcmlog")}).exit_code, 0);
+  ASSERT_EQ(run({"--scene", hydrostatics_scene, path("in.lcmlog"), path("earlier.lcmlog")}).exit_code, 0);
   const auto compared = [&](const std::string& scene, const std::string& earlier, int exit_code) {
     const FinishedProcess finished =
         run({"--scene", scene, path("in.lcmlog"), "/dev/null", "--compare", path(earlier), "--json"});
     EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
     return nlohmann::json::parse(finished.standard_output)["compared"];
   };
-  const auto same = compared(asking, "earlier.lcmlog", 0)["bodies"][0];
+  const auto same = compared(hydrostatics_scene, "earlier.lcmlog", 0)["bodies"][0];
   EXPECT_EQ(same["hydrostatics"], 3);
   EXPECT_EQ(same["hydrostatics_in_bounds"], 0.0);
   EXPECT_EQ(same["center_in_bounds"], 0.0);
@@ -172,7 +173,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
       all += event(one.channel, one.timestamp, one.bytes);
     }
     write("changed.lcmlog", all);
-    return compared(asking, "changed.lcmlog", 1)["bodies"][0];
+    return compared(hydrostatics_scene, "changed.lcmlog", 1)["bodies"][0];
   };
   for (const double shift : {1e-9, std::nan("")}) {
     const auto moved = changed("BUOYANCY_WRENCHES", WrenchResponse{},
@@ -202,7 +203,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
   }
 }
 
-TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
+TEST_F(Replay, WritesTheSameResponsesForCsvAndLogInput) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20; ++i) poses += pose_row(i, 0.125 * i);
   ASSERT_EQ(replay(write("in.csv", poses), path("from_csv.csv")).exit_code, 0);
@@ -210,7 +211,7 @@ TEST_F(Replay, GivesTheSameAnswersFromCsvAndFromALog) {
   EXPECT_EQ(read_file(path("from_csv.csv")), read_file(path("from_log.csv")));
 }
 
-TEST_F(Replay, GivesTheSameBytesEveryTime) {
+TEST_F(Replay, WritesTheSameBytesInEveryRun) {
   write("in.lcmlog", log_of_requests(100));
   ASSERT_EQ(replay(path("in.lcmlog"), path("a.lcmlog")).exit_code, 0);
   ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog")).exit_code, 0);
@@ -218,7 +219,7 @@ TEST_F(Replay, GivesTheSameBytesEveryTime) {
   EXPECT_GT(read_file(path("a.lcmlog")).size(), 10'000U);
 }
 
-TEST_F(Replay, AnswersWhatIsGoodInADamagedLogAndExitsWith1) {
+TEST_F(Replay, HandlesIntactEventsOfACorruptLogAndFails) {
   std::string log = log_of_requests(10);
   const std::size_t middle = log.size() / 2;
   log.insert(middle, "garbage");
@@ -232,7 +233,7 @@ TEST_F(Replay, AnswersWhatIsGoodInADamagedLogAndExitsWith1) {
   EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 1U + 9U);
 }
 
-TEST_F(Replay, ReportsAndCountsMessagesThatAreNoQuestion) {
+TEST_F(Replay, ReportsAndCountsInvalidRequests) {
   const std::string log = event("BUOYANCY_STATES", 1, {1, 2, 3}) + log_of_requests(2);
   const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"), {"--json"});
   EXPECT_EQ(finished.exit_code, 1);
@@ -246,7 +247,7 @@ TEST_F(Replay, ReportsAndCountsMessagesThatAreNoQuestion) {
   EXPECT_EQ(summary["complete"], false);
 }
 
-TEST_F(Replay, ReportsMalformedRowsByLineAndExitsWith1) {
+TEST_F(Replay, ReportsMalformedRowsByLineAndFails) {
   const std::string poses = kPoseHeader + pose_row(1, 0.0) + "2,1,zero,0,0,1,0,0,0\n" + pose_row(3, 0.0);
   const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"));
   EXPECT_EQ(finished.exit_code, 1);
@@ -255,29 +256,29 @@ TEST_F(Replay, ReportsMalformedRowsByLineAndExitsWith1) {
   EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 3U);
 }
 
-TEST_F(Replay, ShowsTheFirstTroublesAndCountsTheRest) {
+TEST_F(Replay, PrintsTheFirstInputErrorsAndCountsTheRest) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 1000; ++i) poses += "x\n";
   const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"), {"--json"});
   EXPECT_EQ(finished.exit_code, 1);
   const std::string& error = finished.standard_error;
   EXPECT_LT(std::count(error.begin(), error.end(), '\n'), 30) << error;
-  EXPECT_EQ(nlohmann::json::parse(finished.standard_output)["damaged_places"], 1000);
+  EXPECT_EQ(nlohmann::json::parse(finished.standard_output)["corrupt_sections"], 1000);
 }
 
-TEST_F(Replay, GivesAnEmptyOutputForAnEmptyInput) {
+TEST_F(Replay, WritesAnEmptyOutputForAnEmptyInput) {
   EXPECT_EQ(replay(write("in.csv", ""), path("out.csv")).exit_code, 0);
   EXPECT_EQ(read_file(path("out.csv")), kWrenchHeader);
   EXPECT_EQ(replay(write("in.lcmlog", ""), path("out.lcmlog")).exit_code, 0);
   EXPECT_EQ(read_file(path("out.lcmlog")), "");
 }
 
-TEST_F(Replay, TakesOneMeshInPlaceOfAScene) {
+TEST_F(Replay, AcceptsOneMeshInsteadOfAScene) {
   write("cube.obj", kCube);
   write("in.csv", kPoseHeader + pose_row(0, 0.25));
   const FinishedProcess finished = run({"--mesh", path("cube.obj"), path("in.csv"), path("out.csv")});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
-  const Row row = rows(read_file(path("out.csv"))).at(1);
+  const CsvRow row = rows(read_file(path("out.csv"))).at(1);
   EXPECT_NEAR(std::stod(row[5]), 0.25 * 1025.0 * 9.80665, 1e-9);
   const FinishedProcess fast =
       run({"--mesh", path("cube.obj"), "--method", "fast", path("in.csv"), path("fast.csv")});
@@ -285,13 +286,13 @@ TEST_F(Replay, TakesOneMeshInPlaceOfAScene) {
   EXPECT_NE(read_file(path("fast.csv")), read_file(path("out.csv")));
 }
 
-TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
+TEST_F(Replay, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
   const std::string out = path("out.csv");
   const std::string cube = write("cube.obj", kCube);
   const std::string wrong_header = write("header.csv", "a,b\n1,2\n");
   const std::string untouched = read_file(in);
-  const std::vector<std::vector<std::string>> wrong{
+  const std::vector<std::vector<std::string>> invalid{
       {},
       {in, out},
       {"--scene", scene_, in},
@@ -315,7 +316,7 @@ TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
       {"--scene", scene_, in, out, "--states-channel", std::string(64, 'a')},
       {"--scene", scene_, in, out, "--no-such-option"},
   };
-  for (const std::vector<std::string>& arguments : wrong) {
+  for (const std::vector<std::string>& arguments : invalid) {
     const FinishedProcess finished = run(arguments);
     std::string shown;
     for (const std::string& argument : arguments) shown += argument + " ";
@@ -326,10 +327,10 @@ TEST_F(Replay, RefusesWrongArgumentsWithOneLineAnd2) {
     EXPECT_EQ(error.rfind("buoyancy-replay: ", 0), 0U) << shown << ": " << error;
   }
   EXPECT_EQ(read_file(in), untouched);
-  EXPECT_EQ(read_file(out), "") << "no output where nothing ran";
+  EXPECT_EQ(read_file(out), "") << "no output without a replay";
 }
 
-TEST_F(Replay, FailsWith1WhereTheOutputCannotBeWritten) {
+TEST_F(Replay, FailsIfTheOutputCannotBeWritten) {
   const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
   std::filesystem::create_symlink("/dev/full", path("full.csv"));
   for (const std::string& out :
@@ -342,7 +343,7 @@ TEST_F(Replay, FailsWith1WhereTheOutputCannotBeWritten) {
   }
 }
 
-TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
+TEST_F(Replay, EndsItsOutputWithAWholeRowWhenTerminated) {
   write("scene.toml",
         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [20, 20, 20] }\n"
         "method = \"exact\"\n");
@@ -355,16 +356,17 @@ TEST_F(Replay, EndsAtARowsEndWhenTerminated) {
   }
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
-  EXPECT_NE(child.standard_error().find("ended by SIGTERM"), std::string::npos) << child.standard_error();
+  EXPECT_NE(child.standard_error().find("terminated by SIGTERM"), std::string::npos)
+      << child.standard_error();
   const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.back(), '\n');
-  const std::vector<Row> responses = rows(csv);
+  const std::vector<CsvRow> responses = rows(csv);
   EXPECT_GT(responses.size(), 1U);
   EXPECT_LT(responses.size(), 200'001U);
   EXPECT_EQ(responses.back().size(), 15U);
 }
 
-TEST_F(Replay, EndsByASignalWhereNobodyReadsItsPipe) {
+TEST_F(Replay, StopsOnASignalIfItsPipeHasNoActiveReader) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20'000; ++i) poses += pose_row(i, 1e-4 * i);
   write("in.csv", poses);
@@ -393,28 +395,29 @@ TEST_F(Replay, EndsByASignalWhereNobodyReadsItsPipe) {
   }
 }
 
-TEST_F(Replay, AnswersAnOpenMeshWhileItsBoundaryIsDryOnRequest) {
+TEST_F(Replay, AcceptsOpenMeshesWithADryBoundaryOnRequest) {
   const std::string lid = "f 5 6 7 8\n";
   std::string cup = kCube;
   cup.erase(cup.find(lid), lid.size());
   const std::string mesh = write("cup.obj", cup);
   write("in.csv", kPoseHeader + pose_row(0, 0.25) + pose_row(1, -0.75));
   const std::vector<std::string> arguments{"--mesh", mesh, path("in.csv"), path("out.csv")};
-  const FinishedProcess refused = run(arguments);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.standard_error.find("--open dry_boundary"), std::string::npos) << refused.standard_error;
+  const FinishedProcess rejected = run(arguments);
+  EXPECT_EQ(rejected.exit_code, 2);
+  EXPECT_NE(rejected.standard_error.find("--open dry_boundary"), std::string::npos)
+      << rejected.standard_error;
   std::vector<std::string> accepting = arguments;
   accepting.insert(accepting.end(), {"--open", "dry_boundary"});
   const FinishedProcess accepted = run(accepting);
   ASSERT_EQ(accepted.exit_code, 0) << accepted.standard_error;
-  const std::vector<Row> responses = rows(read_file(path("out.csv")));
+  const std::vector<CsvRow> responses = rows(read_file(path("out.csv")));
   ASSERT_EQ(responses.size(), 3U);
   EXPECT_EQ(responses[1][2], "0");
   EXPECT_NEAR(std::stod(responses[1][9]), 0.25, 1e-12);
   EXPECT_EQ(responses[2][2], "6") << "OPEN_EDGE_WET";
 }
 
-TEST_F(Replay, TellsItsVersion) {
+TEST_F(Replay, PrintsItsVersion) {
   const FinishedProcess finished = run({"--version"});
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_EQ(finished.standard_output, "buoyancy-replay " BUOYANCY_VERSION "\n");

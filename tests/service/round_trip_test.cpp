@@ -1,4 +1,4 @@
-// Requests over real UDP by a client written from the message definitions, answers against closed forms.
+// Sends requests over UDP with an independent client and compares the responses with closed forms.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -23,7 +23,7 @@ struct Expected3 {
   std::array<double, 3> center{};
 };
 
-// A box of 2 x 3 x 4 m, turned about the vertical by yaw, then, if lying, put on its side.
+// A box of 2 x 3 x 4 m rotated about the vertical by yaw, or lying on its side.
 Expected3 box_in_water(const RawState& state, double yaw, bool lying) {
   const double height = lying ? 3.0 : 4.0;
   const double area = 24.0 / height;
@@ -66,33 +66,33 @@ std::vector<Pose> poses(std::size_t count) {
 
 class RoundTrip : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
+TEST_P(RoundTrip, MatchesArchimedesPrincipleForAnIndependentClient) {
   const RunningService service;
   RawLcmSocket socket;
-  const std::vector<Pose> asked = poses(GetParam());
+  const std::vector<Pose> requested = poses(GetParam());
   RawStates states;
   states.utime = -123'456'789;
   states.session_id = 0x0123'4567'89AB'CDEF;
   states.seq = 42;
-  for (const Pose& pose : asked) states.bodies.push_back(pose.state);
+  for (const Pose& pose : requested) states.bodies.push_back(pose.state);
   send_request(socket, states);
   const RawWrenches response = receive(socket);
   EXPECT_EQ(response.utime, states.utime);
   EXPECT_EQ(response.session_id, states.session_id);
   EXPECT_EQ(response.seq, states.seq);
-  ASSERT_EQ(response.bodies.size(), asked.size());
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  ASSERT_EQ(response.bodies.size(), requested.size());
+  for (std::size_t i = 0; i < requested.size(); ++i) {
     const RawWrench& wrench = response.bodies[i];
-    const Expected3 expected = box_in_water(asked[i].state, asked[i].yaw, asked[i].lying);
-    const double whole_force = kDensity * kGravity * 24.0;
-    EXPECT_EQ(wrench.body_id, asked[i].state.body_id) << i;
+    const Expected3 expected = box_in_water(requested[i].state, requested[i].yaw, requested[i].lying);
+    const double full_force = kDensity * kGravity * 24.0;
+    EXPECT_EQ(wrench.body_id, requested[i].state.body_id) << i;
     EXPECT_EQ(wrench.status, 0) << i;
     EXPECT_EQ(wrench.force[0], 0.0) << i;
     EXPECT_EQ(wrench.force[1], 0.0) << i;
-    EXPECT_NEAR(wrench.force[2], expected.force_z, kRelative * whole_force) << i;
+    EXPECT_NEAR(wrench.force[2], expected.force_z, kRelative * full_force) << i;
     EXPECT_NEAR(wrench.submerged_volume, expected.volume, kRelative * 24.0) << i;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      EXPECT_NEAR(wrench.torque[axis], expected.torque[axis], kRelative * whole_force * 4.0) << i;
+      EXPECT_NEAR(wrench.torque[axis], expected.torque[axis], kRelative * full_force * 4.0) << i;
       if (expected.volume > 0.01) {
         EXPECT_NEAR(wrench.center_of_buoyancy[axis], expected.center[axis], 1e-10) << i;
       }
@@ -102,8 +102,8 @@ TEST_P(RoundTrip, AnswersAnIndependentClientWithArchimedesLaw) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
 
-// One answer is several times as large as the buffer.
-TEST(HydrostaticsRoundTrip, DropsNothingBecauseOfTheServicesOwnPackets) {
+// The hydrostatics message is larger than the receive buffer.
+TEST(HydrostaticsRoundTrip, DropsNoRequestForTheServicesOwnPackets) {
   const RunningService service({"-l", "udpm://239.255.76.67:7667?recv_buf_size=106496"},
                                kHydrostaticBoxScene);
   RawLcmSocket socket;
@@ -115,12 +115,13 @@ TEST(HydrostaticsRoundTrip, DropsNothingBecauseOfTheServicesOwnPackets) {
   ASSERT_TRUE(hydrostatics);
   EXPECT_GT(hydrostatics->size(), 250'000U);
   send_request(socket, one_body(9, 2, 0.5));
-  const auto status = on_status(socket, [](const ServiceStatus& now) { return now.counters.requests == 2; });
+  const auto status =
+      wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.requests == 2; });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->packets_dropped, 0);
 }
 
-TEST(RoundTripOfOneBody, IsAnsweredByAServiceThatDoesNotSpin) {
+TEST(RoundTrip, CompletesWithoutSpinning) {
   const RunningService service({"--no-spin"});
   RawLcmSocket socket;
   for (std::int64_t seq = 1; seq <= 300; ++seq) {
@@ -129,7 +130,7 @@ TEST(RoundTripOfOneBody, IsAnsweredByAServiceThatDoesNotSpin) {
   }
 }
 
-TEST(HydrostaticsRoundTrip, TellsAnIndependentClientTheWaterplaneMetacentresAndStiffnessOfABox) {
+TEST(HydrostaticsRoundTrip, MatchesClosedFormForBox) {
   const RunningService service({}, kHydrostaticBoxScene);
   RawLcmSocket socket;
   RawStates states = one_body(9, 3, 0.5);
@@ -141,12 +142,12 @@ TEST(HydrostaticsRoundTrip, TellsAnIndependentClientTheWaterplaneMetacentresAndS
   EXPECT_EQ(receive(socket).bodies.size(), 3U);
   const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
   ASSERT_TRUE(bytes);
-  const RawHydrostatics heard = decode_hydrostatics(*bytes);
-  EXPECT_EQ(heard.utime, 77);
-  EXPECT_EQ(heard.session_id, 9);
-  EXPECT_EQ(heard.seq, 3);
-  ASSERT_EQ(heard.bodies.size(), 1U) << "body 1 does not ask";
-  const RawBodyHydrostatics& body = heard.bodies[0];
+  const RawHydrostatics message = decode_hydrostatics(*bytes);
+  EXPECT_EQ(message.utime, 77);
+  EXPECT_EQ(message.session_id, 9);
+  EXPECT_EQ(message.seq, 3);
+  ASSERT_EQ(message.bodies.size(), 1U) << "the scene requests none of body 1";
+  const RawBodyHydrostatics& body = message.bodies[0];
   EXPECT_EQ(body.body_id, 2);
   EXPECT_EQ(body.status, 0);
   const double draft = 1.5;
@@ -156,7 +157,7 @@ TEST(HydrostaticsRoundTrip, TellsAnIndependentClientTheWaterplaneMetacentresAndS
   EXPECT_NEAR(body.wetted_area, 6.0 + 10.0 * draft, 1e-12);
   EXPECT_NEAR(body.waterplane_area, 6.0, 1e-12);
   EXPECT_NEAR(body.waterplane_centroid[2], -0.5, 1e-12);
-  // 2 m along x and 3 m along y: heeling about y is the easier.
+  // The box is 2 m long along x and 3 m along y, so the stiffness about y is smaller.
   const std::array<double, 2> second_moments{3.0 * 8.0 / 12.0, 2.0 * 27.0 / 12.0};
   EXPECT_NEAR(std::abs(body.waterplane_axes[0][1]), 1.0, 1e-12);
   EXPECT_NEAR(std::abs(body.waterplane_axes[1][0]), 1.0, 1e-12);
@@ -173,38 +174,38 @@ TEST(HydrostaticsRoundTrip, TellsAnIndependentClientTheWaterplaneMetacentresAndS
   }
   EXPECT_NEAR(body.stiffness[2][2], kDensity * kGravity * 6.0, 1e-7);
   EXPECT_TRUE(
-      on_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
+      wait_for_status(socket, [](const ServiceStatus& status) { return status.counters.hydrostatics == 1; }));
 }
 
-TEST(HydrostaticsRoundTrip, IsRepeatedWithTheSameBytesAndLeftOutWhereNobodyAsks) {
+TEST(HydrostaticsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) {
   const RunningService service({"--hydrostatics-channel", "H"}, kHydrostaticBoxScene);
   RawLcmSocket socket;
-  RawStates asking = one_body(1, 1, 0.3);
-  asking.bodies[0].body_id = 2;
-  send_request(socket, asking);
+  RawStates with_hydrostatics = one_body(1, 1, 0.3);
+  with_hydrostatics.bodies[0].body_id = 2;
+  send_request(socket, with_hydrostatics);
   const auto first = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(first);
-  send_request(socket, asking);
+  send_request(socket, with_hydrostatics);
   EXPECT_EQ(socket.receive("H", kWaitTimeout), first);
   send_request(socket, one_body(1, 2, 0.3));
-  asking.seq = 3;
-  send_request(socket, asking);
+  with_hydrostatics.seq = 3;
+  send_request(socket, with_hydrostatics);
   const auto next = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(next);
-  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "nothing of request 2";
+  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "request 2 gets none";
 }
 
-TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
+TEST(LockstepMode, RepeatsTheSameBytesForARetryWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
   const auto first = receive_bytes(socket);
   ASSERT_TRUE(first);
-  for (int repeat = 0; repeat < 3; ++repeat) {
+  for (int retry = 0; retry < 3; ++retry) {
     send_request(socket, one_body(1, 5, 0.3));
     EXPECT_EQ(receive_bytes(socket), first);
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     const LatencyPercentiles& latency = status.latency;
     const bool measured = 0.0 < latency.p50 && latency.p50 <= latency.p99 && latency.max < kWaitTimeout;
     return status.counters.computed == 1 && status.counters.retries == 3 && status.counters.requests == 4 &&
@@ -212,18 +213,18 @@ TEST(Lockstep, AnswersARepeatWithTheSameBytesWithoutComputing) {
   }));
 }
 
-TEST(Lockstep, ComputesAnewWhatChangedUnderTheSameSeq) {
+TEST(LockstepMode, RecomputesAChangedRequestWithTheSameSeq) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 1.0));
   EXPECT_DOUBLE_EQ(receive(socket).bodies[0].submerged_volume, 6.0);
   send_request(socket, one_body(1, 5, 0.0));
   EXPECT_DOUBLE_EQ(receive(socket).bodies[0].submerged_volume, 12.0);
-  EXPECT_TRUE(on_status(
+  EXPECT_TRUE(wait_for_status(
       socket, [](const ServiceStatus& status) { return status.counters.conflicting_retries == 1; }));
 }
 
-TEST(Lockstep, AnswersEveryQuestionOfABurstInOrder) {
+TEST(LockstepMode, HandlesEveryRequestOfABurstInOrder) {
   const RunningService service;
   RawLcmSocket socket;
   for (std::int64_t seq = 0; seq < 200; ++seq)
@@ -231,7 +232,7 @@ TEST(Lockstep, AnswersEveryQuestionOfABurstInOrder) {
   for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(receive(socket).seq, seq);
 }
 
-TEST(Lockstep, AnswersAClientThatStartedOverAtOnce) {
+TEST(LockstepMode, HandlesRequestsOfARestartedClientAtOnce) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1'000'000, 0.0));
@@ -246,7 +247,7 @@ TEST(Lockstep, AnswersAClientThatStartedOverAtOnce) {
   EXPECT_DOUBLE_EQ(same_session.bodies[0].submerged_volume, 18.0);
 }
 
-TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
+TEST(LockstepMode, ReturnsTheSameBytesAfterAKillAndRestart) {
   RawLcmSocket socket;
   std::optional<RawBytes> before;
   std::optional<ServiceStatus> status_before;
@@ -254,23 +255,23 @@ TEST(Lockstep, GivesTheSameBytesAfterBeingKilledAndStartedAgain) {
     RunningService service;
     send_request(socket, one_body(1, 5, 0.3));
     before = receive_bytes(socket);
-    status_before = on_status(socket, [](const ServiceStatus&) { return true; });
+    status_before = wait_for_status(socket, [](const ServiceStatus&) { return true; });
     service.child().send_signal(SIGKILL);
     EXPECT_EQ(service.child().wait(kWaitTimeout), 128 + SIGKILL);
   }
-  send_request(socket, one_body(1, 6, 0.3));  // nobody hears it
+  send_request(socket, one_body(1, 6, 0.3));  // not received: no service runs
   const RunningService service;
   send_request(socket, one_body(1, 5, 0.3));
   ASSERT_TRUE(before);
   EXPECT_EQ(receive_bytes(socket), before);
   ASSERT_TRUE(status_before);
   const std::int64_t first_instance = status_before->instance_id;
-  EXPECT_TRUE(on_status(socket, [first_instance](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [first_instance](const ServiceStatus& status) {
     return status.instance_id != first_instance && status.counters.requests == 1;
   }));
 }
 
-TEST(Lockstep, ComparesTheAskersClockWithNothing) {
+TEST(LockstepMode, AcceptsAnyClientClock) {
   constexpr std::int64_t kHour = 3'600'000'000;  // us
   const RunningService service;
   RawLcmSocket socket;
@@ -285,12 +286,12 @@ TEST(Lockstep, ComparesTheAskersClockWithNothing) {
     EXPECT_EQ(response.seq, seq);
     EXPECT_NEAR(response.bodies[0].force[2], 90'000.0, 1e-6) << utime;
   }
-  EXPECT_TRUE(on_status(socket, [seq](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [seq](const ServiceStatus& status) {
     return status.counters.computed == seq && status.counters.stale == 0;
   }));
 }
 
-TEST(Lockstep, GivesEachFaultOfABodyItsOwnStatusAndZeros) {
+TEST(LockstepMode, ReturnsStatusAndZerosForEachInvalidBody) {
   const RunningService service;
   RawLcmSocket socket;
   RawStates states = one_body(1, 1, 0.0);
@@ -307,14 +308,14 @@ TEST(Lockstep, GivesEachFaultOfABodyItsOwnStatusAndZeros) {
     EXPECT_EQ(response.bodies[i].status, statuses[i]) << i;
     EXPECT_NEAR(response.bodies[i].force[2], statuses[i] == 0 ? 120'000.0 : 0.0, 1e-6) << i;
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.bodies[0] == 2 && status.counters.bodies[1] == 1 &&
            status.counters.bodies[2] == 1 && status.counters.bodies[3] == 1 &&
            status.counters.quaternions_normalised == 1;
   }));
 }
 
-TEST(Latest, AnswersTheNewestOfWhatWaitsInEachSession) {
+TEST(LatestMode, HandlesTheNewestPendingRequestOfEachSession) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
   constexpr std::int64_t kRequests = 50;
@@ -326,16 +327,16 @@ TEST(Latest, AnswersTheNewestOfWhatWaitsInEachSession) {
   std::map<std::int64_t, std::int64_t> newest;
   while (newest[7] < kRequests || newest[8] < kRequests) {
     const RawWrenches response = receive(socket);
-    EXPECT_GT(response.seq, newest[response.session_id]) << "never back to an older one";
+    EXPECT_GT(response.seq, newest[response.session_id]) << "never an older one";
     newest[response.session_id] = response.seq;
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) {
+  EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     const ServiceCounters& counters = status.counters;
     return counters.requests == 2 * kRequests && counters.computed + counters.superseded == 2 * kRequests;
   }));
 }
 
-TEST(Latest, LeavesStaleQuestionsUnansweredAndAnswersAnAskerThatStartsOver) {
+TEST(LatestMode, DropsStaleRequestsAndAcceptsRestartedClients) {
   const RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
   send_request(socket, one_body(1, 100, 0.0));
@@ -348,10 +349,11 @@ TEST(Latest, LeavesStaleQuestionsUnansweredAndAnswersAnAskerThatStartsOver) {
     send_request(socket, one_body(1, seq, 0.0));
     EXPECT_EQ(receive(socket).seq, seq);
   }
-  EXPECT_TRUE(on_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
+  EXPECT_TRUE(
+      wait_for_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
 }
 
-TEST(Channels, CanBeNamedAndAreTakenLiterally) {
+TEST(Buoyancyd, UsesChannelNamesLiterally) {
   const RunningService service(
       {"--states-channel", "a.b", "--wrenches-channel", "w(1|2)", "--status-channel", "s"});
   RawLcmSocket socket;

@@ -1,5 +1,4 @@
-// buoyancyd as a process of its own, over the real UDP multicast of the test's network namespace, and what
-// the tests ask it.
+// Runs buoyancyd as a process on the UDP multicast of the test's network namespace, and sends requests to it.
 #pragma once
 
 #include <chrono>
@@ -19,7 +18,7 @@
 
 namespace buoyancy {
 
-// Body 1 as in kOneBoxScene; body 2: the same, torque about kReferenceInB.
+// Body 1 is that of kOneBoxScene; body 2 is equal, with its torque about kReferenceInB.
 inline constexpr std::array<double, 3> kReferenceInB{0.5, -0.25, 0.0};
 inline const std::string kBoxScene = kOneBoxScene + R"([[body]]
 id = 2
@@ -28,7 +27,7 @@ method = "exact"
 reference_point = [0.5, -0.25, 0.0]
 )";
 
-// The same box, whose hydrostatics are asked for.
+// Two such boxes; the scene requests hydrostatics of body 2.
 inline const std::string kHydrostaticBoxScene = kTestWater + R"([[body]]
 id = 1
 shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
@@ -40,21 +39,21 @@ outputs = ["wrench", "hydrostatics"]
 mass = 12000
 )";
 
-// Ready when constructed.
+// The service is ready once this is constructed.
 class RunningService {
  public:
   explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene,
                           std::vector<std::string> environment = {})
       : child_(command(std::move(options), directory_.write("scene.toml", scene), std::move(environment))) {
     if (!child_.wait_for_text("ready:", kWaitTimeout)) {
-      throw std::runtime_error("buoyancyd did not get ready: " + child_.standard_error());
+      throw std::runtime_error("buoyancyd did not become ready: " + child_.standard_error());
     }
   }
 
   ChildProcess& child() { return child_; }
   std::string log() const { return child_.standard_error(); }
 
-  // Returns once all its threads stand still, until it gets SIGCONT.
+  // Stops all its threads until SIGCONT; returns once they have stopped.
   void stop() {
     child_.send_signal(SIGSTOP);
     for (std::string state; state != "T";) {
@@ -64,7 +63,7 @@ class RunningService {
     }
   }
 
-  // Beside the scene, which is "scene.toml".
+  // Files in the directory of the scene file, "scene.toml".
   std::string path(const std::string& name) const { return directory_.path(name); }
   void write(const std::string& name, const std::string& contents) const { directory_.write(name, contents); }
 
@@ -99,7 +98,7 @@ inline std::optional<RawBytes> receive_bytes(RawLcmSocket& socket, double second
   return socket.receive("BUOYANCY_WRENCHES", seconds);
 }
 
-// Throws where no response comes.
+// Throws if no response arrives.
 inline RawWrenches receive(RawLcmSocket& socket) {
   const std::optional<RawBytes> bytes = receive_bytes(socket);
   if (!bytes) throw std::runtime_error("no response");
@@ -107,8 +106,8 @@ inline RawWrenches receive(RawLcmSocket& socket) {
 }
 
 // The first status that satisfies `wanted`; nullopt: none within kWaitTimeout.
-template <typename Wanted>
-std::optional<ServiceStatus> on_status(RawLcmSocket& socket, Wanted&& wanted) {
+template <typename Predicate>
+std::optional<ServiceStatus> wait_for_status(RawLcmSocket& socket, Predicate&& wanted) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (std::chrono::steady_clock::now() < limit) {
     const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_STATUS", kWaitTimeout);

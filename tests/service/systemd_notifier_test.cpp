@@ -1,4 +1,4 @@
-// What a service manager hears of buoyancyd, by a socket as systemd gives one.
+// The notifications of buoyancyd to its service manager, received on a socket like that of systemd.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -24,7 +24,7 @@ class NotifySocket {
     address.sun_family = AF_UNIX;
     std::strncpy(address.sun_path, path().c_str(), sizeof address.sun_path - 1);
     if (::bind(socket_.value(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-      throw std::runtime_error("no socket " + path());
+      throw std::runtime_error("cannot bind the socket " + path());
     }
   }
   std::string path() const { return directory_.path("notify"); }
@@ -38,22 +38,22 @@ class NotifySocket {
     return std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
   }
 
-  // Those up to the one that begins with `text`; it is the last, or missing after kWaitTimeout.
+  // The datagrams up to the one that starts with `text`, which is missing after kWaitTimeout.
   std::vector<std::string> receive_until(const std::string& text) {
-    std::vector<std::string> heard;
+    std::vector<std::string> received;
     const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
     while (std::chrono::steady_clock::now() < limit) {
       const std::optional<std::string> next = receive(kWaitTimeout);
       if (!next) break;
-      heard.push_back(*next);
+      received.push_back(*next);
       if (next->starts_with(text)) break;
     }
-    return heard;
+    return received;
   }
 
   bool has_received(const std::string& text) {
-    const std::vector<std::string> heard = receive_until(text);
-    return !heard.empty() && heard.back().starts_with(text);
+    const std::vector<std::string> received = receive_until(text);
+    return !received.empty() && received.back().starts_with(text);
   }
 
  private:
@@ -76,7 +76,7 @@ class SystemdNotifierTest : public testing::Test {
   RawLcmSocket socket_;
 };
 
-TEST_F(SystemdNotifierTest, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
+TEST_F(SystemdNotifierTest, ReportsReadyOnceRequestsAreHandled) {
   const RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   send_request(socket_, one_body(1, 1, 0.0));
@@ -84,7 +84,7 @@ TEST_F(SystemdNotifierTest, HearsThatItIsReadyOnlyOnceQuestionsAreAnswered) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 1 request answered"));
 }
 
-TEST_F(SystemdNotifierTest, IsNotReadyBeforeTheSceneIsLoaded) {
+TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterTheSceneIsLoaded) {
   const TempDir directory;
   LeasedFile scene(directory.write("scene.toml", kBoxScene));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
@@ -93,11 +93,11 @@ TEST_F(SystemdNotifierTest, IsNotReadyBeforeTheSceneIsLoaded) {
   ChildProcess child(command);
   while (!scene.awaited()) ASSERT_FALSE(child.wait(0.002)) << child.standard_error();
   EXPECT_EQ(systemd_.receive(0.1), std::nullopt);
-  scene.let_go();
+  scene.release();
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(SystemdNotifierTest, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
+TEST_F(SystemdNotifierTest, ReportsStartEndAndFailureOfAReload) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGHUP);
@@ -118,7 +118,7 @@ TEST_F(SystemdNotifierTest, HearsWhenAReloadBeginsAndEndsAndHowItEnded) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 0 requests answered; the last reload failed"));
 }
 
-TEST_F(SystemdNotifierTest, HearsThatItStopsBeforeItEnds) {
+TEST_F(SystemdNotifierTest, ReportsStoppingBeforeTheExit) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGTERM);
@@ -126,41 +126,41 @@ TEST_F(SystemdNotifierTest, HearsThatItStopsBeforeItEnds) {
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }
 
-TEST_F(SystemdNotifierTest, HearsTheWatchdogsBeatWhileTheLoopGoesRoundAndNoLonger) {
+TEST_F(SystemdNotifierTest, PingsTheWatchdogOnlyWhileTheLoopRuns) {
   RunningService service({}, kBoxScene, environment("100000"));
-  for (int beat = 0; beat < 5; ++beat) ASSERT_TRUE(systemd_.has_received("WATCHDOG=1"));
+  for (int ping = 0; ping < 5; ++ping) ASSERT_TRUE(systemd_.has_received("WATCHDOG=1"));
   service.stop();
-  while (systemd_.receive(0.0)) {  // what was sent before
+  while (systemd_.receive(0.0)) {  // sent before the stop
   }
-  EXPECT_EQ(systemd_.receive(0.5), std::nullopt) << "ten beats";
+  EXPECT_EQ(systemd_.receive(0.5), std::nullopt) << "ten intervals";
   service.child().send_signal(SIGCONT);
   EXPECT_TRUE(systemd_.has_received("WATCHDOG=1"));
 }
 
-TEST_F(SystemdNotifierTest, HearsTheWatchdogsBeatWhileASceneLoads) {
+TEST_F(SystemdNotifierTest, PingsTheWatchdogDuringALoad) {
   RunningService service({}, kBoxScene, environment("100000"));
   LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(systemd_.has_received("RELOADING=1"));
-  for (int beat = 0; beat < 10; ++beat) {
-    const std::vector<std::string> heard = systemd_.receive_until("WATCHDOG=1");
-    ASSERT_FALSE(heard.empty());
-    EXPECT_EQ(std::ranges::count(heard, "READY=1"), 0);
+  for (int ping = 0; ping < 10; ++ping) {
+    const std::vector<std::string> received = systemd_.receive_until("WATCHDOG=1");
+    ASSERT_FALSE(received.empty());
+    EXPECT_EQ(std::ranges::count(received, "READY=1"), 0);
   }
-  scene.let_go();
+  scene.release();
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(SystemdNotifierTest, HearsNoBeatWhereNoWatchdogWaits) {
+TEST_F(SystemdNotifierTest, SendsNoPingWithoutAWatchdog) {
   const RunningService service({}, kBoxScene, environment());
-  const std::vector<std::string> heard = systemd_.receive_until("STATUS=2 bodies, 0");
+  const std::vector<std::string> received = systemd_.receive_until("STATUS=2 bodies, 0");
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   std::optional<std::string> more = systemd_.receive(1.5);
-  EXPECT_EQ(more, std::nullopt) << "no beat, and a status that did not change is not said again";
+  EXPECT_EQ(more, std::nullopt) << "no ping, and an unchanged status is not sent again";
 }
 
-TEST(WithoutAServiceManager, TheServiceAnswersThoughTheSocketIsGone) {
+TEST(Buoyancyd, HandlesRequestsAfterTheNotifySocketIsGone) {
   std::string gone;
   {
     const NotifySocket manager;
@@ -168,7 +168,7 @@ TEST(WithoutAServiceManager, TheServiceAnswersThoughTheSocketIsGone) {
   }
   const RunningService service({}, kBoxScene, {"NOTIFY_SOCKET=" + gone, "WATCHDOG_USEC=100000"});
   RawLcmSocket socket;
-  for (int beat = 0; beat < 3; ++beat) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
+  for (int status = 0; status < 3; ++status) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
   send_request(socket, one_body(1, 1, 0.0));
   EXPECT_EQ(receive(socket).seq, 1);
 }
