@@ -45,8 +45,8 @@ Log original_log() {
   Log log;
   std::vector<std::uint8_t> event;
   for (int number = 0; number < kEvents; ++number) {
-    const bool ours = number % 5 != 4;
-    encode_event(number, number, ours ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", request(number), event);
+    const bool wanted = number % 5 != 4;
+    encode_event(number, number, wanted ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", request(number), event);
     log.starts.push_back(log.bytes.size());
     log.bytes.append(event.begin(), event.end());
   }

@@ -200,14 +200,14 @@ TEST_F(ReplayPoses, WritesTheSameOutputForAnyNumberOfJobs) {
 
 TEST_F(ReplayPoses, ComparesWithABaselineBodyByBody) {
   write("in.lcmlog", log_of_poses(3000));
-  ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
-  const auto compared = [&](const std::string& earlier, int exit_code) {
+  ASSERT_EQ(replay(path("in.lcmlog"), path("baseline.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
+  const auto compared = [&](const std::string& baseline, int exit_code) {
     const FinishedProcess finished =
-        replay(path("in.lcmlog"), "/dev/null", {"--pose", "POSE=1", "--compare", path(earlier), "--json"});
+        replay(path("in.lcmlog"), "/dev/null", {"--pose", "POSE=1", "--compare", path(baseline), "--json"});
     EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
     return nlohmann::json::parse(finished.standard_output)["compared"];
   };
-  const auto same = compared("earlier.lcmlog", 0);
+  const auto same = compared("baseline.lcmlog", 0);
   EXPECT_EQ(same["agrees"], true);
   EXPECT_EQ(same["bodies"][0]["responses"], 3000);
   EXPECT_EQ(same["bodies"][0]["force"], 0.0);
@@ -220,20 +220,20 @@ TEST_F(ReplayPoses, ComparesWithABaselineBodyByBody) {
     write("scene.toml", changed);
   };
   with("\"exact\"", "\"hierarchical\"");
-  EXPECT_EQ(compared("earlier.lcmlog", 0)["agrees"], true);
+  EXPECT_EQ(compared("baseline.lcmlog", 0)["agrees"], true);
   with("density = 1000.0", "density = 1001.0");
-  const auto denser = compared("earlier.lcmlog", 1);
+  const auto denser = compared("baseline.lcmlog", 1);
   EXPECT_EQ(denser["agrees"], false);
   EXPECT_NEAR(denser["bodies"][0]["force"], 24.0 * 10.0, 1e-6) << "a thousandth of the full displacement";
   EXPECT_EQ(denser["bodies"][0]["volume"], 0.0);
   EXPECT_GT(denser["bodies"][0]["force_in_bounds"], 1e6);
   write("scene.toml", scene);
 
-  const std::string earlier = read_file(path("earlier.lcmlog"));
-  const std::size_t one = earlier.size() / 3000;
-  write("shorter.lcmlog", earlier.substr(0, 10 * one) + earlier.substr(11 * one));
+  const std::string baseline = read_file(path("baseline.lcmlog"));
+  const std::size_t one = baseline.size() / 3000;
+  write("shorter.lcmlog", baseline.substr(0, 10 * one) + baseline.substr(11 * one));
   EXPECT_EQ(compared("shorter.lcmlog", 1)["unmatched_new"], 1);
-  write("longer.lcmlog", earlier + event("BUOYANCY_WRENCHES", 1, {1}) + earlier.substr(0, one));
+  write("longer.lcmlog", baseline + event("BUOYANCY_WRENCHES", 1, {1}) + baseline.substr(0, one));
   const auto longer = compared("longer.lcmlog", 1);
   EXPECT_EQ(longer["unmatched_baseline"], 1);
   EXPECT_EQ(longer["decode_errors"], 1);
@@ -241,12 +241,12 @@ TEST_F(ReplayPoses, ComparesWithABaselineBodyByBody) {
 
 TEST_F(ReplayPoses, ReportsDifferencesFromNonFiniteBaselines) {
   write("in.lcmlog", log_of_poses(3));
-  ASSERT_EQ(replay(path("in.lcmlog"), path("earlier.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
+  ASSERT_EQ(replay(path("in.lcmlog"), path("baseline.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
   for (double BodyWrench::*bound : {&BodyWrench::force_error_bound, &BodyWrench::torque_error_bound}) {
     for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
       for (const bool in_force : {true, false}) {
         std::string changed;
-        for (WrenchResponse& response : responses_in(path("earlier.lcmlog"))) {
+        for (WrenchResponse& response : responses_in(path("baseline.lcmlog"))) {
           BodyWrench& wrench = response.bodies.at(0);
           (in_force ? wrench.force[1] : wrench.*bound) = number;
           std::vector<std::uint8_t> bytes;

@@ -147,24 +147,24 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
   std::string log;
   for (const double height : {0.3, -9.0, 9.0}) log += event("BUOYANCY_STATES", 1, request(1, height));
   write("in.lcmlog", log);
-  ASSERT_EQ(run({"--scene", hydrostatics_scene, path("in.lcmlog"), path("earlier.lcmlog")}).exit_code, 0);
-  const auto compared = [&](const std::string& scene, const std::string& earlier, int exit_code) {
+  ASSERT_EQ(run({"--scene", hydrostatics_scene, path("in.lcmlog"), path("baseline.lcmlog")}).exit_code, 0);
+  const auto compared = [&](const std::string& scene, const std::string& baseline, int exit_code) {
     const FinishedProcess finished =
-        run({"--scene", scene, path("in.lcmlog"), "/dev/null", "--compare", path(earlier), "--json"});
+        run({"--scene", scene, path("in.lcmlog"), "/dev/null", "--compare", path(baseline), "--json"});
     EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
     return nlohmann::json::parse(finished.standard_output)["compared"];
   };
-  const auto same = compared(hydrostatics_scene, "earlier.lcmlog", 0)["bodies"][0];
+  const auto same = compared(hydrostatics_scene, "baseline.lcmlog", 0)["bodies"][0];
   EXPECT_EQ(same["hydrostatics"], 3);
   EXPECT_EQ(same["hydrostatics_in_bounds"], 0.0);
   EXPECT_EQ(same["center_in_bounds"], 0.0);
-  EXPECT_EQ(compared(scene_, "earlier.lcmlog", 1)["unmatched_baseline"], 3) << "the hydrostatics";
+  EXPECT_EQ(compared(scene_, "baseline.lcmlog", 1)["unmatched_baseline"], 3) << "the hydrostatics";
 
   // The first message of `channel`, of the partly submerged body, after `change`.
   const auto changed = [&](const std::string& channel, auto message, const auto& change) {
     std::string all;
     bool first = true;
-    for (LoggedEvent& one : events_of(path("earlier.lcmlog"))) {
+    for (LoggedEvent& one : events_of(path("baseline.lcmlog"))) {
       if (one.channel == channel && std::exchange(first, false)) {
         EXPECT_FALSE(decode(one.bytes, message));
         change(message.bodies.at(0));

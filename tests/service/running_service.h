@@ -71,9 +71,9 @@ class RunningService {
   static ChildCommand command(std::vector<std::string> options, const std::string& scene,
                               std::vector<std::string> environment) {
     options.insert(options.begin(), {BUOYANCYD, "--scene", scene});
-    ChildCommand whole = command_of(std::move(options));
-    whole.environment = std::move(environment);
-    return whole;
+    ChildCommand result = command_of(std::move(options));
+    result.environment = std::move(environment);
+    return result;
   }
 
   TempDir directory_;
