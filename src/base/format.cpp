@@ -13,7 +13,7 @@ std::string format_number(double value, int digits) {
 }
 
 std::string format_shortest(double value) {
-  std::array<char, 32> text{};  // the longest, -1.2345678901234567e-123, has 24
+  std::array<char, 32> text{};  // the longest text, -1.2345678901234567e-123, has 24 characters
   const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end.ptr};
 }

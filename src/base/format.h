@@ -8,16 +8,16 @@
 
 namespace buoyancy {
 
-// "0.25", "1e+300", "nan": at most `digits` significant digits, 1 to 17.
+// Formats as "0.25", "1e+300" or "nan", with at most `digits` significant digits; digits: 1 to 17.
 std::string format_number(double value, int digits = 9);
 
-// The shortest text that reads back as the same number: "0.1", "1e-09", "nan".
+// Returns the shortest text that parses to the same number: "0.1", "1e-09", "nan".
 std::string format_shortest(double value);
 
-// "0.25, 1, -3"
+// Formats as "0.25, 1, -3".
 std::string format_vector(const Vec3& vector, int digits = 9);
 
-// "1 hole", "5 holes"
+// Formats as "1 hole" or "5 holes".
 std::string pluralize(std::int64_t count, const std::string& singular, const std::string& plural);
 
 }  // namespace buoyancy

@@ -7,8 +7,8 @@
 namespace buoyancy {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Row i of the usual table: distances of the first i letters of a to all beginnings of b; three rows are
-  // alive.
+  // Row i of the dynamic-programming table holds the distances from the first i letters of a to all prefixes
+  // of b. Only the last three rows are kept.
   std::vector<std::size_t> two_before(b.size() + 1);
   std::vector<std::size_t> before(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);

@@ -1,4 +1,4 @@
-// Finds the word that a mistyped one was most likely meant to be.
+// Suggests the known word that a misspelt word most likely stands for.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace buoyancy {
 
-// How many letters must be inserted, deleted, replaced or swapped with their neighbour to make one word the
-// other (optimal string alignment). O(|a| |b|).
+// Returns the number of insertions, deletions, replacements and swaps of neighbouring letters that turn one
+// word into the other (optimal string alignment). Complexity: O(|a| |b|).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// The candidate at the least edit distance, the first of equals; candidates: at least one.
+// Returns the candidate at the smallest edit distance, the first one of a tie. Requires a candidate.
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// A file descriptor that closes itself.
+// Owns a file descriptor and closes it on destruction.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@ namespace buoyancy {
 class UniqueFd {
  public:
   UniqueFd() = default;
-  explicit UniqueFd(int value) : value_(value) {}  // takes it over; negative: none
+  explicit UniqueFd(int value) : value_(value) {}  // takes ownership; negative: no descriptor
   UniqueFd(UniqueFd&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
   UniqueFd& operator=(UniqueFd&& other) noexcept {
     std::swap(value_, other.value_);
@@ -22,7 +22,7 @@ class UniqueFd {
 
   int value() const { return value_; }
   bool valid() const { return value_ >= 0; }
-  bool close() { return ::close(std::exchange(value_, -1)) == 0; }  // false: errno says what went wrong
+  bool close() { return ::close(std::exchange(value_, -1)) == 0; }  // false: errno holds the cause
 
  private:
   int value_ = -1;

@@ -1,5 +1,5 @@
-// Three-vectors and matrices of any number type: double where we run, rationals, intervals and dual numbers
-// in the tests. The frame a vector is expressed in is part of its variable's name: vertex_B, force_W.
+// 3-vectors and 3 x 3 matrices of any number type: double in the libraries; rationals, intervals and dual
+// numbers in the tests. A variable's name ends in the frame that it is expressed in: vertex_B, force_W.
 #pragma once
 
 #include <Eigen/Core>

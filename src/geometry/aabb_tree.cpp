@@ -22,29 +22,29 @@ AabbTree::AabbTree(std::vector<BoundingBox> boxes) : boxes_(std::move(boxes)), i
   if (items_.empty()) return;
   nodes_.reserve(boxes_.size());
   build(0, static_cast<std::int32_t>(items_.size()));
-  std::vector<BoundingBox> in_order;
-  in_order.reserve(boxes_.size());
-  for (const std::int32_t i : items_) in_order.push_back(boxes_[static_cast<std::size_t>(i)]);
-  boxes_ = std::move(in_order);
+  std::vector<BoundingBox> sorted;
+  sorted.reserve(boxes_.size());
+  for (const std::int32_t i : items_) sorted.push_back(boxes_[static_cast<std::size_t>(i)]);
+  boxes_ = std::move(sorted);
 }
 
 void AabbTree::build(std::int32_t begin, std::int32_t end) {
   BoundingBox box = empty_box();
-  BoundingBox middles = empty_box();  // twice the middles, which serve as well
+  BoundingBox centers = empty_box();  // bounds of min + max, twice the box centre
   for (std::int32_t i = begin; i < end; ++i) {
     const BoundingBox& item_box = boxes_[static_cast<std::size_t>(item(i))];
     box.min_B = box.min_B.cwiseMin(item_box.min_B);
     box.max_B = box.max_B.cwiseMax(item_box.max_B);
-    const Vec3 middle = item_box.min_B + item_box.max_B;
-    middles.min_B = middles.min_B.cwiseMin(middle);
-    middles.max_B = middles.max_B.cwiseMax(middle);
+    const Vec3 center = item_box.min_B + item_box.max_B;
+    centers.min_B = centers.min_B.cwiseMin(center);
+    centers.max_B = centers.max_B.cwiseMax(center);
   }
   const std::size_t here = nodes_.size();
   nodes_.push_back({box, begin, end, kLeaf});
   if (end - begin <= kItemsPerLeaf) return;
 
   Eigen::Index axis = 0;
-  (middles.max_B - middles.min_B).maxCoeff(&axis);
+  (centers.max_B - centers.min_B).maxCoeff(&axis);
   const auto before = [this, axis](std::int32_t i, std::int32_t j) {
     const BoundingBox& a = boxes_[static_cast<std::size_t>(i)];
     const BoundingBox& b = boxes_[static_cast<std::size_t>(j)];

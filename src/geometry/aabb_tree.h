@@ -1,8 +1,8 @@
-// A binary tree of bounding boxes over a set of boxes, for finding those that meet something without looking
-// at all of them.
+// A binary tree of axis-aligned bounding boxes over a set of boxes, for queries that need not visit all
+// boxes.
 //
-// Built by halving at the median along the longest axis of the middles: O(n log n), depth log2(n). The order
-// of what it visits depends on the boxes alone.
+// Construction splits at the median along the axis on which the box centres spread most: O(n log n), depth
+// log2(n). The order of visits depends on the boxes alone.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ class AabbTree {
  public:
   explicit AabbTree(std::vector<BoundingBox> boxes);
 
-  // Calls visit(i) for every box i for which meets(box) is true; meets must be true for a box that holds one
-  // for which it is.
+  // Calls visit(i) for every box i for which meets(box) is true. meets must be monotonic: true for every box
+  // that contains a box for which it is true.
   template <typename Meets, typename Visit>
   void for_each(const Meets& meets, Visit&& visit) const {
     if (!nodes_.empty()) descend(0, meets, visit);
   }
 
-  // Calls visit(i, j) once for every pair of boxes that have a point in common.
+  // Calls visit(i, j) once for every pair of boxes that share a point.
   template <typename Visit>
   void for_each_overlapping_pair(Visit&& visit) const {
     if (!nodes_.empty()) pairs_within(0, visit);
@@ -32,8 +32,8 @@ class AabbTree {
  private:
   struct Node {
     BoundingBox box;
-    std::int32_t begin, end;  // of items_
-    std::int32_t right;       // the left child follows its parent; kLeaf for leaves
+    std::int32_t begin, end;  // range of items_
+    std::int32_t right;       // right child, or kLeaf; the left child follows its parent
   };
   static constexpr std::int32_t kLeaf = -1;
 
@@ -101,7 +101,7 @@ class AabbTree {
   }
 
   std::vector<BoundingBox> boxes_;   // in the order of items_
-  std::vector<std::int32_t> items_;  // positions in the boxes given, by leaf
+  std::vector<std::int32_t> items_;  // indices of the given boxes, grouped by leaf
   std::vector<Node> nodes_;
 };
 

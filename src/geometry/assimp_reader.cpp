@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <memory>
@@ -23,10 +22,12 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "base/format.h"
+
 namespace buoyancy {
 namespace {
 
-// assimp's node transforms are single precision; their product along the tree is not.
+// assimp stores node transforms in single precision; their product along the tree is computed in double.
 using Transform = Eigen::Matrix<double, 3, 4>;
 
 Transform to_transform(const aiMatrix4x4& m) {
@@ -42,8 +43,8 @@ Transform compose(const Transform& outer, const Transform& inner) {
   return product;
 }
 
-// A mesh file may name others (buffers, materials). What it names must be a regular file too: a device or a
-// pipe would never end.
+// A mesh file may refer to other files (buffers, materials). These must be regular files too, since reading a
+// device or a pipe may never end.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   explicit RegularFiles(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
@@ -61,8 +62,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   std::uint64_t max_bytes_;
 };
 
-// assimp goes on after errors that change geometry (an index out of range, a polygon it cannot split) and
-// tells only its log.
+// assimp continues after errors that change the geometry (an index out of range, a polygon that it cannot
+// split) and reports them only to its log.
 struct LoggedErrors {
   std::string first;
   std::int64_t count = 0;
@@ -74,7 +75,7 @@ class ErrorLog : public Assimp::LogStream {
 
   void write(const char* message) override {
     std::string text = message;  // "Error, T0: OFF: Vertex index is out of range\n"
-    if (text.find("aterial") != std::string::npos) return;  // not about geometry
+    if (text.find("aterial") != std::string::npos) return;  // materials do not affect geometry
     if (++errors_.count > 1) return;
     if (const std::size_t colon = text.find(": "); colon != std::string::npos) text.erase(0, colon + 2);
     while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -85,7 +86,7 @@ class ErrorLog : public Assimp::LogStream {
   LoggedErrors& errors_;
 };
 
-// Collects what assimp logs as an error from its making to its end.
+// Collects assimp's error messages during the lifetime of the object.
 class ErrorLogging {
  public:
   ErrorLogging() {
@@ -102,7 +103,7 @@ class ErrorLogging {
   LoggedErrors errors_;
 };
 
-// The importers that claim `extension` stay; all others go, so that content cannot lead to them.
+// Unregisters all importers but those of `extension`, so that assimp cannot select another by content.
 void keep_only(Assimp::Importer& importer, const std::string& extension) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* candidate = importer.GetImporter(i);
@@ -110,16 +111,17 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
     candidate->GetExtensionList(extensions);
     if (extensions.count(extension) > 0) continue;
     importer.UnregisterLoader(candidate);
-    delete candidate;  // unregistering passes it back to us
+    delete candidate;  // unregistering transfers ownership to the caller
   }
 }
 
 struct PlacedNode {
   const aiNode* node;
-  Transform x_BN;  // from the node's frame N to the file's
+  Transform x_BN;  // from the node's frame N to the file's frame
 };
 
-// Every node with its transform, in the file's order. No recursion: the depth is the file's to choose.
+// Returns every node with its transform, in the file's order. It does not recurse, since a file may nest
+// nodes to any depth.
 std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
   std::vector<PlacedNode> done;
   std::vector<PlacedNode> open{{scene.mRootNode, to_transform(scene.mRootNode->mTransformation)}};
@@ -169,14 +171,14 @@ void append_instance(const aiMesh& part, const Transform& x_BN, TriangleMesh& me
   }
 }
 
-Error over_limit(std::uint64_t found, const char* what, std::uint64_t limit, const char* key) {
-  return {"", std::to_string(found) + " " + what,
+Error over_limit(std::uint64_t actual, const char* what, std::uint64_t limit, const char* key) {
+  return {"", std::to_string(actual) + " " + what,
           "at most " + std::to_string(limit) + " (limit '" + key + "')",
-          "the mesh is finer than this service is set up for, or one part is instanced very often",
+          "the mesh is finer than this service is configured for, or one part is instanced very often",
           std::string("Simplify the mesh, or raise '") + key + "' under [limits]"};
 }
 
-// Meshes that no node refers to are not part of the scene and stay out.
+// Meshes that no node refers to are not part of the scene and are left out.
 Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits) {
   std::vector<FaceCounts> counts;
   for (unsigned int m = 0; m < scene.mNumMeshes; ++m) counts.push_back(count_faces(*scene.mMeshes[m]));
@@ -196,8 +198,8 @@ Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits)
     triangles += triangles_here;
     if (triangles_here > 0) ++imported.source.nodes;
   }
-  constexpr std::uint64_t kIndexable = 2'147'483'647;  // vertex indices are 32-bit
-  const std::uint64_t max_vertices = std::min(limits.vertices, kIndexable);
+  constexpr std::uint64_t kMaxVertexCount = 2'147'483'647;  // vertex indices have 32 bits
+  const std::uint64_t max_vertices = std::min(limits.vertices, kMaxVertexCount);
   if (vertices > max_vertices) return make_error(over_limit(vertices, "vertices", max_vertices, "vertices"));
   if (triangles > limits.faces) return make_error(over_limit(triangles, "triangles", limits.faces, "faces"));
 
@@ -214,11 +216,9 @@ Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits)
   return imported;
 }
 
-// What went through single precision has six digits to show: 0.01, not 0.009999999776.
+// Values of single precision have six significant digits: 0.01, not 0.009999999776.
 std::string six_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
+  return format_number(value, 6);
 }
 
 void add_note(MeshSource& source, const std::string& text) {
@@ -226,7 +226,7 @@ void add_note(MeshSource& source, const std::string& text) {
   source.note += text;
 }
 
-// assimp puts the unit and the up axis of a Collada or 3DS file into the root's transform.
+// assimp stores the unit and the up axis of a Collada or 3DS file in the root node's transform.
 double root_scale(const aiScene& scene) {
   return to_transform(scene.mRootNode->mTransformation).col(0).norm();
 }
@@ -238,7 +238,7 @@ bool states_up_axis(const std::filesystem::path& path) {
   return head.find("up_axis>") != std::string::npos;
 }
 
-// "z", "x", "y" or "": what the importer did to the axes shows in the root's transform.
+// Returns "z", "x", "y" or "" (not stated). The root's transform shows how the importer rotated the axes.
 std::string collada_up_axis(const aiScene& scene, const std::filesystem::path& path) {
   const Transform root = to_transform(scene.mRootNode->mTransformation);
   const double scale = root_scale(scene);
@@ -301,11 +301,11 @@ void describe(const aiScene& scene, const std::filesystem::path& path, MeshForma
   }
 }
 
-Error unreadable(MeshFormat format, const std::string& complaint) {
+Error unreadable(MeshFormat format, const std::string& message) {
   const std::string name(to_string(format));
-  return {"", "not readable as " + name + (complaint.empty() ? "" : " (" + complaint + ")"),
+  return {"", "not readable as " + name + (message.empty() ? "" : " (" + message + ")"),
           "a complete " + name + " file", "the file is cut short, damaged or of another format",
-          "Open it in a mesh editor and export it anew"};
+          "Open it in a mesh editor and export it again"};
 }
 
 Error no_triangles(std::int64_t points_and_lines) {
@@ -317,20 +317,20 @@ Error no_triangles(std::int64_t points_and_lines) {
           "Export the surface as polygons"};
 }
 
-// Does assimp complain that there is no mesh, rather than that it cannot read one?
-bool says_empty(const std::string& complaint) {
-  constexpr std::array kOfEmptyFiles{"too small",         "contains no vertices", "There are no facets",
-                                     "no valid vertices", "came out empty",       "mNumMeshes is 0",
-                                     "No scene"};
-  return std::ranges::any_of(
-      kOfEmptyFiles, [&complaint](const char* words) { return complaint.find(words) != std::string::npos; });
+// Whether assimp's message means that there is no mesh, rather than that the file is unreadable.
+bool reports_empty_file(const std::string& message) {
+  constexpr std::array kEmptyFilePhrases{"too small",         "contains no vertices", "There are no facets",
+                                         "no valid vertices", "came out empty",       "mNumMeshes is 0",
+                                         "No scene"};
+  return std::ranges::any_of(kEmptyFilePhrases, [&message](const char* phrase) {
+    return message.find(phrase) != std::string::npos;
+  });
 }
 
-Error no_mesh(MeshFormat format, const std::string& complaint) {
-  return {"", "no mesh in it (" + complaint + ")",
+Error no_mesh(MeshFormat format, const std::string& message) {
+  return {"", "no mesh in it (" + message + ")",
           "a " + std::string(to_string(format)) + " file of triangles or polygons",
-          "an export of nothing, a header alone, or content of another format",
-          "Export the surface as polygons"};
+          "an empty export, a header alone, or content of another format", "Export the surface as polygons"};
 }
 
 }  // namespace
@@ -341,7 +341,7 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
   Assimp::Importer importer;
   importer.SetIOHandler(new RegularFiles(limits.mesh_bytes));  // the importer owns it
   keep_only(importer, lowercase_extension(path).substr(1));
-  // Nothing that edits geometry: assimp's other steps delete small triangles and move vertices.
+  // These steps do not edit geometry; assimp's other steps delete small triangles and move vertices.
   const aiScene* scene =
       importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
   if (scene == nullptr) {
@@ -350,14 +350,15 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
         std::rethrow_exception(exception);
       } catch (const std::bad_alloc&) {
         throw;
-      } catch (...) {  // NOLINT(bugprone-empty-catch): its text is GetErrorString()
+      } catch (...) {  // NOLINT(bugprone-empty-catch): GetErrorString() returns its text
       }
     }
-    const std::string complaint = importer.GetErrorString();
-    if (complaint.find("contains no faces") != std::string::npos) return make_error(no_triangles(0));
-    return make_error(says_empty(complaint) ? no_mesh(format, complaint) : unreadable(format, complaint));
+    const std::string message = importer.GetErrorString();
+    if (message.find("contains no faces") != std::string::npos) return make_error(no_triangles(0));
+    return make_error(reports_empty_file(message) ? no_mesh(format, message) : unreadable(format, message));
   }
-  // The OFF importer logs a face it drops, a vertex it makes up or an index it bends, and calls it a success.
+  // The OFF importer reports success even if it drops a face, invents a vertex or clamps an index; only its
+  // log shows that.
   if (format == MeshFormat::kOff && logging.errors().count > 0) {
     return make_error(unreadable(format, logging.errors().first));
   }

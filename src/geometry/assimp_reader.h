@@ -1,7 +1,7 @@
-// Internal to mesh import: a file read by assimp in this very process, whatever assimp does to it.
+// Internal to mesh import: reads a file with assimp in the calling process.
 //
-// assimp 5 crashes, hangs and allocates without bound on damaged files, so this runs in a child process of
-// its own (import_process.h) and nowhere else. assimp_reader.cpp is the only file that includes assimp.
+// assimp 5 crashes, hangs and allocates without bound on damaged files, so this function runs only in a child
+// process (import_process.h). assimp_reader.cpp is the only file that includes assimp.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,9 @@
 
 namespace buoyancy {
 
-// Positions are single precision, as assimp holds them; node transforms are applied in double. Only the
-// importers of `format` can be reached, and only regular files of at most limits.mesh_bytes are opened, the
-// file itself or others that it names. Throws std::bad_alloc where memory ends; Error::subject is left to the
-// caller.
+// Positions have assimp's single precision; node transforms are applied in double. Only the importers of
+// `format` are reachable. Only regular files of at most limits.mesh_bytes are opened: the file itself and
+// those that it refers to. Throws std::bad_alloc when out of memory. The caller sets Error::subject.
 Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshFormat format,
                                         const ImportLimits& limits);
 

@@ -3,8 +3,8 @@
 namespace buoyancy {
 namespace {
 
-// Numbers the vertices of the surface of an a x b x c lattice: whole layers at the bottom and the top, rims
-// in between.
+// Numbers the vertices on the surface of an a x b x c lattice: full layers at the bottom and the top, rims in
+// between.
 class SurfaceLattice {
  public:
   SurfaceLattice(std::int32_t a, std::int32_t b, std::int32_t c) : a_(a), b_(b), c_(c) {}
@@ -19,7 +19,7 @@ class SurfaceLattice {
 
  private:
   std::int32_t in_layer(std::int32_t i, std::int32_t j) const { return j * (a_ + 1) + i; }
-  // Row by row, as vertices are added: the first and the last row whole, of the others both ends.
+  // Counts in the order in which vertices are added: the full first and last rows, both ends of the others.
   std::int32_t on_rim(std::int32_t i, std::int32_t j) const {
     if (j == 0) return i;
     if (j == b_) return (a_ + 1) + 2 * (b_ - 1) + i;
@@ -29,7 +29,7 @@ class SurfaceLattice {
   std::int32_t a_, b_, c_;
 };
 
-// Coordinate number i of n + 1 from -size/2 to size/2; i and n - i are exactly opposite.
+// Returns coordinate i of n + 1 from -size/2 to size/2; the coordinates of i and n - i are exact opposites.
 double coordinate(double size, std::int32_t i, std::int32_t n) {
   return size * (2 * i - n) / (2.0 * n);
 }
@@ -41,26 +41,26 @@ TriangleMesh generate(const BoxShape& box) {
   TriangleMesh mesh;
   for (std::int32_t k = 0; k <= c; ++k) {
     for (std::int32_t j = 0; j <= b; ++j) {
-      const bool whole_row = k == 0 || k == c || j == 0 || j == b;
-      for (std::int32_t i = 0; i <= a; i += whole_row ? 1 : a) {
+      const bool full_row = k == 0 || k == c || j == 0 || j == b;
+      for (std::int32_t i = 0; i <= a; i += full_row ? 1 : a) {
         mesh.add_vertex(
             {coordinate(box.size[0], i, a), coordinate(box.size[1], j, b), coordinate(box.size[2], k, c)});
       }
     }
   }
 
-  // Per axis w the two faces across it, as grids along u and v, where u x v = w.
+  // The two faces normal to axis w are grids along u and v, where u x v = w.
   const SurfaceLattice lattice(a, b, c);
   for (std::size_t w = 0; w < 3; ++w) {
     const std::size_t u = (w + 1) % 3;
     const std::size_t v = (w + 2) % 3;
     for (const bool positive : {false, true}) {
       const auto at = [&](std::int32_t along_u, std::int32_t along_v) {
-        std::array<std::int32_t, 3> place{};
-        place[w] = positive ? box.segments[w] : 0;
-        place[u] = along_u;
-        place[v] = along_v;
-        return lattice.index(place[0], place[1], place[2]);
+        std::array<std::int32_t, 3> index{};
+        index[w] = positive ? box.segments[w] : 0;
+        index[u] = along_u;
+        index[v] = along_v;
+        return lattice.index(index[0], index[1], index[2]);
       };
       for (std::int32_t i = 0; i < box.segments[u]; ++i) {
         for (std::int32_t j = 0; j < box.segments[v]; ++j) {

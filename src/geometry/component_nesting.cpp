@@ -29,48 +29,49 @@ std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const MeshTop
   return boxes;
 }
 
-bool holds(const BoundingBox& outer, const BoundingBox& inner) {
+bool contains(const BoundingBox& outer, const BoundingBox& inner) {
   return (outer.min_B.array() <= inner.min_B.array()).all() &&
          (inner.max_B.array() <= outer.max_B.array()).all();
 }
 
-// By component: those whose boxes hold its own, ascending.
-ComponentLists boxes_around(const std::vector<BoundingBox>& boxes) {
-  ComponentLists around(boxes.size());
+// Returns, by component, the components whose boxes contain its own, ascending.
+ComponentLists enclosing_boxes(const std::vector<BoundingBox>& boxes) {
+  ComponentLists enclosing(boxes.size());
   AabbTree(boxes).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
     const auto a = static_cast<std::size_t>(i);
     const auto b = static_cast<std::size_t>(j);
-    if (holds(boxes[b], boxes[a])) around[a].push_back(j);
-    if (holds(boxes[a], boxes[b])) around[b].push_back(i);
+    if (contains(boxes[b], boxes[a])) enclosing[a].push_back(j);
+    if (contains(boxes[a], boxes[b])) enclosing[b].push_back(i);
   });
-  for (auto& list : around) std::sort(list.begin(), list.end());
-  return around;
+  for (auto& list : enclosing) std::sort(list.begin(), list.end());
+  return enclosing;
 }
 
-// Up to kSamplesPerComponent corners of faces, spread over each component's faces and over their corners; the
-// same ones of a mesh that is inside out.
+// Returns up to kSamplesPerComponent face corners, spread over each component's faces and over their corners.
+// An inside-out mesh gives the same samples.
 ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& topology) {
   std::vector<std::size_t> corners(static_cast<std::size_t>(topology.components), 0);
   for (const std::int32_t component : topology.component_of_face) {
     corners[static_cast<std::size_t>(component)] += 3;
   }
-  std::vector<std::size_t> met(corners.size(), 0);
+  std::vector<std::size_t> visited(corners.size(), 0);
   ComponentLists samples(corners.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
     std::size_t stride = (corners[component] + kSamplesPerComponent - 1) / kSamplesPerComponent;
-    if (stride % 3 == 0) ++stride;  // else it would always be the same corner
+    if (stride % 3 == 0) ++stride;  // otherwise it would always select the same corner
     Triangle face = mesh.triangles[f];
     std::sort(face.begin(), face.end());
     for (const std::int32_t v : face) {
-      if (met[component]++ % stride == 0) samples[component].push_back(v);
+      if (visited[component]++ % stride == 0) samples[component].push_back(v);
     }
   }
   return samples;
 }
 
-// On which side of the directed line uv the point lies in the plane seen along x, the point moved by (e, e^2)
-// for a vanishing e > 0, so that it lies on no line: a ray then meets faces, never edges. 0 only if u = v.
+// Returns the side of the directed line uv on which the point lies in the projection along x. The point is
+// perturbed by (e, e^2) for a vanishing e > 0, so that it lies on no line and a ray meets faces, never edges.
+// The result is 0 only if the projections of u and v coincide.
 int perturbed_side(const Vec3& u, const Vec3& v, const Vec3& point) {
   const int side =
       orient_2d(project_along_axis(0, u), project_along_axis(0, v), project_along_axis(0, point));
@@ -81,7 +82,7 @@ int perturbed_side(const Vec3& u, const Vec3& v, const Vec3& point) {
 }
 
 struct Crossing {
-  int direction = 0;     // of the ray from the point along +x: 1 out through the face, -1 in, 0 missed
+  int direction = 0;     // of the ray from the point along +x: 1 outward, -1 inward, 0 no crossing
   bool touches = false;  // the point lies on the face
 };
 
@@ -96,24 +97,24 @@ Crossing cross(const TriangleMesh& mesh, const Triangle& face, const Vec3& point
   return {in_front == side ? 0 : side, false};
 }
 
-// The faces of the components that could hold others.
+// Casts rays along +x against the faces of the candidate outer components.
 class RayCaster {
  public:
-  RayCaster(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<bool>& could_hold)
+  RayCaster(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<bool>& is_candidate)
       : mesh_(mesh),
         topology_(topology),
-        faces_(faces_of(topology, could_hold)),
+        faces_(faces_of(topology, is_candidate)),
         tree_(boxes_of(mesh, faces_)),
-        winding_(could_hold.size(), 0),
-        touched_(could_hold.size(), false) {}
+        winding_(is_candidate.size(), 0),
+        touched_(is_candidate.size(), false) {}
 
-  // Afterwards winding(i) and touched(i) hold for the point.
+  // Sets winding(i) and touched(i) for the point.
   void cast(const Vec3& point) {
-    for (const std::size_t component : met_) {
+    for (const std::size_t component : changed_components_) {
       winding_[component] = 0;
       touched_[component] = false;
     }
-    met_.clear();
+    changed_components_.clear();
     const auto meets_ray = [&point](const BoundingBox& box) {
       return box.max_B.x() >= point.x() && box.min_B.y() <= point.y() && point.y() <= box.max_B.y() &&
              box.min_B.z() <= point.z() && point.z() <= box.max_B.z();
@@ -122,7 +123,7 @@ class RayCaster {
       const auto face = static_cast<std::size_t>(faces_[static_cast<std::size_t>(item)]);
       const auto component = static_cast<std::size_t>(topology_.component_of_face[face]);
       const Crossing crossing = cross(mesh_, mesh_.triangles[face], point);
-      if (crossing.direction != 0 || crossing.touches) met_.push_back(component);
+      if (crossing.direction != 0 || crossing.touches) changed_components_.push_back(component);
       winding_[component] += crossing.direction;
       if (crossing.touches) touched_[component] = true;
     });
@@ -133,10 +134,10 @@ class RayCaster {
 
  private:
   static std::vector<std::int32_t> faces_of(const MeshTopology& topology,
-                                            const std::vector<bool>& could_hold) {
+                                            const std::vector<bool>& is_candidate) {
     std::vector<std::int32_t> faces;
     for (std::size_t f = 0; f < topology.component_of_face.size(); ++f) {
-      if (could_hold[static_cast<std::size_t>(topology.component_of_face[f])]) {
+      if (is_candidate[static_cast<std::size_t>(topology.component_of_face[f])]) {
         faces.push_back(static_cast<std::int32_t>(f));
       }
     }
@@ -156,26 +157,26 @@ class RayCaster {
   const MeshTopology& topology_;
   std::vector<std::int32_t> faces_;
   AabbTree tree_;
-  std::vector<int> winding_;      // by component
-  std::vector<bool> touched_;     // by component
-  std::vector<std::size_t> met_;  // components for which these are set
+  std::vector<int> winding_;                     // by component
+  std::vector<bool> touched_;                    // by component
+  std::vector<std::size_t> changed_components_;  // components whose entries above are set
 };
 
 }  // namespace
 
 std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
                                                             const MeshTopology& topology) {
-  ComponentLists around = boxes_around(component_boxes(mesh, topology));
-  std::vector<bool> could_hold(around.size(), false);
-  for (const auto& list : around) {
-    for (const std::int32_t outer : list) could_hold[static_cast<std::size_t>(outer)] = true;
+  ComponentLists enclosing = enclosing_boxes(component_boxes(mesh, topology));
+  std::vector<bool> is_candidate(enclosing.size(), false);
+  for (const auto& list : enclosing) {
+    for (const std::int32_t outer : list) is_candidate[static_cast<std::size_t>(outer)] = true;
   }
-  if (std::find(could_hold.begin(), could_hold.end(), true) == could_hold.end()) return around;
+  if (std::find(is_candidate.begin(), is_candidate.end(), true) == is_candidate.end()) return enclosing;
 
-  RayCaster caster(mesh, topology, could_hold);
+  RayCaster caster(mesh, topology, is_candidate);
   const ComponentLists samples = sample_vertices(mesh, topology);
-  for (std::size_t inner = 0; inner < around.size(); ++inner) {
-    auto& candidates = around[inner];
+  for (std::size_t inner = 0; inner < enclosing.size(); ++inner) {
+    auto& candidates = enclosing[inner];
     if (candidates.empty()) continue;
     std::vector<std::size_t> inside(candidates.size(), 0);
     std::vector<std::size_t> outside(candidates.size(), 0);
@@ -192,7 +193,7 @@ std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& 
     }
     candidates = std::move(confirmed);
   }
-  return around;
+  return enclosing;
 }
 
 }  // namespace buoyancy

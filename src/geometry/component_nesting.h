@@ -1,10 +1,10 @@
-// Which components of a mesh lie inside which others.
+// Finds which components of a mesh lie inside which others.
 //
-// A component lies inside another if its box does and if the other winds around every one of a few of its
-// vertices, found by counting the other's crossings of a ray from there, entering and leaving, with exact
-// predicates. Vertices that lie on the other component do not count; components that cross each other are not
-// nested. Nothing is built where no box holds another; else O(n log n) for n faces of the components that
-// could hold others, and O(log n) per vertex.
+// A component lies inside another if its bounding box does and if the other has a non-zero winding number
+// about each of a few sample vertices. The winding number is the signed count of the other's crossings of a
+// ray from the vertex, by exact predicates. Vertices on the other component do not count; components that
+// cross each other are not nested. Complexity: no tree is built if no box contains another; else O(n log n)
+// for the n faces of the candidate outer components, and O(log n) per vertex.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace buoyancy {
 
-// By component: the components around it, ascending. Each must be closed or balanced.
+// Returns, by component, the components that enclose it, ascending. Every component must be closed or
+// balanced.
 std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
                                                             const MeshTopology& topology);
 

@@ -1,5 +1,5 @@
-// Disjoint sets over 0 .. n - 1 (union-find). The representative of a set is its smallest element, so that
-// results do not depend on the order of the unions. Amortised O(log n) per operation, by path halving.
+// Disjoint sets over 0 .. n - 1 (union-find with path halving). The representative of a set is its smallest
+// element, so that results do not depend on the order of the unions. Complexity: amortised O(log n) each.
 #pragma once
 
 #include <algorithm>

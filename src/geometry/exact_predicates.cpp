@@ -7,14 +7,14 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kUnit = 0x1p-53;  // half an ulp of 1
-// Rounding errors of the plain determinants, relative to the sums of the absolute products in them.
-constexpr double kError2d = (3.0 + 16.0 * kUnit) * kUnit;
-constexpr double kError3d = (7.0 + 56.0 * kUnit) * kUnit;
+constexpr double kUnitRoundoff = 0x1p-53;  // half an ulp of 1
+// Rounding error bounds of the determinants in double, relative to the sums of their absolute products.
+constexpr double kError2d = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
+constexpr double kError3d = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
 
 struct TwoTerms {
   double sum;    // rounded
-  double error;  // what rounding lost, exactly
+  double error;  // the exact rounding error
 };
 
 TwoTerms two_sum(double a, double b) {
@@ -24,7 +24,7 @@ TwoTerms two_sum(double a, double b) {
   return {sum, (a - a_part) + (b - b_part)};
 }
 
-// a in two halves of 26 bits each, so that products of halves are exact.
+// Splits a into two halves of 26 bits each, so that products of halves are exact.
 TwoTerms split(double a) {
   const double big = 0x1.0000002p27 * a;  // (2^27 + 1) a
   const double high = big - (big - a);
@@ -39,14 +39,14 @@ TwoTerms two_product(double a, double b) {
   return {product, error};
 }
 
-// A number as the exact sum of at most kCapacity doubles: none zero, none overlapping another's bits,
-// smallest first. So the last one has the sign of the whole.
+// A number as the exact sum of at most kCapacity doubles, all non-zero, with non-overlapping bits, smallest
+// first. The last term therefore has the sign of the sum.
 template <std::size_t kCapacity>
 struct Expansion {
   std::array<double, kCapacity> terms;
   std::size_t size = 0;
 
-  // Adds a double exactly; there must be room for one more term.
+  // Adds a double exactly. Requires size < kCapacity.
   void add(double value) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -114,7 +114,7 @@ Difference3 difference(const Vec3& a, const Vec3& b) {
   return {difference(a.x(), b.x()), difference(a.y(), b.y()), difference(a.z(), b.z())};
 }
 
-// (v x w) . u, u's part along one axis
+// Returns the part of (v x w) . u along one axis.
 auto triple_product_part(const Difference3& u, const Difference3& v, const Difference3& w, std::size_t axis) {
   const std::size_t next = (axis + 1) % 3;
   const std::size_t last = (axis + 2) % 3;
@@ -169,7 +169,7 @@ int orient_2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::V
   const double right = (a.y() - c.y()) * (b.x() - c.x());
   const double value = left - right;
   const double error = kError2d * (std::abs(left) + std::abs(right));
-  // Both zero: the products are zero, so the sign is.
+  // If the error is 0, both products are 0 and so is the sign.
   if (std::abs(value) > error || error == 0.0) return sign(value);
   return orient_2d_exactly(a, b, c);
 }

@@ -16,10 +16,10 @@
 namespace buoyancy {
 namespace {
 
-// Sender and reader are one program before and after fork(): no byte order, no versions.
+// Writer and reader are the same program after fork(), so the format needs no byte order and no version.
 struct Header {
   std::int64_t is_mesh = 0;
-  std::array<std::uint64_t, 4> text_bytes{};  // of an Error: all four; of a mesh: the first three
+  std::array<std::uint64_t, 4> text_bytes{};  // sizes of the texts: four for an Error, three for a mesh
   std::int64_t nodes = 0;
   std::int64_t left_out = 0;
   std::uint64_t vertices = 0;
@@ -54,16 +54,16 @@ class PipeReader {
     auto* next = static_cast<std::byte*>(data);
     while (bytes > 0) {
       if (!wait()) return false;
-      const ssize_t got = ::read(pipe_, next, bytes);
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) return false;
-      next += got;
-      bytes -= static_cast<std::size_t>(got);
+      const ssize_t received = ::read(pipe_, next, bytes);
+      if (received < 0 && errno == EINTR) continue;
+      if (received <= 0) return false;
+      next += received;
+      bytes -= static_cast<std::size_t>(received);
     }
     return true;
   }
 
-  // Grows by what comes: a count that nothing follows costs address space, not memory.
+  // Grows with the bytes that arrive: a false count costs address space, not memory.
   template <typename T>
   bool read_array(std::vector<T>& values, std::uint64_t count) {
     constexpr std::uint64_t kChunk = 65'536;
@@ -82,12 +82,12 @@ class PipeReader {
     text.resize(bytes);
     if (!read(text.data(), text.size())) return false;
     for (char& c : text) {
-      if (c < ' ' || c > '~') c = '?';  // importers quote the file's bytes
+      if (c < ' ' || c > '~') c = '?';  // importers quote bytes of the file
     }
     return true;
   }
 
-  ImportFailure why_not() const { return timed_out_ ? ImportFailure::kTimedOut : ImportFailure::kBroken; }
+  ImportFailure failure() const { return timed_out_ ? ImportFailure::kTimedOut : ImportFailure::kBroken; }
 
  private:
   bool wait() {
@@ -152,10 +152,10 @@ std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, con
                                                                    ImportDeadline deadline) {
   PipeReader reader(pipe, deadline);
   Header header;
-  if (!reader.read(&header, sizeof(header))) return reader.why_not();
+  if (!reader.read(&header, sizeof(header))) return reader.failure();
   std::array<std::string, 4> texts;
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (!reader.read_text(texts[i], header.text_bytes[i])) return reader.why_not();
+    if (!reader.read_text(texts[i], header.text_bytes[i])) return reader.failure();
   }
   if (header.is_mesh != 1) return make_error({"", texts[0], texts[1], texts[2], texts[3]});
   if (header.vertices > limits.vertices || header.triangles > limits.faces || header.triangles == 0 ||
@@ -167,7 +167,7 @@ std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, con
   TriangleMesh& mesh = imported.mesh;
   if (!reader.read_array(mesh.x, header.vertices) || !reader.read_array(mesh.y, header.vertices) ||
       !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles)) {
-    return reader.why_not();
+    return reader.failure();
   }
   return indices_in_range(mesh) ? std::variant<ImportFailure, Expected<ImportedMesh>>(std::move(imported))
                                 : ImportFailure::kBroken;

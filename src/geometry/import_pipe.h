@@ -1,8 +1,8 @@
-// Internal to mesh import: the result of a child process, through a pipe.
+// Internal to mesh import: transfers the result of a child process through a pipe.
 //
-// The writer may be broken by the file it reads, so the reader believes nothing: counts against limits before
-// memory is set aside for them, texts bounded and made printable, memory touched only for bytes that came,
-// vertex indices within the vertices. Coordinates may be anything: the caller checks them.
+// The file being read may corrupt the writer, so the reader trusts nothing: it checks counts against the
+// limits before it reserves memory, bounds texts and makes them printable, touches memory only for bytes that
+// have arrived, and checks that vertex indices are in range. The caller checks the coordinates.
 #pragma once
 
 #include <chrono>
@@ -15,15 +15,15 @@ namespace buoyancy {
 
 using ImportDeadline = std::chrono::steady_clock::time_point;
 
-// False if the other end has gone.
+// Returns false if the read end is closed.
 bool send_import(int pipe, const Expected<ImportedMesh>& result);
 
 enum class ImportFailure {
-  kTimedOut,  // the deadline passed first
-  kBroken,    // the pipe ended early, or what came is no mesh and no error
+  kTimedOut,  // the deadline passed
+  kBroken,    // the pipe ended early, or the bytes are neither a valid mesh nor an error
 };
 
-// Waits for the whole result until the deadline. Throws std::bad_alloc where this process's memory ends.
+// Waits for the complete result until the deadline. Throws std::bad_alloc when this process is out of memory.
 std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, const ImportLimits& limits,
                                                                    ImportDeadline deadline);
 

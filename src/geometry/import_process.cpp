@@ -26,6 +26,7 @@
 #include <unistd.h>
 
 #include "base/format.h"
+#include "base/unique_fd.h"
 #include "geometry/assimp_reader.h"
 #include "geometry/import_pipe.h"
 
@@ -46,12 +47,12 @@ constexpr bool kShadowMemory = false;
 
 constexpr int kOutOfMemoryExit = 71;
 
-// ---- the child's side -------------------------------------------------------------------------------------
+// ---- child process ----------------------------------------------------------------------------------------
 
-void limit_resource(__rlimit_resource resource, std::uint64_t most) {
+void limit_resource(__rlimit_resource resource, std::uint64_t max) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0) return;
-  limit.rlim_cur = std::min<rlim_t>(most, limit.rlim_max);
+  limit.rlim_cur = std::min<rlim_t>(max, limit.rlim_max);
   ::setrlimit(resource, &limit);
 }
 
@@ -64,15 +65,15 @@ std::uint64_t address_space_in_use() {
   return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Where the machine itself runs out of memory first, the kernel shall choose the child, not its parent.
-void volunteer_for_out_of_memory() {
+// Makes the kernel's out-of-memory killer prefer the child to its parent.
+void prefer_for_oom_kill() {
   if (std::FILE* score = std::fopen("/proc/self/oom_score_adj", "we")) {
     std::fputs("1000", score);
     std::fclose(score);
   }
 }
 
-// A crash shall be a crash, as if no handler of the parent's existed, and leave no core file.
+// Restores default handlers, so that a crash ends the child instead of running a handler of the parent.
 void restore_signals() {
   struct sigaction by_default {};
   by_default.sa_handler = SIG_DFL;
@@ -82,8 +83,9 @@ void restore_signals() {
   ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
-// Leaves standard input and outputs on /dev/null (assimp prints) and the pipe as descriptor 3. What stays
-// open here would stay open in the parent's name: sockets, and the pipes of other imports at the same time.
+// Redirects standard input and outputs to /dev/null (assimp prints) and moves the pipe to descriptor 3.
+// Closes all other descriptors: sockets and the pipes of concurrent imports would otherwise stay open in the
+// child.
 int keep_only_pipe(int pipe) {
   constexpr int kPipe = 3;
   if (pipe != kPipe) ::dup2(pipe, kPipe);
@@ -98,13 +100,13 @@ int keep_only_pipe(int pipe) {
 [[noreturn]] void run_child(int pipe, pid_t parent, const std::filesystem::path& path, MeshFormat format,
                             const ImportLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // it died before the line above
+  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // the parent died before the line above
   restore_signals();
   if (!kShadowMemory) limit_resource(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
   limit_resource(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.import_seconds)) + 1);
   limit_resource(RLIMIT_CORE, 0);
-  volunteer_for_out_of_memory();
-  ::prctl(PR_SET_DUMPABLE, 0);  // no core through a core_pattern pipe either
+  prefer_for_oom_kill();
+  ::prctl(PR_SET_DUMPABLE, 0);  // no core dump through a core_pattern pipe
   pipe = keep_only_pipe(pipe);
   std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
   try {
@@ -117,25 +119,9 @@ int keep_only_pipe(int pipe) {
   }
 }
 
-// ---- the parent's side ------------------------------------------------------------------------------------
+// ---- parent process ---------------------------------------------------------------------------------------
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int number() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(std::exchange(number_, -1));
-  }
-
- private:
-  int number_;
-};
-
-// A child that is killed and reaped at the latest when this object ends.
+// Kills and reaps the child on destruction if it still runs.
 class Child {
  public:
   explicit Child(pid_t pid) : pid_(pid) {}
@@ -143,9 +129,9 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // The wait status of a child that ends on its own by `deadline`; nothing if it had to be killed, or if
-  // somebody else in this process has taken its status.
-  std::optional<int> status_by(ImportDeadline deadline) {
+  // Returns the wait status of a child that ends by itself before `deadline`; nullopt if it had to be killed
+  // or if other code of this process has reaped it.
+  std::optional<int> wait_until(ImportDeadline deadline) {
     while (pid_ > 0) {
       int status = 0;
       const pid_t reaped = ::waitpid(pid_, &status, WNOHANG);
@@ -175,8 +161,8 @@ class Child {
 Error timed_out(const ImportLimits& limits) {
   return {"", "the importer had not finished after " + format_shortest(limits.import_seconds) + " s",
           "an import within that time (limit 'import_seconds')",
-          "the file is damaged and keeps the importer busy for ever, or it is very large",
-          "Export the file anew, or raise 'import_seconds' under [limits]"};
+          "the file is damaged and the importer does not terminate on it, or it is very large",
+          "Export the file again, or raise 'import_seconds' under [limits]"};
 }
 
 Error out_of_memory(const ImportLimits& limits) {
@@ -185,40 +171,40 @@ Error out_of_memory(const ImportLimits& limits) {
               " GB",
           "a file that can be read within that memory",
           "the file is damaged and claims more data than it holds, or it is very large",
-          "Export the file anew, or simplify the mesh"};
+          "Export the file again, or simplify the mesh"};
 }
 
 Error killed() {
-  return {"", "the importer was killed while it read it (signal 9)",
-          "a file that can be read in the memory there is",
-          "the machine ran out of memory, so that the kernel ended it",
+  return {"", "the importer was killed while reading the file (signal 9)",
+          "a file that can be read in the available memory",
+          "the machine ran out of memory and the kernel killed the importer",
           "Simplify the mesh, or use a larger machine"};
 }
 
 Error crashed(const std::string& how) {
   return {"", "the importer " + how, "a file that can be read",
           "the file is cut short, damaged or of another format",
-          "Open it in a mesh editor and export it anew"};
+          "Open it in a mesh editor and export it again"};
 }
 
 Error system_failure(const char* call) {
   return {"", std::string(call) + " failed: " + std::generic_category().message(errno),
-          "a child process that reads the file", "this process or the machine is at a limit",
-          "Try again; see ulimit -a"};
+          "a child process that reads the file",
+          "a resource limit of this process or of the machine is reached", "Try again; see ulimit -a"};
 }
 
 Error explain(std::optional<int> status, const ImportLimits& limits) {
-  if (!status) return crashed("ended without an outcome");
+  if (!status) return crashed("ended without a result");
   if (WIFSIGNALED(*status)) {
     const int signal = WTERMSIG(*status);
     if (signal == SIGXCPU) return timed_out(limits);
     if (signal == SIGKILL) return killed();
     const char* name = ::sigdescr_np(signal);
-    return crashed("crashed on it (signal " + std::to_string(signal) +
-                   (name ? std::string(", ") + name : "") + ")");
+    return crashed("crashed (signal " + std::to_string(signal) + (name ? std::string(", ") + name : "") +
+                   ")");
   }
   if (WEXITSTATUS(*status) == kOutOfMemoryExit) return out_of_memory(limits);
-  return crashed("gave up on it (exit code " + std::to_string(WEXITSTATUS(*status)) + ")");
+  return crashed("failed (exit status " + std::to_string(WEXITSTATUS(*status)) + ")");
 }
 
 }  // namespace
@@ -226,28 +212,28 @@ Error explain(std::optional<int> status, const ImportLimits& limits) {
 Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
                                                const ImportLimits& limits) {
   assert(limits.import_seconds > 0.0);
-  constexpr double kLongest = 1e8;  // s, three years: what a clock's ticks can hold
-  const std::chrono::duration<double> allowed(std::min(limits.import_seconds, kLongest));
+  constexpr double kMaxSeconds = 1e8;  // three years, within the range of the clock's ticks
+  const std::chrono::duration<double> timeout(std::min(limits.import_seconds, kMaxSeconds));
   const ImportDeadline deadline =
-      ImportDeadline::clock::now() + std::chrono::duration_cast<ImportDeadline::clock::duration>(allowed);
+      ImportDeadline::clock::now() + std::chrono::duration_cast<ImportDeadline::clock::duration>(timeout);
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return make_error(system_failure("pipe"));
-  const Descriptor read_end(ends[0]);
-  Descriptor write_end(ends[1]);
+  const UniqueFd read_end(ends[0]);
+  UniqueFd write_end(ends[1]);
 
   const pid_t parent = ::getpid();
   const pid_t pid = ::fork();
   if (pid < 0) return make_error(system_failure("fork"));
-  if (pid == 0) run_child(write_end.number(), parent, path, format, limits);
+  if (pid == 0) run_child(write_end.value(), parent, path, format, limits);
   Child child(pid);
-  write_end.close();  // so that the pipe ends with the child
+  write_end.close();  // the pipe then ends when the child ends
 
-  auto outcome = receive_import(read_end.number(), limits, deadline);
+  auto outcome = receive_import(read_end.value(), limits, deadline);
   if (auto* result = std::get_if<Expected<ImportedMesh>>(&outcome)) return std::move(*result);
   if (std::get<ImportFailure>(outcome) == ImportFailure::kTimedOut) return make_error(timed_out(limits));
-  // The pipe has ended; the child ends at once, unless it is so broken that it merely closed the pipe.
+  // The pipe has ended, so the child is about to end, unless it has only closed the pipe.
   return make_error(explain(
-      child.status_by(std::min(deadline, ImportDeadline::clock::now() + std::chrono::seconds(5))), limits));
+      child.wait_until(std::min(deadline, ImportDeadline::clock::now() + std::chrono::seconds(5))), limits));
 }
 
 }  // namespace buoyancy

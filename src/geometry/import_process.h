@@ -1,8 +1,8 @@
-// Internal to mesh import: runs the importer in a child process and brings back what it made, or why it could
-// not: it crashed, went on past its time or asked for more memory than it may have.
+// Internal to mesh import: runs the importer in a child process and returns its result, or the reason for its
+// failure: a crash, a timeout or the memory limit.
 //
-// The child is forked, not executed: it needs no program file, and closes every descriptor it does not need.
-// It ends with its parent. Linux.
+// The child is forked without exec: it needs no program file, and it closes every descriptor that it does not
+// use. It ends with its parent. Linux only.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,9 @@
 
 namespace buoyancy {
 
-// Returns after at most limits.import_seconds and a moment; the child is gone by then. Error::subject is left
-// to the caller. The memory limit does not hold in builds with AddressSanitizer or ThreadSanitizer, whose
-// shadow memory is address space too.
+// Returns after at most about limits.import_seconds, when the child has ended. The caller sets
+// Error::subject. The memory limit does not apply in builds with AddressSanitizer or ThreadSanitizer, whose
+// shadow memory counts as address space.
 Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
                                                const ImportLimits& limits);
 

@@ -7,7 +7,7 @@
 namespace buoyancy {
 namespace {
 
-// Integrals over the solid of 1, y and y y^T, y measured from the centre of the bounding box.
+// Integrals of 1, y and y y^T over the solid, y measured from the centre of the bounding box.
 struct SolidMoments {
   double volume = 0.0;
   Vec3 first = Vec3::Zero();
@@ -21,8 +21,8 @@ struct SolidMoments {
   }
 };
 
-// Of the tetrahedron between the origin and the triangle abc, signed. Summed over a closed surface these give
-// the integrals over what it encloses.
+// Returns the signed integrals over the tetrahedron between the origin and the triangle abc. Their sum over a
+// closed surface is the integral over the enclosed solid.
 SolidMoments moments_of_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 sum = a + b + c;
   SolidMoments moments;

@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-// Digits that a person needs to find a place in a mesh editor.
+// Significant digits that suffice to find a point in a mesh editor.
 constexpr int kDigits = 6;
 
 std::string number(double value) {
@@ -55,9 +55,9 @@ std::optional<Error> check_size(const MeshReport& report) {
     const std::string dropped =
         report.dropped_faces == 0 ? "has no triangles"
                                   : "has no triangles: " + pluralize(report.dropped_faces, "face", "faces") +
-                                        " named a vertex twice";
+                                        " used a vertex twice";
     return Error{report.name, dropped, "at least four triangles that enclose a volume",
-                 "the file holds only points, lines or faces of no extent", "Export the mesh's surface"};
+                 "the file holds only points, lines or faces without extent", "Export the mesh's surface"};
   }
   if (!std::isfinite(report.diagonal) || !std::isfinite(report.area) || !std::isfinite(report.volume)) {
     return Error{report.name,
@@ -82,8 +82,8 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
   const bool only_open = topology.non_manifold.empty() && topology.misoriented.empty();
   if (topology.counts.all_matched() || (only_open && open == OpenPolicy::kDryBoundary)) return std::nullopt;
 
-  std::string found = "has ";
-  const auto add = [&found](const std::string& fault) { found += (found == "has " ? "" : "; ") + fault; };
+  std::string actual = "has ";
+  const auto add = [&actual](const std::string& fault) { actual += (actual == "has " ? "" : "; ") + fault; };
   if (!topology.boundary.empty()) add(holes_of(report));
   if (!topology.non_manifold.empty()) {
     add(edges_of_kind(mesh, topology.non_manifold, "non-manifold") + ", shared by three or more faces");
@@ -94,22 +94,22 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
   if (report.duplicate_faces > 0) add(pluralize(report.duplicate_faces, "duplicate face", "duplicate faces"));
 
   std::string cause;
-  std::string remedy;
+  std::string hint;
   if (only_open) {
     cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
-    remedy =
+    hint =
         "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\" for "
         "this body in the scene file (with buoyancy-replay --mesh: --open dry_boundary)";
   } else {
     cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"
                                        : "inner walls, or faces of the wrong winding";
-    remedy = "In a mesh editor remove doubled and inner faces, make the winding consistent";
-    remedy += topology.boundary.empty() ? "" : ", and close the holes";
-    remedy += "; or replace the mesh by a closed hull around it";
-    if (open == OpenPolicy::kDryBoundary) remedy += ". dry_boundary accepts holes, nothing else";
+    hint = "In a mesh editor remove duplicate and inner faces, make the winding consistent";
+    hint += topology.boundary.empty() ? "" : ", and close the holes";
+    hint += "; or replace the mesh by a closed hull around it";
+    if (open == OpenPolicy::kDryBoundary) hint += ". dry_boundary accepts holes only";
   }
-  return Error{report.name, found, "a closed surface: each edge used as often one way as the other", cause,
-               remedy};
+  return Error{report.name, actual,
+               "a closed surface: each edge used as often in one direction as in the other", cause, hint};
 }
 
 std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
@@ -118,16 +118,16 @@ std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const
   if (volume > rounding_error) return std::nullopt;
   if (volume < -rounding_error) {
     return Error{report.name, "encloses " + number(volume) + " m^3",
-                 "cavities that take away less than the parts around them hold",
+                 "cavities that are smaller than the parts around them",
                  "cavities that overlap each other, or parts that overlap themselves",
-                 "Join what overlaps into one surface (a boolean union)"};
+                 "Join overlapping parts into one surface (boolean union)"};
   }
   return Error{report.name,
                "encloses " + number(volume) + " m^3, which is not above the rounding error of " +
                    number(rounding_error) + " m^3",
                "a body that encloses a volume",
                "a flat sheet, or parts of opposite winding that cancel each other",
-               "Give the sheet a thickness, or turn the parts so that every outside faces outward"};
+               "Give the sheet a thickness, or flip the parts so that all normals point outward"};
 }
 
 }  // namespace buoyancy

@@ -1,5 +1,8 @@
-// Says why a mesh cannot carry a hydrostatic query, in words that a person can act on: how many of which
-// fault, where the first or largest of them is, and what to do about it.
+// Checks whether a mesh is usable for hydrostatic queries.
+//
+// Contract: each check returns an Error if the mesh fails it, else nullopt. The Error states the number of
+// faults by kind, the location of the first or largest one, and how to fix them. A check reads only those
+// fields of `report` that validation fills in before it.
 #pragma once
 
 #include <optional>
@@ -11,20 +14,18 @@
 
 namespace buoyancy {
 
-// Each: the reason to refuse, if there is one. report: as far as it is filled in when the check can be made.
-
-// Vertices that faces use must be finite.
+// Requires finite coordinates for every vertex that a face uses.
 std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& name);
 
-// There must be faces, and their extent, area and volume must be numbers.
+// Requires faces whose extent, area and volume are finite and whose extent and area do not underflow to 0.
 std::optional<Error> check_size(const MeshReport& report);
 
-// Every edge must have its partner, but for boundaries that `open` accepts.
+// Requires a matching edge for every edge, except on a boundary that `open` accepts.
 std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
                                  const MeshReport& report, OpenPolicy open);
 
-// volume, m^3: that the mesh encloses, or would with its holes closed, cavities taken away; must be above its
-// own rounding error eps (64 |V| + L A), A the mesh's rounding_area().
+// Requires V > eps (64 |V| + L A), where A is the mesh's rounding_area(). volume [m^3]: the volume V that the
+// mesh encloses, or would enclose with its holes closed, less its cavities.
 std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);
 
 }  // namespace buoyancy

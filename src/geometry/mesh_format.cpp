@@ -46,7 +46,7 @@ std::string_view to_string(MeshFormat format) {
 std::string lowercase_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');  // std::tolower would follow the locale
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');  // std::tolower depends on the locale
   }
   return extension;
 }
@@ -71,7 +71,7 @@ std::string accepted_extensions() {
 std::optional<SniffedFormat> sniff_format(std::string_view first_bytes) {
   struct Signature {
     std::string_view bytes;
-    SniffedFormat guess;
+    SniffedFormat format;
   };
   static constexpr std::array kSignatures{
       Signature{"ply\n", {"PLY", ".ply"}},
@@ -96,7 +96,7 @@ std::optional<SniffedFormat> sniff_format(std::string_view first_bytes) {
       Signature{"<html", {"an HTML page", ""}},
   };
   for (const Signature& signature : kSignatures) {
-    if (first_bytes.substr(0, signature.bytes.size()) == signature.bytes) return signature.guess;
+    if (first_bytes.substr(0, signature.bytes.size()) == signature.bytes) return signature.format;
   }
   if (first_bytes.find("<COLLADA") != std::string_view::npos) return SniffedFormat{"Collada", ".dae"};
   const std::size_t text_start = first_bytes.find_first_not_of(" \t\r\n");

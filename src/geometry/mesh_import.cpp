@@ -1,9 +1,7 @@
 #include "geometry/mesh_import.h"
 
-#include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <new>
 #include <optional>
@@ -11,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/format.h"
 #include "geometry/import_process.h"
 #include "geometry/mesh_format.h"
 #include "geometry/ply_header.h"
@@ -32,39 +31,39 @@ std::string_view to_string(fs::file_type type) {
     case fs::file_type::block:
       return "a device";
     default:
-      return "no regular file";
+      return "not a regular file";
   }
 }
 
-// What the importer takes for another fault, or searches for until its time is up.
-std::optional<Error> fault_of_ply_header(std::ifstream& file) {
+// Detects faults in a PLY header that the importer misreports or on which it does not terminate.
+std::optional<Error> check_ply_header(std::ifstream& file) {
   const std::optional<PlyHeader> header = read_ply_header(file);
   if (!header) {
     return Error{"", "a PLY header without its 'end_header' line", "a complete PLY file",
-                 "the file is cut short or damaged", "Open it in a mesh editor and export it anew"};
+                 "the file is cut short or damaged", "Open it in a mesh editor and export it again"};
   }
   if (const std::uint64_t strips = header->count_of("tristrips"); strips > 0) {
     return Error{"", "a PLY file of triangle strips (element tristrips " + std::to_string(strips) + ")",
-                 "polygons (element face), since strips are not read",
-                 "a mesh of a scanner or an archive that stores strips to save space",
-                 "Open it in MeshLab and export it as PLY or STL, which turns the strips into triangles"};
+                 "polygons (element face), since strips are not supported",
+                 "a mesh from a scanner or an archive that stores strips to save space",
+                 "Open it in MeshLab and export it as PLY or STL, which converts the strips to triangles"};
   }
-  const std::string announced = "(element vertex " + std::to_string(header->count_of("vertex")) +
-                                ", element face " + std::to_string(header->count_of("face")) + ")";
+  const std::string counts = "(element vertex " + std::to_string(header->count_of("vertex")) +
+                             ", element face " + std::to_string(header->count_of("face")) + ")";
   if (header->count_of("face") == 0) {
-    return Error{"", "no triangles: a PLY header that announces no faces " + announced,
-                 "a mesh of triangles or polygons", "a point cloud, curves, or an export of nothing",
+    return Error{"", "no triangles: a PLY header that declares no faces " + counts,
+                 "a mesh of triangles or polygons", "a point cloud, curves, or an empty export",
                  "Export the surface as polygons"};
   }
   if (!header->data_follows) {
-    return Error{"", "only a PLY header " + announced + " and nothing after it", "a complete PLY file",
-                 "an export or download that did not finish", "Export or fetch it anew"};
+    return Error{"", "only a PLY header " + counts + " and nothing after it", "a complete PLY file",
+                 "an incomplete export or download", "Export or download it again"};
   }
   return std::nullopt;
 }
 
-// "white space" or "zero bytes" where the file holds nothing else.
-std::optional<std::string_view> only_content(std::ifstream& file) {
+// Returns "white space" or "zero bytes" if the file holds nothing else.
+std::optional<std::string_view> blank_content(std::ifstream& file) {
   file.clear();
   file.seekg(0);
   const bool zeros = file.peek() == 0;
@@ -82,7 +81,7 @@ struct AcceptedFile {
   std::optional<SniffedFormat> content;
 };
 
-// All that can be told without running an importer.
+// Makes all checks that need no importer.
 Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limits) {
   const std::string mesh_file = "a mesh file (" + accepted_extensions() + ")";
   std::error_code error;
@@ -90,16 +89,15 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
   if (status.type() == fs::file_type::not_found) {
     return make_error({"", "no such file", mesh_file,
                        "the name is misspelt, or relative to another directory",
-                       "It was looked for as " + fs::absolute(path, error).string()});
+                       "The absolute path is " + fs::absolute(path, error).string()});
   }
   if (status.type() == fs::file_type::none) {
-    return make_error({"", "cannot be looked at: " + error.message(), mesh_file,
-                       "a directory on the way to it is closed to this user", "Mind the permissions"});
+    return make_error({"", "cannot be accessed: " + error.message(), mesh_file,
+                       "this user may not search a directory of its path", "Check the permissions"});
   }
   if (status.type() != fs::file_type::regular) {
     return make_error({"", "is " + std::string(to_string(status.type())), mesh_file,
-                       "the path names something else than the mesh",
-                       "Give the path of the mesh file itself"});
+                       "the path does not name the mesh file", "Give the path of the mesh file itself"});
   }
 
   const std::optional<MeshFormat> format = format_from_path(path);
@@ -113,15 +111,15 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
   }
 
   const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) return make_error({"", "its size cannot be told: " + error.message(), mesh_file, "", ""});
+  if (error) return make_error({"", "its size cannot be determined: " + error.message(), mesh_file, "", ""});
   if (bytes == 0) {
-    return make_error({"", "the file is empty (0 bytes)", mesh_file,
-                       "an export or download that did not finish", "Export or fetch it anew"});
+    return make_error({"", "the file is empty (0 bytes)", mesh_file, "an incomplete export or download",
+                       "Export or download it again"});
   }
   if (bytes > limits.mesh_bytes) {
     return make_error({"", std::to_string(bytes) + " bytes",
                        "at most " + std::to_string(limits.mesh_bytes) + " (limit 'mesh_bytes')",
-                       "the mesh is finer than this service is set up for",
+                       "the mesh is finer than this service is configured for",
                        "Simplify the mesh, or raise 'mesh_bytes' under [limits]"});
   }
 
@@ -131,25 +129,25 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
   file.read(first_bytes.data(), static_cast<std::streamsize>(first_bytes.size()));
   if (file.gcount() <= 0) {
     return make_error({"", "cannot be read: " + std::generic_category().message(errno), "a readable file",
-                       "its permissions, or the medium it is on", "Make it readable to this user"});
+                       "its permissions, or an error of the medium", "Make it readable for this user"});
   }
   first_bytes.resize(static_cast<std::size_t>(file.gcount()));
-  if (const auto only = only_content(file)) {
-    return make_error({"", "nothing but " + std::string(*only) + " (" + std::to_string(bytes) + " bytes)",
-                       mesh_file, "an export or download that did not finish", "Export or fetch it anew"});
+  if (const auto blank = blank_content(file)) {
+    return make_error({"", "nothing but " + std::string(*blank) + " (" + std::to_string(bytes) + " bytes)",
+                       mesh_file, "an incomplete export or download", "Export or download it again"});
   }
   const std::optional<SniffedFormat> content = sniff_format(first_bytes);
   if (content && content->extension == ".ply" && *format == MeshFormat::kPly) {
-    if (std::optional<Error> fault = fault_of_ply_header(file)) return make_error(*std::move(fault));
+    if (std::optional<Error> fault = check_ply_header(file)) return make_error(*std::move(fault));
   }
   return AcceptedFile{*format, content};
 }
 
-// A failure is best explained by content that does not fit the extension, where that is so.
+// Replaces cause and hint of the error if the content does not match the extension.
 Error explained_by_content(Error error, const AcceptedFile& file, const std::string& extension) {
   if (!file.content || file.content->extension == extension) return error;
-  error.cause = "the content looks like " + std::string(file.content->name) + ", which is not what " +
-                extension + " stands for";
+  error.cause = "the content looks like " + std::string(file.content->name) + ", which does not match " +
+                "the extension " + extension;
   error.hint = file.content->extension.empty()
                    ? "Export the mesh as one of " + accepted_extensions()
                    : "If it is, give it the extension " + std::string(file.content->extension);
@@ -157,30 +155,31 @@ Error explained_by_content(Error error, const AcceptedFile& file, const std::str
 }
 
 std::string coordinates(const TriangleMesh& mesh, std::size_t vertex) {
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "(%g, %g, %g)", mesh.x[vertex], mesh.y[vertex], mesh.z[vertex]);
-  return text.data();
+  std::string text = "(";
+  text += format_vector({mesh.x[vertex], mesh.y[vertex], mesh.z[vertex]}, 6);
+  return text + ")";
 }
 
-std::optional<Error> not_finite(const TriangleMesh& mesh) {
+std::optional<Error> check_coordinates(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (!std::isfinite(mesh.x[v]) || !std::isfinite(mesh.y[v]) || !std::isfinite(mesh.z[v])) {
       return Error{"",
                    "vertex " + std::to_string(v) + " of " + std::to_string(mesh.vertex_count()) + " is " +
                        coordinates(mesh, v),
                    "finite coordinates", "a broken export, or numbers beyond single precision (3.4e38)",
-                   "Export the mesh anew"};
+                   "Export the mesh again"};
     }
   }
   return std::nullopt;
 }
 
-Expected<ImportedMesh> import_unnamed(const fs::path& path, const ImportLimits& limits) {
+Expected<ImportedMesh> import_without_subject(const fs::path& path, const ImportLimits& limits) {
   const Expected<AcceptedFile> file = check_file(path, limits);
   if (!file) return make_error(file.error());
   Expected<ImportedMesh> imported = import_in_child_process(path, file->format, limits);
   if (imported) {
-    if (std::optional<Error> error = not_finite(imported->mesh)) imported = make_error(*std::move(error));
+    if (std::optional<Error> error = check_coordinates(imported->mesh))
+      imported = make_error(*std::move(error));
   }
   if (!imported) return make_error(explained_by_content(imported.error(), *file, lowercase_extension(path)));
   return imported;
@@ -189,7 +188,7 @@ Expected<ImportedMesh> import_unnamed(const fs::path& path, const ImportLimits& 
 }  // namespace
 
 Expected<ImportedMesh> import_mesh(const fs::path& path, const ImportLimits& limits) try {
-  Expected<ImportedMesh> imported = import_unnamed(path, limits);
+  Expected<ImportedMesh> imported = import_without_subject(path, limits);
   if (!imported) imported.error().subject = path.string();
   return imported;
 } catch (const std::bad_alloc&) {

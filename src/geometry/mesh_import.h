@@ -1,11 +1,11 @@
-// Reads a mesh file into triangles, whatever the file does to the importer.
+// Reads a mesh file into triangles, safely for files that crash the importer.
 //
-// assimp runs in a child process with limits on memory and time: a file that crashes it, hangs it or eats
-// memory becomes an Error that names the file. Nothing edits geometry: polygons are split into triangles,
-// node transforms are applied in double, the winding of mirrored nodes is turned so that outside stays
-// outside; points and lines are left out and counted. Vertices come out as stored, unwelded, in the single
-// precision that assimp reads them with. The formats: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX, 3DS, told
-// by extension; a failure is explained by the content where the two disagree.
+// assimp runs in a child process with limits on memory and time: a file on which it crashes, hangs or
+// exhausts memory gives an Error that names the file. The geometry is not edited: polygons are split into
+// triangles, node transforms are applied in double, and the winding of mirrored nodes is reversed so that
+// normals keep pointing outward; points and lines are left out and counted. Vertices are returned as stored:
+// unwelded, in assimp's single precision. Formats, by extension: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX,
+// 3DS. If a file's content does not match its extension, the error says so.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,20 @@
 namespace buoyancy {
 
 struct ImportLimits {
-  std::uint64_t mesh_bytes = 2'000'000'000;     // size of the file
+  std::uint64_t mesh_bytes = 2'000'000'000;     // file size [bytes]
   std::uint64_t vertices = 200'000'000;         // as stored in the file, after instancing
   std::uint64_t faces = 100'000'000;            // triangles after splitting polygons
-  double import_seconds = 120.0;                // wall clock of the child process, > 0
-  std::uint64_t memory_bytes = 16'000'000'000;  // address space the child may add to what the process has
+  double import_seconds = 120.0;                // wall-clock time of the child process [s], > 0
+  std::uint64_t memory_bytes = 16'000'000'000;  // address space that the child may allocate [bytes]
 };
 
-// What the file said of itself, for the report.
+// Metadata of the file, for the report.
 struct MeshSource {
   std::string format;         // "Collada", "PLY", ...
-  std::string up_axis;        // "y", "z", "x" or "not stated"; the axis of the file's own up direction
-  std::string note;           // what the importer did to axes and units, in words; may be empty
-  std::int64_t nodes = 0;     // nodes that carry triangles, instances counted
-  std::int64_t left_out = 0;  // primitives that are no triangles: points and lines
+  std::string up_axis;        // up direction in the file: "y", "z", "x" or "not stated"
+  std::string note;           // how the importer changed axes and units; may be empty
+  std::int64_t nodes = 0;     // nodes with triangles, including instances
+  std::int64_t left_out = 0;  // ignored primitives: points and lines
 };
 
 struct ImportedMesh {
@@ -39,12 +39,12 @@ struct ImportedMesh {
   MeshSource source;
 };
 
-// Forks, so it is best called before a program starts its threads. Time and memory: linear in the file's
-// size, for a file that is not damaged.
+// The function forks, so call it before the program starts threads if possible. Complexity: time and memory
+// are linear in the file's size, for an undamaged file.
 //
-// Errors: no such file, not a regular file, empty, too large, format unknown or not accepted, unreadable,
-// crashed or timed out or out of memory, more vertices or faces than the limits, no triangles, non-finite
-// vertices.
+// Errors: no such file; not a regular file; empty or too large; format unknown or not accepted; unreadable;
+// importer crashed, timed out or out of memory; more vertices or faces than the limits; no triangles;
+// non-finite vertices.
 Expected<ImportedMesh> import_mesh(const std::filesystem::path& path, const ImportLimits& limits = {});
 
 }  // namespace buoyancy

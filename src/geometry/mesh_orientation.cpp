@@ -22,38 +22,38 @@ double signed_volume(const TriangleMesh& mesh, const Triangle& face, const Vec3&
                        mesh.vertex(face[2]) - center_B);
 }
 
-// Faces by component: those of component i are faces[first[i]] .. faces[first[i + 1] - 1], ascending.
+// Faces grouped by component: faces[first[i]] .. faces[first[i + 1] - 1] belong to component i, ascending.
 struct FacesByComponent {
   std::vector<std::size_t> faces;
   std::vector<std::size_t> first;
 };
 
 FacesByComponent faces_by_component(const MeshTopology& topology) {
-  FacesByComponent sorted;
-  sorted.first.assign(static_cast<std::size_t>(topology.components) + 1, 0);
+  FacesByComponent grouped;
+  grouped.first.assign(static_cast<std::size_t>(topology.components) + 1, 0);
   for (const std::int32_t component : topology.component_of_face) {
-    ++sorted.first[static_cast<std::size_t>(component) + 1];
+    ++grouped.first[static_cast<std::size_t>(component) + 1];
   }
-  std::partial_sum(sorted.first.begin(), sorted.first.end(), sorted.first.begin());
-  std::vector<std::size_t> next(sorted.first.begin(), sorted.first.end() - 1);
-  sorted.faces.resize(topology.component_of_face.size());
-  for (std::size_t f = 0; f < sorted.faces.size(); ++f) {
-    sorted.faces[next[static_cast<std::size_t>(topology.component_of_face[f])]++] = f;
+  std::partial_sum(grouped.first.begin(), grouped.first.end(), grouped.first.begin());
+  std::vector<std::size_t> next(grouped.first.begin(), grouped.first.end() - 1);
+  grouped.faces.resize(topology.component_of_face.size());
+  for (std::size_t f = 0; f < grouped.faces.size(); ++f) {
+    grouped.faces[next[static_cast<std::size_t>(topology.component_of_face[f])]++] = f;
   }
-  return sorted;
+  return grouped;
 }
 
-// The volume of an open mesh, its holes closed.
+// Returns the volume of an open mesh with its holes closed [m^3].
 double volume_with_holes_closed(const TriangleMesh& mesh, const std::vector<Hole>& holes) {
   const Vec3 center_B = bounding_box(mesh).center();
   PairwiseSum<double> volume;
   for (const Triangle& face : mesh.triangles) volume.add(signed_volume(mesh, face, center_B));
   for (const Hole& hole : holes) {
-    Vec3 middle = Vec3::Zero();  // about center_B
-    for (const Edge& edge : hole.edges) middle += mesh.vertex(edge[0]) - center_B;
-    middle /= static_cast<double>(hole.edges.size());
+    Vec3 mean = Vec3::Zero();  // relative to center_B
+    for (const Edge& edge : hole.edges) mean += mesh.vertex(edge[0]) - center_B;
+    mean /= static_cast<double>(hole.edges.size());
     for (const auto& [from, to] : hole.edges) {
-      volume.add(signed_volume(mesh.vertex(to) - center_B, mesh.vertex(from) - center_B, middle));
+      volume.add(signed_volume(mesh.vertex(to) - center_B, mesh.vertex(from) - center_B, mean));
     }
   }
   return volume.total();
@@ -64,10 +64,11 @@ void turn(ComponentReport& component) {
   component.turned = !component.turned;
 }
 
-// around: by component, those around it. Turns what is inside out, marks cavities and nested solids.
-void judge_components(const std::vector<std::vector<std::int32_t>>& around,
-                      std::vector<ComponentReport>& components) {
-  const auto depth = [&around](std::size_t i) { return around[i].size(); };
+// Turns inside-out components, marks cavities and nested solids. enclosing: by component, those that enclose
+// it.
+void classify_components(const std::vector<std::vector<std::int32_t>>& enclosing,
+                         std::vector<ComponentReport>& components) {
+  const auto depth = [&enclosing](std::size_t i) { return enclosing[i].size(); };
   std::vector<std::size_t> outermost_first(components.size());
   std::iota(outermost_first.begin(), outermost_first.end(), std::size_t{0});
   std::stable_sort(outermost_first.begin(), outermost_first.end(),
@@ -76,9 +77,9 @@ void judge_components(const std::vector<std::vector<std::int32_t>>& around,
   std::vector<bool> root_is_turned(components.size(), false);
   for (const std::size_t i : outermost_first) {
     ComponentReport& component = components[i];
-    std::int64_t counted = 0;  // how often the space around it is
+    std::int64_t counted = 0;  // times that the space around it is counted
     std::size_t root = i;
-    for (const std::int32_t j : around[i]) {
+    for (const std::int32_t j : enclosing[i]) {
       const auto outer = static_cast<std::size_t>(j);
       counted += components[outer].volume > 0.0 ? 1 : -1;
       if (depth(outer) < depth(root)) root = outer;
@@ -95,14 +96,14 @@ void judge_components(const std::vector<std::vector<std::int32_t>>& around,
 
 std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const MeshTopology& topology) {
   const Vec3 center_B = bounding_box(mesh).center();
-  const FacesByComponent sorted = faces_by_component(topology);
+  const FacesByComponent grouped = faces_by_component(topology);
   std::vector<ComponentReport> components(static_cast<std::size_t>(topology.components));
   for (std::size_t i = 0; i < components.size(); ++i) {
     PairwiseSum<double> volume;
-    for (std::size_t n = sorted.first[i]; n < sorted.first[i + 1]; ++n) {
-      volume.add(signed_volume(mesh, mesh.triangles[sorted.faces[n]], center_B));
+    for (std::size_t n = grouped.first[i]; n < grouped.first[i + 1]; ++n) {
+      volume.add(signed_volume(mesh, mesh.triangles[grouped.faces[n]], center_B));
     }
-    components[i].triangles = static_cast<std::int64_t>(sorted.first[i + 1] - sorted.first[i]);
+    components[i].triangles = static_cast<std::int64_t>(grouped.first[i + 1] - grouped.first[i]);
     components[i].volume = volume.total();
     components[i].closed = true;
   }
@@ -115,7 +116,7 @@ std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const
 
 void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components) {
-  judge_components(enclosing_components(mesh, topology), components);
+  classify_components(enclosing_components(mesh, topology), components);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (components[static_cast<std::size_t>(topology.component_of_face[f])].turned) {
       std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);

@@ -1,10 +1,16 @@
-// Turns what is inside out, so that the volume of a solid is positive and that of a cavity in it negative.
+// Turns (reverses the winding of) inside-out components, so that solids have positive volume and cavities
+// negative volume.
 //
-// A component inside no other is a solid: of negative volume it is inside out, and is turned with everything
-// inside it. A component inside others is judged by how often the space around it is counted, outermost
-// components first. Not at all, as in a cavity: it is a solid, and turned if negative. Once or more: if
-// negative it is a cavity; if positive its volume is counted once more than it should, which stays and is
-// reported. Solids that share an edge are one component, turned together or not at all.
+// Rules, applied from the outermost components inward:
+// - A component inside no other is a solid. If its volume is negative it is inside out, and it is turned
+// together
+//   with everything inside it.
+// - For a component inside others, let n be the number of times that the volume integrals count the space
+// around
+//   it. If n <= 0, as in a cavity, it is a solid and is turned if its volume is negative. If n > 0, it is a
+//   cavity if its volume is negative; otherwise its volume is counted once too often, which is kept and
+//   reported.
+// Solids that share an edge are one component and are turned together or not at all.
 #pragma once
 
 #include <vector>
@@ -15,15 +21,16 @@
 
 namespace buoyancy {
 
-// By component number: what topology and volumes say, nothing turned.
+// Returns topology and volume of each component, by component number. Turns nothing.
 std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const MeshTopology& topology);
 
-// Turns faces of a mesh whose edges are all matched, and keeps the account of it in `components`.
+// Turns inside-out components of a mesh whose edges are all matched, and records that in `components`.
 void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components);
 
-// Turns all faces of an open mesh if its volume is negative once its holes are closed, each by triangles
-// around the middle of its edges; boundary edges must be its only fault. Returns that volume, m^3, as turned.
+// Turns all faces of an open mesh if its volume is negative with its holes closed, each by a fan of triangles
+// around the mean of its vertices. Requires a mesh without faults other than boundary edges. Returns the
+// resulting volume [m^3].
 double orient_open(TriangleMesh& mesh, const std::vector<Hole>& holes,
                    std::vector<ComponentReport>& components);
 

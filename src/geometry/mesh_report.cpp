@@ -8,9 +8,9 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kListed = 8;  // of components and of holes
+constexpr std::size_t kMaxListed = 8;  // components; holes
 
-// "a, b, c", or `otherwise` if there is nothing to say.
+// Builds the text "a, b, c", or `otherwise` if the list is empty.
 class Listing {
  public:
   void add_if(bool applies, const std::string& item) {
@@ -67,7 +67,7 @@ std::string edges_text(const MeshReport& report) {
   listing.add_if(report.misoriented_edges > 0, std::to_string(report.misoriented_edges) + " misoriented");
   listing.add_if(report.balanced_edges > 0, std::to_string(report.balanced_edges) + " balanced");
   if (!report.closed()) return listing.text("");
-  return listing.text("each used once each way") +
+  return listing.text("each used once in each direction") +
          (report.balanced_edges > 0 ? " (shared by four or more faces)" : "");
 }
 
@@ -80,7 +80,7 @@ std::string state_text(const MeshReport& report) {
 std::string faces_text(const MeshReport& report) {
   Listing listing;
   listing.add_if(report.dropped_faces > 0,
-                 std::to_string(report.dropped_faces) + " dropped for naming a vertex twice");
+                 std::to_string(report.dropped_faces) + " dropped for using a vertex twice");
   listing.add_if(report.degenerate_faces > 0, std::to_string(report.degenerate_faces) + " of zero area");
   listing.add_if(report.duplicate_faces > 0,
                  pluralize(report.duplicate_faces, "duplicate", "duplicates") + " of an earlier face");
@@ -118,22 +118,22 @@ void add_components(const MeshReport& report, AlignedLines& lines) {
   listing.add_if(nested > 0, std::to_string(nested) + " inside another");
   listing.add_if(turned > 0, std::to_string(turned) + " turned");
   lines.add("components", listing.text(""));
-  for (std::size_t i = 0; i < report.components.size() && i < kListed; ++i) {
+  for (std::size_t i = 0; i < report.components.size() && i < kMaxListed; ++i) {
     lines.add("", component_text(report.components[i]));
   }
-  if (report.components.size() > kListed) {
-    lines.add("", "and " + std::to_string(report.components.size() - kListed) + " smaller ones");
+  if (report.components.size() > kMaxListed) {
+    lines.add("", "and " + std::to_string(report.components.size() - kMaxListed) + " smaller ones");
   }
 }
 
 void add_holes(const MeshReport& report, AlignedLines& lines) {
   if (report.holes.empty()) return;
   lines.add("holes", std::to_string(report.holes.size()));
-  for (std::size_t i = 0; i < report.holes.size() && i < kListed; ++i) {
+  for (std::size_t i = 0; i < report.holes.size() && i < kMaxListed; ++i) {
     lines.add("", hole_text(report.holes[i]));
   }
-  if (report.holes.size() > kListed) {
-    lines.add("", "and " + std::to_string(report.holes.size() - kListed) + " smaller ones");
+  if (report.holes.size() > kMaxListed) {
+    lines.add("", "and " + std::to_string(report.holes.size() - kMaxListed) + " smaller ones");
   }
 }
 
@@ -153,9 +153,8 @@ std::string to_text(const MeshReport& report) {
   lines.add("box", "from " + format_vector(report.box.min_B) + " to " + format_vector(report.box.max_B) +
                        " m, diagonal " + format_number(report.diagonal) + " m");
   lines.add("area", format_number(report.area) + " m^2");
-  lines.add("volume",
-            format_number(report.volume) + " m^3" +
-                (report.closed() ? "" : " about the box's centre, which means nothing while it is open"));
+  lines.add("volume", format_number(report.volume) + " m^3" +
+                          (report.closed() ? "" : " about the box's centre; meaningless for an open mesh"));
   lines.add("", "from x, y, z: " + format_vector(report.volume_by_axis) + " m^3");
   lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
   add_components(report, lines);
@@ -163,7 +162,7 @@ std::string to_text(const MeshReport& report) {
   if (report.intersecting_pairs) {
     lines.add("intersecting",
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
-                  (*report.intersecting_pairs == 0 ? "" : ": what overlaps there counts twice"));
+                  (*report.intersecting_pairs == 0 ? "" : ": overlapping volumes count twice"));
   }
   if (report.turned) lines.add("turned", "was inside out: all faces have been turned");
   return report.name + "\n" + lines.text();

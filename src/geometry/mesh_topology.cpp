@@ -11,10 +11,10 @@
 namespace buoyancy {
 namespace {
 
-// One face's use of an edge, filed under the edge's lower vertex.
+// The use of an edge by one face; stored under the edge's lower vertex.
 struct EdgeUse {
   std::int32_t high;
-  std::int32_t third;  // the face's vertex off the edge
+  std::int32_t third;  // the face's vertex that is not on the edge
   std::int32_t face;
   bool forward;
 
@@ -23,10 +23,10 @@ struct EdgeUse {
   }
 };
 
-// All uses, grouped by lower vertex (a counting sort), each group sorted.
+// All edge uses, grouped by lower vertex (counting sort), each group sorted.
 struct EdgeUses {
   std::vector<EdgeUse> uses;
-  std::vector<std::size_t> first;  // of each lower vertex; one past the end behind the last
+  std::vector<std::size_t> first;  // start of each lower vertex's group, and the end of the last
 };
 
 EdgeUses collect_edge_uses(const TriangleMesh& mesh) {
@@ -58,7 +58,7 @@ EdgeUses collect_edge_uses(const TriangleMesh& mesh) {
   return edges;
 }
 
-void file_edge(std::int32_t low, const EdgeUse* begin, const EdgeUse* end, MeshTopology& topology) {
+void classify_edge(std::int32_t low, const EdgeUse* begin, const EdgeUse* end, MeshTopology& topology) {
   const auto uses = end - begin;
   const auto forward = std::count_if(begin, end, [](const EdgeUse& use) { return use.forward; });
   const std::int32_t high = begin->high;
@@ -77,7 +77,7 @@ void file_edge(std::int32_t low, const EdgeUse* begin, const EdgeUse* end, MeshT
   }
 }
 
-// A face is looked for among those at the edge between its two lowest vertices, so that each is met once.
+// Compares faces only at the edge between their two lowest vertices, so that each face is counted once.
 std::int64_t count_duplicates(const EdgeUse* begin, const EdgeUse* end) {
   std::int64_t duplicates = 0;
   for (const EdgeUse* use = begin + 1; use < end; ++use) {
@@ -98,7 +98,7 @@ MeshTopology mesh_topology(const TriangleMesh& mesh) {
     for (const EdgeUse* begin = edges.uses.data() + edges.first[v]; begin != last;) {
       const EdgeUse* end = begin + 1;
       for (; end != last && end->high == begin->high; ++end) connected.unite(begin->face, end->face);
-      file_edge(static_cast<std::int32_t>(v), begin, end, topology);
+      classify_edge(static_cast<std::int32_t>(v), begin, end, topology);
       topology.duplicate_faces += count_duplicates(begin, end);
       begin = end;
     }

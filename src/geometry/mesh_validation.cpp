@@ -32,7 +32,7 @@ void report_weld(const WeldedMesh& welded, MeshReport& report) {
   report.triangles = static_cast<std::int64_t>(welded.mesh.triangles.size());
   report.vertices_welded = static_cast<std::int64_t>(welded.mesh.vertex_count());
   report.weld = welded.kind;
-  report.weld_largest_move = welded.largest_move;
+  report.weld_largest_move = welded.max_move;
   report.dropped_faces = welded.faces_dropped;
 }
 

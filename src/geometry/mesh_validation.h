@@ -1,11 +1,11 @@
-// Decides whether a mesh can carry a hydrostatic query, and says why not.
+// Decides whether a mesh is usable for hydrostatic queries; if not, reports why.
 //
-// The law: every volume and first-moment integral over the wet part is exact if each directed edge is matched
-// by an opposite one. "Closed" (each edge used once each way) and "balanced" (each edge used as often one way
-// as the other) meshes satisfy it and are accepted. A mesh, or a component outside all others, of negative
-// volume is inside out: it is turned and the report says so. Open meshes are refused, or, with
-// OpenPolicy::kDryBoundary, accepted if their only fault is boundary edges; the hydrostatics then hold while
-// the whole boundary is dry.
+// Rule: every volume and first-moment integral over the wetted part is exact if each directed edge is matched
+// by an opposite one. "Closed" meshes (each edge used once in each direction) and "balanced" meshes (each
+// edge used equally often in both directions) satisfy it and are accepted. A mesh, or a component outside all
+// others, of negative volume is inside out: it is turned, which the report states. Open meshes are refused
+// or, with OpenPolicy::kDryBoundary, accepted if boundary edges are their only fault; the hydrostatics are
+// then valid while the whole boundary is dry.
 #pragma once
 
 #include <cstdint>
@@ -24,20 +24,20 @@ struct ValidationOptions {
   bool count_intersecting_pairs = false;  // O(n log n), several times the rest of the validation
 };
 
-// A mesh that may be asked hydrostatic requests: welded, finite, oriented, closed or balanced except for the
-// boundary that OpenPolicy::kDryBoundary accepted.
+// A mesh that is usable for hydrostatic queries: welded, finite, oriented, and closed or balanced except for
+// a boundary that OpenPolicy::kDryBoundary accepts.
 struct ValidatedMesh {
   TriangleMesh mesh;
-  std::vector<std::int32_t> boundary_vertices;  // of an accepted open mesh, else empty; ascending
+  std::vector<std::int32_t> boundary_vertices;  // ascending; empty unless the mesh is open
 };
 
 struct MeshValidation {
-  MeshReport report;                  // always filled
-  std::optional<ValidatedMesh> mesh;  // if accepted
-  std::optional<Error> refusal;       // if not
+  MeshReport report;                  // always set
+  std::optional<ValidatedMesh> mesh;  // set if accepted
+  std::optional<Error> refusal;       // set if refused
 };
 
-// Welds, looks and decides. name: for the report and the refusal.
+// Welds, checks and orients the mesh. name: identifies it in the report and the refusal.
 MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& name,
                              const ValidationOptions& options = {});
 

@@ -8,8 +8,7 @@
 namespace buoyancy {
 namespace {
 
-// A triangle while the tree is built: the sum of its corners in float32 decides on which side of a split it
-// goes.
+// A triangle during the build. The float32 sum of its corners decides on which side of a split it goes.
 struct Item {
   std::array<float, 3> corner_sum;
   std::int32_t triangle;
@@ -34,15 +33,15 @@ struct Bounds {
   }
 };
 
-// What a subtree tells the node above it.
+// The result of building a subtree, for its parent.
 struct Subtree {
   std::uint32_t child = 0;
   Bounds bounds;
   NodeMoments moments;
-  Vec3 projected_area = Vec3::Zero();  // m^2: int |n_a| dA
+  Vec3 projected_area = Vec3::Zero();  // int |n_a| dA [m^2]
 };
 
-NodeMoments packed(const SurfaceMoments<double>& moments, double area) {
+NodeMoments pack(const SurfaceMoments<double>& moments, double area) {
   NodeMoments node;
   for (int a = 0; a < 3; ++a) {
     std::size_t n = 0;
@@ -57,7 +56,7 @@ NodeMoments packed(const SurfaceMoments<double>& moments, double area) {
   return node;
 }
 
-// Of a float32 that is not less than x >= 0; infinity where there is none.
+// Returns the upper half of a float32 that is at least x; infinity if x exceeds the range. Requires x >= 0.
 std::uint16_t upper_half_rounded_up(double x) {
   const float above = std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
   return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(above) + 0xFFFFU) >> 16U);
@@ -95,7 +94,7 @@ class Builder {
   }
 
  private:
-  // The vertices of the range's triangles, each once; false: more than a leaf holds.
+  // Collects the distinct vertices of the range's triangles; returns false if a leaf cannot hold them.
   bool leaf_vertices(const Range& range, std::array<std::int32_t, kLeafVertices>& vertices,
                      std::size_t& count) const {
     count = 0;
@@ -117,20 +116,21 @@ class Builder {
     return leaf_vertices(range, vertices, count);
   }
 
-  // The largest subtree of full leaves and full nodes that is smaller than `size` triangles.
+  // Returns the number of triangles of the largest full subtree with fewer than `size` triangles, at least a
+  // leaf's.
   static std::size_t full_subtree(std::size_t size) {
     std::size_t full = kLeafTriangles;
     while (full * kTreeWidth < size) full *= kTreeWidth;
     return full;
   }
 
-  // How many triangles of a range go left: about half, in whole full subtrees.
+  // Returns the number of triangles that go left: about half, in multiples of a full subtree.
   static std::size_t left_share(std::size_t size, std::size_t full) {
     const std::size_t left = (size / 2 + full / 2) / full * full;
     return left == 0 || left >= size ? size / 2 : left;
   }
 
-  // Parts the range across the longest side of its triangles' middles.
+  // Splits the range along the axis on which its triangles' centroids spread most.
   std::pair<Range, Range> split(const Range& range, std::size_t left) {
     std::array<float, 3> low = items_[range.begin].corner_sum;
     std::array<float, 3> high = low;
@@ -147,16 +147,16 @@ class Builder {
     const auto at = [this](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(
         at(range.begin), at(range.begin + left), at(range.end), [axis](const Item& a, const Item& b) {
-          // The triangle's number decides between equals: the tree then depends on the mesh alone.
+          // The triangle's index breaks ties, so that the tree depends on the mesh alone.
           return a.corner_sum[axis] != b.corner_sum[axis] ? a.corner_sum[axis] < b.corner_sum[axis]
                                                           : a.triangle < b.triangle;
         });
     return {{range.begin, range.begin + left}, {range.begin + left, range.end}};
   }
 
-  // The children of a node: parts as large as a full subtree, so that it is the few nodes near the root that
-  // have room left and not the many above the leaves. Where there is room, parts of few triangles and too
-  // many vertices for a leaf are halved here and need no node of their own.
+  // Splits the range into a node's children, each as large as a full subtree, so that the few nodes near the
+  // root have unused slots and not the many nodes above the leaves. Unused slots serve to halve parts that
+  // have few triangles but too many vertices for a leaf, which then need no node of their own.
   std::vector<Range> children_of(const Range& range) {
     const std::size_t full = full_subtree(range.size());
     std::vector<Range> ranges{range};
@@ -212,7 +212,7 @@ class Builder {
     return result;
   }
 
-  // Float32 bounds that hold what the double bounds hold, whatever was rounded.
+  // Sets float32 bounds that contain the double bounds despite rounding.
   void set_bounds(TreeNode& node, std::size_t i, const Bounds& bounds) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const auto set = [&](int axis, float& center, float& half) {
@@ -228,8 +228,8 @@ class Builder {
   }
 
   Subtree build_leaf(Range range, std::uint32_t moments_index) {
-    // Halves of a leaf lie together, so that a kernel that takes eight triangles at a time can pass over one
-    // of them.
+    // The halves of a leaf are spatially coherent, so that a kernel of eight triangles at a time can skip
+    // one.
     if (range.size() > kLeafTriangles / 2) split(range, kLeafTriangles / 2);
     std::array<std::int32_t, kLeafVertices> vertices;
     std::size_t count = 0;
@@ -252,7 +252,7 @@ class Builder {
     }
     SurfaceMoments<double> moments;
     double area = 0.0;
-    double rounding = 0.0;  // m^3
+    double rounding = 0.0;  // [m^3]
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const Triangle& triangle = surface_.triangles[static_cast<std::size_t>(items_[i].triangle)];
       const auto slot = i - range.begin;
@@ -273,14 +273,14 @@ class Builder {
     }
     leaf.rounding = static_cast<float>(0.5 * rounding);
     tree_.rounding += static_cast<double>(leaf.rounding);
-    result.moments = packed(moments, area);
+    result.moments = pack(moments, area);
     tree_.leaves.push_back(leaf);
     return result;
   }
 
-  // Of a triangle that the water cuts twice the area is a product of two edges, at worst the longest two,
-  // with an error of 1.5 eps of it; a sixth of that times the height of the corner that is cut off, at most
-  // an edge, is the volume's error, and the read-out divides it by k_a: 0.43 eps in all.
+  // Twice the area of a cut triangle is a product of two edges, at worst the longest two, with a relative
+  // error of 1.5 eps. The error of the volume is a sixth of that error times the height of the corner that is
+  // cut off, at most an edge; the conversion to volume integrals divides it by k_a: 0.43 eps in all.
   double edges_cubed(const Triangle& triangle) const {
     const Vec3 a = surface_.vertex(triangle[0]);
     const Vec3 b = surface_.vertex(triangle[1]);
@@ -301,10 +301,10 @@ SurfaceMoments<double> NodeMoments::moments() const {
   SurfaceMoments<double> result;
   for (int a = 0; a < 3; ++a) {
     std::size_t n = 0;
-    const auto take = [&] { return values[slot(static_cast<std::size_t>(a), n++)]; };
-    result.S(a) = take();
-    for (int i = 0; i < 3; ++i) result.N(i, a) = take();
-    for (int pair = 0; pair < 6; ++pair) result.P(pair, a) = take();
+    const auto next = [&] { return values[slot(static_cast<std::size_t>(a), n++)]; };
+    result.S(a) = next();
+    for (int i = 0; i < 3; ++i) result.N(i, a) = next();
+    for (int pair = 0; pair < 6; ++pair) result.P(pair, a) = next();
   }
   return result;
 }

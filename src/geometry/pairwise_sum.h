@@ -1,9 +1,9 @@
-// Summation in blocks: terms are added into a block of at most kBlock terms, whole blocks are added pairwise,
-// in a fixed order that depends only on the number of terms.
+// Blocked pairwise summation: terms are added into blocks of kBlock terms, and full blocks are added
+// pairwise, in a fixed order that depends only on the number of terms.
 //
 // The rounding error of a sum of n terms grows with kBlock + log2(n / kBlock) instead of n: over 1,000,000
-// triangles a running sum is off by thousands of epsilon, this by tens (docs/mathematics.md, "Summation"). No
-// heap.
+// triangles a running sum is off by thousands of epsilon, this sum by tens (docs/mathematics.md,
+// "Summation"). It allocates no memory.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ class PairwiseSum {
     if (++in_block_ == kBlock) close_block();
   }
 
-  // Adds what is already the sum of one block; for callers that form blocks themselves.
+  // Adds the sum of one full block; for callers that form blocks themselves.
   void add_block(T sum) {
-    // Like a binary counter: block number n is merged once per trailing one bit of n.
+    // As in a binary counter, block n is merged once per trailing one bit of n.
     std::size_t level = 0;
     for (std::size_t n = blocks_++; (n & 1U) != 0; n >>= 1U) {
       levels_[level] += sum;
@@ -49,7 +49,7 @@ class PairwiseSum {
   T block_{};
   std::size_t in_block_ = 0;
   std::size_t blocks_ = 0;
-  std::array<T, 48> levels_{};  // level i holds the sum of 2^i blocks where bit i of blocks_ is set
+  std::array<T, 48> levels_{};  // level i holds the sum of 2^i blocks if bit i of blocks_ is set
 };
 
 }  // namespace buoyancy

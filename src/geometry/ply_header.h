@@ -1,5 +1,4 @@
-// What the header of a PLY file announces, read without an importer to explain what an importer would
-// misread.
+// Reads the header of a PLY file without an importer, to explain files that an importer misreads.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +17,12 @@ struct PlyElement {
 
 struct PlyHeader {
   std::vector<PlyElement> elements;
-  bool data_follows = false;  // there are bytes after the header
+  bool data_follows = false;  // bytes follow the header
 
-  std::uint64_t count_of(std::string_view name) const;  // 0 where it is not announced
+  std::uint64_t count_of(std::string_view name) const;  // 0 if not declared
 };
 
-// From the stream's beginning. nullopt: no 'end_header' line within the length that headers have.
+// Reads from the stream's beginning. Returns nullopt if the first 1,000,000 bytes have no 'end_header' line.
 std::optional<PlyHeader> read_ply_header(std::istream& file);
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
-// The rock: an icosphere whose radius is changed by gradient noise. All arithmetic is +, -, *, / and sqrt,
-// written out in a fixed order, on doubles that come from integers: the same bits on every machine.
+// The rock: an icosphere whose radius is perturbed by gradient noise. All arithmetic is +, -, *, / and sqrt,
+// in a fixed order, on doubles derived from integers, so that every machine gives the same bits.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ Direction normalised(double x, double y, double z) {
   return {x / length, y / length, z / length};
 }
 
-// The twelve corners of the icosahedron: cyclic permutations of (0, +-1, +-phi).
+// Returns the twelve corners of the icosahedron: the cyclic permutations of (0, +-1, +-phi).
 std::array<Direction, 12> icosahedron_corners() {
   const double phi = (1.0 + std::sqrt(5.0)) / 2.0;
   return {{{0, 1, phi},
@@ -39,7 +39,7 @@ constexpr std::array<Triangle, 20> kIcosahedronFaces{
      {8, 9, 4}, {4, 9, 2}, {4, 2, 5}, {5, 2, 11}, {5, 11, 10}, {10, 11, 7}, {10, 7, 1},
      {1, 7, 6}, {3, 9, 6}, {3, 2, 9}, {3, 11, 2}, {3, 7, 11},  {3, 6, 7}}};
 
-// A well mixed 64-bit function of 64 bits (G. Steele et al., "Fast splittable pseudorandom number
+// A 64-bit mixing function (G. Steele et al., "Fast splittable pseudorandom number
 // generators", OOPSLA 2014).
 std::uint64_t mixed(std::uint64_t bits) {
   bits += 0x9e3779b97f4a7c15U;
@@ -54,8 +54,8 @@ class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed) : seed_(seed) {}
 
-  // From -1 to 1: each of the eight terms is at most |gradient| |offset|, their weighted sum at most
-  // sqrt(2) sqrt(3/4).
+  // Returns a value from -1 to 1: each of the eight terms is at most |gradient| |offset|, and their weighted
+  // sum is at most sqrt(2) sqrt(3/4).
   double at(double x, double y, double z) const {
     const double x0 = std::floor(x);
     const double y0 = std::floor(y);
@@ -75,10 +75,11 @@ class GradientNoise {
   }
 
  private:
-  // 6 t^5 - 15 t^4 + 10 t^3: from 0 to 1 with two vanishing derivatives at both ends.
+  // 6 t^5 - 15 t^4 + 10 t^3 rises from 0 to 1; its first two derivatives vanish at both ends.
   static double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 
-  // The gradient at a lattice point, one of the twelve (+-1, +-1, 0) and their like, times an offset.
+  // Returns the dot product of an offset and the lattice point's gradient, one of the twelve permutations of
+  // (+-1, +-1, 0).
   double slope(double lattice_x, double lattice_y, double lattice_z, double dx, double dy, double dz) const {
     std::uint64_t bits = seed_;
     for (const double coordinate : {lattice_x, lattice_y, lattice_z}) {
@@ -93,7 +94,7 @@ class GradientNoise {
   std::uint64_t seed_;
 };
 
-// Puts the vertices of the subdivided icosahedron on the rock's surface.
+// Projects vertices of the subdivided icosahedron onto the rock's surface.
 class RockSurface {
  public:
   explicit RockSurface(const RockShape& rock) : rock_(rock), noise_(rock.seed) {}
@@ -115,7 +116,7 @@ class RockSurface {
   GradientNoise noise_;
 };
 
-// The vertices of the icosahedron's 30 edges without their ends, each made once.
+// The inner vertices of the icosahedron's 30 edges, each created once.
 class EdgeVertices {
  public:
   explicit EdgeVertices(std::int32_t frequency) : inner_(frequency - 1) {}
@@ -123,14 +124,14 @@ class EdgeVertices {
   std::int32_t& first(std::int32_t from, std::int32_t to) {
     return first_[static_cast<std::size_t>(std::min(from, to))][static_cast<std::size_t>(std::max(from, to))];
   }
-  // Number `step` (1 .. frequency - 1) on the way from one corner to the other.
+  // Returns vertex number `step` (1 .. frequency - 1) on the edge from one corner to the other.
   std::int32_t at(std::int32_t from, std::int32_t to, std::int32_t step) {
     return first(from, to) + (from < to ? step - 1 : inner_ - step);
   }
 
  private:
   std::int32_t inner_;
-  std::array<std::array<std::int32_t, 12>, 12> first_{};  // by lower and higher corner
+  std::array<std::array<std::int32_t, 12>, 12> first_{};  // indexed by lower and higher corner
 };
 
 }  // namespace
@@ -149,7 +150,7 @@ TriangleMesh generate(const RockShape& rock) {
     for (std::size_t side = 0; side < 3; ++side) {
       const std::int32_t from = face[side];
       const std::int32_t to = face[(side + 1) % 3];
-      if (from > to) continue;  // the neighbour sees this edge from its lower corner
+      if (from > to) continue;  // the neighbouring face has this edge from its lower corner
       edges.first(from, to) = static_cast<std::int32_t>(mesh.vertex_count());
       for (std::int32_t step = 1; step < n; ++step) {
         const double there = step;

@@ -7,8 +7,8 @@
 
 namespace buoyancy {
 
-// Eigen::Quaterniond::FromTwoVectors(from, to), compiled once: for opposite directions it decomposes a
-// matrix, which takes seconds to compile wherever it is used. Both of any length but 0.
+// Wraps Eigen::Quaterniond::FromTwoVectors(from, to) so that it is compiled once: for opposite directions it
+// decomposes a matrix, which takes seconds to compile. Both vectors must be non-zero.
 Eigen::Quaterniond rotation_between(const Vec3& from, const Vec3& to);
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
-// Sphere, cylinder and cone: rings of vertices about the z axis, from the lowest to the highest, that begin
-// and end in a single vertex on the axis.
+// Sphere, cylinder and cone: stacks of vertex rings about the z axis, from bottom to top, closed at both ends
+// by a single vertex on the axis.
 #include <cmath>
 #include <numbers>
 
@@ -10,8 +10,8 @@ namespace {
 
 class RingStack {
  public:
-  RingStack(std::int32_t segments, double lowest_z) : segments_(segments) {
-    previous_ = mesh_.add_vertex({0.0, 0.0, lowest_z});
+  RingStack(std::int32_t segments, double min_z) : segments_(segments) {
+    previous_ = mesh_.add_vertex({0.0, 0.0, min_z});
   }
 
   void add_ring(double radius, double z) {
@@ -33,9 +33,9 @@ class RingStack {
     on_axis_ = false;
   }
 
-  // Closes the stack at a point on the axis above the last ring.
-  TriangleMesh finish(double highest_z) && {
-    const std::int32_t pole = mesh_.add_vertex({0.0, 0.0, highest_z});
+  // Closes the stack with a vertex on the axis above the last ring.
+  TriangleMesh finish(double max_z) && {
+    const std::int32_t pole = mesh_.add_vertex({0.0, 0.0, max_z});
     for (std::int32_t j = 0; j < segments_; ++j) {
       mesh_.triangles.push_back({previous_ + j, previous_ + (j + 1) % segments_, pole});
     }
@@ -46,7 +46,7 @@ class RingStack {
   TriangleMesh mesh_;
   std::int32_t segments_;
   std::int32_t previous_;  // first vertex of the last ring, or the vertex on the axis
-  bool on_axis_ = true;    // the last ring is the lowest vertex on the axis
+  bool on_axis_ = true;    // previous_ is the lowest vertex, on the axis
 };
 
 }  // namespace

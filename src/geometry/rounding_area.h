@@ -1,17 +1,17 @@
-// The area that rounding takes its share of.
+// The effective surface area of a mesh for rounding error bounds.
 //
-// A face's area is a difference of products of its edges' coordinates: each is rounded by epsilon times the
-// product, whatever is left of their difference. For a face about as wide as it is long that is epsilon times
-// its area; for a needle across the axes its area is next to nothing beside the products. So a volume summed
-// over a mesh of diagonal L is known to some epsilon L times the sum of max(area, longest edge^2 / 4) over
-// its faces, which is the mesh's area where no face is thinner than 1 : 2.
+// A face's area is a difference of products of its edges' coordinates. Each product has a rounding error of
+// epsilon times the product, however small the difference. For a face about as wide as it is long this error
+// is epsilon times its area; for a needle across the axes the area is far smaller than the products. A volume
+// summed over a mesh of diagonal L is therefore accurate to about epsilon L times the sum of max(area,
+// longest edge^2 / 4) over its faces, which is the mesh's area if no face is thinner than 1 : 2.
 #pragma once
 
 #include "geometry/triangle_mesh.h"
 
 namespace buoyancy {
 
-// m^2. O(faces).
+// Returns that sum [m^2]. Complexity: O(faces).
 double rounding_area(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

@@ -17,16 +17,17 @@ using Corners = std::array<Vec3, 3>;
 using Point2 = Eigen::Vector2d;
 using Corners2 = std::array<Point2, 3>;
 
-int turn_of(const Corners2& t) {
+int orientation(const Corners2& t) {
   return orient_2d(t[0], t[1], t[2]);
 }
 
-Corners2 corners_seen_along(int axis, const Corners& t) {
+Corners2 project_corners(int axis, const Corners& t) {
   return {project_along_axis(axis, t[0]), project_along_axis(axis, t[1]), project_along_axis(axis, t[2])};
 }
 
-// The axis along which a triangle of non-zero area is seen largest, or at least not edge-on.
-int axis_of(const Corners& t) {
+// Returns an axis whose projection of the triangle is not degenerate, if possible the one with the largest
+// area. Requires non-zero area.
+int projection_axis(const Corners& t) {
   const Vec3 u = t[1] - t[0];
   const Vec3 v = t[2] - t[0];
   const Vec3 normal(u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(),
@@ -36,12 +37,12 @@ int axis_of(const Corners& t) {
   const int axis = static_cast<int>(largest);
   for (int turn = 0; turn < 2; ++turn) {
     const int candidate = (axis + turn) % 3;
-    if (turn_of(corners_seen_along(candidate, t)) != 0) return candidate;
+    if (orientation(project_corners(candidate, t)) != 0) return candidate;
   }
   return (axis + 2) % 3;
 }
 
-// Both points on one line with `from`: whether they lie on the same side of it.
+// Whether a and b lie on the same side of `from`. Requires that all three are collinear.
 bool same_direction(const Point2& from, const Point2& a, const Point2& b) {
   const int axis = a.x() != from.x() ? 0 : 1;
   return (a(axis) > from(axis)) == (b(axis) > from(axis)) && b(axis) != from(axis);
@@ -52,7 +53,7 @@ bool in_box(const Point2& point, const Point2& a, const Point2& b) {
          std::min(a.y(), b.y()) <= point.y() && point.y() <= std::max(a.y(), b.y());
 }
 
-// p and q: not on ab.
+// Requires that neither p nor q lies on the segment ab.
 bool segments_meet(const Point2& p, const Point2& q, const Point2& a, const Point2& b) {
   const int side_p = orient_2d(a, b, p);
   const int side_q = orient_2d(a, b, q);
@@ -64,9 +65,9 @@ bool segments_meet(const Point2& p, const Point2& q, const Point2& a, const Poin
   return side_p * side_q < 0 && side_a * side_b < 0;
 }
 
-// t: of non-zero area.
+// Requires a triangle of non-zero area.
 bool point_in_triangle(const Point2& point, const Corners2& t) {
-  const int turn = turn_of(t);
+  const int turn = orientation(t);
   for (std::size_t i = 0; i < 3; ++i) {
     if (orient_2d(t[i], t[(i + 1) % 3], point) * turn < 0) return false;
   }
@@ -79,14 +80,14 @@ bool segment_meets_triangle_in_plane(const Point2& p, const Point2& q, const Cor
          segments_meet(p, q, t[2], t[0]);
 }
 
-// Closed segment, closed triangle of non-zero area.
+// The segment and the triangle are closed sets; the triangle has non-zero area.
 bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
   const int side_p = orient_3d(t[0], t[1], t[2], p);
   const int side_q = orient_3d(t[0], t[1], t[2], q);
   if (side_p * side_q > 0) return false;
   if (side_p == 0 || side_q == 0) {
-    const int axis = axis_of(t);
-    const Corners2 flat = corners_seen_along(axis, t);
+    const int axis = projection_axis(t);
+    const Corners2 flat = project_corners(axis, t);
     if (side_q != 0) return point_in_triangle(project_along_axis(axis, p), flat);
     if (side_p != 0) return point_in_triangle(project_along_axis(axis, q), flat);
     return segment_meets_triangle_in_plane(project_along_axis(axis, p), project_along_axis(axis, q), flat);
@@ -97,19 +98,19 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
   return (first >= 0 && second >= 0 && third >= 0) || (first <= 0 && second <= 0 && third <= 0);
 }
 
-bool all_clearly_on_one_side(const Corners& plane, const Vec3& p, const Vec3& q) {
+bool filtered_on_one_side(const Corners& plane, const Vec3& p, const Vec3& q) {
   const int side = orient_3d_filtered(plane[0], plane[1], plane[2], p);
   return side != 0 && orient_3d_filtered(plane[0], plane[1], plane[2], q) == side;
 }
 
-// Seen along the axis along which s is not edge-on, one edge of either has the other wholly beyond it.
-bool separated_as_seen(const Corners& s, const Corners& t) {
-  const int axis = axis_of(s);
-  const std::array<Corners2, 2> flat{corners_seen_along(axis, s), corners_seen_along(axis, t)};
+// Whether, projected along an axis of s, an edge of one triangle separates it strictly from the other.
+bool separated_in_projection(const Corners& s, const Corners& t) {
+  const int axis = projection_axis(s);
+  const std::array<Corners2, 2> flat{project_corners(axis, s), project_corners(axis, t)};
   for (std::size_t which = 0; which < 2; ++which) {
     const Corners2& one = flat[which];
     const Corners2& other = flat[1 - which];
-    const int turn = turn_of(one);
+    const int turn = orientation(one);
     for (std::size_t i = 0; turn != 0 && i < 3; ++i) {
       const auto beyond = [&](const Point2& point) {
         return orient_2d(one[i], one[(i + 1) % 3], point) * turn < 0;
@@ -122,10 +123,10 @@ bool separated_as_seen(const Corners& s, const Corners& t) {
 
 bool meet_without_common_vertex(const Corners& s, const Corners& t) {
   const auto clear_of = [](const Corners& plane, const Corners& triangle) {
-    return all_clearly_on_one_side(plane, triangle[0], triangle[1]) &&
-           all_clearly_on_one_side(plane, triangle[1], triangle[2]);
+    return filtered_on_one_side(plane, triangle[0], triangle[1]) &&
+           filtered_on_one_side(plane, triangle[1], triangle[2]);
   };
-  if (clear_of(s, t) || clear_of(t, s) || separated_as_seen(s, t)) return false;
+  if (clear_of(s, t) || clear_of(t, s) || separated_in_projection(s, t)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     if (segment_meets_triangle(s[i], s[(i + 1) % 3], t)) return true;
     if (segment_meets_triangle(t[i], t[(i + 1) % 3], s)) return true;
@@ -133,11 +134,11 @@ bool meet_without_common_vertex(const Corners& s, const Corners& t) {
   return false;
 }
 
-// s[0] = t[0]. Seen along the axis along which s is not edge-on, a line through the common vertex and one
-// more has the triangles on different sides, and they do not run along it together.
-bool separated_at_vertex_as_seen(const Corners& s, const Corners& t) {
-  const int axis = axis_of(s);
-  const std::array<Corners2, 2> flat{corners_seen_along(axis, s), corners_seen_along(axis, t)};
+// Requires s[0] = t[0]. Whether, projected along an axis of s, a line through the common vertex and another
+// vertex has the triangles on different sides, without a common direction along it.
+bool separated_at_vertex_in_projection(const Corners& s, const Corners& t) {
+  const int axis = projection_axis(s);
+  const std::array<Corners2, 2> flat{project_corners(axis, s), project_corners(axis, t)};
   const Point2& apex = flat[0][0];
   for (std::size_t which = 0; which < 2; ++which) {
     const Corners2& one = flat[which];
@@ -155,24 +156,24 @@ bool separated_at_vertex_as_seen(const Corners& s, const Corners& t) {
   return false;
 }
 
-// s[0] = t[0]. If they have more points in common, then also one on an edge opposite the common vertex.
+// Requires s[0] = t[0]. If they share other points, one of these lies on an edge opposite the common vertex.
 bool meet_beyond_common_vertex(const Corners& s, const Corners& t) {
-  if (all_clearly_on_one_side(s, t[1], t[2]) || all_clearly_on_one_side(t, s[1], s[2])) return false;
-  if (separated_at_vertex_as_seen(s, t)) return false;
+  if (filtered_on_one_side(s, t[1], t[2]) || filtered_on_one_side(t, s[1], s[2])) return false;
+  if (separated_at_vertex_in_projection(s, t)) return false;
   return segment_meets_triangle(s[1], s[2], t) || segment_meets_triangle(t[1], t[2], s);
 }
 
-// s[0] = t[0], s[1] = t[1]. They have more points in common only if one is folded flat onto the other.
+// Requires s[0] = t[0], s[1] = t[1]. They share other points only if one is folded flat onto the other.
 bool meet_beyond_common_edge(const Corners& s, const Corners& t) {
   if (orient_3d_filtered(s[0], s[1], s[2], t[2]) != 0) return false;
-  const int axis = axis_of(s);
-  const Corners2 flat = corners_seen_along(axis, s);
-  if (orient_2d(flat[0], flat[1], project_along_axis(axis, t[2])) != turn_of(flat)) return false;
+  const int axis = projection_axis(s);
+  const Corners2 flat = project_corners(axis, s);
+  if (orient_2d(flat[0], flat[1], project_along_axis(axis, t[2])) != orientation(flat)) return false;
   return orient_3d(s[0], s[1], s[2], t[2]) == 0;
 }
 
-// Brings the vertices that two faces share to their fronts, in the same order. Returns how many.
-std::size_t bring_common_vertices_forward(Triangle& s, Triangle& t) {
+// Moves the common vertices of two faces to the front, in the same order, and returns their number.
+std::size_t move_common_vertices_to_front(Triangle& s, Triangle& t) {
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     auto* const found = std::find(t.begin() + common, t.end(), s[i]);
@@ -189,7 +190,7 @@ Corners corners_of(const TriangleMesh& mesh, const Triangle& face) {
 }
 
 bool intersect(const TriangleMesh& mesh, Triangle s, Triangle t) {
-  const std::size_t common = bring_common_vertices_forward(s, t);
+  const std::size_t common = move_common_vertices_to_front(s, t);
   const Corners s_corners = corners_of(mesh, s);
   const Corners t_corners = corners_of(mesh, t);
   switch (common) {

@@ -1,5 +1,5 @@
-// Counts the pairs of faces of a mesh that cross each other: on such a mesh the volume integrals count the
-// overlap twice (winding number 2), which a person should be told.
+// Counts the pairs of intersecting faces of a mesh. The volume integrals of a self-intersecting mesh count
+// the overlap twice (winding number 2), which the report states.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace buoyancy {
 
-// Pairs of faces without a common vertex whose triangles have a point in common, plus pairs with common
-// vertices that have points in common besides those vertices and the edge between them. Faces of zero area
-// are left out. mesh: welded, finite. Complexity: O(n log n) for meshes whose faces are small against the
-// whole. Decisions by exact predicates (exact_predicates.h): touching counts.
+// Returns the number of pairs of faces without a common vertex that share a point, plus the number of pairs
+// with common vertices that share points other than these vertices and the edge between them. Touching
+// counts; all decisions use exact predicates (exact_predicates.h). Faces of zero area are ignored. mesh:
+// welded, finite. Complexity: O(n log n) for meshes whose faces are small relative to the whole.
 std::int64_t count_intersecting_pairs(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

@@ -12,15 +12,15 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kMinSize = 1e-9;  // m
-constexpr double kMaxSize = 1e9;   // m
+constexpr double kMinSize = 1e-9;  // [m]
+constexpr double kMaxSize = 1e9;   // [m]
 constexpr std::int32_t kMaxCount = 100'000;
 constexpr std::int64_t kMaxTriangleCount = 20'000'000;
 constexpr double kMaxRoughness = 0.6;
 constexpr std::int32_t kMaxWinding = 32;
 constexpr std::int32_t kStepsPerWinding = 12;
 
-// Collects the first thing that is wrong with a shape.
+// Checks a shape's arguments and keeps the first error.
 class Check {
  public:
   explicit Check(std::string_view type) : subject_(std::string(type) + " shape") {}
@@ -32,10 +32,10 @@ class Check {
     }
     return *this;
   }
-  Check& count(const char* key, std::int32_t value, std::int32_t least, std::int32_t most = kMaxCount) {
-    if (value < least || value > most) {
+  Check& count(const char* key, std::int32_t value, std::int32_t min, std::int32_t max = kMaxCount) {
+    if (value < min || value > max) {
       fail(std::string(key) + " = " + std::to_string(value),
-           "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+           "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
     }
     return *this;
   }
@@ -46,9 +46,9 @@ class Check {
     }
     return *this;
   }
-  Check& that(bool right, const std::string& found, const std::string& expectation,
-              const std::string& cause = {}) {
-    if (!right) fail(found, expectation, cause);
+  Check& require(bool condition, const std::string& actual, const std::string& expected,
+                 const std::string& cause = {}) {
+    if (!condition) fail(actual, expected, cause);
     return *this;
   }
 
@@ -56,15 +56,15 @@ class Check {
   std::optional<Error> error() && { return std::move(error_); }
 
  private:
-  void fail(const std::string& found, const std::string& expectation, const std::string& cause = {}) {
-    if (!error_) error_ = Error{subject_, found, expectation, cause, {}};
+  void fail(const std::string& actual, const std::string& expected, const std::string& cause = {}) {
+    if (!error_) error_ = Error{subject_, actual, expected, cause, {}};
   }
 
   std::string subject_;
   std::optional<Error> error_;
 };
 
-std::optional<Error> fault(const BoxShape& box) {
+std::optional<Error> find_error(const BoxShape& box) {
   Check check("box");
   check.size("size[0]", box.size[0]).size("size[1]", box.size[1]).size("size[2]", box.size[2]);
   check.count("segments[0]", box.segments[0], 1)
@@ -77,14 +77,14 @@ std::optional<Error> fault(const BoxShape& box) {
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const SphereShape& sphere) {
+std::optional<Error> find_error(const SphereShape& sphere) {
   Check check("sphere");
   check.size("radius", sphere.radius).count("segments", sphere.segments, 3);
   if (check.passed()) check.triangles(2 * std::int64_t{sphere.segments} * sphere.segments);
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const CylinderShape& cylinder) {
+std::optional<Error> find_error(const CylinderShape& cylinder) {
   Check check("cylinder");
   check.size("radius", cylinder.radius).size("height", cylinder.height);
   check.count("segments", cylinder.segments, 3).count("stacks", cylinder.stacks, 1);
@@ -93,7 +93,7 @@ std::optional<Error> fault(const CylinderShape& cylinder) {
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const ConeShape& cone) {
+std::optional<Error> find_error(const ConeShape& cone) {
   Check check("cone");
   check.size("radius", cone.radius).size("height", cone.height);
   check.count("segments", cone.segments, 3).count("stacks", cone.stacks, 1);
@@ -101,29 +101,29 @@ std::optional<Error> fault(const ConeShape& cone) {
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const TorusKnotShape& knot) {
+std::optional<Error> find_error(const TorusKnotShape& knot) {
   Check check("torus_knot");
   check.size("radius", knot.radius).size("tube", knot.tube);
   check.count("p", knot.p, 1, kMaxWinding).count("q", knot.q, 1, kMaxWinding);
   check.count("radial", knot.radial, 3);
   if (check.passed()) {
-    check.that(std::gcd(knot.p, knot.q) == 1,
-               "p = " + std::to_string(knot.p) + " and q = " + std::to_string(knot.q),
-               "numbers without a common divisor", "that is a link of several strands, not a knot");
-    // Coarser than that, the straight pieces of the tube stray from the curve towards each other.
+    check.require(
+        std::gcd(knot.p, knot.q) == 1, "p = " + std::to_string(knot.p) + " and q = " + std::to_string(knot.q),
+        "numbers without a common divisor", "these numbers give a link of several strands, not a knot");
+    // With fewer steps, the straight pieces of the tube deviate from the curve towards each other.
     check.count("tubular", knot.tubular, kStepsPerWinding * std::max(knot.p, knot.q));
   }
   if (check.passed()) check.triangles(2 * std::int64_t{knot.tubular} * knot.radial);
   if (check.passed()) {
-    const double largest = 0.9 * largest_tube(knot);
-    check.that(knot.tube <= largest, "tube = " + format_shortest(knot.tube),
-               "at most " + format_shortest(largest) + " (m) for this radius, p and q",
-               "the tube is wider than the knot's strands are apart");
+    const double max_tube = 0.9 * max_tube_radius(knot);
+    check.require(knot.tube <= max_tube, "tube = " + format_shortest(knot.tube),
+                  "at most " + format_shortest(max_tube) + " (m) for this radius, p and q",
+                  "the tube is wider than the distance of the knot's strands");
   }
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const WigleyShape& hull) {
+std::optional<Error> find_error(const WigleyShape& hull) {
   Check check("wigley");
   check.size("length", hull.length)
       .size("beam", hull.beam)
@@ -136,12 +136,12 @@ std::optional<Error> fault(const WigleyShape& hull) {
   return std::move(check).error();
 }
 
-std::optional<Error> fault(const RockShape& rock) {
+std::optional<Error> find_error(const RockShape& rock) {
   Check check("rock");
   check.size("radius", rock.radius).count("frequency", rock.frequency, 1);
-  check.that(rock.roughness >= 0.0 && rock.roughness <= kMaxRoughness,
-             "roughness = " + format_shortest(rock.roughness),
-             "a number from 0 to " + format_shortest(kMaxRoughness));
+  check.require(rock.roughness >= 0.0 && rock.roughness <= kMaxRoughness,
+                "roughness = " + format_shortest(rock.roughness),
+                "a number from 0 to " + format_shortest(kMaxRoughness));
   if (check.passed()) check.triangles(20 * std::int64_t{rock.frequency} * rock.frequency);
   return std::move(check).error();
 }
@@ -155,7 +155,7 @@ std::string_view type_name(const Shape& shape) {
 }
 
 Expected<Shape> check_shape(const Shape& shape) {
-  std::optional<Error> error = std::visit([](const auto& s) { return fault(s); }, shape);
+  std::optional<Error> error = std::visit([](const auto& s) { return find_error(s); }, shape);
   if (error) return make_error(*std::move(error));
   return shape;
 }

@@ -1,7 +1,7 @@
-// Generated closed meshes: shapes whose hydrostatics are known in closed form, or that make good benchmarks.
+// Generated closed meshes: shapes whose hydrostatics have a closed form, or that serve as benchmarks.
 //
-// Every shape is centred on B's origin unless said, welded, outward oriented and closed. Sizes in metres,
-// 1e-9 to 1e9. Arguments are checked by check_shape; what a generator gets is assumed to have passed it.
+// Every mesh is welded, outward oriented, closed and, unless stated otherwise, centred on B's origin. Sizes
+// are in metres, from 1e-9 to 1e9. check_shape checks the arguments; make_shape requires a checked shape.
 #pragma once
 
 #include <array>
@@ -14,24 +14,26 @@
 
 namespace buoyancy {
 
-// Edges along x, y, z; each face a grid of squares, two triangles each: 4 (ab + bc + ca) triangles.
-// segments 10 10 10: 1,200 triangles, 100 100 100: 120,000, the two cubes of the paper, section 5.
+// Edges along x, y, z; each face is a grid of rectangles, two triangles each: 4 (ab + bc + ca) triangles for
+// segments a, b, c. The two cubes of the paper, section 5, have segments 10 10 10 (1,200 triangles) and
+// 100 100 100 (120,000).
 struct BoxShape {
   std::array<double, 3> size{1, 1, 1};
   std::array<std::int32_t, 3> segments{1, 1, 1};
 
   bool operator==(const BoxShape&) const = default;
 };
-// n meridians and n + 1 bands of latitude between the poles along z: 2 n^2 triangles.
-// n = 50: 5,000 triangles, n = 200: 80,000, the two spheres of the paper, section 5. Vertices lie on the
-// sphere.
+// n meridians and n + 1 bands of latitude between the poles along z: 2 n^2 triangles for n segments. Vertices
+// lie on the sphere. The two spheres of the paper, section 5, have n = 50 (5,000 triangles) and n = 200
+// (80,000).
 struct SphereShape {
   double radius = 1;
   std::int32_t segments = 50;
 
   bool operator==(const SphereShape&) const = default;
 };
-// Axis along z; regular prism of `segments` sides inscribed in the circle, `stacks` bands along the axis.
+// Axis along z; a regular prism of `segments` sides, inscribed in the cylinder, with `stacks` bands along the
+// axis.
 struct CylinderShape {
   double radius = 0.5;
   double height = 1;
@@ -49,9 +51,9 @@ struct ConeShape {
 
   bool operator==(const ConeShape&) const = default;
 };
-// Tube of radius `tube` around the (p, q) torus knot of radius `radius`: q turns about the z axis while p
-// about the ring: (radius (2 + cos p t)/3 cos q t, ..). 2 tubular radial triangles; 110 x 8 gives the paper's
-// 1,760.
+// Tube of radius `tube` around the (p, q) torus knot of radius `radius`: the curve makes q turns about the z
+// axis and p turns about the ring: (radius (2 + cos p t)/3 cos q t, ..). It has 2 tubular radial triangles;
+// 110 x 8 gives the paper's 1,760.
 struct TorusKnotShape {
   double radius = 1;
   double tube = 0.2;
@@ -62,8 +64,8 @@ struct TorusKnotShape {
 
   bool operator==(const TorusKnotShape&) const = default;
 };
-// The Wigley hull, y = beam/2 (1 - (2x/length)^2) (1 - (z/draft)^2) for -draft <= z <= 0, wall-sided above to
-// z = freeboard, with a flat deck. Length along x, waterplane at z = 0.
+// The Wigley hull: y = beam/2 (1 - (2x/length)^2) (1 - (z/draft)^2) for -draft <= z <= 0, wall-sided above up
+// to z = freeboard, with a flat deck. The length is along x and the waterplane at z = 0.
 struct WigleyShape {
   double length = 10;
   double beam = 1;
@@ -74,9 +76,9 @@ struct WigleyShape {
 
   bool operator==(const WigleyShape&) const = default;
 };
-// An icosphere of 20 frequency^2 triangles, its radius changed by smooth noise of relative height `roughness`
-// from `seed`: star-shaped, never self-intersecting. Made with +, -, *, / and sqrt alone: the same bits on
-// every machine.
+// An icosphere of 20 frequency^2 triangles whose radius is perturbed by smooth noise of relative height
+// `roughness` from `seed`: star-shaped, never self-intersecting. It is computed with +, -, *, / and sqrt
+// only, so that every machine gives the same bits.
 struct RockShape {
   double radius = 1;
   std::int32_t frequency = 16;
@@ -89,14 +91,15 @@ struct RockShape {
 using Shape =
     std::variant<BoxShape, SphereShape, CylinderShape, ConeShape, TorusKnotShape, WigleyShape, RockShape>;
 
-// What a scene file calls the shape: "box", "torus_knot".
+// Returns the shape's name in a scene file: "box", "torus_knot".
 std::string_view type_name(const Shape& shape);
 
 // Errors: sizes outside 1e-9 to 1e9 m, counts below the shape's minimum, more than 20,000,000 triangles, a
-// knot whose p and q have a common divisor or whose tube is wider than 0.9 of what its strands leave room
-// for. The error names the key, the value and the range.
+// knot whose p and q have a common divisor or whose tube is wider than 0.9 of the maximum radius without
+// contact. The error states the key, the value and the range.
 Expected<Shape> check_shape(const Shape& shape);
 
-TriangleMesh make_shape(const Shape& shape);  // a checked shape
+// Requires a shape that check_shape accepts.
+TriangleMesh make_shape(const Shape& shape);
 
 }  // namespace buoyancy

@@ -1,13 +1,13 @@
-// Surface moments: the integrals over a piece of oriented surface that every hydrostatic read-out stands on.
+// Surface moments: the integrals over a piece of oriented surface from which all hydrostatics follow.
 //
 // About a centre c, with outward unit normal n and y = x - c:
-//   S_k   = integral of n_k dA             m^2
-//   N_ik  = integral of y_i n_k dA         m^3
-//   P_ijk = integral of y_i y_j n_k dA     m^4, symmetric in i and j
-// They add up over pieces that share a centre, and they move to another centre without being integrated
-// again. Over a closed surface S = 0, N = V I and P_ijk = V (m_i d_jk + m_j d_ik), m the volume's centroid
-// about c. A flat triangle's integrals are polynomials in its corners: exact but for the rounding of T.
-// Source: docs/mathematics.md, "Surface moments". T: any field that Eigen can hold (double, rationals,
+//   S_k   = integral of n_k dA             [m^2]
+//   N_ik  = integral of y_i n_k dA         [m^3]
+//   P_ijk = integral of y_i y_j n_k dA     [m^4], symmetric in i and j
+// They are additive over pieces that share a centre, and a change of centre needs no new integration. Over a
+// closed surface S = 0, N = V I and P_ijk = V (m_i d_jk + m_j d_ik), where m is the volume's centroid about
+// c. The integrals of a flat triangle are polynomials in its corners: exact except for the rounding of T.
+// Source: docs/mathematics.md, "Surface moments". T: any field type that Eigen supports (double, rationals,
 // intervals, dual numbers).
 #pragma once
 
@@ -29,7 +29,7 @@ struct SurfaceMoments {
   const T& second(int i, int j, int k) const { return P(pair(i, j), k); }  // P_ijk
   T& second(int i, int j, int k) { return P(pair(i, j), k); }
 
-  // Both about the same centre.
+  // Requires both about the same centre.
   SurfaceMoments& operator+=(const SurfaceMoments& other) {
     S += other.S;
     N += other.N;
@@ -37,7 +37,7 @@ struct SurfaceMoments {
     return *this;
   }
 
-  // The same piece of surface about the centre c + t.
+  // Returns the moments of the same piece of surface about the centre c + t.
   SurfaceMoments moved(const Vec3T<T>& t) const {
     SurfaceMoments result = *this;
     for (int k = 0; k < 3; ++k) {
@@ -57,8 +57,8 @@ struct SurfaceMoments {
   }
 };
 
-// Moments of the triangle abc, counter-clockwise seen from outside, about the origin that its corners are
-// measured from.
+// Returns the moments of the triangle abc, counter-clockwise seen from outside, about the origin of its
+// corners' coordinates.
 template <typename T>
 SurfaceMoments<T> moments_of_triangle(const Vec3T<T>& a, const Vec3T<T>& b, const Vec3T<T>& c) {
   const Vec3T<T> ab = b - a;
@@ -69,7 +69,7 @@ SurfaceMoments<T> moments_of_triangle(const Vec3T<T>& a, const Vec3T<T>& b, cons
   moments.S(1) = (ab(2) * ac(0) - ab(0) * ac(2)) / T(2);
   moments.S(2) = (ab(0) * ac(1) - ab(1) * ac(0)) / T(2);
   for (int i = 0; i < 3; ++i) {
-    const T mean = sum(i) / T(3);  // of y_i over the triangle
+    const T mean = sum(i) / T(3);  // mean of y_i over the triangle
     for (int k = 0; k < 3; ++k) moments.N(i, k) = mean * moments.S(k);
     for (int j = i; j < 3; ++j) {
       const T mean_square = (a(i) * a(j) + b(i) * b(j) + c(i) * c(j) + sum(i) * sum(j)) / T(12);

@@ -10,12 +10,12 @@
 namespace buoyancy {
 namespace {
 
-// The curve winds on a torus of radii 2/3 and 1/3 of the knot's radius.
+// A point of the curve, which winds on a torus of radii 2/3 and 1/3 of the knot's radius.
 struct CurvePoint {
-  Vec3 place_B;
-  Vec3 tangent_B;  // unit
+  Vec3 position_B;
+  Vec3 tangent_B;  // unit vector
   Vec3
-      normal_B;  // unit, across the curve: the torus's own outward normal, so that the frame closes on itself
+      normal_B;  // unit vector normal to the curve: the torus's outward normal, so that the frame is periodic
 };
 
 CurvePoint curve_point(const TorusKnotShape& knot, double t) {
@@ -27,7 +27,7 @@ CurvePoint curve_point(const TorusKnotShape& knot, double t) {
   const double distance = third * (2.0 + std::cos(around_ring));
 
   CurvePoint point;
-  point.place_B = distance * outward_B + third * std::sin(around_ring) * Vec3::UnitZ();
+  point.position_B = distance * outward_B + third * std::sin(around_ring) * Vec3::UnitZ();
   point.tangent_B =
       (knot.q * distance * onward_B +
        knot.p * third * (std::cos(around_ring) * Vec3::UnitZ() - std::sin(around_ring) * outward_B))
@@ -45,7 +45,7 @@ TriangleMesh generate(const TorusKnotShape& knot) {
     const Vec3 binormal_B = point.tangent_B.cross(point.normal_B);
     for (std::int32_t j = 0; j < knot.radial; ++j) {
       const double angle = 2.0 * std::numbers::pi * j / knot.radial;
-      mesh.add_vertex(point.place_B +
+      mesh.add_vertex(point.position_B +
                       knot.tube * (std::cos(angle) * point.normal_B + std::sin(angle) * binormal_B));
     }
   }
@@ -61,22 +61,22 @@ TriangleMesh generate(const TorusKnotShape& knot) {
   return mesh;
 }
 
-double largest_tube(const TorusKnotShape& knot) {
+double max_tube_radius(const TorusKnotShape& knot) {
   const std::int32_t samples = 96 * std::max(knot.p, knot.q);
   std::vector<CurvePoint> points;
   points.reserve(static_cast<std::size_t>(samples));
   for (std::int32_t i = 0; i < samples; ++i) {
     points.push_back(curve_point(knot, 2.0 * std::numbers::pi * i / samples));
   }
-  double least = std::numeric_limits<double>::infinity();
+  double min_radius = std::numeric_limits<double>::infinity();
   for (const CurvePoint& at : points) {
     for (const CurvePoint& through : points) {
-      const Vec3 chord_B = through.place_B - at.place_B;
+      const Vec3 chord_B = through.position_B - at.position_B;
       const double across = chord_B.cross(at.tangent_B).norm();
-      if (across > 0.0) least = std::min(least, chord_B.squaredNorm() / (2.0 * across));
+      if (across > 0.0) min_radius = std::min(min_radius, chord_B.squaredNorm() / (2.0 * across));
     }
   }
-  return least;
+  return min_radius;
 }
 
 }  // namespace buoyancy

@@ -1,9 +1,9 @@
-// A triangle mesh as plain arrays: vertices in the body frame B, in metres, one array per coordinate;
+// A triangle mesh as plain arrays (SoA): vertices in the body frame B [m], one array per coordinate;
 // triangles as three vertex indices, counter-clockwise seen from outside, so that (b - a) x (c - a) points
 // outward.
 //
-// A TriangleMesh promises nothing: it may be open, inside out or full of NaN. What has been looked at and
-// found usable is a ValidatedMesh (mesh_validation.h).
+// A TriangleMesh has no invariants: it may be open, inside out or contain NaN. A mesh that validation accepts
+// is a ValidatedMesh (mesh_validation.h).
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace buoyancy {
 using Triangle = std::array<std::int32_t, 3>;
 
 struct TriangleMesh {
-  std::vector<double> x, y, z;      // m, B; all three of the same length
+  std::vector<double> x, y, z;      // [m], B; all of the same length
   std::vector<Triangle> triangles;  // indices into x, y, z
 
   std::size_t vertex_count() const { return x.size(); }
@@ -34,14 +34,15 @@ struct TriangleMesh {
   }
 };
 
-// Axis-aligned bounding box of the vertices that triangles use; empty (min > max) without triangles.
+// Axis-aligned bounding box; empty if min > max.
 struct BoundingBox {
-  Vec3 min_B, max_B;  // m
+  Vec3 min_B, max_B;  // [m]
 
   double diagonal() const { return (max_B - min_B).norm(); }
   Vec3 center() const { return 0.5 * (min_B + max_B); }
 };
 
+// Returns the bounding box of the vertices that triangles use; an empty box if there are no triangles.
 BoundingBox bounding_box(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

@@ -15,16 +15,16 @@
 namespace buoyancy {
 namespace {
 
-// A cluster of vertices may form a chain of close neighbours; beyond this many tolerances from end to end it
-// is no crack but a finely divided edge, and must not collapse.
-constexpr double kLongestChain = 2.0;
+// Maximum displacement of a vertex, in tolerances. A longer chain of close neighbours is not a crack but a
+// finely divided edge, which must not collapse.
+constexpr double kMaxMove = 2.0;
 
-bool names_a_vertex_twice(const Triangle& face) {
+bool uses_vertex_twice(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-// The mesh with each vertex replaced by its representative, without the faces that then name a vertex twice
-// and without the vertices that no face uses.
+// Returns the mesh with each vertex replaced by its representative, without faces that then use a vertex
+// twice and without unused vertices.
 TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& representative) {
   constexpr std::int32_t kUnused = -1;
   constexpr std::int32_t kUsed = 0;
@@ -36,7 +36,7 @@ TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int
     for (std::size_t corner = 0; corner < 3; ++corner) {
       face[corner] = representative[static_cast<std::size_t>(stored[corner])];
     }
-    if (names_a_vertex_twice(face)) continue;
+    if (uses_vertex_twice(face)) continue;
     for (const std::int32_t vertex : face) new_index[static_cast<std::size_t>(vertex)] = kUsed;
     merged.triangles.push_back(face);
   }
@@ -49,7 +49,7 @@ TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int
   return merged;
 }
 
-// Bits of the coordinates; adding 0 turns -0 into 0.
+// Returns the bits of the coordinates; adding 0 turns -0 into 0.
 std::array<std::uint64_t, 3> position_bits(const TriangleMesh& mesh, std::size_t v) {
   return {std::bit_cast<std::uint64_t>(mesh.x[v] + 0.0), std::bit_cast<std::uint64_t>(mesh.y[v] + 0.0),
           std::bit_cast<std::uint64_t>(mesh.z[v] + 0.0)};
@@ -63,7 +63,8 @@ std::uint64_t mix(std::uint64_t bits) {
   return bits ^ (bits >> 32U);
 }
 
-// First vertex at the position of each vertex: an open-addressing hash table of vertex indices.
+// Returns the first vertex at the position of each vertex, by an open-addressing hash table of vertex
+// indices.
 std::vector<std::int32_t> first_at_same_position(const TriangleMesh& mesh) {
   constexpr std::int32_t kEmpty = -1;
   const std::size_t n = mesh.vertex_count();
@@ -82,30 +83,30 @@ std::vector<std::int32_t> first_at_same_position(const TriangleMesh& mesh) {
   return first;
 }
 
-// A cell of a grid so fine that whatever shares a cell is within tolerance of each other.
+// A cell of a grid so fine that all vertices of a cell are within the tolerance of each other.
 struct Cell {
-  std::array<std::int32_t, 3> place;   // z, y, x
+  std::array<std::int32_t, 3> index;   // z, y, x
   std::vector<std::int32_t> vertices;  // ascending
 };
 constexpr double kCellsPerTolerance = 1.7321;  // just above the square root of 3
-constexpr std::int32_t kMatchWindow = 2;       // pairs within tolerance are at most this many cells apart
+constexpr std::int32_t kMaxCellOffset = 2;     // pairs within the tolerance are at most this many cells apart
 
-// Occupied cells in the order of their places.
+// Returns the occupied cells in the order of their indices.
 std::vector<Cell> sort_into_cells(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
                                   double tolerance) {
   const Vec3 corner_B = bounding_box(mesh).min_B;
   std::vector<std::pair<std::array<std::int32_t, 3>, std::int32_t>> placed;
   placed.reserve(vertices.size());
   for (const std::int32_t v : vertices) {
-    const Vec3 place = (mesh.vertex(v) - corner_B) / tolerance * kCellsPerTolerance;
-    placed.push_back({{static_cast<std::int32_t>(place.z()), static_cast<std::int32_t>(place.y()),
-                       static_cast<std::int32_t>(place.x())},
+    const Vec3 cell = (mesh.vertex(v) - corner_B) / tolerance * kCellsPerTolerance;
+    placed.push_back({{static_cast<std::int32_t>(cell.z()), static_cast<std::int32_t>(cell.y()),
+                       static_cast<std::int32_t>(cell.x())},
                       v});
   }
   std::sort(placed.begin(), placed.end());
   std::vector<Cell> cells;
-  for (const auto& [place, v] : placed) {
-    if (cells.empty() || cells.back().place != place) cells.push_back({place, {}});
+  for (const auto& [index, v] : placed) {
+    if (cells.empty() || cells.back().index != index) cells.push_back({index, {}});
     cells.back().vertices.push_back(v);
   }
   return cells;
@@ -124,9 +125,9 @@ void unite_cells(const TriangleMesh& mesh, const Cell& a, const Cell& b, double 
   }
 }
 
-// Unites the given vertices within tolerance of each other. Of each cell's neighbours the rest of its own row
-// and the rows ahead are looked at; in the order of the cells a row's neighbours are contiguous and move
-// ahead with the cell.
+// Unites the given vertices that are within the tolerance of each other. Each cell is compared with the rest
+// of its row and with the rows ahead. A row's neighbours are contiguous in the order of the cells and form a
+// sliding window.
 DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
                                   double tolerance) {
   DisjointSets clusters(mesh.vertex_count());
@@ -134,15 +135,15 @@ DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<st
   for (const Cell& cell : cells) {
     for (const std::int32_t v : cell.vertices) clusters.unite(cell.vertices.front(), v);
   }
-  for (std::int32_t ahead_z = 0; ahead_z <= kMatchWindow; ++ahead_z) {
-    for (std::int32_t ahead_y = ahead_z == 0 ? 0 : -kMatchWindow; ahead_y <= kMatchWindow; ++ahead_y) {
+  for (std::int32_t ahead_z = 0; ahead_z <= kMaxCellOffset; ++ahead_z) {
+    for (std::int32_t ahead_y = ahead_z == 0 ? 0 : -kMaxCellOffset; ahead_y <= kMaxCellOffset; ++ahead_y) {
       std::size_t window = 0;
       for (const Cell& cell : cells) {
-        const auto& [z, y, x] = cell.place;
-        const std::array<std::int32_t, 3> begin{z + ahead_z, y + ahead_y, x - kMatchWindow};
-        const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kMatchWindow};
-        while (window < cells.size() && cells[window].place < begin) ++window;
-        for (std::size_t i = window; i < cells.size() && cells[i].place <= end; ++i) {
+        const auto& [z, y, x] = cell.index;
+        const std::array<std::int32_t, 3> begin{z + ahead_z, y + ahead_y, x - kMaxCellOffset};
+        const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kMaxCellOffset};
+        while (window < cells.size() && cells[window].index < begin) ++window;
+        for (std::size_t i = window; i < cells.size() && cells[i].index <= end; ++i) {
           unite_cells(mesh, cell, cells[i], tolerance, clusters);
         }
       }
@@ -151,8 +152,8 @@ DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<st
   return clusters;
 }
 
-// The vertices of edges that are not used as often one way as the other, ascending.
-std::vector<std::int32_t> vertices_beside_cracks(const MeshTopology& topology) {
+// Returns the vertices of unmatched edges, ascending.
+std::vector<std::int32_t> vertices_of_unmatched_edges(const MeshTopology& topology) {
   std::vector<std::int32_t> vertices;
   for (const auto* edges : {&topology.boundary, &topology.misoriented, &topology.non_manifold}) {
     for (const Edge& edge : *edges) vertices.insert(vertices.end(), edge.begin(), edge.end());
@@ -162,30 +163,30 @@ std::vector<std::int32_t> vertices_beside_cracks(const MeshTopology& topology) {
   return vertices;
 }
 
-// Replaces the exact weld by a tolerance weld, if that leaves no edge without a partner.
+// Replaces the exact weld by a tolerance weld if that leaves no unmatched edge.
 void close_cracks(WeldedMesh& welded) {
   const MeshTopology topology = mesh_topology(welded.mesh);
   if (topology.counts.all_matched()) return;
   const double tolerance = kWeldTolerance * bounding_box(welded.mesh).diagonal();
   if (!std::isnormal(tolerance)) return;
 
-  DisjointSets clusters = unite_close_vertices(welded.mesh, vertices_beside_cracks(topology), tolerance);
+  DisjointSets clusters = unite_close_vertices(welded.mesh, vertices_of_unmatched_edges(topology), tolerance);
   std::vector<std::int32_t> representative(welded.mesh.vertex_count());
-  double largest_move = 0.0;
+  double max_move = 0.0;
   for (std::size_t v = 0; v < representative.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);
     representative[v] = clusters.representative(vertex);
     const double move = (welded.mesh.vertex(vertex) - welded.mesh.vertex(representative[v])).norm();
-    largest_move = std::max(largest_move, move);
+    max_move = std::max(max_move, move);
   }
-  if (largest_move == 0.0 || largest_move > kLongestChain * tolerance) return;
+  if (max_move == 0.0 || max_move > kMaxMove * tolerance) return;
 
   TriangleMesh closed = merge_vertices(welded.mesh, representative);
   if (closed.triangles.empty() || !mesh_topology(closed).counts.all_matched()) return;
   welded.faces_dropped += static_cast<std::int64_t>(welded.mesh.triangles.size() - closed.triangles.size());
   welded.mesh = std::move(closed);
   welded.kind = WeldKind::kTolerance;
-  welded.largest_move = largest_move;
+  welded.max_move = max_move;
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
-// Makes vertices that lie at the same place one vertex, so that neighbouring triangles share their edges.
+// Welds a mesh: merges vertices at the same position, so that neighbouring triangles share their edges.
 //
-// First vertices of equal coordinates (-0 equals 0). If that leaves edges without a partner, also those
-// edges' vertices that lie within 1e-6 L of each other (L: bounding-box diagonal), but only if every edge
-// then has its partner (closed or balanced, mesh_topology.h); else the exact weld stands. What is not beside
-// a crack never moves. Vertices keep the order of their first occurrence. Triangles that name a vertex twice
-// enclose nothing and are dropped and counted. Complexity: O(n log n) for n vertices, unless many of them
-// crowd into two neighbouring cells of the tolerance's size without being within it.
+// The exact weld merges vertices of equal coordinates (-0 equals 0). If it leaves unmatched edges, the
+// tolerance weld also merges those edges' vertices that lie within 1e-6 L of each other (L: bounding-box
+// diagonal). Its result is used only if every edge is then matched (closed or balanced, mesh_topology.h);
+// otherwise the exact weld is kept. Vertices that are not on an unmatched edge never move. Vertices keep the
+// order of their first occurrence. Triangles that use a vertex twice enclose nothing; they are dropped and
+// counted. Complexity: O(n log n) for n vertices, unless many of them lie in two neighbouring cells of the
+// tolerance's size without being within the tolerance of each other.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,19 @@
 
 namespace buoyancy {
 
-inline constexpr double kWeldTolerance = 1e-6;  // of the bounding-box diagonal
+inline constexpr double kWeldTolerance = 1e-6;  // relative to the bounding-box diagonal
 
 enum class WeldKind { kExact, kTolerance };
 
 struct WeldedMesh {
-  TriangleMesh mesh;  // no vertex unused, no triangle with two equal indices
+  TriangleMesh mesh;  // without unused vertices and triangles with two equal indices
   WeldKind kind = WeldKind::kExact;
   std::int64_t vertices_stored = 0;
-  std::int64_t faces_dropped = 0;  // named a vertex twice, before or after welding
-  double largest_move = 0.0;       // m: farthest any vertex was moved by a tolerance weld
+  std::int64_t faces_dropped = 0;  // used a vertex twice, before or after welding
+  double max_move = 0.0;           // largest displacement of a vertex by a tolerance weld [m]
 };
 
-// mesh: coordinates finite, indices in range.
+// Requires finite coordinates and valid indices.
 WeldedMesh weld(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

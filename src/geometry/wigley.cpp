@@ -3,8 +3,9 @@
 namespace buoyancy {
 namespace {
 
-// Grid of the hull: stations from stern to stem, levels from the keel (0) to the waterplane and the deck. The
-// beam is 0 at both ends and at the keel: there both sides share one vertex in the middle plane.
+// The vertex grid of the hull: stations from stern to stem, levels from the keel (0) to the waterplane and
+// the deck. The beam is 0 at both ends and at the keel, where both sides share one vertex on the centre
+// plane.
 class HullGrid {
  public:
   HullGrid(const WigleyShape& hull, TriangleMesh& mesh)
@@ -17,22 +18,22 @@ class HullGrid {
         const double xi = static_cast<double>(2 * station - hull.segments) / hull.segments;
         const double x = 0.5 * hull.length * xi;
         const double y = 0.5 * hull.beam * (1.0 - xi * xi) * (1.0 - zeta * zeta);
-        const bool middle = level == 0 || station == 0 || station == stations_ - 1;
-        const std::int32_t port = mesh.add_vertex({x, middle ? 0.0 : y, z});
+        const bool on_center_plane = level == 0 || station == 0 || station == stations_ - 1;
+        const std::int32_t port = mesh.add_vertex({x, on_center_plane ? 0.0 : y, z});
         port_.push_back(port);
-        starboard_.push_back(middle ? port : mesh.add_vertex({x, -y, z}));
+        starboard_.push_back(on_center_plane ? port : mesh.add_vertex({x, -y, z}));
       }
     }
   }
 
-  std::int32_t port(std::int32_t station, std::int32_t level) const { return port_[place(station, level)]; }
+  std::int32_t port(std::int32_t station, std::int32_t level) const { return port_[index(station, level)]; }
   std::int32_t starboard(std::int32_t station, std::int32_t level) const {
-    return starboard_[place(station, level)];
+    return starboard_[index(station, level)];
   }
   std::int32_t deck() const { return levels_ - 1; }
 
  private:
-  std::size_t place(std::int32_t station, std::int32_t level) const {
+  std::size_t index(std::int32_t station, std::int32_t level) const {
     return static_cast<std::size_t>(level) * static_cast<std::size_t>(stations_) +
            static_cast<std::size_t>(station);
   }
@@ -49,8 +50,8 @@ TriangleMesh generate(const WigleyShape& hull) {
 
   for (std::int32_t level = 0; level < grid.deck(); ++level) {
     for (std::int32_t station = 0; station < hull.segments; ++station) {
-      // Every diagonal leans away from the nearer end: at the corners of keel and ends three of a cell's four
-      // vertices lie in the middle plane, and with the other diagonal they would be a triangle of both sides.
+      // Every diagonal leans away from the nearer end. Where the keel meets the ends, three of a cell's four
+      // vertices lie on the centre plane; the other diagonal would make them a triangle of both sides.
       const bool aft = 2 * station < hull.segments;
       const auto add_cell = [&](std::int32_t p00, std::int32_t p10, std::int32_t p11, std::int32_t p01) {
         if (aft) {

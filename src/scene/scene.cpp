@@ -7,7 +7,7 @@
 namespace buoyancy {
 namespace {
 
-// What makes two bodies share a prepared mesh.
+// Identifies a prepared mesh: two bodies with equal keys share it.
 struct MeshKey {
   std::variant<std::filesystem::path, Shape> source;  // canonical path
   double scale = 1.0;
@@ -29,7 +29,7 @@ MeshKey key_of(const BodyDescription& body) {
   return key;
 }
 
-Error about(const BodyDescription& body, Error error) {
+Error with_body(const BodyDescription& body, Error error) {
   if (!body.source_location.empty()) {
     error.subject = body.source_location + ": body " + std::to_string(body.id) + ", " + error.subject;
   }
@@ -59,23 +59,23 @@ void apply_scale(TriangleMesh& mesh, double scale) {
 Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body, const ImportLimits& limits,
                                                      const PrepareOptions& options) {
   Expected<ImportedMesh> imported = read_source(body, limits);
-  if (!imported) return make_error(about(body, std::move(imported.error())));
+  if (!imported) return make_error(with_body(body, std::move(imported.error())));
   apply_scale(imported->mesh, body.scale);
 
   MeshValidation validation =
       validate_mesh(*imported, source_name(body), {body.open, options.count_intersecting_pairs});
   if (!validation.mesh) {
     assert(validation.refusal);
-    return make_error(about(body, *std::move(validation.refusal)));
+    return make_error(with_body(body, *std::move(validation.refusal)));
   }
   return std::make_unique<PreparedMesh>(PreparedMesh{std::move(validation.report),
                                                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo),
                                                      mass_properties(validation.mesh->mesh)});
 }
 
-std::optional<Vec3> center_of_mass(const DynamicsSpec& client, const PreparedMesh& prepared) {
-  if (client.center_of_mass_B) return client.center_of_mass_B;
-  if (prepared.mesh.is_open() || !(client.mass || client.density)) return std::nullopt;
+std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
+  if (dynamics.center_of_mass_B) return dynamics.center_of_mass_B;
+  if (prepared.mesh.is_open() || !(dynamics.mass || dynamics.density)) return std::nullopt;
   return prepared.mass_properties.centroid_B;
 }
 
@@ -85,18 +85,18 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   Scene scene;
   scene.name_ = description.name;
   scene.water_ = description.water;
-  std::vector<MeshKey> keys;  // of scene.meshes_
+  std::vector<MeshKey> keys;  // in the order of scene.meshes_
   for (const BodyDescription& body : description.bodies) {
     MeshKey key = key_of(body);
     const auto known = std::find(keys.begin(), keys.end(), key);
-    const auto place = static_cast<std::size_t>(known - keys.begin());
+    const auto index = static_cast<std::size_t>(known - keys.begin());
     if (known == keys.end()) {
       Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_mesh(body, description.limits, options);
       if (!prepared) return make_error(std::move(prepared.error()));
       scene.meshes_.push_back(*std::move(prepared));
       keys.push_back(std::move(key));
     }
-    PreparedMesh& prepared = *scene.meshes_[place];
+    PreparedMesh& prepared = *scene.meshes_[index];
     if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
     }

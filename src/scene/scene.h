@@ -1,5 +1,5 @@
-// The bodies of a scene, ready to be asked: meshes imported or generated, validated, prepared once and
-// shared.
+// The bodies of a scene, ready for evaluation. Their meshes are imported or generated, validated, prepared
+// once and shared.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,15 @@
 namespace buoyancy {
 
 struct PrepareOptions {
-  bool count_intersecting_pairs = false;  // for the report; several times the rest of the validation
+  bool count_intersecting_pairs =
+      false;  // for the report; takes several times as long as the rest of the validation
 };
 
-// A mesh as several bodies may share it: one per source (file or shape), scale and open policy.
+// A mesh that several bodies may share: one per source (file or shape), scale and open policy.
 struct PreparedMesh {
   MeshReport report;
   HydrostaticMesh mesh;
-  MassProperties mass_properties;  // density 1; of an open mesh: of what there is
+  MassProperties mass_properties;  // density 1 kg/m^3; for an open mesh, the integrals over its faces
 };
 
 struct Body {
@@ -34,37 +35,36 @@ struct Body {
   std::string name;
   const PreparedMesh* prepared_mesh = nullptr;  // owned by the scene
   Solver solver;
-  Vec3 reference_B = Vec3::Zero();  // m
-  bool hydrostatics = false;        // asked for; the mesh then has its tree
-  // m: where [body.client] says how the mass lies (mass, density or center_of_mass) and the centre is known:
-  // an open mesh has none but what it is given.
+  Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
+  bool hydrostatics = false;        // requested; the mesh then has a moment tree
+  // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
   std::optional<Vec3> center_of_mass_B;
   DynamicsSpec client;
 };
 
 class Scene {
  public:
-  // Imports and prepares what the description names; each mesh once. Scales are applied in double, before the
-  // mesh is looked at. Errors name the scene file, the line, the body and the mesh.
+  // Imports or generates each mesh once, scales it in double, validates and prepares it. Errors name the
+  // scene file, the line, the body and the mesh.
   static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
-  // Reads the file and prepares it.
+  // Reads a scene file and prepares the scene.
   static Expected<Scene> load(const std::filesystem::path& path, const PrepareOptions& options = {});
 
-  const std::string& name() const { return name_; }  // of the scene file, as named
+  const std::string& name() const { return name_; }  // the scene file's name as given
   const Water& water() const { return water_; }
-  const std::vector<Body>& bodies() const { return bodies_; }  // in the file's order
+  const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
-  const Body* find(std::int32_t id) const;                     // nullptr: unknown; O(1)
-  std::optional<std::size_t> index_of(std::int32_t id) const;  // into bodies()
-  bool any_hydrostatics() const { return any_hydrostatics_; }  // of any body
+  const Body* find(std::int32_t id) const;                     // nullptr if unknown; O(1)
+  std::optional<std::size_t> index_of(std::int32_t id) const;  // index into bodies()
+  bool any_hydrostatics() const { return any_hydrostatics_; }  // whether any body has them
 
  private:
   std::string name_;
   Water water_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;
-  std::unordered_map<std::int32_t, std::size_t> index_;  // position in bodies_ by id
+  std::unordered_map<std::int32_t, std::size_t> index_;  // index into bodies_ by id
   bool any_hydrostatics_ = false;
 };
 

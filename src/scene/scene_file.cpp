@@ -17,7 +17,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::uintmax_t kMaxSceneFile = 64'000'000;  // bytes
+constexpr std::uintmax_t kMaxSceneFileBytes = 64'000'000;
 
 void read_world(TomlTable table, Water& water) {
   table.read("gravity", water.gravity, NumberRange::from_zero("m/s^2"));
@@ -46,12 +46,11 @@ void read_limits(TomlTable table, ImportLimits& limits) {
   table.finish();
 }
 
-// A share of the largest principal moment: numbers that are rounded to three digits put that of a thin plate,
-// which is the sum of the other two, so far above it.
+// Tolerance relative to the largest principal moment. For a thin plate this moment is the sum of the other
+// two, and numbers rounded to three digits can exceed the sum by that much.
 constexpr double kInertiaRounding = 0.01;
 
-// Every principal moment of a rigid body is above 0 and at most the sum of the other two, about whatever
-// point.
+// Every principal moment of a rigid body, about any point, is above 0 and at most the sum of the other two.
 void check_inertia(TomlTable& table, const Mat3& inertia_B) {
   const double scale = inertia_B.cwiseAbs().maxCoeff();
   Vec3 principal = Vec3::Zero();  // ascending
@@ -60,26 +59,26 @@ void check_inertia(TomlTable& table, const Mat3& inertia_B) {
   }
   const std::string here = " (here they are " + format_vector(scale * principal, 4) + " kg m^2)";
   const std::string other_order = "another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz)";
-  const std::string remedy =
+  const std::string hint =
       "Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] about the centre of mass, or leave inertia "
-      "out: it is then "
-      "a closed mesh's own";
+      "out: it then follows from a closed mesh";
   if (!(principal[0] > 0.0)) {
     table.fail_at(
         "inertia", "a positive definite matrix: principal moments above 0" + here,
         "a moment is not above 0, a product of inertia is too large for its moments, or " + other_order,
-        remedy);
+        hint);
   } else if (principal[2] > principal[0] + principal[1] + kInertiaRounding * principal[2]) {
-    table.fail_at(
-        "inertia", "principal moments of which none is above the sum of the other two, as of any body" + here,
-        "a number in another unit, " + other_order +
-            ", a product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too much "
-            "taken off to move it from another point to the centre of mass",
-        remedy);
+    table.fail_at("inertia",
+                  "principal moments of which none exceeds the sum of the other two, as for any body" + here,
+                  "a number in another unit, " + other_order +
+                      ", a product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or "
+                      "too large a "
+                      "correction from another point to the centre of mass",
+                  hint);
   }
 }
 
-void read_inertia(TomlTable& table, DynamicsSpec& client) {
+void read_inertia(TomlTable& table, DynamicsSpec& dynamics) {
   constexpr std::array<std::size_t, 2> kCounts{3, 6};
   std::vector<double> numbers = table.numbers("inertia", kCounts, "kg m^2");
   if (numbers.empty()) return;
@@ -89,26 +88,26 @@ void read_inertia(TomlTable& table, DynamicsSpec& client) {
       numbers[3], numbers[1], numbers[5],           //
       numbers[4], numbers[5], numbers[2];
   check_inertia(table, inertia_B);
-  client.inertia_B = inertia_B;
+  dynamics.inertia_B = inertia_B;
 }
 
-void read_client(TomlTable table, DynamicsSpec& client) {
-  client.given = true;
-  table.read("mass", client.mass, NumberRange::above_zero("kg"));
-  table.read("density", client.density, NumberRange::above_zero("kg/m^3"));
+void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
+  dynamics.given = true;
+  table.read("mass", dynamics.mass, NumberRange::above_zero("kg"));
+  table.read("density", dynamics.density, NumberRange::above_zero("kg/m^3"));
   if (table.has("center_of_mass")) {
-    client.center_of_mass_B = Vec3::Zero();
-    table.read("center_of_mass", *client.center_of_mass_B, "m");
+    dynamics.center_of_mass_B = Vec3::Zero();
+    table.read("center_of_mass", *dynamics.center_of_mass_B, "m");
   }
-  read_inertia(table, client);
-  table.read("position", client.position, "m");
-  table.read("linear_velocity", client.linear_velocity, "m/s");
-  table.read("angular_velocity", client.angular_velocity, "rad/s");
-  table.read("linear_damping", client.linear_damping, NumberRange::from_zero("N/(m/s)"));
-  table.read("linear_damping_quadratic", client.linear_damping_quadratic,
+  read_inertia(table, dynamics);
+  table.read("position", dynamics.position, "m");
+  table.read("linear_velocity", dynamics.linear_velocity, "m/s");
+  table.read("angular_velocity", dynamics.angular_velocity, "rad/s");
+  table.read("linear_damping", dynamics.linear_damping, NumberRange::from_zero("N/(m/s)"));
+  table.read("linear_damping_quadratic", dynamics.linear_damping_quadratic,
              NumberRange::from_zero("N/(m/s)^2"));
-  table.read("angular_damping", client.angular_damping, NumberRange::from_zero("N m/(rad/s)"));
-  table.read("angular_damping_quadratic", client.angular_damping_quadratic,
+  table.read("angular_damping", dynamics.angular_damping, NumberRange::from_zero("N m/(rad/s)"));
+  table.read("angular_damping_quadratic", dynamics.angular_damping_quadratic,
              NumberRange::from_zero("N m/(rad/s)^2"));
 
   std::array<double, 4> wxyz{1.0, 0.0, 0.0, 0.0};
@@ -117,15 +116,15 @@ void read_client(TomlTable table, DynamicsSpec& client) {
   const double largest = q.cwiseAbs().maxCoeff();
   if (largest > 0.0) {
     q = (q / largest).normalized();
-    client.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    dynamics.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   } else {
-    table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is no rotation");
+    table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is the identity");
   }
 
   table.finish();
-  if (client.mass && client.density) {
-    table.fail("both 'mass' and 'density'", "one of them, or neither: half the water's density then", {},
-               "Remove one");
+  if (dynamics.mass && dynamics.density) {
+    table.fail("both 'mass' and 'density'",
+               "at most one of them; without either, the density is half the water's", {}, "Remove one");
   }
 }
 
@@ -141,7 +140,7 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
   if (const auto chosen = table.choice("open", names)) open = kOpenPolicyNames[*chosen].second;
 }
 
-// Wrenches are what every request is answered with, so that only hydrostatics are kept.
+// Every response holds wrenches, so that only hydrostatics need a flag.
 void read_outputs(TomlTable& table, bool& hydrostatics) {
   constexpr std::string_view kExpected = "[\"wrench\"] or [\"wrench\", \"hydrostatics\"]";
   constexpr std::array<std::string_view, 2> kWords{"wrench", "hydrostatics"};
@@ -166,15 +165,14 @@ void read_outputs(TomlTable& table, bool& hydrostatics) {
     return table.fail_at("outputs", std::string(kExpected));
   }
   if (named[0] == 0) {
-    return table.fail_at("outputs", std::string(kExpected),
-                         "wrenches are what every request is answered with",
+    return table.fail_at("outputs", std::string(kExpected), "every response holds wrenches",
                          "Write outputs = [\"wrench\", \"hydrostatics\"]");
   }
   hydrostatics = named[1] == 1;
 }
 
 void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
-                 SceneParseContext& reading) {
+                 SceneParseContext& context) {
   std::string mesh;
   table.read("mesh", mesh);
   table.read("scale", body.scale, NumberRange::above_zero(""));
@@ -188,23 +186,23 @@ void read_source(TomlTable& table, BodyDescription& body, const std::filesystem:
   }
   if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};
   if (const toml::table* shape = table.table("shape")) {
-    TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", reading);
+    TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", context);
     if (std::optional<Shape> read = parse_shape(shape_table)) body.source = *read;
   }
 }
 
 BodyDescription read_body(const toml::table& toml, std::size_t number, const std::filesystem::path& directory,
-                          SceneParseContext& reading) {
-  TomlTable table(toml, "[[body]] number " + std::to_string(number), reading);
+                          SceneParseContext& context) {
+  TomlTable table(toml, "[[body]] number " + std::to_string(number), context);
   BodyDescription body;
   table.read("id", body.id);
   const bool has_id = table.has("id");
   if (has_id) table.rename("body " + std::to_string(body.id));
   body.name = "body " + std::to_string(body.id);
-  body.source_location = reading.at(toml.source());
+  body.source_location = context.location(toml.source());
 
   table.read("name", body.name);
-  read_source(table, body, directory, reading);
+  read_source(table, body, directory, context);
   read_method(table, body.method);
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
@@ -212,22 +210,22 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   read_outputs(table, body.hydrostatics);
   const toml::table* client = table.table("client");
 
-  // Last, so that a key that is missing because it is mistyped is reported as mistyped.
+  // Missing keys are checked last, so that a mistyped key is reported as unknown and not as missing.
   table.finish();
-  if (!has_id) table.fail_missing("id", "a whole number of its own for each body");
+  if (!has_id) table.fail_missing("id", "a unique whole number for each body");
   if (!table.has("mesh") && !table.has("shape")) {
     table.fail("neither 'mesh' nor 'shape'", "one of them", {},
                "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
   }
   if (client != nullptr) {
-    read_client(TomlTable(*client, "body " + std::to_string(body.id) + ", [body.client]", reading),
-                body.client);
+    read_dynamics(TomlTable(*client, "body " + std::to_string(body.id) + ", [body.client]", context),
+                  body.client);
   }
   return body;
 }
 
 void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem::path& directory,
-                 SceneParseContext& reading) {
+                 SceneParseContext& context) {
   const toml::node* bodies = top.node("body");
   if (bodies == nullptr) return;
   const toml::array* array = bodies->as_array();
@@ -237,17 +235,17 @@ void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem:
              bodies->is_table() ? "[body] in single brackets" : "", "Write [[body]] in double brackets");
     return;
   }
-  std::map<std::int32_t, std::string> places;  // by id
+  std::map<std::int32_t, std::string> locations;  // by id
   for (const toml::node& element : *array) {
     const toml::table& toml = *element.as_table();
-    scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, directory, reading));
+    scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, directory, context));
     const BodyDescription& body = scene.bodies.back();
-    if (const auto [earlier, is_new] = places.emplace(body.id, body.source_location); !is_new) {
-      TomlTable(toml, "body " + std::to_string(body.id), reading)
-          .fail("id = " + std::to_string(body.id), "an id of its own for each body",
+    if (const auto [earlier, is_new] = locations.emplace(body.id, body.source_location); !is_new) {
+      TomlTable(toml, "body " + std::to_string(body.id), context)
+          .fail("id = " + std::to_string(body.id), "a unique id for each body",
                 "the body at " + earlier->second + " has the same id");
     }
-    if (reading.error) return;
+    if (context.error) return;
   }
 }
 
@@ -259,54 +257,54 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
   try {
     root = toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    const toml::source_position& place = error.source().begin;
-    return make_error({name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column),
+    const toml::source_position& position = error.source().begin;
+    return make_error({name + ":" + std::to_string(position.line) + ":" + std::to_string(position.column),
                        printable(std::string(error.description())),
                        "TOML (https://toml.io)",
                        {},
                        {}});
   }
 
-  SceneParseContext reading{name, std::nullopt};
+  SceneParseContext context{name, std::nullopt};
   SceneDescription scene;
   scene.name = name;
-  TomlTable top(root, "the scene", reading);
-  if (const toml::table* world = top.table("world")) read_world({*world, "[world]", reading}, scene.water);
-  if (const toml::table* water = top.table("water")) read_water({*water, "[water]", reading}, scene.water);
+  TomlTable top(root, "the scene", context);
+  if (const toml::table* world = top.table("world")) read_world({*world, "[world]", context}, scene.water);
+  if (const toml::table* water = top.table("water")) read_water({*water, "[water]", context}, scene.water);
   if (const toml::table* limits = top.table("limits"))
-    read_limits({*limits, "[limits]", reading}, scene.limits);
-  read_bodies(top, scene, directory, reading);
+    read_limits({*limits, "[limits]", context}, scene.limits);
+  read_bodies(top, scene, directory, context);
   top.finish();
   if (scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
-  if (reading.error) return make_error(*std::move(reading.error));
+  if (context.error) return make_error(*std::move(context.error));
   return scene;
 }
 
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const std::string expectation = "a scene file (TOML)";
+  const std::string expected = "a scene file (TOML)";
   std::error_code code;
   const std::filesystem::file_status status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) {
-    return make_error({name, "no such file", expectation, {}, "Check the path"});
+    return make_error({name, "no such file", expected, {}, "Check the path"});
   }
   if (!std::filesystem::is_regular_file(status)) {
     const bool directory = std::filesystem::is_directory(status);
-    return make_error({name, directory ? "is a directory" : "is not a regular file", expectation, {}, {}});
+    return make_error({name, directory ? "is a directory" : "is not a regular file", expected, {}, {}});
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path, code);
-  if (!code && bytes > kMaxSceneFile) {
+  if (!code && bytes > kMaxSceneFileBytes) {
     return make_error({name,
                        std::to_string(bytes) + " bytes",
-                       "a scene file of at most " + std::to_string(kMaxSceneFile) + " bytes",
-                       "this is another kind of file",
+                       "a scene file of at most " + std::to_string(kMaxSceneFileBytes) + " bytes",
+                       "this is not a scene file",
                        {}});
   }
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
   if (!file) {
-    return make_error({name, "cannot be read", expectation, "no permission to read it", {}});
+    return make_error({name, "cannot be read", expected, "no permission to read it", {}});
   }
   return parse_scene(text.str(), name, path.parent_path());
 }

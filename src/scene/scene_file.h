@@ -1,7 +1,7 @@
-// The scene file: TOML in, a plain description out. The only user of toml++.
+// Parses a scene file (TOML) into a plain description. Only this module uses toml++.
 //
-// Every key is known or an error that names file, line and the nearest known key; every number is checked for
-// its range where it stands. Nothing is loaded here: see Scene.
+// Rules: an unknown key is an error that names the file, the line and the nearest known key; every number is
+// checked against its range. No mesh is loaded here; see Scene.
 #pragma once
 
 #include <array>
@@ -23,66 +23,66 @@
 
 namespace buoyancy {
 
-// What only a simulator needs to know of a body: [body.client]. Of mass and density one is given, or neither
-// (density then is half the water's).
+// Dynamics of a body, which only a simulator needs: section [body.client]. At most one of mass and density is
+// given; without either, the density is half the water's.
 struct DynamicsSpec {
-  bool given = false;                    // there is a [body.client]
-  std::optional<double> mass;            // kg, > 0
-  std::optional<double> density;         // kg/m^3, > 0: mass = density * enclosed volume
-  std::optional<Vec3> center_of_mass_B;  // m; default: the volume's centroid
-  std::optional<Mat3> inertia_B;         // kg m^2 about the centre of mass, as a rigid body can have it;
+  bool given = false;                    // the section exists
+  std::optional<double> mass;            // [kg], > 0
+  std::optional<double> density;         // [kg/m^3], > 0: mass = density * enclosed volume
+  std::optional<Vec3> center_of_mass_B;  // [m]; default: the volume's centroid
+  std::optional<Mat3> inertia_B;         // [kg m^2], about the centre of mass, physically possible;
                                          // default: the enclosed volume's, scaled to the mass. In the file:
                                          // [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz]
-  Vec3 position = Vec3::Zero();          // m, W: of B's origin at the start
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // q_WB at the start; normalised
-  Vec3 linear_velocity = Vec3::Zero();                              // m/s, W: of B's origin
-  Vec3 angular_velocity = Vec3::Zero();                             // rad/s, W
-  double linear_damping = 0.0;             // N/(m/s), >= 0: force  -c v of the centre of mass
-  double linear_damping_quadratic = 0.0;   // N/(m/s)^2:     force  -c |v| v
-  double angular_damping = 0.0;            // N m/(rad/s):   torque -c w
-  double angular_damping_quadratic = 0.0;  // N m/(rad/s)^2: torque -c |w| w
+  Vec3 position = Vec3::Zero();          // initial position of B's origin [m], W
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // initial q_WB, normalised
+  Vec3 linear_velocity = Vec3::Zero();                              // of B's origin [m/s], W
+  Vec3 angular_velocity = Vec3::Zero();                             // [rad/s], W
+  double linear_damping = 0.0;             // [N/(m/s)], >= 0: force -c v, v of the centre of mass
+  double linear_damping_quadratic = 0.0;   // [N/(m/s)^2], >= 0: force -c |v| v
+  double angular_damping = 0.0;            // [N m/(rad/s)], >= 0: torque -c w
+  double angular_damping_quadratic = 0.0;  // [N m/(rad/s)^2], >= 0: torque -c |w| w
 };
 
 struct MeshFile {
-  std::filesystem::path path;  // as resolved against the scene file's directory
+  std::filesystem::path path;  // resolved against the scene file's directory
 };
 
 struct BodyDescription {
   std::int32_t id = 0;
   std::string name;  // default: "body <id>"
   std::variant<MeshFile, Shape> source;
-  double scale = 1.0;  // > 0, of the mesh's coordinates; meshes only
+  double scale = 1.0;  // factor for the mesh's coordinates, > 0; mesh files only
   Method method = Method::kHierarchical;
-  double tolerance = 0.0;  // 0 to 1, relative to the whole displacement's weight
+  double tolerance = 0.0;  // 0 to 1, relative to the weight of the full displacement
   OpenPolicy open = OpenPolicy::kRefuse;
-  Vec3 reference_B = Vec3::Zero();  // m
-  bool hydrostatics = false;        // outputs names them, beside the wrench
+  Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
+  bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
   DynamicsSpec client;
-  std::string source_location;  // "scene.toml:12", for errors; empty where there is no scene file
+  std::string source_location;  // "scene.toml:12", for errors; empty without a scene file
 };
 
-// As the scene file's `open` and buoyancy-replay's --open name them.
+// The names in the scene file's `open` and buoyancy-replay's --open.
 inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPolicyNames{
     std::pair{std::string_view("refuse"), OpenPolicy::kRefuse},
     std::pair{std::string_view("dry_boundary"), OpenPolicy::kDryBoundary}};
 
 struct SceneDescription {
-  std::string name;  // the file as named, or what stands for it
+  std::string name;  // the file's name as given, or the name of the text
   Water water;
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };
 
-// Errors: no such file, not TOML (with line and column), unknown or missing keys, wrong types or ranges, ids
-// used twice, a body with both or neither of mesh and shape.
+// Errors: no such file; invalid TOML (with line and column); unknown or missing keys; wrong types or ranges;
+// duplicate ids; a body with both or neither of mesh and shape.
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path);
 
-// The same from text; name stands for the file in errors, directory resolves relative mesh paths.
+// Parses a scene from text. name: identifies the text in errors; directory: resolves relative mesh paths.
 Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 
-// One body, id 1, scale 1, reference point the mesh's origin, level 0, up +z, density 1025, gravity 9.80665:
-// what `buoyancy-replay --mesh` asks for.
+// Returns the scene of `buoyancy-replay --mesh`: one body with id 1, scale 1 and the mesh's origin as
+// reference point; level 0 m, up +z, density 1025 kg/m^3, gravity 9.80665 m/s^2.
 SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,
                                    OpenPolicy open);
 

@@ -1,11 +1,10 @@
 #include "scene/scene_report.h"
 
-#include <array>
-#include <cstdio>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
+#include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
 namespace buoyancy {
@@ -13,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What the simulator will use; nothing where it cannot know: an open mesh encloses no volume.
+// Returns the mass that the simulator uses; nullopt if it is unknown, since an open mesh encloses no volume.
 std::optional<double> mass_of(const Body& body, const Water& water) {
   if (body.client.mass) return body.client.mass;
   if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
@@ -35,63 +34,57 @@ std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) 
   return users;
 }
 
-std::size_t number_of(const PreparedMesh& mesh, const Scene& scene) {
-  std::size_t number = 0;
-  while (scene.meshes()[number].get() != &mesh) ++number;
-  return number;
+std::size_t index_of(const PreparedMesh& mesh, const Scene& scene) {
+  std::size_t index = 0;
+  while (scene.meshes()[index].get() != &mesh) ++index;
+  return index;
 }
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return text.data();
-}
-
-std::string format_vector(const Vec3& v) {
+std::string bracketed(const Vec3& vector) {
   std::string text = "[";
-  text += number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + "]";
-  return text;
+  text += format_vector(vector);
+  return text + "]";
 }
 
 std::string body_text(const Body& body, const Scene& scene) {
   std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
   text += "  mesh          " + body.prepared_mesh->report.name + "\n";
   text += "  method        " + std::string(to_string(body.solver.method())) + ", tolerance " +
-          number(body.solver.tolerance()) + "\n";
-  text += "  torque about  " + format_vector(body.reference_B) + " m\n";
+          format_number(body.solver.tolerance()) + "\n";
+  text += "  torque about  " + bracketed(body.reference_B) + " m\n";
   text += "  outputs       wrench" + std::string(body.hydrostatics ? ", hydrostatics" : "") + "\n";
   const std::optional<double> mass = mass_of(body, scene.water());
   const std::optional<double> density = density_of(body, scene.water());
   if (mass) {
-    text += "  mass          " + number(*mass) + " kg" +
-            (density ? ", " + number(*density) + " kg/m^3" : "") + "\n";
+    text += "  mass          " + format_number(*mass) + " kg" +
+            (density ? ", " + format_number(*density) + " kg/m^3" : "") + "\n";
   } else {
-    text += "  mass          not known: the mesh is open\n";
+    text += "  mass          unknown: the mesh is open\n";
   }
   return text;
 }
 
-Json json_of(const Vec3& v) {
+Json to_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json json_of(const BoundingBox& box) {
-  return {{"min", json_of(box.min_B)}, {"max", json_of(box.max_B)}};
+Json to_json(const BoundingBox& box) {
+  return {{"min", to_json(box.min_B)}, {"max", to_json(box.max_B)}};
 }
 
 template <typename T>
-Json json_of(const std::optional<T>& value) {
+Json to_json(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json json_of(const Water& water) {
-  return {{"up", json_of(water.up_W)},
+Json to_json(const Water& water) {
+  return {{"up", to_json(water.up_W)},
           {"level", water.level},
           {"density", water.density},
           {"gravity", water.gravity}};
 }
 
-Json json_of(const MeshSource& source) {
+Json to_json(const MeshSource& source) {
   return {{"format", source.format},
           {"up_axis", source.up_axis},
           {"note", source.note},
@@ -99,31 +92,31 @@ Json json_of(const MeshSource& source) {
           {"left_out", source.left_out}};
 }
 
-Json json_of(const ComponentReport& component) {
+Json to_json(const ComponentReport& component) {
   return {{"triangles", component.triangles}, {"volume", component.volume}, {"closed", component.closed},
           {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.turned}};
 }
 
-Json json_of(const MeshReport& report) {
+Json to_json(const MeshReport& report) {
   Json components = Json::array();
-  for (const ComponentReport& component : report.components) components.push_back(json_of(component));
+  for (const ComponentReport& component : report.components) components.push_back(to_json(component));
   Json holes = Json::array();
   for (const HoleReport& hole : report.holes) {
-    holes.push_back({{"edges", hole.edges}, {"box", json_of(hole.box)}});
+    holes.push_back({{"edges", hole.edges}, {"box", to_json(hole.box)}});
   }
   return {{"name", report.name},
-          {"source", json_of(report.source)},
+          {"source", to_json(report.source)},
           {"triangles", report.triangles},
           {"vertices_stored", report.vertices_stored},
           {"vertices_welded", report.vertices_welded},
           {"weld", report.weld == WeldKind::kExact ? "exact" : "tolerance"},
           {"weld_largest_move", report.weld_largest_move},
-          {"box", json_of(report.box)},
+          {"box", to_json(report.box)},
           {"diagonal", report.diagonal},
           {"area", report.area},
           {"volume", report.volume},
-          {"volume_by_axis", json_of(report.volume_by_axis)},
-          {"area_vector", json_of(report.area_vector)},
+          {"volume_by_axis", to_json(report.volume_by_axis)},
+          {"area_vector", to_json(report.area_vector)},
           {"closed", report.closed()},
           {"boundary_edges", report.boundary_edges},
           {"non_manifold_edges", report.non_manifold_edges},
@@ -132,22 +125,22 @@ Json json_of(const MeshReport& report) {
           {"degenerate_faces", report.degenerate_faces},
           {"dropped_faces", report.dropped_faces},
           {"duplicate_faces", report.duplicate_faces},
-          {"intersecting_pairs", json_of(report.intersecting_pairs)},
+          {"intersecting_pairs", to_json(report.intersecting_pairs)},
           {"components", std::move(components)},
           {"holes", std::move(holes)},
           {"turned", report.turned}};
 }
 
-Json json_of(const Body& body, const Scene& scene) {
+Json to_json(const Body& body, const Scene& scene) {
   return {{"id", body.id},
           {"name", body.name},
-          {"mesh", number_of(*body.prepared_mesh, scene)},
+          {"mesh", index_of(*body.prepared_mesh, scene)},
           {"method", to_string(body.solver.method())},
           {"tolerance", body.solver.tolerance()},
-          {"reference_point", json_of(body.reference_B)},
+          {"reference_point", to_json(body.reference_B)},
           {"outputs", body.hydrostatics ? Json{"wrench", "hydrostatics"} : Json{"wrench"}},
-          {"mass", json_of(mass_of(body, scene.water()))},
-          {"density", json_of(density_of(body, scene.water()))}};
+          {"mass", to_json(mass_of(body, scene.water()))},
+          {"density", to_json(density_of(body, scene.water()))}};
 }
 
 }  // namespace
@@ -155,8 +148,9 @@ Json json_of(const Body& body, const Scene& scene) {
 std::string scene_report_text(const Scene& scene) {
   const Water& water = scene.water();
   std::string text = scene.name() + "\n";
-  text += "  water         up . x < " + number(water.level) + " m, up " + format_vector(water.up_W) + ", " +
-          number(water.density) + " kg/m^3, gravity " + number(water.gravity) + " m/s^2\n";
+  text += "  water         up . x < " + format_number(water.level) + " m, up " + bracketed(water.up_W) +
+          ", " + format_number(water.density) + " kg/m^3, gravity " + format_number(water.gravity) +
+          " m/s^2\n";
   text += "  instructions  " + simd_target() + "\n";
   for (const Body& body : scene.bodies()) {
     text += '\n';
@@ -175,20 +169,20 @@ std::string scene_report_text(const Scene& scene) {
 
 std::string scene_report_json(const Scene& scene) {
   Json bodies = Json::array();
-  for (const Body& body : scene.bodies()) bodies.push_back(json_of(body, scene));
+  for (const Body& body : scene.bodies()) bodies.push_back(to_json(body, scene));
   Json meshes = Json::array();
   for (const auto& mesh : scene.meshes()) {
-    Json report = json_of(mesh->report);
+    Json report = to_json(mesh->report);
     report["bodies"] = Json::array();
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
     meshes.push_back(std::move(report));
   }
   const Json report{{"scene", scene.name()},
-                    {"water", json_of(scene.water())},
+                    {"water", to_json(scene.water())},
                     {"simd_target", simd_target()},
                     {"bodies", std::move(bodies)},
                     {"meshes", std::move(meshes)}};
-  // Numbers that are not finite come out as null; file names that are not UTF-8 with replacement characters.
+  // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,5 +1,4 @@
-// What `buoyancyd --check` prints: the water, the bodies and the report of every mesh, for people and for
-// programs.
+// The report of `buoyancyd --check`: the water, the bodies and the report of each mesh, as text and as JSON.
 #pragma once
 
 #include <string>
@@ -8,12 +7,13 @@
 
 namespace buoyancy {
 
-std::string scene_report_text(const Scene& scene);  // lines for a terminal, with a final newline
+// Returns lines for a terminal, with a final newline.
+std::string scene_report_text(const Scene& scene);
 
-// One JSON object, with a final newline: "scene", "water", "bodies" (in the file's order; "mesh" is a place
-// in "meshes"; mass and density as the simulator will use them, null where an open mesh leaves them unknown)
-// and "meshes" (the fields of MeshReport by their names, and "bodies": the ids that use it). Numbers that are
-// not finite are null.
+// Returns one JSON object, with a final newline: "scene", "water", "bodies" (in the order of the file; "mesh"
+// is an index into "meshes"; mass and density are those that the simulator uses, null if an open mesh leaves
+// them unknown) and "meshes" (the fields of MeshReport by name, and "bodies": the ids of its bodies).
+// Non-finite numbers are null.
 std::string scene_report_json(const Scene& scene);
 
 }  // namespace buoyancy

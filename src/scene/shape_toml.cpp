@@ -5,7 +5,7 @@
 namespace buoyancy {
 namespace {
 
-// Types are checked here, ranges by check_shape.
+// The readers check types; check_shape checks ranges.
 void read_length(TomlTable& table, std::string_view key, double& value) {
   table.read(key, value, NumberRange::any("m"));
 }
@@ -55,7 +55,7 @@ void read_fields(TomlTable& table, RockShape& rock) {
 
 constexpr std::size_t kShapeCount = std::variant_size_v<Shape>;
 
-// One of each type, with default sizes.
+// Returns one shape of each type, with default sizes.
 template <std::size_t... kIndices>
 std::array<Shape, kShapeCount> all_shapes(std::index_sequence<kIndices...>) {
   return {Shape(std::in_place_index<kIndices>)...};

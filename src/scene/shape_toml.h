@@ -1,4 +1,4 @@
-// A shape as a table of the scene file: { type = "box", size = [1, 1, 1] }. For scene_file.cpp only.
+// Internal to scene_file.cpp: parses a shape table, { type = "box", size = [1, 1, 1] }.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace buoyancy {
 
-// Reads `type` and that type's keys, which are the fields of its struct (shapes.h), and checks the shape;
-// nullopt: wrong, the table's reading says how.
+// Reads `type` and that type's keys, which are the fields of its struct (shapes.h), and checks the shape.
+// Returns nullopt on an error, which is then in the table's context.
 std::optional<Shape> parse_shape(TomlTable& table);
 
 }  // namespace buoyancy

@@ -12,7 +12,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kLongestQuotation = 60;
+constexpr std::size_t kMaxQuotationLength = 60;
 
 bool is_printable(char c) {
   return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
@@ -25,11 +25,11 @@ std::string quoted(std::string_view word) {
   return text;
 }
 
-// A value as the file may have it.
-std::string written(const toml::node& node) {
+// Formats a value as TOML.
+std::string to_toml(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) {
     const std::string text = format_shortest(number->get());
-    // A whole number written as 1.0 stays one that is not whole.
+    // 1.0 keeps its decimal point: it is not an integer.
     return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
   }
   if (const auto* text = node.as_string()) {
@@ -41,7 +41,7 @@ std::string written(const toml::node& node) {
     std::string text = "[";
     for (const toml::node& element : *array) {
       if (text.size() > 1) text += ", ";
-      text += written(element);
+      text += to_toml(element);
     }
     return text += "]";
   }
@@ -50,10 +50,10 @@ std::string written(const toml::node& node) {
   return text.str();
 }
 
-// Cut short.
+// Formats a value as TOML, truncated to kMaxQuotationLength.
 std::string quotation(const toml::node& node) {
-  std::string line = written(node);
-  if (line.size() > kLongestQuotation) line = line.substr(0, kLongestQuotation) + "...";
+  std::string line = to_toml(node);
+  if (line.size() > kMaxQuotationLength) line = line.substr(0, kMaxQuotationLength) + "...";
   return line;
 }
 
@@ -61,14 +61,14 @@ std::string in_unit(std::string_view unit) {
   return unit.empty() ? "" : " (" + std::string(unit) + ")";
 }
 
-// A number, whole or not; nullopt: something else.
+// Returns the value of an integer or floating-point node, else nullopt.
 std::optional<double> number_of(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
   if (const auto* number = node.as_floating_point()) return number->get();
   return std::nullopt;
 }
 
-// All finite, or nullopt.
+// Returns an array's numbers; nullopt unless all elements are finite numbers.
 std::optional<std::vector<double>> numbers_of(const toml::node& node) {
   const toml::array* array = node.as_array();
   if (array == nullptr) return std::nullopt;
@@ -98,8 +98,8 @@ std::string printable(std::string text) {
   return text;
 }
 
-std::string SceneParseContext::at(const toml::source_region& place) const {
-  return file + ":" + std::to_string(place.begin.line);
+std::string SceneParseContext::location(const toml::source_region& region) const {
+  return file + ":" + std::to_string(region.begin.line);
 }
 
 bool NumberRange::contains(double value) const {
@@ -150,11 +150,11 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::span<const std
   if (numbers && std::find(counts.begin(), counts.end(), numbers->size()) != counts.end()) {
     return *std::move(numbers);
   }
-  std::string expectation = "an array of ";
+  std::string expected = "an array of ";
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    expectation += (i == 0 ? "" : " or ") + std::to_string(counts[i]);
+    expected += (i == 0 ? "" : " or ") + std::to_string(counts[i]);
   }
-  fail_at(key, expectation + " finite numbers" + in_unit(unit));
+  fail_at(key, expected + " finite numbers" + in_unit(unit));
   return {};
 }
 
@@ -172,13 +172,13 @@ void TomlTable::read(std::string_view key, std::span<std::int32_t> values) {
   const toml::node* found = node(key);
   if (found == nullptr) return;
   const toml::array* array = found->as_array();
-  bool right = array != nullptr && array->size() == values.size();
-  for (std::size_t i = 0; right && i < values.size(); ++i) {
+  bool valid = array != nullptr && array->size() == values.size();
+  for (std::size_t i = 0; valid && i < values.size(); ++i) {
     const auto* whole = array->get(i)->as_integer();
-    right = whole != nullptr && std::in_range<std::int32_t>(whole->get());
-    if (right) values[i] = static_cast<std::int32_t>(whole->get());
+    valid = whole != nullptr && std::in_range<std::int32_t>(whole->get());
+    if (valid) values[i] = static_cast<std::int32_t>(whole->get());
   }
-  if (!right) fail_at(key, "an array of " + std::to_string(values.size()) + " whole numbers");
+  if (!valid) fail_at(key, "an array of " + std::to_string(values.size()) + " whole numbers");
 }
 
 void TomlTable::read(std::string_view key, std::int32_t& value) {
@@ -211,7 +211,7 @@ void TomlTable::read(std::string_view key, std::string& value) {
       std::all_of(text->get().begin(), text->get().end(), is_printable)) {
     value = text->get();
   } else {
-    fail_at(key, "a text in quotation marks, not empty and without control characters");
+    fail_at(key, "a string in quotation marks, not empty and without control characters");
   }
 }
 
@@ -247,26 +247,25 @@ void TomlTable::finish() {
   }
 }
 
-void TomlTable::fail(std::string found, std::string expectation, std::string cause, std::string remedy) {
-  set_error(table_->source(), std::move(found), std::move(expectation), std::move(cause), std::move(remedy));
+void TomlTable::fail(std::string actual, std::string expected, std::string cause, std::string hint) {
+  set_error(table_->source(), std::move(actual), std::move(expected), std::move(cause), std::move(hint));
 }
 
-void TomlTable::fail_at(std::string_view key, std::string expectation, std::string cause,
-                        std::string remedy) {
+void TomlTable::fail_at(std::string_view key, std::string expected, std::string cause, std::string hint) {
   const toml::node* found = table_->get(key);
-  set_error(found->source(), std::string(key) + " = " + quotation(*found), std::move(expectation),
-            std::move(cause), std::move(remedy));
+  set_error(found->source(), std::string(key) + " = " + quotation(*found), std::move(expected),
+            std::move(cause), std::move(hint));
 }
 
-void TomlTable::fail_missing(std::string_view key, std::string expectation) {
-  fail("no key " + quoted(key), std::move(expectation));
+void TomlTable::fail_missing(std::string_view key, std::string expected) {
+  fail("no key " + quoted(key), std::move(expected));
 }
 
-void TomlTable::set_error(const toml::source_region& source, std::string found, std::string expectation,
-                          std::string cause, std::string remedy) {
-  if (reading_->error) return;
-  reading_->error = Error{reading_->at(source) + ": " + what_, printable(std::move(found)),
-                          std::move(expectation), std::move(cause), printable(std::move(remedy))};
+void TomlTable::set_error(const toml::source_region& source, std::string actual, std::string expected,
+                          std::string cause, std::string hint) {
+  if (context_->error) return;
+  context_->error = Error{context_->location(source) + ": " + name_, printable(std::move(actual)),
+                          std::move(expected), std::move(cause), printable(std::move(hint))};
 }
 
 }  // namespace buoyancy

@@ -1,8 +1,8 @@
-// One table of a scene file, read key by key; what is wrong with it becomes an Error that names file, line,
-// key, value and range. For scene_file.cpp and shape_toml.cpp only.
+// Internal to scene_file.cpp and shape_toml.cpp: reads a table of a scene file key by key. An Error names
+// file, line, key, value and range.
 //
-// A key that is read is a known key; finish() reports the ones nobody asked for. The first error stands, and
-// reading goes on with defaults: callers look at the error once, at the end.
+// Contract: reading a key makes it known; finish() reports unknown keys. The first error is kept and reading
+// continues with defaults, so that callers check for an error once, at the end.
 #pragma once
 
 #include <array>
@@ -21,15 +21,15 @@
 
 namespace buoyancy {
 
-// On one line: every control character, whatever a file's text may have smuggled in, as '?'.
+// Replaces every control character by '?', so that file contents are safe to print on one line.
 std::string printable(std::string text);
 
-// The file being read, and the first thing found wrong with it.
+// The file being parsed and the first error in it.
 struct SceneParseContext {
   std::string file;
   std::optional<Error> error;
 
-  std::string at(const toml::source_region& place) const;  // "scene.toml:12"
+  std::string location(const toml::source_region& region) const;  // "scene.toml:12"
 };
 
 struct NumberRange {
@@ -65,14 +65,14 @@ struct NumberRange {
 
 class TomlTable {
  public:
-  // what: as errors call the table, "body 3", "[water]". table and reading must outlive this.
-  TomlTable(const toml::table& table, std::string what, SceneParseContext& reading)
-      : table_(&table), what_(std::move(what)), reading_(&reading) {}
+  // name: identifies the table in errors: "body 3", "[water]". table and context must outlive this object.
+  TomlTable(const toml::table& table, std::string name, SceneParseContext& context)
+      : table_(&table), name_(std::move(name)), context_(&context) {}
 
-  void rename(std::string what) { what_ = std::move(what); }
+  void rename(std::string name) { name_ = std::move(name); }
   bool has(std::string_view key);
 
-  // Each leaves the value as it is where the key is absent. Whole numbers are welcome where numbers are.
+  // Each leaves the value unchanged if the key is absent. Reading a double also accepts an integer.
   void read(std::string_view key, double& value, const NumberRange& range);
   void read(std::string_view key, std::optional<double>& value, const NumberRange& range);
   void read(std::string_view key, Vec3& value, std::string_view unit);
@@ -82,33 +82,32 @@ class TomlTable {
   void read(std::string_view key, std::uint64_t& value, std::uint64_t min);
   void read(std::string_view key, std::string& value);
 
-  // As many finite numbers as one of `counts` says; empty: absent or wrong.
+  // Returns finite numbers, as many as one of `counts`; empty if the key is absent or wrong.
   std::vector<double> numbers(std::string_view key, std::span<const std::size_t> counts,
                               std::string_view unit);
-  // One of the words: its place among them; nullopt: absent or wrong.
+  // Returns the index of the value among the words; nullopt if the key is absent or wrong.
   std::optional<std::size_t> choice(std::string_view key, std::span<const std::string_view> words);
-  const toml::table* table(std::string_view key);  // nullptr: absent or wrong
-  const toml::node* node(std::string_view key);    // nullptr: absent
+  const toml::table* table(std::string_view key);  // nullptr if absent or wrong
+  const toml::node* node(std::string_view key);    // nullptr if absent
 
-  // Reports the first key that was not asked for.
+  // Reports the first unknown key.
   void finish();
 
-  bool failed() const { return reading_->error.has_value(); }  // here or before
+  bool failed() const { return context_->error.has_value(); }  // in this table or before it
 
-  // Error about the table as a whole, about a key's value, about a key that is missing.
-  void fail(std::string found, std::string expectation, std::string cause = {}, std::string remedy = {});
-  void fail_at(std::string_view key, std::string expectation, std::string cause = {},
-               std::string remedy = {});
-  void fail_missing(std::string_view key, std::string expectation);
+  // Set an error about the table as a whole, about a key's value, about a missing key.
+  void fail(std::string actual, std::string expected, std::string cause = {}, std::string hint = {});
+  void fail_at(std::string_view key, std::string expected, std::string cause = {}, std::string hint = {});
+  void fail_missing(std::string_view key, std::string expected);
 
  private:
-  void set_error(const toml::source_region& source, std::string found, std::string expectation,
-                 std::string cause, std::string remedy);
+  void set_error(const toml::source_region& source, std::string actual, std::string expected,
+                 std::string cause, std::string hint);
 
   const toml::table* table_;
-  std::string what_;
-  SceneParseContext* reading_;
-  std::vector<std::string_view> known_;  // each once, in the order asked
+  std::string name_;
+  SceneParseContext* context_;
+  std::vector<std::string_view> known_;  // each key once, in the order of reading
 };
 
 }  // namespace buoyancy

@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
+TEST(EditDistance, CountsInsertionsDeletionsReplacementsSwaps) {
   EXPECT_EQ(edit_distance("mass", "mass"), 0U);
   EXPECT_EQ(edit_distance("mas", "mass"), 1U);
   EXPECT_EQ(edit_distance("masss", "mass"), 1U);
@@ -20,25 +20,25 @@ TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(edit_distance("", "mass"), 4U);
 }
 
-TEST(NearestWord, IsTheOneMeant) {
+TEST(NearestWord, ReturnsIntendedKey) {
   constexpr std::array<std::string_view, 4> kKeys{"mesh", "mass", "method", "density"};
   EXPECT_EQ(nearest_word("desnity", kKeys), "density");
   EXPECT_EQ(nearest_word("metod", kKeys), "method");
   EXPECT_EQ(nearest_word("Mass", kKeys), "mass");
 }
 
-TEST(NearestWord, IsTheFirstOfEquals) {
+TEST(NearestWord, ReturnsFirstOfATie) {
   constexpr std::array<std::string_view, 2> kKeys{"ab", "ac"};
   EXPECT_EQ(nearest_word("ad", kKeys), "ab");
 }
 
-std::string some_word() {
+std::string random_word() {
   return *rc::gen::container<std::string>(rc::gen::element('a', 'b', 'c'));
 }
 
 RC_GTEST_PROP(EditDistance, IsSymmetricAndBounded, ()) {
-  const std::string a = some_word();
-  const std::string b = some_word();
+  const std::string a = random_word();
+  const std::string b = random_word();
   const std::size_t distance = edit_distance(a, b);
   RC_ASSERT(distance == edit_distance(b, a));
   RC_ASSERT(distance <= std::max(a.size(), b.size()));
@@ -46,8 +46,8 @@ RC_GTEST_PROP(EditDistance, IsSymmetricAndBounded, ()) {
   RC_ASSERT((distance == 0) == (a == b));
 }
 
-RC_GTEST_PROP(EditDistance, IsAtMostTheNumberOfEdits, ()) {
-  const std::string word = some_word();
+RC_GTEST_PROP(EditDistance, EqualsNumberOfInsertions, ()) {
+  const std::string word = random_word();
   std::string edited = word;
   const auto edits = *rc::gen::inRange<std::size_t>(0, 4);
   for (std::size_t i = 0; i < edits; ++i) {

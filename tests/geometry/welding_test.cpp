@@ -83,15 +83,15 @@ TEST(Welding, ClosesCracksNarrowerThanTheTolerance) {
   EXPECT_TRUE(mesh_topology(welded.mesh).counts.all_matched());
   EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count());
   EXPECT_EQ(welded.mesh.triangles.size(), soup.triangles.size());
-  EXPECT_GT(welded.largest_move, 0.0);
-  EXPECT_LE(welded.largest_move, 1e-6 * (1.0 + 1e-9));
+  EXPECT_GT(welded.max_move, 0.0);
+  EXPECT_LE(welded.max_move, 1e-6 * (1.0 + 1e-9));
 }
 
 TEST(Welding, StaysExactWhereTheToleranceDoesNotCloseTheMesh) {
   const TriangleMesh soup = cracked_sphere(1e-6);
   const WeldedMesh welded = weld(without_face(soup, 17));
   EXPECT_EQ(welded.kind, WeldKind::kExact);
-  EXPECT_EQ(welded.largest_move, 0.0);
+  EXPECT_EQ(welded.max_move, 0.0);
   EXPECT_EQ(weld(cracked_sphere(1e-4)).kind, WeldKind::kExact);
 }
 
