@@ -3,8 +3,7 @@
 namespace buoyancy {
 namespace {
 
-// Numbers the vertices on the surface of an a x b x c lattice: full layers at the bottom and the top, rims in
-// between.
+// Numbers the surface vertices of an a x b x c lattice: full layers at bottom and top, rims in between.
 class SurfaceLattice {
  public:
   SurfaceLattice(std::int32_t a, std::int32_t b, std::int32_t c) : a_(a), b_(b), c_(c) {}

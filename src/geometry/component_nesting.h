@@ -15,8 +15,7 @@
 
 namespace buoyancy {
 
-// Returns, by component, the components that enclose it, ascending. Every component must be closed or
-// balanced.
+// Returns, by component, its enclosing components, ascending. Requires closed or balanced components.
 std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
                                                             const MeshTopology& topology);
 

@@ -84,8 +84,7 @@ void restore_signals() {
 }
 
 // Redirects standard input and outputs to /dev/null (assimp prints) and moves the pipe to descriptor 3.
-// Closes all other descriptors: sockets and the pipes of concurrent imports would otherwise stay open in the
-// child.
+// Closes all other descriptors, since sockets and pipes of concurrent imports would stay open in the child.
 int keep_only_pipe(int pipe) {
   constexpr int kPipe = 3;
   if (pipe != kPipe) ::dup2(pipe, kPipe);

@@ -64,8 +64,8 @@ void turn(ComponentReport& component) {
   component.turned = !component.turned;
 }
 
-// Turns inside-out components, marks cavities and nested solids. enclosing: by component, those that enclose
-// it.
+// Turns inside-out components, marks cavities and nested solids. enclosing: as enclosing_components()
+// returns.
 void classify_components(const std::vector<std::vector<std::int32_t>>& enclosing,
                          std::vector<ComponentReport>& components) {
   const auto depth = [&enclosing](std::size_t i) { return enclosing[i].size(); };

@@ -3,14 +3,12 @@
 //
 // Rules, applied from the outermost components inward:
 // - A component inside no other is a solid. If its volume is negative it is inside out, and it is turned
-// together
-//   with everything inside it.
+//   together with everything inside it.
 // - For a component inside others, let n be the number of times that the volume integrals count the space
-// around
-//   it. If n <= 0, as in a cavity, it is a solid and is turned if its volume is negative. If n > 0, it is a
-//   cavity if its volume is negative; otherwise its volume is counted once too often, which is kept and
+//   around it. If n <= 0, as in a cavity, it is a solid and is turned if its volume is negative. If n > 0, it
+//   is a cavity if its volume is negative; otherwise its volume is counted once too often, which is kept and
 //   reported.
-// Solids that share an edge are one component and are turned together or not at all.
+// - Solids that share an edge are one component and are turned together or not at all.
 #pragma once
 
 #include <vector>

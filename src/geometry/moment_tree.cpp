@@ -116,8 +116,7 @@ class Builder {
     return leaf_vertices(range, vertices, count);
   }
 
-  // Returns the number of triangles of the largest full subtree with fewer than `size` triangles, at least a
-  // leaf's.
+  // Returns the size in triangles of the largest full subtree below `size`, at least that of a leaf.
   static std::size_t full_subtree(std::size_t size) {
     std::size_t full = kLeafTriangles;
     while (full * kTreeWidth < size) full *= kTreeWidth;
@@ -228,8 +227,7 @@ class Builder {
   }
 
   Subtree build_leaf(Range range, std::uint32_t moments_index) {
-    // The halves of a leaf are spatially coherent, so that a kernel of eight triangles at a time can skip
-    // one.
+    // The halves of a leaf are spatially coherent, so that a kernel for eight triangles can skip one half.
     if (range.size() > kLeafTriangles / 2) split(range, kLeafTriangles / 2);
     std::array<std::int32_t, kLeafVertices> vertices;
     std::size_t count = 0;

@@ -12,7 +12,7 @@
 // volume tolerance G_V (docs/mathematics.md, "The moment tree"). A leaf's vertices are relative to the leaf's
 // own centre, so that heights and edges are rounded relative to the size of the leaf and not of the body.
 //
-// Complexity: build O(n log n), below 1 us per triangle; memory about 60 B per triangle; query: see
+// Complexity: build O(n log n), below 1 us per triangle. Memory: about 60 B per triangle. Query:
 // hierarchical.h.
 #pragma once
 
@@ -60,8 +60,8 @@ struct alignas(64) NodeMoments {
   double area() const { return values[kArea]; }  // [m^2]
 };
 
-// Bounds of eight children, as centre and half-extents [m] relative to c. They contain every vertex below
-// child i.
+// Bounds of eight children: centre and half-extents [m], relative to c. They contain every vertex below child
+// i.
 struct alignas(64) TreeNode {
   std::array<float, kTreeWidth> center_x, center_y, center_z;
   std::array<float, kTreeWidth> half_x, half_y, half_z;

@@ -39,8 +39,7 @@ constexpr std::array<Triangle, 20> kIcosahedronFaces{
      {8, 9, 4}, {4, 9, 2}, {4, 2, 5}, {5, 2, 11}, {5, 11, 10}, {10, 11, 7}, {10, 7, 1},
      {1, 7, 6}, {3, 9, 6}, {3, 2, 9}, {3, 11, 2}, {3, 7, 11},  {3, 6, 7}}};
 
-// A 64-bit mixing function (G. Steele et al., "Fast splittable pseudorandom number
-// generators", OOPSLA 2014).
+// A 64-bit mixing function (G. Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014).
 std::uint64_t mixed(std::uint64_t bits) {
   bits += 0x9e3779b97f4a7c15U;
   bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -48,7 +47,7 @@ std::uint64_t mixed(std::uint64_t bits) {
   return bits ^ (bits >> 31U);
 }
 
-// Gradient noise (K. Perlin, "Improving noise", SIGGRAPH 2002) with gradients from a hash of the lattice
+// Gradient noise (K. Perlin, "Improving noise", SIGGRAPH 2002); gradients come from a hash of the lattice
 // point.
 class GradientNoise {
  public:
@@ -78,8 +77,7 @@ class GradientNoise {
   // 6 t^5 - 15 t^4 + 10 t^3 rises from 0 to 1; its first two derivatives vanish at both ends.
   static double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 
-  // Returns the dot product of an offset and the lattice point's gradient, one of the twelve permutations of
-  // (+-1, +-1, 0).
+  // Returns offset . gradient; the lattice point's gradient is one of the 12 permutations of (+-1, +-1, 0).
   double slope(double lattice_x, double lattice_y, double lattice_z, double dx, double dy, double dz) const {
     std::uint64_t bits = seed_;
     for (const double coordinate : {lattice_x, lattice_y, lattice_z}) {

@@ -1,7 +1,7 @@
 // Internal to make_shape and check_shape (shapes.h): one generator per shape.
 //
-// Contract: each takes a checked shape and returns a mesh without unused vertices, outward oriented, with
-// each edge used once in each direction. Vertices are shared by index, by construction, never by comparing
+// Contract: each takes a checked shape and returns an outward oriented mesh without unused vertices whose
+// edges are each used once in each direction. Vertices are shared by construction, not by comparing
 // positions.
 #pragma once
 

@@ -32,8 +32,7 @@ struct SphereShape {
 
   bool operator==(const SphereShape&) const = default;
 };
-// Axis along z; a regular prism of `segments` sides, inscribed in the cylinder, with `stacks` bands along the
-// axis.
+// A regular prism of `segments` sides, inscribed in the cylinder, with `stacks` bands along its axis z.
 struct CylinderShape {
   double radius = 0.5;
   double height = 1;

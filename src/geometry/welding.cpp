@@ -63,8 +63,7 @@ std::uint64_t mix(std::uint64_t bits) {
   return bits ^ (bits >> 32U);
 }
 
-// Returns the first vertex at the position of each vertex, by an open-addressing hash table of vertex
-// indices.
+// Returns the first vertex at each vertex's position, by an open-addressing hash table of vertex indices.
 std::vector<std::int32_t> first_at_same_position(const TriangleMesh& mesh) {
   constexpr std::int32_t kEmpty = -1;
   const std::size_t n = mesh.vertex_count();

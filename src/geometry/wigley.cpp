@@ -4,8 +4,7 @@ namespace buoyancy {
 namespace {
 
 // The vertex grid of the hull: stations from stern to stem, levels from the keel (0) to the waterplane and
-// the deck. The beam is 0 at both ends and at the keel, where both sides share one vertex on the centre
-// plane.
+// the deck. At both ends and at the keel the beam is 0 and both sides share a vertex on the centre plane.
 class HullGrid {
  public:
   HullGrid(const WigleyShape& hull, TriangleMesh& mesh)

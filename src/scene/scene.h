@@ -1,5 +1,4 @@
-// The bodies of a scene, ready for evaluation. Their meshes are imported or generated, validated, prepared
-// once and shared.
+// The bodies of a scene, ready for evaluation: their meshes are validated, prepared once and shared.
 #pragma once
 
 #include <cstdint>
