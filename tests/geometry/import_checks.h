@@ -1,4 +1,5 @@
-// What every refusal of a mesh file has to be, and a fixture that sees what an import leaves behind.
+// Checks that every mesh import error has to pass, and a fixture that detects leaked descriptors and
+// processes.
 #pragma once
 
 #include <cerrno>
@@ -16,8 +17,8 @@
 
 namespace buoyancy {
 
-// One line that names the file, what was found and what was expected, in printable characters.
-inline void expect_clear(const Error& error, const std::filesystem::path& file) {
+// Requires a one-line message in printable characters with the file, the actual and the expected value.
+inline void expect_complete_error(const Error& error, const std::filesystem::path& file) {
   const std::string message = error.message();
   EXPECT_EQ(error.subject, file.string());
   EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0U) << message;
@@ -28,20 +29,20 @@ inline void expect_clear(const Error& error, const std::filesystem::path& file) 
   }
 }
 
-// The error's message; a failure of the test if there is a mesh.
-inline std::string refusal(const std::filesystem::path& file, const ImportLimits& limits = {}) {
+// Returns the error's message; fails the test if the import succeeds.
+inline std::string import_error(const std::filesystem::path& file, const ImportLimits& limits = {}) {
   const Expected<ImportedMesh> result = import_mesh(file, limits);
   if (result) {
-    ADD_FAILURE() << file << " gave " << result->mesh.triangles.size() << " triangles";
+    ADD_FAILURE() << file << " was imported: " << result->mesh.triangles.size() << " triangles";
     return "";
   }
-  expect_clear(result.error(), file);
+  expect_complete_error(result.error(), file);
   return result.error().message();
 }
 
-inline void expect_usable_or_clear(const std::filesystem::path& file, const ImportLimits& limits) {
+inline void expect_mesh_or_complete_error(const std::filesystem::path& file, const ImportLimits& limits) {
   const Expected<ImportedMesh> result = import_mesh(file, limits);
-  if (!result) return expect_clear(result.error(), file);
+  if (!result) return expect_complete_error(result.error(), file);
   EXPECT_FALSE(result->mesh.triangles.empty()) << file;
   const auto vertices = static_cast<std::int32_t>(result->mesh.vertex_count());
   for (const Triangle& triangle : result->mesh.triangles) {
@@ -59,7 +60,7 @@ inline std::size_t open_descriptors() {
   return static_cast<std::size_t>(std::distance(begin(descriptors), end(descriptors)));
 }
 
-// No descriptor and no child of an import outlives it.
+// Requires that no descriptor and no child process outlives an import.
 class ImportTest : public testing::Test {
  protected:
   ~ImportTest() override {

@@ -20,28 +20,30 @@
 namespace buoyancy {
 namespace {
 
-ImportDeadline in(std::chrono::milliseconds delay) {
+ImportDeadline deadline_in(std::chrono::milliseconds delay) {
   return ImportDeadline::clock::now() + delay;
 }
-const auto kSoon = std::chrono::milliseconds(50);
-const auto kLate = std::chrono::milliseconds(to_milliseconds(kWaitTimeout));
+const auto kShortTimeout = std::chrono::milliseconds(50);
+const auto kLongTimeout = std::chrono::milliseconds(to_milliseconds(kWaitTimeout));
 
 class ImportPipe : public testing::Test {
  protected:
   ImportPipe() { EXPECT_EQ(::pipe(ends_.data()), 0); }
   ~ImportPipe() override {
     ::close(ends_[0]);
-    hang_up();
+    close_write_end();
   }
 
-  void hang_up() {
+  void close_write_end() {
     if (ends_[1] >= 0) ::close(ends_[1]);
     ends_[1] = -1;
   }
   void write(const std::string& bytes) {
     ASSERT_EQ(::write(ends_[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
-  auto receive(const ImportLimits& limits = {}) { return receive_import(ends_[0], limits, in(kLate)); }
+  auto receive(const ImportLimits& limits = {}) {
+    return receive_import(ends_[0], limits, deadline_in(kLongTimeout));
+  }
 
   std::array<int, 2> ends_{-1, -1};
 };
@@ -56,25 +58,25 @@ ImportedMesh triangle() {
   return imported;
 }
 
-// What send_import writes, to be spoiled.
-std::string sent(const Expected<ImportedMesh>& result) {
+// Returns the bytes that send_import writes.
+std::string serialize(const Expected<ImportedMesh>& result) {
   std::array<int, 2> ends{};
   EXPECT_EQ(::pipe(ends.data()), 0);
   EXPECT_TRUE(send_import(ends[1], result));
   ::close(ends[1]);
   std::string bytes(65'536, '\0');
-  const ssize_t got = ::read(ends[0], bytes.data(), bytes.size());
+  const ssize_t received = ::read(ends[0], bytes.data(), bytes.size());
   ::close(ends[0]);
-  bytes.resize(static_cast<std::size_t>(got));
+  bytes.resize(static_cast<std::size_t>(received));
   return bytes;
 }
 
-bool broken(const std::variant<ImportFailure, Expected<ImportedMesh>>& outcome) {
-  const ImportFailure* none = std::get_if<ImportFailure>(&outcome);
-  return none != nullptr && *none == ImportFailure::kBroken;
+bool is_broken(const std::variant<ImportFailure, Expected<ImportedMesh>>& outcome) {
+  const ImportFailure* failure = std::get_if<ImportFailure>(&outcome);
+  return failure != nullptr && *failure == ImportFailure::kBroken;
 }
 
-TEST_F(ImportPipe, CarriesAMeshBitForBit) {
+TEST_F(ImportPipe, TransfersMeshBitForBit) {
   ASSERT_TRUE(send_import(ends_[1], triangle()));
   const auto outcome = receive();
   const auto& result = std::get<Expected<ImportedMesh>>(outcome);
@@ -90,7 +92,7 @@ TEST_F(ImportPipe, CarriesAMeshBitForBit) {
   EXPECT_EQ(result->source.left_out, 4);
 }
 
-TEST_F(ImportPipe, CarriesMoreThanThePipeHolds) {
+TEST_F(ImportPipe, TransfersMoreThanPipeCapacity) {
   ImportedMesh large = triangle();
   for (int i = 0; i < 300'000; ++i) large.mesh.add_vertex({1.0 * i, 2.0 * i, 3.0 * i});
   std::thread sender([&] { EXPECT_TRUE(send_import(ends_[1], large)); });
@@ -99,7 +101,7 @@ TEST_F(ImportPipe, CarriesMoreThanThePipeHolds) {
   EXPECT_EQ(std::get<Expected<ImportedMesh>>(outcome)->mesh.z, large.mesh.z);
 }
 
-TEST_F(ImportPipe, CarriesAnErrorInPrintableCharacters) {
+TEST_F(ImportPipe, TransfersErrorsInPrintableCharacters) {
   ASSERT_TRUE(send_import(ends_[1], make_error({"", "a\nb\x1b[31m", "exp\xff", "", "do"})));
   const auto outcome = receive();
   const Error& error = std::get<Expected<ImportedMesh>>(outcome).error();
@@ -108,78 +110,78 @@ TEST_F(ImportPipe, CarriesAnErrorInPrintableCharacters) {
   EXPECT_EQ(error.hint, "do");
 }
 
-TEST_F(ImportPipe, TakesNothingThatEndsEarly) {
-  const std::string whole = sent(triangle());
-  for (std::size_t length = 0; length < whole.size(); length += 7) {
+TEST_F(ImportPipe, RejectsTruncatedResults) {
+  const std::string complete = serialize(triangle());
+  for (std::size_t length = 0; length < complete.size(); length += 7) {
     std::array<int, 2> ends{};
     ASSERT_EQ(::pipe(ends.data()), 0);
-    ASSERT_EQ(::write(ends[1], whole.data(), length), static_cast<ssize_t>(length));
+    ASSERT_EQ(::write(ends[1], complete.data(), length), static_cast<ssize_t>(length));
     ::close(ends[1]);
-    EXPECT_TRUE(broken(receive_import(ends[0], {}, in(kLate)))) << length;
+    EXPECT_TRUE(is_broken(receive_import(ends[0], {}, deadline_in(kLongTimeout)))) << length;
     ::close(ends[0]);
   }
 }
 
-TEST_F(ImportPipe, GivesUpAtTheDeadline) {
-  write(sent(triangle()).substr(0, 20));
-  const auto outcome = receive_import(ends_[0], {}, in(kSoon));
+TEST_F(ImportPipe, TimesOutAtDeadline) {
+  write(serialize(triangle()).substr(0, 20));
+  const auto outcome = receive_import(ends_[0], {}, deadline_in(kShortTimeout));
   EXPECT_EQ(std::get<ImportFailure>(outcome), ImportFailure::kTimedOut);
 }
 
-TEST_F(ImportPipe, BelievesNoCountAboveTheLimits) {
+TEST_F(ImportPipe, RejectsVertexCountsAboveLimit) {
   ImportLimits limits;
   limits.vertices = 2;
-  write(sent(triangle()));
-  EXPECT_TRUE(broken(receive(limits)));
+  write(serialize(triangle()));
+  EXPECT_TRUE(is_broken(receive(limits)));
 }
 
-TEST_F(ImportPipe, BelievesNoFaceCountAboveTheLimits) {
+TEST_F(ImportPipe, RejectsFaceCountsAboveLimit) {
   ImportLimits limits;
   limits.faces = 0;
-  write(sent(triangle()));
-  EXPECT_TRUE(broken(receive(limits)));
+  write(serialize(triangle()));
+  EXPECT_TRUE(is_broken(receive(limits)));
 }
 
-TEST_F(ImportPipe, TakesNoMeshWithoutTriangles) {
+TEST_F(ImportPipe, RejectsMeshesWithoutTriangles) {
   ImportedMesh empty = triangle();
   empty.mesh.triangles.clear();
-  write(sent(empty));
-  EXPECT_TRUE(broken(receive()));
+  write(serialize(empty));
+  EXPECT_TRUE(is_broken(receive()));
 }
 
-TEST_F(ImportPipe, TakesNoIndexOutsideTheVertices) {
+TEST_F(ImportPipe, RejectsVertexIndicesOutOfRange) {
   for (const std::int32_t outside : {-1, 3, std::numeric_limits<std::int32_t>::max()}) {
     ImportedMesh wrong = triangle();
     wrong.mesh.triangles[0][2] = outside;
-    write(sent(wrong));
-    EXPECT_TRUE(broken(receive())) << outside;
+    write(serialize(wrong));
+    EXPECT_TRUE(is_broken(receive())) << outside;
   }
 }
 
-TEST_F(ImportPipe, SetsNoMemoryAsideForBytesThatDoNotCome) {
-  // Every eight bytes of the header in turn as the largest and as a large number: refused, or never followed
-  // by data.
-  const std::string whole = sent(triangle());
+TEST_F(ImportPipe, AllocatesNoMemoryForMissingBytes) {
+  // Each 8-byte field of the header in turn is set to the maximum and to a large number: either the header is
+  // rejected or the data ends early.
+  const std::string complete = serialize(triangle());
   constexpr std::size_t kHeaderBytes = 72;
   for (std::size_t at = 0; at < kHeaderBytes; at += 8) {
     for (const std::uint64_t value :
          {std::numeric_limits<std::uint64_t>::max(), std::uint64_t{150'000'000}}) {
-      if (at == 40 || at == 48) continue;  // nodes and left_out: any number from 0 is as good as another
-      std::string wrong = whole;
+      if (at == 40 || at == 48) continue;  // nodes and left_out: any number >= 0 is valid
+      std::string wrong = complete;
       std::memcpy(wrong.data() + at, &value, sizeof(value));
       std::array<int, 2> ends{};
       ASSERT_EQ(::pipe(ends.data()), 0);
       ASSERT_EQ(::write(ends[1], wrong.data(), wrong.size()), static_cast<ssize_t>(wrong.size()));
       ::close(ends[1]);
-      const auto outcome = receive_import(ends[0], {}, in(kLate));
+      const auto outcome = receive_import(ends[0], {}, deadline_in(kLongTimeout));
       ::close(ends[0]);
       const auto* result = std::get_if<Expected<ImportedMesh>>(&outcome);
-      EXPECT_TRUE(broken(outcome) || (result != nullptr && !*result)) << at << ": " << value;
+      EXPECT_TRUE(is_broken(outcome) || (result != nullptr && !*result)) << at << ": " << value;
     }
   }
 }
 
-TEST_F(ImportPipe, SaysWhenNobodyListens) {
+TEST_F(ImportPipe, ReportsClosedReadEnd) {
   const auto before = std::signal(SIGPIPE, SIG_IGN);
   ::close(ends_[0]);
   EXPECT_FALSE(send_import(ends_[1], triangle()));

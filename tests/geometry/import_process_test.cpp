@@ -38,7 +38,8 @@ constexpr bool kShadowMemory = __has_feature(address_sanitizer) || __has_feature
 #else
 constexpr bool kShadowMemory = false;
 #endif
-// assimp splits a polygon of n corners in about n^2 steps: minutes for these. A file that hangs, in effect.
+
+// assimp splits a polygon of n corners in about n^2 steps, so that this file keeps it busy for minutes.
 std::string endless_obj() {
   constexpr int kCorners = 32'000;
   std::ostringstream text;
@@ -54,69 +55,68 @@ std::string endless_obj() {
   return text.str();
 }
 
-// A property of an unknown type shifts all that follows: assimp 5.2.5 ends in abort(), over a broken
-// assumption.
+// A property of an unknown type shifts all following data: assimp 5.2.5 calls abort() on a failed assertion.
 std::string crashing_ply() {
   std::string content = tetrahedron::binary_ply();
   content.replace(content.find("float y"), 7, "floa y");
   return content;
 }
 
-// For imports whose time is not what is tested: they outlast a busy machine.
-ImportLimits unhurried() {
+// Limits for imports that are not timed: the timeout suffices on a busy machine.
+ImportLimits long_timeout() {
   ImportLimits limits;
   limits.import_seconds = kRunTimeout;
   return limits;
 }
 
-TEST_F(ImportProcess, StopsAnImporterThatHangs) {
+TEST_F(ImportProcess, StopsHangingImporter) {
   ImportLimits limits;
   limits.import_seconds = 0.5;
-  const std::string message = refusal(directory_.write("endless.obj", endless_obj()), limits);
+  const std::string message = import_error(directory_.write("endless.obj", endless_obj()), limits);
   EXPECT_TRUE(contains(message, "had not finished after 0.5 s"));
   EXPECT_TRUE(contains(message, "'import_seconds'"));
 }
 
-TEST_F(ImportProcess, OutlivesAnImporterThatCrashes) {
-  EXPECT_TRUE(contains(refusal(directory_.write("crash.ply", crashing_ply()), unhurried()),
-                       kShadowMemory ? "the importer " : "the importer crashed on it (signal "));
+TEST_F(ImportProcess, SurvivesCrashOfImporter) {
+  EXPECT_TRUE(contains(import_error(directory_.write("crash.ply", crashing_ply()), long_timeout()),
+                       kShadowMemory ? "the importer " : "the importer crashed (signal "));
 }
 
-TEST_F(ImportProcess, StopsAnImporterThatEatsMemory) {
+TEST_F(ImportProcess, StopsImporterAtMemoryLimit) {
   // The importer's limit is RLIMIT_AS, and these sanitizers reserve terabytes of addresses before main().
   if (kShadowMemory) GTEST_SKIP() << "address space cannot be limited under a sanitizer with shadow memory";
-  ImportLimits limits = unhurried();
+  ImportLimits limits = long_timeout();
   limits.memory_bytes = 200'000'000;
   const std::string header = "OFF\n50000000 50000000 0\n";
-  const std::string message = refusal(directory_.write("greedy.off", header + "0 0 0\n"), limits);
+  const std::string message = import_error(directory_.write("greedy.off", header + "0 0 0\n"), limits);
   EXPECT_TRUE(contains(message, "needed more than 0.2 GB"));
 }
 
-TEST_F(ImportProcess, WorksFromSeveralThreadsAtOnce) {
+TEST_F(ImportProcess, SupportsConcurrentImports) {
   const fs::path good = directory_.write("good.off", tetrahedron::off());
   const fs::path crash = directory_.write("crash.ply", crashing_ply());
   const fs::path endless = directory_.write("endless.obj", endless_obj());
-  ImportLimits soon;
-  soon.import_seconds = 1.0;
+  ImportLimits short_timeout;
+  short_timeout.import_seconds = 1.0;
   std::vector<std::future<bool>> imports;
   for (const fs::path& file : {endless, good, crash, good, crash, good}) {
-    const ImportLimits limits = file == endless ? soon : unhurried();
+    const ImportLimits limits = file == endless ? short_timeout : long_timeout();
     imports.push_back(std::async(std::launch::async, [=] { return import_mesh(file, limits).has_value(); }));
   }
   for (std::size_t i = 0; i < imports.size(); ++i) EXPECT_EQ(imports[i].get(), i % 2 == 1) << i;
 }
 
-TEST_F(ImportProcess, WorksWhereTheProgramReapsItsChildrenItself) {
+TEST_F(ImportProcess, WorksIfProgramIgnoresSigchld) {
   struct sigaction before {};
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;  // the kernel then reaps every child at once
   ASSERT_EQ(::sigaction(SIGCHLD, &ignore, &before), 0);
-  EXPECT_TRUE(import_mesh(directory_.write("good.off", tetrahedron::off()), unhurried()));
-  refusal(directory_.write("crash.ply", crashing_ply()), unhurried());
+  EXPECT_TRUE(import_mesh(directory_.write("good.off", tetrahedron::off()), long_timeout()));
+  import_error(directory_.write("crash.ply", crashing_ply()), long_timeout());
   ASSERT_EQ(::sigaction(SIGCHLD, &before, nullptr), 0);
 }
 
-TEST_F(ImportProcess, IsNotDisturbedBySignalsToTheProgram) {
+TEST_F(ImportProcess, ToleratesSignalsToProgram) {
   struct sigaction before {};
   struct sigaction handle {};
   handle.sa_handler = [](int) {};  // without SA_RESTART: every system call is interrupted
@@ -126,13 +126,14 @@ TEST_F(ImportProcess, IsNotDisturbedBySignalsToTheProgram) {
   ::setitimer(ITIMER_REAL, &every_millisecond, nullptr);
   ImportLimits limits;
   limits.import_seconds = 0.3;
-  EXPECT_TRUE(contains(refusal(directory_.write("endless.obj", endless_obj()), limits), "had not finished"));
-  EXPECT_TRUE(import_mesh(directory_.write("good.off", tetrahedron::off()), unhurried()));
+  EXPECT_TRUE(
+      contains(import_error(directory_.write("endless.obj", endless_obj()), limits), "had not finished"));
+  EXPECT_TRUE(import_mesh(directory_.write("good.off", tetrahedron::off()), long_timeout()));
   ::setitimer(ITIMER_REAL, &never, nullptr);
   ASSERT_EQ(::sigaction(SIGALRM, &before, nullptr), 0);
 }
 
-// The state letter of /proc/<pid>/stat; nothing if there is no such process.
+// Returns the state letter of /proc/<pid>/stat; nullopt if there is no such process.
 std::optional<char> process_state(pid_t pid) {
   const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t name_end = stat.rfind(") ");
@@ -141,61 +142,60 @@ std::optional<char> process_state(pid_t pid) {
 }
 
 template <typename Condition>
-bool becomes_true(Condition condition) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+bool wait_until(Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (!condition()) {
-    if (std::chrono::steady_clock::now() >= limit) return false;
+    if (std::chrono::steady_clock::now() >= deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
 }
 
-// The importer that this thread of this process has started, once it has done its set-up; 0 if that never
-// comes.
+// Returns the importer that the given thread has started, once its set-up is complete; 0 on timeout.
 pid_t importer_of(pid_t process, pid_t thread) {
   const std::string children =
       "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread) + "/children";
   pid_t importer = 0;
   const bool started =
-      becomes_true([&] { return static_cast<bool>(std::ifstream(children) >> importer) && importer > 0; });
+      wait_until([&] { return static_cast<bool>(std::ifstream(children) >> importer) && importer > 0; });
   const std::string score = "/proc/" + std::to_string(importer) + "/oom_score_adj";
-  return started && becomes_true([&] { return read_file(score) == "1000\n"; }) ? importer : 0;
+  return started && wait_until([&] { return read_file(score) == "1000\n"; }) ? importer : 0;
 }
 
-TEST_F(ImportProcess, LeavesNoImporterBehindWhenTheProgramIsKilled) {
+TEST_F(ImportProcess, EndsImporterWhenProgramIsKilled) {
   const fs::path endless = directory_.write("endless.obj", endless_obj());
   const pid_t program = ::fork();
   ASSERT_GE(program, 0);
   if (program == 0) {
-    (void)import_mesh(endless, unhurried());
+    (void)import_mesh(endless, long_timeout());
     ::_exit(0);
   }
   const pid_t importer = importer_of(program, program);
   ::kill(program, SIGKILL);
   ASSERT_EQ(::waitpid(program, nullptr, 0), program);
   ASSERT_GT(importer, 0);
-  EXPECT_TRUE(becomes_true([&] { return process_state(importer).value_or('Z') == 'Z'; }));
+  EXPECT_TRUE(wait_until([&] { return process_state(importer).value_or('Z') == 'Z'; }));
 }
 
-TEST_F(ImportProcess, KeepsNoDescriptorOfTheProgramOpen) {
+TEST_F(ImportProcess, ClosesInheritedDescriptors) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   std::promise<pid_t> thread;
   const fs::path endless = directory_.write("endless.obj", endless_obj());
   auto import = std::async(std::launch::async, [&] {
     thread.set_value(::gettid());
-    return import_mesh(endless, unhurried());
+    return import_mesh(endless, long_timeout());
   });
   const pid_t importer = importer_of(::getpid(), thread.get_future().get());
   ::close(ends[1]);
-  pollfd end{ends[0], POLLIN, 0};  // it ends when nobody holds the other end
+  pollfd end{ends[0], POLLIN, 0};  // it ends when the other end is closed everywhere
   EXPECT_EQ(::poll(&end, 1, to_milliseconds(kWaitTimeout)), 1);
   ::close(ends[0]);
   ASSERT_GT(importer, 0);
   ::kill(importer, SIGKILL);
   const Expected<ImportedMesh> result = import.get();
   ASSERT_FALSE(result);
-  EXPECT_TRUE(contains(result.error().message(), "was killed while it read it (signal 9)"));
+  EXPECT_TRUE(contains(result.error().message(), "was killed while reading the file (signal 9)"));
 }
 
 }  // namespace

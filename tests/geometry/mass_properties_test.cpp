@@ -19,15 +19,15 @@ void expect_near(const Mat3& value, const Mat3& expected, double tolerance) {
   EXPECT_LE((value - expected).cwiseAbs().maxCoeff(), tolerance) << value << "\nexpected\n" << expected;
 }
 
-TEST(MassProperties, OfABoxAreThoseOfItsClosedForm) {
+TEST(MassProperties, MatchClosedFormOfBox) {
   const MassProperties box = mass_properties(box_mesh(Vec3(1, 2, 3), Vec3(2, 4, 7)));
   EXPECT_NEAR(box.volume, 8.0, 1e-14);
   EXPECT_LE((box.centroid_B - Vec3(1.5, 3, 5)).norm(), 1e-14);
   expect_near(box.inertia_B, box_inertia({1, 2, 4}), 1e-13);
 }
 
-TEST(MassProperties, OfATetrahedronAreThoseOfItsClosedForm) {
-  // ClipVertex tetrahedron: volume 1/6, centroid 1/4, second moments 1/60 and 1/120 about the corner.
+TEST(MassProperties, MatchClosedFormOfTetrahedron) {
+  // Corner tetrahedron: volume 1/6, centroid 1/4, second moments 1/60 and 1/120 about the corner.
   const MassProperties corner = mass_properties(tetrahedron_mesh());
   EXPECT_NEAR(corner.volume, 1.0 / 6.0, 1e-16);
   EXPECT_LE((corner.centroid_B - Vec3::Constant(0.25)).norm(), 1e-15);
@@ -48,7 +48,7 @@ TEST(MassProperties, RotateAndTranslateWithTheMesh) {
   expect_near(box.inertia_B, rotation * box_inertia({1, 2, 4}) * rotation.transpose(), 1e-13);
 }
 
-TEST(MassProperties, LoseNothingFarFromTheOrigin) {
+TEST(MassProperties, StayAccurateFarFromOrigin) {
   const Vec3 far(1e6, -1e6, 1e6);
   const MassProperties box = mass_properties(box_mesh(far, far + Vec3(1, 2, 4)));
   EXPECT_NEAR(box.volume, 8.0, 1e-14);
@@ -56,14 +56,14 @@ TEST(MassProperties, LoseNothingFarFromTheOrigin) {
   expect_near(box.inertia_B, box_inertia({1, 2, 4}), 1e-13);
 }
 
-TEST(MassProperties, SubtractACavity) {
+TEST(MassProperties, SubtractCavities) {
   const MassProperties shell =
       mass_properties(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(0.25, 0, 0)))));
   EXPECT_NEAR(shell.volume, 7.0, 1e-14);
   EXPECT_NEAR(shell.centroid_B.x(), -0.25 / 7.0, 1e-15);
 }
 
-TEST(MassProperties, OfASphereApproachItsClosedFormAsItIsRefined) {
+TEST(MassProperties, ConvergeQuadraticallyForSphere) {
   const double exact = 8.0 / 15.0 * 3.14159265358979323846;
   const double coarse = mass_properties(sphere_mesh(20)).inertia_B(0, 0) - exact;
   const double fine = mass_properties(sphere_mesh(40)).inertia_B(0, 0) - exact;
@@ -71,7 +71,7 @@ TEST(MassProperties, OfASphereApproachItsClosedFormAsItIsRefined) {
   EXPECT_NEAR(coarse / fine, 4.0, 0.15);
 }
 
-TEST(MassProperties, OfNothingAreZero) {
+TEST(MassProperties, AreZeroForEmptyMeshAndSheet) {
   EXPECT_EQ(mass_properties(TriangleMesh{}).volume, 0.0);
   TriangleMesh sheet = tetrahedron_mesh();
   sheet.triangles = {{0, 1, 2}, {0, 2, 1}};

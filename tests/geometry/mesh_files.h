@@ -1,5 +1,4 @@
-// Mesh files that tests write themselves: the same closed tetrahedron in each accepted format, and what
-// spoils it.
+// Mesh files for tests: the same closed tetrahedron in each accepted format.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +83,7 @@ inline std::string binary_stl() {
   return bytes;
 }
 
-// `asset`: what stands in <asset>; `nodes`: the nodes of the scene, which may instance "#mesh".
+// `asset`: the content of <asset>; `nodes`: the nodes of the scene, which may instance "#mesh".
 inline std::string collada(std::string_view asset = "", std::string_view nodes = "") {
   const std::string node =
       nodes.empty() ? R"(<node id="node"><instance_geometry url="#mesh"/></node>)" : std::string(nodes);
@@ -107,7 +106,7 @@ inline std::string collada(std::string_view asset = "", std::string_view nodes =
 )";
 }
 
-// The buffer behind gltf(): 48 bytes of corners, 24 of faces.
+// Returns the buffer of gltf(): 48 bytes of corners and 24 bytes of faces.
 inline std::string gltf_buffer() {
   std::string bytes;
   for (const auto& corner : kCorners) {
@@ -119,8 +118,8 @@ inline std::string gltf_buffer() {
   return bytes;
 }
 
-// `nodes`: the JSON array; its first node is the scene's root. `buffer`: the JSON member that says where the
-// bytes are, or nothing for a GLB file's own.
+// `nodes`: the JSON array; its first node is the scene's root. `buffer`: the JSON member that refers to the
+// bytes; empty for a GLB file's own buffer.
 inline std::string gltf(std::string_view nodes = R"([{"mesh":0}])",
                         std::string_view buffer = R"("uri":"tetrahedron.bin",)") {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + std::string(nodes) +
@@ -206,12 +205,12 @@ Connections:  {
 
 }  // namespace tetrahedron
 
-// One file of every accepted extension, ASCII and binary where a format has both.
 struct NamedContent {
   std::string name;
   std::string content;
 };
 
+// Returns a file for each accepted extension, in ASCII and binary if the format has both.
 inline std::vector<NamedContent> tetrahedron_files() {
   using namespace tetrahedron;  // NOLINT(google-build-using-namespace)
   return {{"tetrahedron.obj", obj()},      {"ascii.ply", ascii_ply()},   {"binary.ply", binary_ply()},

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kTestModels = "/usr/share/assimp/models";  // Debian's assimp-testmodels
 
-// m^3, signed: positive where triangles face outward.
+// Returns the signed volume [m^3], positive if triangles face outward.
 double volume(const TriangleMesh& mesh) {
   double six_volumes = 0.0;
   for (const Triangle& t : mesh.triangles) {
@@ -40,7 +40,7 @@ class MeshImport : public testing::Test {
   TempDir directory_;
 };
 
-TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
+TEST_F(MeshImport, ReadsTetrahedronFromEveryFormat) {
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   for (const auto& [name, content] : tetrahedron_files()) {
     SCOPED_TRACE(name);
@@ -53,21 +53,21 @@ TEST_F(MeshImport, ReadsTheSameTetrahedronFromEveryFormat) {
   }
 }
 
-TEST_F(MeshImport, TakesExtensionsInAnyCase) {
+TEST_F(MeshImport, IgnoresCaseOfExtension) {
   EXPECT_EQ(imported(directory_.write("TETRAHEDRON.OFF", tetrahedron::off())).source.format, "OFF");
   EXPECT_EQ(imported(directory_.write("Tetrahedron.Stl", tetrahedron::binary_stl())).source.format, "STL");
 }
 
-TEST_F(MeshImport, TakesFileNamesWithSpacesDotsAndOtherAlphabets) {
+TEST_F(MeshImport, AcceptsSpacesDotsAndUnicodeInFileNames) {
   for (const char* name : {"a hull.off", "hull.v2.off", "bärenrumpf.off", "hull%20.off"}) {
     EXPECT_EQ(imported(directory_.write(name, tetrahedron::off())).mesh.triangles.size(), 4U) << name;
   }
 }
 
-TEST_F(MeshImport, LeavesVerticesUnweldedAndDegenerateTrianglesIn) {
+TEST_F(MeshImport, KeepsUnweldedVerticesAndDegenerateTriangles) {
   const ImportedMesh stl = imported(directory_.write("soup.stl", tetrahedron::binary_stl()));
   EXPECT_EQ(stl.mesh.vertex_count(), 12U);
-  // A cube of 1 um has faces whose areas assimp's own steps take for zero; the last triangle here is a line.
+  // At 1 um, assimp's own steps take face areas for zero; the last triangle here is degenerate.
   const ImportedMesh off = imported(directory_.write(
       "small.off",
       "OFF\n4 5 0\n0 0 0\n1e-6 0 0\n0 1e-6 0\n0 0 1e-6\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 1\n"));
@@ -76,7 +76,7 @@ TEST_F(MeshImport, LeavesVerticesUnweldedAndDegenerateTrianglesIn) {
 }
 
 TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
-  // A pyramid over a pentagon with one corner pushed in: 5 sides and 3 triangles for its base.
+  // A pyramid over a concave pentagon has 5 sides and 3 triangles in its base.
   const ImportedMesh found =
       imported(directory_.write("pyramid.obj",
                                 "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nv 1 0.25 1\n"
@@ -85,7 +85,7 @@ TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
   EXPECT_NEAR(volume(found.mesh), 2.5 / 3.0, 1e-12);  // base area 4 - 1.5, height 1
 }
 
-TEST_F(MeshImport, LeavesOutPointsAndLinesAndCountsThem) {
+TEST_F(MeshImport, CountsIgnoredPointsAndLines) {
   const ImportedMesh found =
       imported(directory_.write("mixed.obj", tetrahedron::obj() + "l 1 2 3\np 1\np 2\n"));
   EXPECT_EQ(found.mesh.triangles.size(), 4U);
@@ -94,8 +94,7 @@ TEST_F(MeshImport, LeavesOutPointsAndLinesAndCountsThem) {
 }
 
 TEST_F(MeshImport, AppliesNodeTransformsInDouble) {
-  // 2^24 + 0.25 has no single-precision neighbour nearer than 0.25: a float product would lose the child's
-  // part.
+  // 2^24 + 0.25 is not representable in single precision: a float product would lose the child's translation.
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   const ImportedMesh found = imported(directory_.write(
       "far.gltf", tetrahedron::gltf(R"([{"translation":[16777216,0,0],"children":[1]},)"
@@ -106,7 +105,7 @@ TEST_F(MeshImport, AppliesNodeTransformsInDouble) {
   EXPECT_EQ(box.max_B.y(), 2.0);
 }
 
-TEST_F(MeshImport, PlacesEveryInstanceOfAMesh) {
+TEST_F(MeshImport, PlacesEveryInstance) {
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   const ImportedMesh found = imported(directory_.write(
       "three.gltf",
@@ -119,10 +118,10 @@ TEST_F(MeshImport, PlacesEveryInstanceOfAMesh) {
   EXPECT_NEAR(volume(found.mesh), 3.0 / 6.0, 1e-6);
   const BoundingBox box = bounding_box(found.mesh);
   EXPECT_EQ(box.max_B.x(), 6.0);
-  EXPECT_NEAR(box.min_B.x(), -1.0, 1e-6);  // the third is turned by 90 degrees about z
+  EXPECT_NEAR(box.min_B.x(), -1.0, 1e-6);  // the third is rotated by 90 degrees about z
 }
 
-TEST_F(MeshImport, TurnsTheWindingOfMirroredNodes) {
+TEST_F(MeshImport, ReversesWindingOfMirroredNodes) {
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   const ImportedMesh once =
       imported(directory_.write("mirrored.gltf", tetrahedron::gltf(R"([{"scale":[-1,1,1],"mesh":0}])")));
@@ -133,7 +132,7 @@ TEST_F(MeshImport, TurnsTheWindingOfMirroredNodes) {
   EXPECT_NEAR(volume(twice.mesh), 3.0 / 6.0, 1e-15);
 }
 
-TEST_F(MeshImport, LeavesOutMeshesThatNoNodeRefersTo) {
+TEST_F(MeshImport, IgnoresUnreferencedMeshes) {
   std::string two_meshes = tetrahedron::gltf();
   const std::string mesh = R"({"primitives":[{"attributes":{"POSITION":0},"indices":1}]})";
   two_meshes.insert(two_meshes.find(mesh), mesh + ",");
@@ -141,12 +140,12 @@ TEST_F(MeshImport, LeavesOutMeshesThatNoNodeRefersTo) {
   EXPECT_EQ(imported(directory_.write("two.gltf", two_meshes)).mesh.triangles.size(), 4U);
 }
 
-TEST_F(MeshImport, SaysHowAColladaFileWasTurnedAndScaled) {
+TEST_F(MeshImport, ReportsRotationAndScaleOfColladaFiles) {
   struct Case {
     const char* asset;
     const char* up_axis;
     const char* note;
-    Vec3 top_B;  // where the corner (0, 0, 1) of the file arrives
+    Vec3 top_B;  // image of the file's corner (0, 0, 1)
   };
   const std::vector<Case> cases{
       {"", "not stated", "", {0, 0, 1}},
@@ -176,7 +175,7 @@ TEST_F(MeshImport, SaysHowAColladaFileWasTurnedAndScaled) {
   }
 }
 
-TEST_F(MeshImport, SaysThatAnFbxFileWasNeitherTurnedNorScaled) {
+TEST_F(MeshImport, ReportsUnitOfUnscaledFbxFiles) {
   const ImportedMesh inches = imported(directory_.write(
       "inches.fbx", tetrahedron::fbx("\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\",2\n"
                                      "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",2.54\n")));
@@ -191,7 +190,7 @@ TEST_F(MeshImport, SaysThatAnFbxFileWasNeitherTurnedNorScaled) {
   EXPECT_EQ(metres.source.note, "");
 }
 
-TEST_F(MeshImport, SaysThatA3dsFileWasTurned) {
+TEST_F(MeshImport, ReportsRotationOf3dsFiles) {
   const ImportedMesh found = imported(directory_.write("hull.3ds", tetrahedron::file_3ds()));
   EXPECT_EQ(found.source.up_axis, "not stated");
   EXPECT_EQ(found.source.note, "turned from z-up, the format's custom, to y-up by the importer");
@@ -199,7 +198,7 @@ TEST_F(MeshImport, SaysThatA3dsFileWasTurned) {
   EXPECT_EQ(bounding_box(found.mesh).min_B.z(), -1.0);
 }
 
-TEST_F(MeshImport, TellsNothingOfAxesWhereTheFormatDoesNot) {
+TEST_F(MeshImport, ReportsNoAxesIfFormatHasNone) {
   for (const auto& [name, content] : tetrahedron_files()) {
     const MeshFormat format = *format_from_path(name);
     if (format != MeshFormat::kObj && format != MeshFormat::kPly && format != MeshFormat::kStl) continue;
@@ -209,11 +208,11 @@ TEST_F(MeshImport, TellsNothingOfAxesWhereTheFormatDoesNot) {
   }
 }
 
-TEST_F(MeshImport, HandsOnWhatTheImporterComplainsAbout) {
+TEST_F(MeshImport, ReportsErrorsLoggedByImporter) {
   const ImportedMesh found = imported(directory_.write("odd.obj", tetrahedron::obj() + "f\n"));
   EXPECT_NE(found.source.note.find("the importer reported 1 error: "), std::string::npos)
       << found.source.note;
-  // Materials are nobody's business here.
+  // Errors about materials are ignored.
   const ImportedMesh plain =
       imported(directory_.write("plain.obj", "mtllib none.mtl\n" + tetrahedron::obj()));
   EXPECT_EQ(plain.source.note, "");
@@ -224,8 +223,8 @@ struct SharedMesh {
   std::size_t triangles, vertices_stored;
 };
 
-// Counts as PROVENANCE.md beside the meshes has them.
-TEST(MeshImportOfRealFiles, StoresAsManyTrianglesAndVerticesAsMeasuredElsewhere) {
+// The counts are those of PROVENANCE.md in the directory of the meshes.
+TEST(MeshImportRealFiles, MatchIndependentTriangleAndVertexCounts) {
   constexpr std::array kMeshes{
       SharedMesh{"armadillo_30000.ply", 30'000, 15'002},
       SharedMesh{"armadillo_86482.ply", 86'482, 43'243},
@@ -249,9 +248,9 @@ TEST(MeshImportOfRealFiles, StoresAsManyTrianglesAndVerticesAsMeasuredElsewhere)
   }
 }
 
-TEST(MeshImportOfRealFiles, ReadsTheDuck) {
+TEST(MeshImportRealFiles, ReadDuck) {
   const fs::path duck = kTestModels / "Collada/duck.dae";
-  // scripts/test installs it; not everybody who builds by hand does.
+  // scripts/test installs the package; a manual build may lack it.
   if (!fs::exists(duck)) GTEST_SKIP() << "package assimp-testmodels is not installed";
   const ImportedMesh found = imported(duck);
   EXPECT_EQ(found.mesh.triangles.size(), 4'212U);

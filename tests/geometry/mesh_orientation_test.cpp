@@ -14,7 +14,7 @@ MeshReport report_of(const TriangleMesh& mesh) {
   return validation.report;
 }
 
-TEST(MeshOrientation, TurnsTheOneComponentThatIsInsideOut) {
+TEST(MeshOrientation, TurnsOnlyInsideOutComponent) {
   const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(9, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
   EXPECT_FALSE(report.turned);
@@ -25,14 +25,14 @@ TEST(MeshOrientation, TurnsTheOneComponentThatIsInsideOut) {
   EXPECT_FALSE(report.components[1].cavity);
 }
 
-TEST(MeshOrientation, TurnsTheLargeComponentThatIsInsideOutAndLeavesTheSmallOne) {
+TEST(MeshOrientation, TurnsLargerInsideOutComponent) {
   const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1, Vec3(9, 0, 0))));
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
   EXPECT_TRUE(report.components[0].turned);
   EXPECT_FALSE(report.components[1].turned);
 }
 
-TEST(MeshOrientation, KeepsACavity) {
+TEST(MeshOrientation, KeepsCavity) {
   const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(0.2, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 7.0);
   EXPECT_TRUE(report.components[1].cavity);
@@ -40,14 +40,14 @@ TEST(MeshOrientation, KeepsACavity) {
   EXPECT_FALSE(report.components[1].nested);
 }
 
-TEST(MeshOrientation, TurnsAShellThatIsInsideOutTogetherWithItsCavity) {
+TEST(MeshOrientation, TurnsInsideOutShellWithItsCavity) {
   const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1)));
   EXPECT_DOUBLE_EQ(report.volume, 7.0);
   EXPECT_TRUE(report.turned);
   EXPECT_TRUE(report.components[1].cavity);
 }
 
-TEST(MeshOrientation, DoesNotTurnACavityBecauseAnotherSolidIsInsideOut) {
+TEST(MeshOrientation, KeepsCavityNextToInsideOutSolid) {
   const MeshReport report = report_of(
       joined(joined(cube_mesh(2), inside_out(cube_mesh(1))), inside_out(cube_mesh(3, Vec3(9, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 27.0 + 7.0);
@@ -56,14 +56,14 @@ TEST(MeshOrientation, DoesNotTurnACavityBecauseAnotherSolidIsInsideOut) {
   EXPECT_FALSE(report.turned);
 }
 
-TEST(MeshOrientation, ReportsASolidInsideASolid) {
+TEST(MeshOrientation, ReportsNestedSolid) {
   const MeshReport report = report_of(joined(cube_mesh(2), cube_mesh(1)));
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
   EXPECT_TRUE(report.components[1].nested);
   EXPECT_FALSE(report.components[1].cavity);
 }
 
-TEST(MeshOrientation, TurnsAnInsideOutSolidInsideACavity) {
+TEST(MeshOrientation, TurnsInsideOutSolidInCavity) {
   const TriangleMesh shell = joined(cube_mesh(3), inside_out(cube_mesh(2)));
   EXPECT_DOUBLE_EQ(report_of(joined(shell, cube_mesh(1))).volume, 27.0 - 8.0 + 1.0);
   const MeshReport report = report_of(joined(shell, inside_out(cube_mesh(1))));
@@ -72,16 +72,16 @@ TEST(MeshOrientation, TurnsAnInsideOutSolidInsideACavity) {
   EXPECT_FALSE(report.components[2].nested);
 }
 
-TEST(MeshOrientation, IsNotFooledByBoxesThatHoldEachOther) {
-  // A small cube in the hole of a ring: inside the ring's box, outside the ring.
+TEST(MeshOrientation, DistinguishesNestedBoxesFromNestedSolids) {
+  // A small cube in the hole of a ring lies inside the ring's box but outside the ring.
   const TriangleMesh ring = make_shape(TorusKnotShape{1.0, 0.1, 1, 1, 60, 12});
   const MeshReport outside = report_of(joined(ring, inside_out(cube_mesh(0.1))));
   EXPECT_TRUE(outside.components[1].turned);
   EXPECT_FALSE(outside.components[1].cavity);
 }
 
-TEST(MeshOrientation, CountsOnlyWhatLiesAheadOnTheRay) {
-  // Beyond the slanted face, whose box holds everything.
+TEST(MeshOrientation, IgnoresFacesBehindRayOrigin) {
+  // The cube lies beyond the slanted face, inside that face's box.
   TriangleMesh corner = tetrahedron_mesh();
   corner = moved_mesh(corner, 10.0 * Mat3::Identity(), Vec3::Zero());
   const MeshReport report = report_of(joined(corner, inside_out(cube_mesh(1, Vec3(6, 3, 3)))));
@@ -89,8 +89,9 @@ TEST(MeshOrientation, CountsOnlyWhatLiesAheadOnTheRay) {
   EXPECT_FALSE(report.components[1].cavity);
 }
 
-TEST(MeshOrientation, JudgesVerticesThatSeeOnlyEdgesAndCornersAlongTheRay) {
-  // All vertices on one grid: every ray from an inner vertex meets edges and vertices of the outer mesh.
+TEST(MeshOrientation, HandlesRaysThroughEdgesAndVertices) {
+  // All vertices lie on one grid, so that every ray from an inner vertex meets edges and vertices of the
+  // outer mesh.
   const TriangleMesh outer = make_shape(BoxShape{{4, 4, 4}, {8, 8, 8}});
   const TriangleMesh inner = make_shape(BoxShape{{2, 2, 2}, {4, 4, 4}});
   EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(inner))).volume, 64.0 - 8.0);
@@ -98,19 +99,19 @@ TEST(MeshOrientation, JudgesVerticesThatSeeOnlyEdgesAndCornersAlongTheRay) {
   EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(beside))).volume, 64.0 + 8.0);
 }
 
-TEST(MeshOrientation, CallsComponentsThatCrossNeitherCavityNorNested) {
+TEST(MeshOrientation, DoesNotNestIntersectingComponents) {
   const MeshReport report = report_of(joined(cube_mesh(2), cube_mesh(1, Vec3(0, 0, 0.9))));
   EXPECT_FALSE(report.components[1].nested);
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
 }
 
-TEST(MeshOrientation, CallsAComponentThatCrossesTheOneWhoseBoxHoldsItNotNested) {
+TEST(MeshOrientation, DoesNotNestIntersectingComponentsWithNestedBoxes) {
   const TriangleMesh corner = moved_mesh(tetrahedron_mesh(), 10.0 * Mat3::Identity(), Vec3::Zero());
   EXPECT_TRUE(report_of(joined(corner, cube_mesh(1, Vec3(2, 2, 2)))).components[1].nested);
   EXPECT_FALSE(report_of(joined(corner, cube_mesh(2, Vec3(3.4, 3.4, 3.4)))).components[1].nested);
 }
 
-TEST(MeshOrientation, KeepsManyCavitiesApart) {
+TEST(MeshOrientation, HandlesManyCavities) {
   TriangleMesh sponge = cube_mesh(20);
   int cavities = 0;
   for (int x = -8; x <= 8; x += 2) {

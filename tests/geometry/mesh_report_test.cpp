@@ -20,14 +20,14 @@ void expect_line(const std::string& text, const std::string& line) {
                                                                               << line;
 }
 
-TEST(MeshReport, ReadsAsAlignedLinesUnderTheMeshsName) {
+TEST(MeshReport, FormatsAlignedLines) {
   EXPECT_EQ(text_of(cube_mesh(2)),
             "hull.stl\n"
             "  source        STL, up axis not stated, 2 points and lines left out\n"
             "  surface       closed\n"
             "  triangles     12\n"
             "  vertices      8 stored, 8 after welding\n"
-            "  edges         each used once each way\n"
+            "  edges         each used once in each direction\n"
             "  box           from -1, -1, -1 to 1, 1, 1 m, diagonal 3.46410162 m\n"
             "  area          24 m^2\n"
             "  volume        8 m^3\n"
@@ -36,20 +36,20 @@ TEST(MeshReport, ReadsAsAlignedLinesUnderTheMeshsName) {
             "  intersecting  0 pairs of faces");
 }
 
-TEST(MeshReport, SaysWhatIsWrongWithARefusedMesh) {
+TEST(MeshReport, ListsFaultsOfRefusedMesh) {
   TriangleMesh mesh = without_face(cube_mesh(), 0);
   mesh.triangles.push_back(mesh.triangles.back());
   mesh.triangles.push_back({1, 1, 2});
   const std::string text = text_of(mesh);
   expect_line(text, "  surface       open or inconsistent");
   expect_line(text, "  edges         3 boundary, 3 non-manifold");
-  expect_line(text, "  faces         1 dropped for naming a vertex twice, 1 duplicate of an earlier face");
+  expect_line(text, "  faces         1 dropped for using a vertex twice, 1 duplicate of an earlier face");
   expect_line(text, "  holes         1");
   expect_line(text, "                3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5");
-  expect_line(text, "  intersecting  1 pair of faces: what overlaps there counts twice");
+  expect_line(text, "  intersecting  1 pair of faces: overlapping volumes count twice");
 }
 
-TEST(MeshReport, SaysOfEveryComponentWhatItIs) {
+TEST(MeshReport, ClassifiesEveryComponent) {
   const TriangleMesh shell = joined(cube_mesh(4), inside_out(cube_mesh(3)));
   const TriangleMesh filled = joined(shell, inside_out(cube_mesh(2)));
   const std::string text = text_of(joined(filled, cube_mesh(1)));
@@ -61,11 +61,11 @@ TEST(MeshReport, SaysOfEveryComponentWhatItIs) {
   EXPECT_EQ(text.find("all faces have been turned"), std::string::npos);
 }
 
-TEST(MeshReport, SaysThatAMeshWasInsideOut) {
+TEST(MeshReport, ReportsTurnedMesh) {
   expect_line(text_of(inside_out(cube_mesh())), "  turned        was inside out: all faces have been turned");
 }
 
-TEST(MeshReport, KeepsLongListsShort) {
+TEST(MeshReport, TruncatesLongLists) {
   TriangleMesh many;
   for (int i = 0; i < 30; ++i)
     many = joined(std::move(many), without_face(cube_mesh(1, Vec3(2.0 * i, 0, 0)), 0));
@@ -75,7 +75,7 @@ TEST(MeshReport, KeepsLongListsShort) {
   expect_line(text, "                and 22 smaller ones");
 }
 
-TEST(MeshReport, ClaimsNothingOfAMeshThatWasNotLookedAt) {
+TEST(MeshReport, OmitsFiguresOfUncheckedMesh) {
   TriangleMesh broken = cube_mesh();
   broken.x[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(text_of(broken),

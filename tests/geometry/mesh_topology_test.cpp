@@ -8,7 +8,7 @@
 namespace buoyancy {
 namespace {
 
-TEST(MeshTopology, FindsEveryEdgeOfAClosedMeshManifold) {
+TEST(MeshTopology, ClassifiesEdgesOfClosedMeshAsManifold) {
   const MeshTopology topology = mesh_topology(cube_mesh());
   EXPECT_EQ(topology.counts.manifold, 18);
   EXPECT_TRUE(topology.counts.all_matched());
@@ -17,7 +17,7 @@ TEST(MeshTopology, FindsEveryEdgeOfAClosedMeshManifold) {
   EXPECT_EQ(topology.duplicate_faces, 0);
 }
 
-TEST(MeshTopology, ReportsTheBoundaryAsTheFacesBesideItRun) {
+TEST(MeshTopology, ReportsBoundaryInDirectionOfItsFaces) {
   const TriangleMesh open = without_face(cube_mesh(), 0);  // 0 2 1
   const MeshTopology topology = mesh_topology(open);
   EXPECT_EQ(topology.counts.boundary, 3);
@@ -30,7 +30,7 @@ TEST(MeshTopology, ReportsTheBoundaryAsTheFacesBesideItRun) {
   }
 }
 
-TEST(MeshTopology, CallsAnEdgeMisorientedIfItsTwoFacesRunTheSameWay) {
+TEST(MeshTopology, DetectsMisorientedEdges) {
   TriangleMesh cube = cube_mesh();
   std::swap(cube.triangles[5][0], cube.triangles[5][1]);
   const MeshTopology topology = mesh_topology(cube);
@@ -39,19 +39,19 @@ TEST(MeshTopology, CallsAnEdgeMisorientedIfItsTwoFacesRunTheSameWay) {
   EXPECT_FALSE(topology.counts.all_matched());
 }
 
-// Two cubes that touch along one edge.
+// Two cubes that share an edge.
 TriangleMesh edge_sharing_cubes() {
   return weld(joined(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)), box_mesh(Vec3(1, 1, 0), Vec3(2, 2, 1)))).mesh;
 }
 
-TEST(MeshTopology, CallsAnEdgeBalancedIfFourFacesUseItTwiceEachWay) {
+TEST(MeshTopology, DetectsBalancedEdges) {
   const MeshTopology topology = mesh_topology(edge_sharing_cubes());
   EXPECT_EQ(topology.counts.balanced, 1);
   EXPECT_EQ(topology.counts.non_manifold, 0);
   EXPECT_TRUE(topology.counts.all_matched());
 }
 
-TEST(MeshTopology, CallsAnEdgeNonManifoldIfThreeFacesUseIt) {
+TEST(MeshTopology, DetectsNonManifoldEdges) {
   TriangleMesh cube = cube_mesh();
   const std::int32_t fin = cube.add_vertex({5, 5, 5});
   cube.triangles.push_back({0, 1, fin});
@@ -61,7 +61,7 @@ TEST(MeshTopology, CallsAnEdgeNonManifoldIfThreeFacesUseIt) {
   EXPECT_EQ(topology.counts.boundary, 2);
 }
 
-TEST(MeshTopology, CountsFacesOfTheSameVerticesHoweverTheyAreWound) {
+TEST(MeshTopology, CountsDuplicateFacesOfEitherWinding) {
   TriangleMesh cube = cube_mesh();
   const Triangle face = cube.triangles[4];
   cube.triangles.push_back({face[1], face[2], face[0]});
@@ -69,21 +69,21 @@ TEST(MeshTopology, CountsFacesOfTheSameVerticesHoweverTheyAreWound) {
   EXPECT_EQ(mesh_topology(cube).duplicate_faces, 2);
 }
 
-TEST(MeshTopology, NumbersComponentsInTheOrderOfTheirFirstFaces) {
+TEST(MeshTopology, NumbersComponentsByFirstFace) {
   const MeshTopology topology = mesh_topology(joined(tetrahedron_mesh(), cube_mesh(1, Vec3(9, 9, 9))));
   EXPECT_EQ(topology.components, 2);
   EXPECT_EQ(topology.component_of_face.front(), 0);
   EXPECT_EQ(topology.component_of_face.back(), 1);
 }
 
-TEST(MeshTopology, DoesNotConnectFacesThatShareOnlyAVertex) {
+TEST(MeshTopology, SeparatesFacesThatShareOnlyAVertex) {
   const TriangleMesh touching =
       weld(joined(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)), box_mesh(Vec3(1, 1, 1), Vec3(2, 2, 2)))).mesh;
   EXPECT_EQ(touching.vertex_count(), 15U);
   EXPECT_EQ(mesh_topology(touching).components, 2);
 }
 
-TEST(MeshTopology, GroupsTheBoundaryIntoHolesLargestFirst) {
+TEST(MeshTopology, GroupsBoundaryIntoHolesLargestFirst) {
   TriangleMesh cube = cube_mesh();
   cube.triangles.erase(cube.triangles.begin() + 2, cube.triangles.begin() + 4);  // the top
   cube = without_face(cube, 0);                                                  // half the bottom

@@ -16,15 +16,15 @@ MeshValidation validate(const TriangleMesh& mesh, OpenPolicy open = OpenPolicy::
   return validate_mesh({mesh, {}}, "hull.stl", {open, false});
 }
 
-void expect_refused(const MeshValidation& validation, const std::string& words) {
+void expect_refused(const MeshValidation& validation, const std::string& text) {
   EXPECT_FALSE(validation.mesh);
   ASSERT_TRUE(validation.refusal);
   EXPECT_EQ(validation.refusal->subject, "hull.stl");
-  EXPECT_NE(validation.refusal->message().find(words), std::string::npos) << validation.refusal->message();
+  EXPECT_NE(validation.refusal->message().find(text), std::string::npos) << validation.refusal->message();
   EXPECT_FALSE(validation.refusal->hint.empty());
 }
 
-TEST(MeshValidation, AcceptsAClosedMeshAndMeasuresIt) {
+TEST(MeshValidation, AcceptsAndMeasuresClosedMesh) {
   const MeshValidation cube = validate(cube_mesh(2, Vec3(10, 0, 0)));
   ASSERT_TRUE(cube.mesh);
   EXPECT_FALSE(cube.refusal);
@@ -44,7 +44,7 @@ TEST(MeshValidation, AcceptsAClosedMeshAndMeasuresIt) {
   EXPECT_TRUE(cube.mesh->boundary_vertices.empty());
 }
 
-TEST(MeshValidation, FindsTheSameInAMeshStoredFaceByFace) {
+TEST(MeshValidation, GivesSameResultForUnweldedMesh) {
   const TriangleMesh sphere = rock_mesh();
   const MeshReport welded = validate(sphere).report;
   const MeshReport soup = validate(unwelded(sphere)).report;
@@ -63,7 +63,7 @@ TEST(MeshValidation, AcceptsBalancedEdges) {
   EXPECT_DOUBLE_EQ(cubes.report.volume, 2.0);
 }
 
-TEST(MeshValidation, TurnsAMeshThatIsInsideOutAndSaysSo) {
+TEST(MeshValidation, TurnsAndReportsInsideOutMesh) {
   const MeshValidation cube = validate(inside_out(cube_mesh()));
   ASSERT_TRUE(cube.mesh);
   EXPECT_TRUE(cube.report.turned);
@@ -74,7 +74,7 @@ TEST(MeshValidation, TurnsAMeshThatIsInsideOutAndSaysSo) {
   EXPECT_FALSE(validate(cube.mesh->mesh).report.turned);
 }
 
-TEST(MeshValidation, RefusesAnOpenMeshAndSaysWhereItsHoleIs) {
+TEST(MeshValidation, RefusesOpenMeshAndLocatesHole) {
   const MeshValidation open = validate(without_face(cube_mesh(), 0));
   expect_refused(open, "3 boundary edges in 1 hole (between (-0.5, -0.5, -0.5) and (0.5, 0.5, -0.5))");
   expect_refused(open, "dry_boundary");
@@ -84,14 +84,14 @@ TEST(MeshValidation, RefusesAnOpenMeshAndSaysWhereItsHoleIs) {
   EXPECT_FALSE(open.report.components[0].closed);
 }
 
-TEST(MeshValidation, AcceptsAnOpenMeshWhoseBoundaryStaysDry) {
+TEST(MeshValidation, AcceptsOpenMeshWithDryBoundaryPolicy) {
   const MeshValidation open = validate(without_face(cube_mesh(), 2), OpenPolicy::kDryBoundary);  // 4 5 6
   ASSERT_TRUE(open.mesh);
   EXPECT_EQ(open.mesh->boundary_vertices, (std::vector<std::int32_t>{4, 5, 6}));
   EXPECT_FALSE(open.report.turned);
 }
 
-TEST(MeshValidation, TurnsAnOpenMeshByTheVolumeOfItWithItsHolesClosed) {
+TEST(MeshValidation, TurnsInsideOutOpenMesh) {
   TriangleMesh cup = cube_mesh();
   cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);
   const MeshValidation turned = validate(inside_out(cup), OpenPolicy::kDryBoundary);
@@ -100,7 +100,7 @@ TEST(MeshValidation, TurnsAnOpenMeshByTheVolumeOfItWithItsHolesClosed) {
   EXPECT_EQ(validate(turned.mesh->mesh, OpenPolicy::kDryBoundary).report.turned, false);
 }
 
-// A basin of 1 m by 1 m by 1 m, open at the top, with a flange of 10 m by 10 m around its rim.
+// Returns a basin of 1 m by 1 m by 1 m, open at the top, with a flange of 10 m by 10 m around its rim.
 TriangleMesh flanged_basin() {
   TriangleMesh basin = box_mesh(Vec3(-0.5, -0.5, -1), Vec3(0.5, 0.5, 0));
   basin.triangles.erase(basin.triangles.begin() + 2, basin.triangles.begin() + 4);
@@ -115,7 +115,7 @@ TriangleMesh flanged_basin() {
   return basin;
 }
 
-TEST(MeshValidation, JudgesAnOpenMeshByItsHolesClosedWhereItsOwnVolumeMisleads) {
+TEST(MeshValidation, OrientsOpenMeshByVolumeWithClosedHoles) {
   const MeshValidation basin = validate(flanged_basin(), OpenPolicy::kDryBoundary);
   ASSERT_TRUE(basin.mesh);
   EXPECT_LT(basin.report.volume, 0.0);
@@ -123,7 +123,7 @@ TEST(MeshValidation, JudgesAnOpenMeshByItsHolesClosedWhereItsOwnVolumeMisleads) 
   EXPECT_TRUE(validate(inside_out(flanged_basin()), OpenPolicy::kDryBoundary).report.turned);
 }
 
-TEST(MeshValidation, RefusesMisorientedAndNonManifoldMeshesWithEitherPolicy) {
+TEST(MeshValidation, RefusesMisorientedAndNonManifoldWithEitherPolicy) {
   TriangleMesh misoriented = cube_mesh();
   std::swap(misoriented.triangles[5][0], misoriented.triangles[5][1]);
   TriangleMesh finned = cube_mesh();
@@ -136,7 +136,7 @@ TEST(MeshValidation, RefusesMisorientedAndNonManifoldMeshesWithEitherPolicy) {
   }
 }
 
-TEST(MeshValidation, RefusesVerticesThatAreNotFinite) {
+TEST(MeshValidation, RefusesNonFiniteVertices) {
   for (const double value :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     TriangleMesh cube = cube_mesh();
@@ -149,10 +149,10 @@ TEST(MeshValidation, RefusesMeshesWithoutTriangles) {
   expect_refused(validate(TriangleMesh{}), "has no triangles");
   TriangleMesh line = tetrahedron_mesh();
   line.triangles = {{0, 1, 0}, {2, 2, 2}};
-  expect_refused(validate(line), "2 faces named a vertex twice");
+  expect_refused(validate(line), "2 faces used a vertex twice");
 }
 
-TEST(MeshValidation, RefusesWhatEnclosesNoVolume) {
+TEST(MeshValidation, RefusesMeshesWithoutVolume) {
   TriangleMesh sheet = tetrahedron_mesh();
   sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
   expect_refused(validate(sheet), "not above the rounding error");
@@ -160,8 +160,8 @@ TEST(MeshValidation, RefusesWhatEnclosesNoVolume) {
   expect_refused(validate(cube_mesh(0.0)), "has no triangles");
 }
 
-// The products that a slanted needle's area is the difference of are rounded by more than that area.
-TEST(MeshValidation, RefusesWhatEnclosesNoVolumeHoweverThinItsFacesAre) {
+// The area of a slanted needle is a difference of products whose rounding errors exceed the area.
+TEST(MeshValidation, RefusesSheetsOfThinFaces) {
   for (const double thin : {1e-3, 1e-6, 1e-9, 1e-12}) {
     TriangleMesh sheet;
     sheet.add_vertex({0.1, 0.2, 0.3});
@@ -173,8 +173,8 @@ TEST(MeshValidation, RefusesWhatEnclosesNoVolumeHoweverThinItsFacesAre) {
   }
 }
 
-// Found by the fuzzer: a mesh of negative volume was accepted, and would have been pulled down by the water.
-TEST(MeshValidation, RefusesCavitiesThatTakeAwayMoreThanThereIs) {
+// Regression, found by the fuzzer: a mesh of negative volume was accepted, with a downward buoyant force.
+TEST(MeshValidation, RefusesCavitiesLargerThanTheirSolid) {
   const TriangleMesh one_cavity = joined(cube_mesh(2), inside_out(cube_mesh(1.8, Vec3(0.05, 0, 0))));
   ASSERT_TRUE(validate(one_cavity).mesh);
   const TriangleMesh overlapping = joined(one_cavity, inside_out(cube_mesh(1.8, Vec3(-0.05, 0, 0))));
@@ -182,7 +182,7 @@ TEST(MeshValidation, RefusesCavitiesThatTakeAwayMoreThanThereIs) {
   expect_refused(validate(inside_out(overlapping)), "encloses -3.664 m^3");
 }
 
-TEST(MeshValidation, AcceptsAPlateAsThinAsItsRoundingErrorAllows) {
+TEST(MeshValidation, AcceptsPlateThickerThanRoundingError) {
   EXPECT_TRUE(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-8))).mesh);
 }
 
@@ -194,7 +194,7 @@ TEST(MeshValidation, RefusesExtentsThatOverflowOrVanish) {
 }
 
 TEST(MeshValidation, KeepsAndReportsFacesOfZeroArea) {
-  // A cube's edge split on one side only: a sliver of zero area fills the gap.
+  // A cube's edge is split on one side only; a sliver of zero area fills the gap.
   TriangleMesh cube = cube_mesh();
   const std::int32_t middle = cube.add_vertex({0, -0.5, -0.5});
   cube.triangles[4] = {0, middle, 4};  // was 0 1 4
@@ -207,7 +207,7 @@ TEST(MeshValidation, KeepsAndReportsFacesOfZeroArea) {
   EXPECT_DOUBLE_EQ(validation.report.volume, 1.0);
 }
 
-TEST(MeshValidation, DropsFacesThatNameAVertexTwiceAndReportsDuplicates) {
+TEST(MeshValidation, DropsDegenerateAndReportsDuplicateFaces) {
   TriangleMesh cube = cube_mesh();
   cube.triangles.push_back({1, 1, 2});
   EXPECT_EQ(validate(cube).report.dropped_faces, 1);
@@ -218,7 +218,7 @@ TEST(MeshValidation, DropsFacesThatNameAVertexTwiceAndReportsDuplicates) {
   expect_refused(validate(doubled), "1 duplicate face");
 }
 
-TEST(MeshValidation, GivesAccurateVolumesFarFromTheOrigin) {
+TEST(MeshValidation, StaysAccurateFarFromOrigin) {
   const Vec3 far(1e6, 2e6, -3e6);
   const MeshReport report = validate(box_mesh(far, far + Vec3(1, 2, 4))).report;
   EXPECT_DOUBLE_EQ(report.volume, 8.0);

@@ -23,7 +23,7 @@ void visit_children(const MomentTree& tree, const Visit& visit) {
   }
 }
 
-// The leaves below a child.
+// Appends the leaves below a child.
 void collect_leaves(const MomentTree& tree, std::uint32_t child, std::vector<std::uint32_t>& leaves) {
   if ((child & TreeNode::kLeafBit) != 0) {
     leaves.push_back(child - TreeNode::kLeafBit);
@@ -47,13 +47,13 @@ std::vector<TriangleMesh> surfaces() {
   one_triangle.add_vertex({0, 1, 0});
   one_triangle.triangles.push_back({0, 1, 2});
   meshes.push_back(one_triangle);
-  TriangleMesh fan;  // a vertex that every triangle shares, and all triangles at the same place
+  TriangleMesh fan;  // all triangles coincide
   for (int i = 0; i < 300; ++i) fan.triangles.push_back({0, 1, 2});
   fan.x = {0, 1, 0};
   fan.y = {0, 0, 1};
   fan.z = {0, 0, 0};
   meshes.push_back(fan);
-  TriangleMesh soup;  // no two triangles share a vertex: a leaf holds five of them
+  TriangleMesh soup;  // no two triangles share a vertex, so that a leaf holds five
   for (int i = 0; i < 100; ++i) {
     const auto first = soup.add_vertex({0.1 * i, 0, 0});
     soup.add_vertex({0.1 * i + 1, 0.3, 0});
@@ -64,7 +64,7 @@ std::vector<TriangleMesh> surfaces() {
   return meshes;
 }
 
-TEST(MomentTree, HoldsEveryTriangleOnceInLeavesThatKnowTheirVertices) {
+TEST(MomentTree, StoresEveryTriangleInOneLeaf) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
     std::multiset<std::array<double, 9>> expected;
@@ -95,7 +95,7 @@ TEST(MomentTree, HoldsEveryTriangleOnceInLeavesThatKnowTheirVertices) {
   }
 }
 
-TEST(MomentTree, BoundsEveryVertexBelowANode) {
+TEST(MomentTree, BoundsEveryVertexBelowNode) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
     visit_children(tree, [&](std::uint32_t child, std::size_t, const BoundingBox& box) {
@@ -114,7 +114,7 @@ TEST(MomentTree, BoundsEveryVertexBelowANode) {
   }
 }
 
-TEST(MomentTree, KnowsTheMomentsOfAllThatIsBelowANode) {
+TEST(MomentTree, StoresMomentsOfSubtree) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
     visit_children(tree, [&](std::uint32_t child, std::size_t moments_index, const BoundingBox&) {
@@ -141,7 +141,7 @@ TEST(MomentTree, KnowsTheMomentsOfAllThatIsBelowANode) {
   }
 }
 
-TEST(MomentTree, OfAClosedSurfaceTotalsToItsVolumeAndCentroid) {
+TEST(MomentTree, SumsToVolumeOfClosedSurface) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 20});
   const MomentTree tree = build_moment_tree(rock);
   const SurfaceMoments<double> total = tree.total.moments();
@@ -150,7 +150,7 @@ TEST(MomentTree, OfAClosedSurfaceTotalsToItsVolumeAndCentroid) {
   EXPECT_LE((total.N - volume * Mat3::Identity()).norm(), 1e-13);
 }
 
-TEST(MomentTree, PutsLeafCentresOnItsGrid) {
+TEST(MomentTree, PlacesLeafCentresOnGrid) {
   const MomentTree tree = build_moment_tree(make_shape(RockShape{.radius = 0.3, .frequency = 20}));
   for (const TreeLeaf& leaf : tree.leaves) {
     for (const double coordinate : leaf.center) {
@@ -161,7 +161,7 @@ TEST(MomentTree, PutsLeafCentresOnItsGrid) {
   }
 }
 
-TEST(MomentTree, FillsItsLeavesAndStaysSmall) {
+TEST(MomentTree, FillsLeavesAndLimitsMemory) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 80});
   const MomentTree tree = build_moment_tree(rock);
   const auto triangles = static_cast<double>(rock.triangles.size());

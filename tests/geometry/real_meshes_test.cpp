@@ -1,4 +1,4 @@
-// Import and validation together, on meshes as people have them, against figures measured by others.
+// Tests import and validation of real meshes against independently measured figures.
 #include <algorithm>
 #include <filesystem>
 #include <ostream>
@@ -13,8 +13,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr const char* kAbsent =
-    " is not here: $BUOYANCY_MESHES names the directory of the meshes beside the project";
+constexpr const char* kNotFound = " was not found: $BUOYANCY_MESHES names the directory of the shared meshes";
 
 MeshValidation validate_file(const std::filesystem::path& path, OpenPolicy open = OpenPolicy::kRefuse) {
   const Expected<ImportedMesh> imported = import_mesh(path);
@@ -27,7 +26,7 @@ struct Measured {
   const char* file;
   std::int64_t triangles, vertices_stored, vertices_welded;
   std::size_t components;
-  double volume;  // m^3, to seven digits
+  double volume;  // [m^3], seven significant digits
 
   friend std::ostream& operator<<(std::ostream& out, const Measured& measured) {
     return out << measured.file;
@@ -36,9 +35,9 @@ struct Measured {
 
 class ClosedRealMesh : public testing::TestWithParam<Measured> {};
 
-TEST_P(ClosedRealMesh, IsAcceptedWithTheFiguresMeasuredByOthers) {
+TEST_P(ClosedRealMesh, MatchesIndependentFigures) {
   const std::filesystem::path path = shared_mesh_file(GetParam().file);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kAbsent;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
   const MeshValidation validation = validate_file(path);
   ASSERT_TRUE(validation.mesh) << validation.refusal->message();
   const MeshReport& report = validation.report;
@@ -65,9 +64,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Measured{"hull_dtc_116062.stl", 116062, 348186, 58033, 1, 2.436306},
                     Measured{"wheels_2comp_78164.obj", 78164, 234492, 39066, 2, 0.08689894}));
 
-TEST(RealMeshes, TheFloatOfAWaveEnergyConverterIsClosedByAToleranceWeld) {
+TEST(RealMeshes, CloseWaveEnergyFloatByToleranceWeld) {
   const std::filesystem::path path = shared_mesh_file("rm3_float_tolweld.stl");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kAbsent;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
   const MeshValidation validation = validate_file(path);
   ASSERT_TRUE(validation.mesh);
   EXPECT_EQ(validation.report.weld, WeldKind::kTolerance);
@@ -76,9 +75,9 @@ TEST(RealMeshes, TheFloatOfAWaveEnergyConverterIsClosedByAToleranceWeld) {
   EXPECT_NEAR(validation.report.volume, 1298.256, 1e-3);
 }
 
-TEST(RealMeshes, TheScannedBunnyIsRefusedForItsFiveHolesOrAcceptedWithADryBoundary) {
+TEST(RealMeshes, AcceptOpenBunnyOnlyWithDryBoundaryPolicy) {
   const std::filesystem::path path = shared_mesh_file("bunny_69451_open.ply");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kAbsent;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
   const MeshValidation refused = validate_file(path);
   EXPECT_FALSE(refused.mesh);
   ASSERT_TRUE(refused.refusal);
@@ -94,11 +93,11 @@ TEST(RealMeshes, TheScannedBunnyIsRefusedForItsFiveHolesOrAcceptedWithADryBounda
   EXPECT_FALSE(accepted.report.turned);
 }
 
-// What was measured elsewhere calls every edge of more than two faces non-manifold; here those of this mesh
-// are balanced, since each is used as often one way as the other.
-TEST(RealMeshes, TheDirtyCatamaranIsRefusedWithEitherPolicyAndAllItsFaultsAreCounted) {
+// The independent measurement counts every edge of more than two faces as non-manifold. Here such edges of
+// this mesh are balanced, since each is used equally often in both directions.
+TEST(RealMeshes, RefuseCatamaranAndCountItsFaults) {
   const std::filesystem::path path = shared_mesh_file("wamv_dirty.dae");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kAbsent;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
   for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
     const MeshValidation validation = validate_file(path, policy);
     EXPECT_FALSE(validation.mesh);
@@ -115,15 +114,14 @@ TEST(RealMeshes, TheDirtyCatamaranIsRefusedWithEitherPolicyAndAllItsFaultsAreCou
                             [](const ComponentReport& component) { return component.volume < 0.0; }),
               18);
     EXPECT_GT(report.intersecting_pairs.value_or(0), 0);
-    for (const char* words :
+    for (const char* text :
          {"420 boundary edges in 56 holes", "4 misoriented edges (one from", "38 duplicate faces"}) {
-      EXPECT_NE(validation.refusal->message().find(words), std::string::npos)
-          << validation.refusal->message();
+      EXPECT_NE(validation.refusal->message().find(text), std::string::npos) << validation.refusal->message();
     }
   }
 }
 
-TEST(RealMeshes, TheTriangulatedDuckIsClosedAndFourPairsOfItsFacesIntersect) {
+TEST(RealMeshes, FindFourIntersectingPairsInDuck) {
   const std::filesystem::path path = "/usr/share/assimp/models/Collada/duck_triangulate.dae";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is in Debian's assimp-testmodels";
   const MeshValidation duck = validate_file(path);

@@ -1,4 +1,4 @@
-// Small meshes with known answers, and ways to spoil them.
+// Small meshes with known properties, and functions that modify them.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ inline TriangleMesh tetrahedron_mesh() {
   return mesh;
 }
 
-// Welded, closed, star-shaped, no two faces alike.
+// Returns a welded, closed, star-shaped mesh whose faces all differ.
 inline TriangleMesh rock_mesh(std::int32_t frequency = 8) {
   return make_shape(RockShape{1.0, frequency, 0.3, 7});
 }
@@ -43,7 +43,7 @@ inline TriangleMesh sphere_mesh(std::int32_t segments, double radius = 1.0) {
   return make_shape(SphereShape{radius, segments});
 }
 
-// Every face with three vertices of its own, as an STL file stores them.
+// Returns the mesh with three separate vertices per face, as in an STL file.
 inline TriangleMesh unwelded(const TriangleMesh& mesh) {
   TriangleMesh soup;
   for (const Triangle& face : mesh.triangles) {
@@ -75,7 +75,7 @@ inline TriangleMesh without_face(TriangleMesh mesh, std::size_t face) {
   return mesh;
 }
 
-// x_B -> rotation x_B + translation.
+// Maps each vertex x_B to rotation x_B + translation_B.
 inline TriangleMesh moved_mesh(TriangleMesh mesh, const Mat3& rotation, const Vec3& translation_B) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3 vertex_B = rotation * mesh.vertex(static_cast<std::int32_t>(v)) + translation_B;

@@ -16,8 +16,9 @@
 namespace buoyancy {
 namespace {
 
-// The oracle, on small integers: two convex polygons or segments have no point in common if and only if one
-// of their normals, the cross products of their edges or of normals with edges separates them.
+// The oracle, exact on small integers: two convex polygons or segments share no point if and only if they are
+// separated along one of their normals, a cross product of their edges, or a cross product of a normal and an
+// edge.
 using Point = Eigen::Matrix<std::int64_t, 3, 1>;
 using Polygon = std::vector<Point>;
 
@@ -60,7 +61,7 @@ Polygon polygon_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& ve
   return polygon;
 }
 
-// The definition in the header, pair by pair.
+// Applies the definition in the header to one pair.
 bool intersect_by_definition(const TriangleMesh& mesh, const Triangle& s, const Triangle& t) {
   std::vector<std::int32_t> common;
   std::vector<std::int32_t> s_own;
@@ -103,8 +104,8 @@ std::int64_t count_by_definition(const TriangleMesh& mesh) {
   return pairs;
 }
 
-// Faces that share vertices and edges, lie in one plane, touch and cross, as integers up to `size` bring
-// about.
+// Returns random faces on integer coordinates below `size`, which often share vertices and edges, are
+// coplanar, touch or cross.
 TriangleMesh random_faces(int size, bool flat) {
   TriangleMesh mesh;
   const int vertices = *rc::gen::inRange(3, 12);
@@ -120,17 +121,17 @@ TriangleMesh random_faces(int size, bool flat) {
   return weld(mesh).mesh;
 }
 
-RC_GTEST_PROP(SelfIntersection, CountsAsTheDefinitionDoesInSpace, ()) {
+RC_GTEST_PROP(SelfIntersection, MatchesDefinitionInSpace, ()) {
   const TriangleMesh mesh = random_faces(*rc::gen::element(3, 5, 50), false);
   RC_ASSERT(count_intersecting_pairs(mesh) == count_by_definition(mesh));
 }
 
-RC_GTEST_PROP(SelfIntersection, CountsAsTheDefinitionDoesInAPlane, ()) {
+RC_GTEST_PROP(SelfIntersection, MatchesDefinitionInPlane, ()) {
   const TriangleMesh mesh = random_faces(*rc::gen::element(3, 5, 50), true);
   RC_ASSERT(count_intersecting_pairs(mesh) == count_by_definition(mesh));
 }
 
-TEST(SelfIntersection, FindsNoneInCleanShapes) {
+TEST(SelfIntersection, FindsNoneInGeneratedShapes) {
   EXPECT_EQ(count_intersecting_pairs(make_shape(BoxShape{{1, 2, 3}, {6, 7, 8}})), 0);
   EXPECT_EQ(count_intersecting_pairs(sphere_mesh(24)), 0);
   EXPECT_EQ(count_intersecting_pairs(rock_mesh(12)), 0);
@@ -138,28 +139,27 @@ TEST(SelfIntersection, FindsNoneInCleanShapes) {
   EXPECT_EQ(count_intersecting_pairs(make_shape(WigleyShape{})), 0);
 }
 
-TEST(SelfIntersection, FindsNoneInFlatFacesThatAreTurnedInSpace) {
-  // Every pair of neighbours lies in one plane but for rounding.
+TEST(SelfIntersection, FindsNoneInRotatedCoplanarFaces) {
+  // Neighbouring faces are coplanar up to rounding.
   const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(1, 2, -3).normalized()).toRotationMatrix();
   const TriangleMesh box = make_shape(BoxShape{{1, 2, 3}, {10, 10, 10}});
   EXPECT_EQ(count_intersecting_pairs(moved_mesh(box, rotation, Vec3(0.1, 0.2, 0.3))), 0);
 }
 
-TEST(SelfIntersection, FindsBoxesPushedIntoEachOther) {
+TEST(SelfIntersection, FindsIntersectingBoxes) {
   EXPECT_GT(count_intersecting_pairs(joined(cube_mesh(1), cube_mesh(1, Vec3(0.3, 0.4, 0.5)))), 0);
   EXPECT_EQ(count_intersecting_pairs(joined(cube_mesh(1), cube_mesh(1, Vec3(1.5, 0, 0)))), 0);
   EXPECT_EQ(count_intersecting_pairs(joined(cube_mesh(2), cube_mesh(1))), 0);
 }
 
-TEST(SelfIntersection, CountsTouching) {
-  // ClipVertex of one cube on the middle of a face of the other; it has no common vertex with that face's
-  // halves.
+TEST(SelfIntersection, CountsTouchingFaces) {
+  // A corner of the tetrahedron lies on a face of the cube, which it shares no vertex with.
   TriangleMesh tip = tetrahedron_mesh();
   EXPECT_GT(
       count_intersecting_pairs(joined(cube_mesh(1), moved_mesh(tip, Mat3::Identity(), {0.5, 0.1, 0.2}))), 0);
 }
 
-TEST(SelfIntersection, CountsFacesFoldedFlatOntoTheirNeighbours) {
+TEST(SelfIntersection, CountsFacesFoldedOntoNeighbours) {
   TriangleMesh folded;
   for (const Vec3& v : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)}) folded.add_vertex(v);
   folded.triangles = {{0, 1, 2}, {1, 0, 3}};
@@ -168,7 +168,7 @@ TEST(SelfIntersection, CountsFacesFoldedFlatOntoTheirNeighbours) {
   EXPECT_EQ(count_intersecting_pairs(folded), 0);
 }
 
-TEST(SelfIntersection, LeavesOutFacesOfZeroArea) {
+TEST(SelfIntersection, IgnoresFacesOfZeroArea) {
   TriangleMesh cube = cube_mesh();
   const std::int32_t middle = cube.add_vertex({0, -0.5, -0.5});
   cube.triangles.push_back({0, 1, middle});

@@ -32,8 +32,9 @@ double volume_of(const TriangleMesh& mesh) {
   return six_volumes / 6.0;
 }
 
-// Empty if each edge is used once each way, all vertices are used and lie apart, no triangle has zero area.
-std::string what_is_wrong_with(const TriangleMesh& mesh) {
+// Returns an empty text if each edge is used once in each direction, all vertices are used and distinct, no
+// triangle has zero area and the volume is positive; else the first fault.
+std::string find_fault(const TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
   std::vector<bool> used(mesh.vertex_count(), false);
   for (const Triangle& triangle : mesh.triangles) {
@@ -62,18 +63,18 @@ std::string what_is_wrong_with(const TriangleMesh& mesh) {
   return {};
 }
 
-// Euler characteristic: 2 for what is like a sphere, 0 for what is like a torus.
+// Returns the Euler characteristic: 2 for a topological sphere, 0 for a torus.
 std::int64_t euler_characteristic(const TriangleMesh& mesh) {
   return static_cast<std::int64_t>(mesh.vertex_count()) -
          static_cast<std::int64_t>(mesh.triangles.size()) / 2;
 }
 
-std::string refusal(const Shape& shape) {
+std::string check_error(const Shape& shape) {
   const Expected<Shape> checked = check_shape(shape);
   return checked ? "accepted" : checked.error().message();
 }
 
-// FNV-1a over the coordinates' bits.
+// Returns the FNV-1a hash of the coordinates' bits.
 std::uint64_t hash_of(const TriangleMesh& mesh) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
@@ -87,40 +88,40 @@ std::uint64_t hash_of(const TriangleMesh& mesh) {
   return hash;
 }
 
-TEST(BoxShapes, HaveThePapersTriangleCounts) {
+TEST(BoxShape, HasTriangleCountsOfPaper) {
   EXPECT_EQ(made(BoxShape{{1, 1, 1}, {10, 10, 10}}).triangles.size(), 1'200U);
   EXPECT_EQ(made(BoxShape{{1, 1, 1}, {100, 100, 100}}).triangles.size(), 120'000U);
 }
 
-TEST(BoxShapes, AreClosedForUnequalSegments) {
+TEST(BoxShape, IsClosedForUnequalSegments) {
   const TriangleMesh mesh = made(BoxShape{{1, 2, 3}, {4, 1, 7}});
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(mesh.triangles.size(), 4U * (4 * 1 + 1 * 7 + 7 * 4));
   EXPECT_EQ(euler_characteristic(mesh), 2);
   EXPECT_NEAR(volume_of(mesh), 6.0, 1e-14);
 }
 
-TEST(BoxShapes, SpanTheirSizeAroundTheOrigin) {
+TEST(BoxShape, IsCentredOnOrigin) {
   const BoundingBox box = bounding_box(made(BoxShape{{1, 2, 3}, {2, 3, 4}}));
   EXPECT_EQ(box.min_B, Vec3(-0.5, -1, -1.5));
   EXPECT_EQ(box.max_B, Vec3(0.5, 1, 1.5));
 }
 
-TEST(SphereShapes, HaveThePapersTriangleCounts) {
+TEST(SphereShape, HasTriangleCountsOfPaper) {
   EXPECT_EQ(made(SphereShape{1, 50}).triangles.size(), 5'000U);
   EXPECT_EQ(made(SphereShape{1, 200}).triangles.size(), 80'000U);
 }
 
-TEST(SphereShapes, HaveTheirVerticesOnTheSphere) {
+TEST(SphereShape, HasVerticesOnSphere) {
   const TriangleMesh mesh = made(SphereShape{2.5, 31});
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(euler_characteristic(mesh), 2);
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     EXPECT_NEAR(mesh.vertex(static_cast<std::int32_t>(i)).norm(), 2.5, 1e-15);
   }
 }
 
-TEST(SphereShapes, HaveBandsOfEqualLatitude) {
+TEST(SphereShape, HasEqualBandsOfLatitude) {
   constexpr std::int32_t kSegments = 12;
   const TriangleMesh mesh = made(SphereShape{1, kSegments});
   std::set<double> heights(mesh.z.begin(), mesh.z.end());
@@ -132,7 +133,7 @@ TEST(SphereShapes, HaveBandsOfEqualLatitude) {
   }
 }
 
-TEST(SphereShapes, ApproachTheBallWithTheSquareOfTheSegments) {
+TEST(SphereShape, ConvergesQuadraticallyToBall) {
   const double ball = 4.0 / 3.0 * std::numbers::pi;
   const double coarse = ball - volume_of(made(SphereShape{1, 25}));
   const double fine = ball - volume_of(made(SphereShape{1, 100}));
@@ -144,9 +145,9 @@ double regular_polygon_area(double radius, std::int32_t sides) {
   return 0.5 * sides * std::sin(2.0 * std::numbers::pi / sides) * radius * radius;
 }
 
-TEST(CylinderShapes, ArePrismsOfARegularPolygon) {
+TEST(CylinderShape, IsRegularPrism) {
   const TriangleMesh mesh = made(CylinderShape{0.5, 3, 12, 4});
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(mesh.triangles.size(), 2U * 12 * (4 + 1));
   EXPECT_NEAR(volume_of(mesh), regular_polygon_area(0.5, 12) * 3, 1e-14);
   const BoundingBox box = bounding_box(mesh);
@@ -154,9 +155,9 @@ TEST(CylinderShapes, ArePrismsOfARegularPolygon) {
   EXPECT_EQ(box.max_B.z(), 1.5);
 }
 
-TEST(ConeShapes, ArePyramidsOnTheirBaseAtZeroHeight) {
+TEST(ConeShape, IsPyramidWithBaseAtZero) {
   const TriangleMesh mesh = made(ConeShape{0.5, 3, 12, 4});
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(mesh.triangles.size(), 2U * 12 * 4);
   EXPECT_NEAR(volume_of(mesh), regular_polygon_area(0.5, 12), 1e-14);
   const BoundingBox box = bounding_box(mesh);
@@ -165,16 +166,16 @@ TEST(ConeShapes, ArePyramidsOnTheirBaseAtZeroHeight) {
   EXPECT_EQ(box.max_B.x(), 0.5);
 }
 
-TEST(TorusKnotShapes, HaveThePapersTriangleCount) {
+TEST(TorusKnotShape, HasTriangleCountOfPaper) {
   const TriangleMesh mesh = made(TorusKnotShape{});
   EXPECT_EQ(mesh.triangles.size(), 1'760U);
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(euler_characteristic(mesh), 0);
 }
 
-TEST(TorusKnotShapes, ApproachATubesVolumeLengthTimesCrossSection) {
-  // Pappus: a tube around a closed curve encloses its cross section times the curve's length, if the cross
-  // section's centroid lies on the curve.
+TEST(TorusKnotShape, MatchesVolumeByPappus) {
+  // Pappus: the volume of a tube around a closed curve is its cross section times the length of the curve, if
+  // the cross section's centroid lies on the curve.
   const TorusKnotShape knot{1, 0.1, 3, 2, 4'000, 64};
   double length = 0.0;
   constexpr int kSteps = 10'000;
@@ -187,19 +188,17 @@ TEST(TorusKnotShapes, ApproachATubesVolumeLengthTimesCrossSection) {
   EXPECT_NEAR(volume_of(made(knot)), expected, 1e-4 * expected);
 }
 
-TEST(TorusKnotShapes, LeaveTheKnotsTubeRoomAndNoMore) {
-  // A plain ring, p = q = 1 wound on a torus, has the same room as its tightest bend; the default knot's
-  // strands must stay apart.
-  EXPECT_EQ(refusal(TorusKnotShape{}), "accepted");
-  const std::string message = refusal(TorusKnotShape{1, 0.5});
+TEST(TorusKnotShape, LimitsRadiusOfTube) {
+  EXPECT_EQ(check_error(TorusKnotShape{}), "accepted");
+  const std::string message = check_error(TorusKnotShape{1, 0.5});
   EXPECT_NE(message.find("tube = 0.5"), std::string::npos) << message;
   EXPECT_NE(message.find("at most 0.2"), std::string::npos) << message;
 }
 
-TEST(WigleyShapes, EncloseTheHullAndItsFreeboard) {
+TEST(WigleyShape, EnclosesHullAndFreeboard) {
   const WigleyShape hull{10, 1, 0.625, 0.3, 256, 128};
   const TriangleMesh mesh = made(hull);
-  EXPECT_EQ(what_is_wrong_with(mesh), "");
+  EXPECT_EQ(find_fault(mesh), "");
   EXPECT_EQ(euler_characteristic(mesh), 2);
   EXPECT_EQ(mesh.triangles.size(), 4U * 256 * 129 + 2 * 256 - 2);
   const double below = 4.0 / 9.0 * 10 * 1 * 0.625;
@@ -207,7 +206,7 @@ TEST(WigleyShapes, EncloseTheHullAndItsFreeboard) {
   EXPECT_NEAR(volume_of(mesh), below + above, 1e-4 * (below + above));
 }
 
-TEST(WigleyShapes, ApproachTheHullWithTheSquareOfTheCells) {
+TEST(WigleyShape, ConvergesQuadraticallyToHull) {
   const double hull = 4.0 / 9.0 * 10 * 0.625 + 2.0 / 3.0 * 10 * 0.3;
   const double coarse = hull - volume_of(made(WigleyShape{10, 1, 0.625, 0.3, 16, 8}));
   const double fine = hull - volume_of(made(WigleyShape{10, 1, 0.625, 0.3, 64, 32}));
@@ -215,7 +214,7 @@ TEST(WigleyShapes, ApproachTheHullWithTheSquareOfTheCells) {
   EXPECT_NEAR(coarse / fine, 16.0, 0.5);
 }
 
-TEST(WigleyShapes, HaveEveryVertexOnTheFormulaAndAVerticalWallAboveTheWater) {
+TEST(WigleyShape, HasVerticesOnHullAndVerticalFreeboard) {
   const WigleyShape hull{10, 1, 0.625, 0.3, 9, 5};
   const TriangleMesh mesh = made(hull);
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -228,15 +227,15 @@ TEST(WigleyShapes, HaveEveryVertexOnTheFormulaAndAVerticalWallAboveTheWater) {
   EXPECT_EQ(box.max_B.z(), 0.3);
 }
 
-TEST(RockShapes, HaveTwentyTimesFrequencySquaredTriangles) {
+TEST(RockShape, HasTwentyTimesFrequencySquaredTriangles) {
   EXPECT_EQ(made(RockShape{1, 16}).triangles.size(), 5'120U);
   EXPECT_EQ(made(RockShape{1, 224}).triangles.size(), 1'003'520U);
 }
 
-TEST(RockShapes, AreStarShapedAboutTheirCentre) {
+TEST(RockShape, IsStarShapedAboutCentre) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const TriangleMesh mesh = made(RockShape{1, 24, 0.6, seed});
-    EXPECT_EQ(what_is_wrong_with(mesh), "");
+    EXPECT_EQ(find_fault(mesh), "");
     EXPECT_EQ(euler_characteristic(mesh), 2);
     for (const auto& [a, b, c] : mesh.triangles) {
       EXPECT_GT(mesh.vertex(a).dot(mesh.vertex(b).cross(mesh.vertex(c))), 0.0);
@@ -244,14 +243,14 @@ TEST(RockShapes, AreStarShapedAboutTheirCentre) {
   }
 }
 
-TEST(RockShapes, AreIcospheresWithoutRoughness) {
+TEST(RockShape, IsIcosphereWithoutRoughness) {
   const TriangleMesh mesh = made(RockShape{3, 8, 0.0});
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     EXPECT_NEAR(mesh.vertex(static_cast<std::int32_t>(i)).norm(), 3.0, 1e-15);
   }
 }
 
-TEST(RockShapes, AreRoughAndSmooth) {
+TEST(RockShape, IsRoughWithBoundedSlope) {
   const TriangleMesh mesh = made(RockShape{1, 64, 0.25});
   double lowest = 2.0;
   double highest = 0.0;
@@ -270,28 +269,29 @@ TEST(RockShapes, AreRoughAndSmooth) {
   EXPECT_LT(steepest, 0.8);
 }
 
-TEST(RockShapes, AreTheSameBitsOnEveryMachine) {
+TEST(RockShape, HasSameBitsOnEveryMachine) {
   EXPECT_EQ(hash_of(made(RockShape{1, 16, 0.25, 1})), 6735242325607126203U);
 }
 
-TEST(RockShapes, DifferFromSeedToSeed) {
+TEST(RockShape, DependsOnSeed) {
   EXPECT_EQ(hash_of(made(RockShape{1, 8, 0.25, 7})), hash_of(made(RockShape{1, 8, 0.25, 7})));
   EXPECT_NE(hash_of(made(RockShape{1, 8, 0.25, 7})), hash_of(made(RockShape{1, 8, 0.25, 8})));
 }
 
-TEST(ShapeChecks, NameTheKeyTheValueAndTheRange) {
-  EXPECT_EQ(refusal(SphereShape{-1, 50}),
+TEST(CheckShape, NamesKeyValueAndRange) {
+  EXPECT_EQ(check_error(SphereShape{-1, 50}),
             "sphere shape: radius = -1; expected a length from 1e-09 to 1e+09 (m).");
-  EXPECT_EQ(refusal(SphereShape{1, 2}),
+  EXPECT_EQ(check_error(SphereShape{1, 2}),
             "sphere shape: segments = 2; expected a whole number from 3 to 100000.");
-  EXPECT_EQ(refusal(BoxShape{{1, std::nan(""), 1}}),
+  EXPECT_EQ(check_error(BoxShape{{1, std::nan(""), 1}}),
             "box shape: size[1] = nan; expected a length from 1e-09 to 1e+09 (m).");
-  EXPECT_EQ(refusal(RockShape{1, 16, 0.7}), "rock shape: roughness = 0.7; expected a number from 0 to 0.6.");
+  EXPECT_EQ(check_error(RockShape{1, 16, 0.7}),
+            "rock shape: roughness = 0.7; expected a number from 0 to 0.6.");
 }
 
-TEST(ShapeChecks, RefuseEachImpossibleArgument) {
+TEST(CheckShape, RejectsInvalidArguments) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const std::vector<std::pair<Shape, std::string>> impossible{
+  const std::vector<std::pair<Shape, std::string>> invalid{
       {BoxShape{{0, 1, 1}}, "size[0] = 0"},
       {BoxShape{{1, 1, kInfinity}}, "size[2] = inf"},
       {BoxShape{{1, 1, 1}, {1, 0, 1}}, "segments[1] = 0"},
@@ -318,55 +318,56 @@ TEST(ShapeChecks, RefuseEachImpossibleArgument) {
       {BoxShape{{1, 1, 1}, {2147483647, 2147483647, 2147483647}}, "segments[0] = 2147483647"},
       {RockShape{1, 16, -0.1}, "roughness = -0.1"},
   };
-  for (const auto& [shape, found] : impossible) {
-    const std::string message = refusal(shape);
-    EXPECT_NE(message.find(found), std::string::npos) << message << "\nshould name: " << found;
+  for (const auto& [shape, actual] : invalid) {
+    const std::string message = check_error(shape);
+    EXPECT_NE(message.find(actual), std::string::npos) << message << "\nexpected to contain: " << actual;
   }
 }
 
-double some_size() {
+double random_size() {
   return std::exp2(*rc::gen::inRange(-400, 400) / 20.0);
 }
 
-// Of any type; check_shape may refuse it for its knot's tube alone.
-Shape some_shape() {
-  const auto count = [](int least, int most) { return *rc::gen::inRange<std::int32_t>(least, most); };
+// Returns a random shape of any type; only the tube of a knot may fail check_shape.
+Shape random_shape() {
+  const auto count = [](int min, int max) { return *rc::gen::inRange<std::int32_t>(min, max); };
   switch (*rc::gen::inRange(0, 7)) {
     case 0:
-      return BoxShape{{some_size(), some_size(), some_size()}, {count(1, 9), count(1, 9), count(1, 9)}};
+      return BoxShape{{random_size(), random_size(), random_size()}, {count(1, 9), count(1, 9), count(1, 9)}};
     case 1:
-      return SphereShape{some_size(), count(3, 40)};
+      return SphereShape{random_size(), count(3, 40)};
     case 2:
-      return CylinderShape{some_size(), some_size(), count(3, 40), count(1, 9)};
+      return CylinderShape{random_size(), random_size(), count(3, 40), count(1, 9)};
     case 3:
-      return ConeShape{some_size(), some_size(), count(3, 40), count(1, 9)};
+      return ConeShape{random_size(), random_size(), count(3, 40), count(1, 9)};
     case 4: {
-      const double radius = some_size();
+      const double radius = random_size();
       return TorusKnotShape{radius,         *rc::gen::inRange(1, 40) / 100.0 * radius,
                             count(1, 5),    count(1, 5),
                             count(60, 150), count(3, 12)};
     }
     case 5:
-      return WigleyShape{some_size(), some_size(), some_size(), some_size(), count(2, 30), count(1, 9)};
+      return WigleyShape{random_size(), random_size(), random_size(),
+                         random_size(), count(2, 30),  count(1, 9)};
     default:
-      return RockShape{some_size(), count(1, 20), *rc::gen::inRange(0, 61) / 100.0,
+      return RockShape{random_size(), count(1, 20), *rc::gen::inRange(0, 61) / 100.0,
                        *rc::gen::arbitrary<std::uint64_t>()};
   }
 }
 
-RC_GTEST_PROP(EveryShape, IsClosedAndOutwardOriented, ()) {
-  const Shape shape = some_shape();
+RC_GTEST_PROP(MakeShape, ReturnsClosedOutwardOrientedMesh, ()) {
+  const Shape shape = random_shape();
   RC_PRE(check_shape(shape).has_value());
-  RC_ASSERT(what_is_wrong_with(make_shape(shape)) == std::string());
+  RC_ASSERT(find_fault(make_shape(shape)) == std::string());
 }
 
-RC_GTEST_PROP(EveryShape, DoesNotCrossItself, ()) {
-  const Shape shape = some_shape();
+RC_GTEST_PROP(MakeShape, ReturnsMeshWithoutSelfIntersection, ()) {
+  const Shape shape = random_shape();
   RC_PRE(check_shape(shape).has_value());
   RC_ASSERT(count_intersecting_pairs(make_shape(shape)) == 0);
 }
 
-RC_GTEST_PROP(EveryKnotOfTheWidestTube, DoesNotCrossItself, ()) {
+RC_GTEST_PROP(TorusKnotShape, DoesNotIntersectItselfAtMaxTube, ()) {
   const auto [p, q] = *rc::gen::element(std::pair(1, 1), std::pair(2, 3), std::pair(3, 2), std::pair(1, 4),
                                         std::pair(5, 1), std::pair(5, 2), std::pair(3, 7), std::pair(8, 3));
   TorusKnotShape knot{
@@ -378,9 +379,9 @@ RC_GTEST_PROP(EveryKnotOfTheWidestTube, DoesNotCrossItself, ()) {
   RC_ASSERT(count_intersecting_pairs(make_shape(knot)) == 0);
 }
 
-RC_GTEST_PROP(EveryRock, StaysWithinItsRoughness, ()) {
-  const RockShape rock{some_size(), *rc::gen::inRange<std::int32_t>(1, 24), *rc::gen::inRange(0, 61) / 100.0,
-                       *rc::gen::arbitrary<std::uint64_t>()};
+RC_GTEST_PROP(RockShape, StaysWithinRoughness, ()) {
+  const RockShape rock{random_size(), *rc::gen::inRange<std::int32_t>(1, 24),
+                       *rc::gen::inRange(0, 61) / 100.0, *rc::gen::arbitrary<std::uint64_t>()};
   const TriangleMesh mesh = make_shape(rock);
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
     const double height = mesh.vertex(static_cast<std::int32_t>(i)).norm() / rock.radius;

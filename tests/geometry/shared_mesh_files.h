@@ -1,5 +1,5 @@
-// The directory of real meshes beside the project: $BUOYANCY_MESHES, or <source root>/../shared/meshes. They
-// are not part of the project (their licences differ), so tests that want one are skipped where it is absent.
+// The directory of shared real meshes: $BUOYANCY_MESHES, or <source root>/../shared/meshes. The meshes are
+// not part of the project, since their licences differ; tests that need one are skipped if it is absent.
 #pragma once
 
 #include <cstdlib>
@@ -8,7 +8,8 @@
 namespace buoyancy {
 
 inline std::filesystem::path shared_mesh_file(const char* name) {
-  const char* directory = std::getenv("BUOYANCY_MESHES");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const char* directory =
+      std::getenv("BUOYANCY_MESHES");  // NOLINT(concurrency-mt-unsafe): never set by the tests
   const std::filesystem::path meshes =
       directory != nullptr ? std::filesystem::path(directory)
                            : std::filesystem::path(BUOYANCY_SOURCE_DIR).parent_path() / "shared" / "meshes";

@@ -31,7 +31,7 @@ SurfaceMoments<T> moments_of_mesh(const TriangleMesh& mesh, const Vec3T<T>& cent
 }
 
 template <typename T>
-void expect_same(const SurfaceMoments<T>& a, const SurfaceMoments<T>& b) {
+void expect_equal(const SurfaceMoments<T>& a, const SurfaceMoments<T>& b) {
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(a.S(k), b.S(k));
     for (int i = 0; i < 3; ++i) {
@@ -41,7 +41,7 @@ void expect_same(const SurfaceMoments<T>& a, const SurfaceMoments<T>& b) {
   }
 }
 
-double largest_difference(const SurfaceMoments<double>& a, const SurfaceMoments<double>& b) {
+double max_difference(const SurfaceMoments<double>& a, const SurfaceMoments<double>& b) {
   return std::max({(a.S - b.S).cwiseAbs().maxCoeff(), (a.N - b.N).cwiseAbs().maxCoeff(),
                    (a.P - b.P).cwiseAbs().maxCoeff()});
 }
@@ -51,7 +51,7 @@ Vec3T<Rational> rational_point() {
   return {coordinate(), coordinate(), coordinate()};
 }
 
-TEST(SurfaceMoments, OfATriangleAreItsIntegrals) {
+TEST(SurfaceMoments, MatchIntegralsOverTriangle) {
   // The triangle x, y >= 0, x + y <= 1 at z = 2: n = e_z; integrals of x^p y^q are p! q! / (p + q + 2)!.
   const SurfaceMoments<double> moments =
       moments_of_triangle<double>(Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2));
@@ -67,7 +67,7 @@ TEST(SurfaceMoments, OfATriangleAreItsIntegrals) {
   EXPECT_EQ(moments.second(2, 2, 0), 0.0);
 }
 
-RC_GTEST_PROP(SurfaceMoments, AddUpOverThePartsOfATriangleWithoutAnyError, ()) {
+RC_GTEST_PROP(SurfaceMoments, AreExactlyAdditiveOverPartsOfATriangle, ()) {
   const Vec3T<Rational> a = rational_point();
   const Vec3T<Rational> b = rational_point();
   const Vec3T<Rational> c = rational_point();
@@ -75,30 +75,30 @@ RC_GTEST_PROP(SurfaceMoments, AddUpOverThePartsOfATriangleWithoutAnyError, ()) {
   const Vec3T<Rational> cut = a + s * (b - a);
   SurfaceMoments<Rational> parts = moments_of_triangle<Rational>(a, cut, c);
   parts += moments_of_triangle<Rational>(cut, b, c);
-  expect_same(parts, moments_of_triangle<Rational>(a, b, c));
+  expect_equal(parts, moments_of_triangle<Rational>(a, b, c));
 }
 
-RC_GTEST_PROP(SurfaceMoments, MoveToAnotherCentreWithoutAnyError, ()) {
+RC_GTEST_PROP(SurfaceMoments, ChangeCentreExactly, ()) {
   const Vec3T<Rational> a = rational_point();
   const Vec3T<Rational> b = rational_point();
   const Vec3T<Rational> c = rational_point();
   const Vec3T<Rational> t = rational_point();
   const Vec3T<Rational> u = rational_point();
   const SurfaceMoments<Rational> about_origin = moments_of_triangle<Rational>(a, b, c);
-  expect_same(about_origin.moved(t), moments_of_triangle<Rational>(a - t, b - t, c - t));
-  expect_same(about_origin.moved(t).moved(u), about_origin.moved(t + u));
+  expect_equal(about_origin.moved(t), moments_of_triangle<Rational>(a - t, b - t, c - t));
+  expect_equal(about_origin.moved(t).moved(u), about_origin.moved(t + u));
 }
 
-RC_GTEST_PROP(SurfaceMoments, TurnTheirSignsWithTheTriangle, ()) {
+RC_GTEST_PROP(SurfaceMoments, ChangeSignWithWinding, ()) {
   const Vec3T<Rational> a = rational_point();
   const Vec3T<Rational> b = rational_point();
   const Vec3T<Rational> c = rational_point();
   SurfaceMoments<Rational> both = moments_of_triangle<Rational>(a, b, c);
   both += moments_of_triangle<Rational>(a, c, b);
-  expect_same(both, SurfaceMoments<Rational>{});
+  expect_equal(both, SurfaceMoments<Rational>{});
 }
 
-// The law of a closed surface: S = 0, N = V I, P_ijk = V (m_i d_jk + m_j d_ik).
+// Invariant of a closed surface: S = 0, N = V I, P_ijk = V (m_i d_jk + m_j d_ik).
 template <typename T>
 SurfaceMoments<T> closed_moments(const T& volume, const Vec3T<T>& centroid) {
   SurfaceMoments<T> moments;
@@ -114,25 +114,25 @@ SurfaceMoments<T> closed_moments(const T& volume, const Vec3T<T>& centroid) {
   return moments;
 }
 
-TEST(SurfaceMoments, OfABoxAreThoseOfItsVolumeWithoutAnyError) {
+TEST(SurfaceMoments, MatchVolumeOfBoxExactly) {
   const TriangleMesh box = box_mesh(Vec3(1, 2, 3), Vec3(2, 4, 7));
   const Vec3T<Rational> center_B(Rational(1, 3), Rational(-1, 7), Rational(5));
   const Vec3T<Rational> centroid(Rational(3, 2) - center_B(0), Rational(3) - center_B(1), Rational(0));
-  expect_same(moments_of_mesh<Rational>(box, center_B), closed_moments<Rational>(Rational(8), centroid));
+  expect_equal(moments_of_mesh<Rational>(box, center_B), closed_moments<Rational>(Rational(8), centroid));
 }
 
-TEST(SurfaceMoments, OfASphereApproachThoseOfItsVolume) {
+TEST(SurfaceMoments, ConvergeQuadraticallyForSphere) {
   const double volume = 4.0 / 3.0 * 3.14159265358979323846;
   const Vec3 center_B(0.3, -0.2, 0.1);
-  const double coarse = largest_difference(moments_of_mesh<double>(sphere_mesh(20), center_B),
-                                           closed_moments<double>(volume, -center_B));
-  const double fine = largest_difference(moments_of_mesh<double>(sphere_mesh(40), center_B),
-                                         closed_moments<double>(volume, -center_B));
+  const double coarse = max_difference(moments_of_mesh<double>(sphere_mesh(20), center_B),
+                                       closed_moments<double>(volume, -center_B));
+  const double fine = max_difference(moments_of_mesh<double>(sphere_mesh(40), center_B),
+                                     closed_moments<double>(volume, -center_B));
   EXPECT_LT(coarse, 0.03 * volume);
   EXPECT_NEAR(coarse / fine, 4.0, 0.3);
 }
 
-TEST(SurfaceMoments, InDoubleAgreeWithExactArithmetic) {
+TEST(SurfaceMoments, MatchExactArithmeticInDouble) {
   const TriangleMesh rock = rock_mesh();
   const SurfaceMoments<double> rounded = moments_of_mesh<double>(rock, Vec3(0.1, 0.2, 0.3));
   const SurfaceMoments<Rational> exact =
@@ -145,7 +145,7 @@ TEST(SurfaceMoments, InDoubleAgreeWithExactArithmetic) {
       for (int j = i; j < 3; ++j) expected.second(i, j, k) = exact.second(i, j, k).convert_to<double>();
     }
   }
-  EXPECT_LT(largest_difference(rounded, expected), 1e-14);
+  EXPECT_LT(max_difference(rounded, expected), 1e-14);
 }
 
 }  // namespace

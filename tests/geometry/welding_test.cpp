@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-TEST(Welding, MergesVerticesOfEqualPositionAndKeepsTheirFirstOrder) {
+TEST(Welding, MergesEqualVerticesInOrderOfOccurrence) {
   const TriangleMesh cube = cube_mesh();
   const WeldedMesh welded = weld(unwelded(cube));
   EXPECT_EQ(welded.kind, WeldKind::kExact);
@@ -26,7 +26,7 @@ TEST(Welding, MergesVerticesOfEqualPositionAndKeepsTheirFirstOrder) {
   }
 }
 
-TEST(Welding, ChangesNothingInAWeldedMesh) {
+TEST(Welding, LeavesWeldedMeshUnchanged) {
   const TriangleMesh sphere = rock_mesh();
   const WeldedMesh welded = weld(sphere);
   EXPECT_EQ(welded.mesh.x, sphere.x);
@@ -35,7 +35,7 @@ TEST(Welding, ChangesNothingInAWeldedMesh) {
   EXPECT_EQ(welded.mesh.triangles, sphere.triangles);
 }
 
-TEST(Welding, TakesMinusZeroForZero) {
+TEST(Welding, TreatsMinusZeroAsZero) {
   TriangleMesh soup = unwelded(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)));
   for (std::size_t v = 0; v < soup.vertex_count(); v += 2) {
     if (soup.x[v] == 0.0) soup.x[v] = -0.0;
@@ -43,7 +43,7 @@ TEST(Welding, TakesMinusZeroForZero) {
   EXPECT_EQ(weld(soup).mesh.vertex_count(), 8U);
 }
 
-TEST(Welding, LeavesOutVerticesThatNoFaceUses) {
+TEST(Welding, RemovesUnusedVertices) {
   TriangleMesh mesh = cube_mesh();
   mesh.x.insert(mesh.x.begin(), 100.0);
   mesh.y.insert(mesh.y.begin(), 100.0);
@@ -57,7 +57,7 @@ TEST(Welding, LeavesOutVerticesThatNoFaceUses) {
   EXPECT_EQ(welded.mesh.triangles, cube_mesh().triangles);
 }
 
-TEST(Welding, DropsAndCountsFacesThatNameAVertexTwiceBeforeOrAfter) {
+TEST(Welding, DropsAndCountsDegenerateFaces) {
   TriangleMesh mesh = cube_mesh();
   mesh.triangles.push_back({3, 3, 5});
   const std::int32_t copy = mesh.add_vertex(mesh.vertex(7));
@@ -68,7 +68,7 @@ TEST(Welding, DropsAndCountsFacesThatNameAVertexTwiceBeforeOrAfter) {
   EXPECT_EQ(welded.mesh.vertex_count(), 8U);
 }
 
-// A sphere as soup whose copies of a vertex are up to `jitter` apart along x.
+// Returns an unwelded sphere whose copies of a vertex are up to `jitter` apart along x [m].
 TriangleMesh cracked_sphere(double jitter) {
   TriangleMesh soup = unwelded(sphere_mesh(10));
   for (std::size_t v = 0; v < soup.vertex_count(); ++v)
@@ -76,7 +76,7 @@ TriangleMesh cracked_sphere(double jitter) {
   return soup;
 }
 
-TEST(Welding, ClosesCracksNarrowerThanTheTolerance) {
+TEST(Welding, ClosesCracksBelowTolerance) {
   const TriangleMesh soup = cracked_sphere(1e-6);  // the diagonal is 2 sqrt(3)
   const WeldedMesh welded = weld(soup);
   EXPECT_EQ(welded.kind, WeldKind::kTolerance);
@@ -87,7 +87,7 @@ TEST(Welding, ClosesCracksNarrowerThanTheTolerance) {
   EXPECT_LE(welded.max_move, 1e-6 * (1.0 + 1e-9));
 }
 
-TEST(Welding, StaysExactWhereTheToleranceDoesNotCloseTheMesh) {
+TEST(Welding, KeepsExactWeldIfToleranceDoesNotCloseMesh) {
   const TriangleMesh soup = cracked_sphere(1e-6);
   const WeldedMesh welded = weld(without_face(soup, 17));
   EXPECT_EQ(welded.kind, WeldKind::kExact);
@@ -95,8 +95,8 @@ TEST(Welding, StaysExactWhereTheToleranceDoesNotCloseTheMesh) {
   EXPECT_EQ(weld(cracked_sphere(1e-4)).kind, WeldKind::kExact);
 }
 
-TEST(Welding, MovesNothingThatIsNotBesideACrack) {
-  // A closed tetrahedron far smaller than the tolerance stays beside the cracked sphere.
+TEST(Welding, MovesOnlyVerticesOfUnmatchedEdges) {
+  // A closed tetrahedron far smaller than the tolerance is unchanged next to the cracked sphere.
   TriangleMesh tiny = tetrahedron_mesh();
   for (auto* coordinates : {&tiny.x, &tiny.y, &tiny.z}) {
     for (double& coordinate : *coordinates) coordinate *= 1e-8;
@@ -106,8 +106,8 @@ TEST(Welding, MovesNothingThatIsNotBesideACrack) {
   EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count() + 4);
 }
 
-TEST(Welding, DoesNotCollapseAChainOfCloseVertices) {
-  // A ring of 2000 vertices 0.3 tolerances apart around a hole: closing it would move vertices far.
+TEST(Welding, KeepsChainsOfCloseVertices) {
+  // The 2000 vertices around this hole are 0.3 tolerances apart; closing it would move vertices far.
   TriangleMesh ring;
   constexpr std::int32_t kVertices = 2000;
   const double radius = 0.3e-6 * kVertices / 6.283;

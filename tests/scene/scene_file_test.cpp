@@ -14,8 +14,8 @@
 namespace buoyancy {
 namespace {
 
-TEST(SceneFile, TakesDefaultsForWhatIsLeftOut) {
-  const Expected<SceneDescription> scene = parsed(crate_and());
+TEST(SceneFile, UsesDefaultsForMissingKeys) {
+  const Expected<SceneDescription> scene = parse(scene_with_crate());
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->name, "pool.toml");
   EXPECT_EQ(scene->water.up_W, Vec3::UnitZ());
@@ -37,8 +37,8 @@ TEST(SceneFile, TakesDefaultsForWhatIsLeftOut) {
   EXPECT_FALSE(body.client.given);
 }
 
-TEST(SceneFile, TakesEveryKeyThatIsGiven) {
-  const Expected<SceneDescription> scene = parsed(R"(
+TEST(SceneFile, ReadsEveryKey) {
+  const Expected<SceneDescription> scene = parse(R"(
 [world]
 gravity = 1.62
 up = [0, 3, 4]
@@ -111,71 +111,72 @@ angular_damping_quadratic = 13
   EXPECT_EQ(client.angular_damping_quadratic, 13.0);
 }
 
-TEST(SceneFile, KeepsHydrostaticsOffUnlessTheOutputsNameThem) {
-  const auto asks = [](const std::string& keys) {
-    return parsed(crate_and(keys)).value().bodies[0].hydrostatics;
+TEST(SceneFile, EnablesHydrostaticsOnlyIfRequested) {
+  const auto requested = [](const std::string& keys) {
+    return parse(scene_with_crate(keys)).value().bodies[0].hydrostatics;
   };
-  EXPECT_FALSE(asks(""));
-  EXPECT_FALSE(asks("outputs = [\"wrench\"]\n"));
-  EXPECT_TRUE(asks("outputs = [\"wrench\", \"hydrostatics\"]\n"));
-  EXPECT_TRUE(asks("outputs = [\"hydrostatics\", \"wrench\"]\n"));
+  EXPECT_FALSE(requested(""));
+  EXPECT_FALSE(requested("outputs = [\"wrench\"]\n"));
+  EXPECT_TRUE(requested("outputs = [\"wrench\", \"hydrostatics\"]\n"));
+  EXPECT_TRUE(requested("outputs = [\"hydrostatics\", \"wrench\"]\n"));
 }
 
-TEST(SceneFile, ReadsEveryMethodByItsName) {
+TEST(SceneFile, ReadsEveryMethod) {
   for (const Method method : kAllMethods) {
-    const auto scene = parsed(crate_and("method = \"" + std::string(to_string(method)) + "\"\n"));
+    const auto scene = parse(scene_with_crate("method = \"" + std::string(to_string(method)) + "\"\n"));
     ASSERT_TRUE(scene) << scene.error().message();
     EXPECT_EQ(scene->bodies[0].method, method);
   }
 }
 
-TEST(SceneFile, KeepsTheBodiesInTheFilesOrder) {
-  const auto scene = parsed(crate_and("[[body]]\nid = -2\nshape = { type = \"sphere\", radius = 2 }\n"));
+TEST(SceneFile, KeepsOrderOfBodies) {
+  const auto scene =
+      parse(scene_with_crate("[[body]]\nid = -2\nshape = { type = \"sphere\", radius = 2 }\n"));
   ASSERT_TRUE(scene) << scene.error().message();
   ASSERT_EQ(scene->bodies.size(), 2U);
   EXPECT_EQ(scene->bodies[1].id, -2);
   EXPECT_EQ(scene->bodies[1].source_location, "pool.toml:4");
 }
 
-TEST(SceneFile, LeavesAnAbsoluteMeshPathAsItIs) {
-  const auto scene = parsed("[[body]]\nid = 1\nmesh = \"/models/../models/duck.dae\"\n");
+TEST(SceneFile, KeepsAbsoluteMeshPaths) {
+  const auto scene = parse("[[body]]\nid = 1\nmesh = \"/models/../models/duck.dae\"\n");
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].source).path, std::filesystem::path("/models/duck.dae"));
 }
 
-TEST(SceneFile, NormalisesDirectionsOfAnySize) {
-  const auto scene =
-      parsed(crate_and("[body.client]\norientation = [1e300, 1e300, 0, 0]\n[world]\nup = [0, 0, 1e-300]\n"));
+TEST(SceneFile, NormalisesDirectionsOfAnyLength) {
+  const auto scene = parse(
+      scene_with_crate("[body.client]\norientation = [1e300, 1e300, 0, 0]\n[world]\nup = [0, 0, 1e-300]\n"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->water.up_W, Vec3::UnitZ());
   EXPECT_NEAR(scene->bodies[0].client.orientation.norm(), 1.0, 1e-15);
 }
 
-TEST(SceneFile, SaysInFullWhatIsWrong) {
-  EXPECT_EQ(refusal_of(crate_and("[body.client]\nmass = -1\n")),
+TEST(SceneFile, ReportsCompleteErrors) {
+  EXPECT_EQ(parse_error(scene_with_crate("[body.client]\nmass = -1\n")),
             "pool.toml:5: body 7, [body.client]: mass = -1; expected a finite number above 0 (kg).");
   EXPECT_EQ(
-      refusal_of("[water]\ndesnity = 1000\n" + crate_and()),
+      parse_error("[water]\ndesnity = 1000\n" + scene_with_crate()),
       "pool.toml:2: [water]: unknown key 'desnity'; expected one of level, density. The nearest known key is "
       "'density'.");
 }
 
-TEST(SceneFile, NamesTheNearestKeyOfAnUnknownOneInEveryTable) {
+TEST(SceneFile, SuggestsNearestKeyInEveryTable) {
   const std::vector<std::pair<std::string, std::string>> mistyped{
-      {crate_and("[wrold]\nup = [0, 0, 1]\n"), "pool.toml:4: the scene: unknown key 'wrold'"},
+      {scene_with_crate("[wrold]\nup = [0, 0, 1]\n"), "pool.toml:4: the scene: unknown key 'wrold'"},
       {"[[boddy]]\nid = 1\n", "nearest known key is 'body'"},
-      {crate_and("[world]\ngravty = 9.8\n"), "pool.toml:5: [world]: unknown key 'gravty'"},
-      {crate_and("[world]\ngravty = 9.8\n"), "nearest known key is 'gravity'"},
-      {crate_and("[limits]\nface = 3\n"), "nearest known key is 'faces'"},
-      {crate_and("[limits]\nmemory_bytes = 3\n"), "unknown key 'memory_bytes'"},
-      {crate_and("metod = \"exact\"\n"), "pool.toml:4: body 7: unknown key 'metod'"},
-      {crate_and("metod = \"exact\"\n"), "nearest known key is 'method'"},
-      {crate_and("metod = \"exact\"\n"),
+      {scene_with_crate("[world]\ngravty = 9.8\n"), "pool.toml:5: [world]: unknown key 'gravty'"},
+      {scene_with_crate("[world]\ngravty = 9.8\n"), "nearest known key is 'gravity'"},
+      {scene_with_crate("[limits]\nface = 3\n"), "nearest known key is 'faces'"},
+      {scene_with_crate("[limits]\nmemory_bytes = 3\n"), "unknown key 'memory_bytes'"},
+      {scene_with_crate("metod = \"exact\"\n"), "pool.toml:4: body 7: unknown key 'metod'"},
+      {scene_with_crate("metod = \"exact\"\n"), "nearest known key is 'method'"},
+      {scene_with_crate("metod = \"exact\"\n"),
        "expected one of id, name, mesh, scale, shape, method, tolerance, open, reference_point, outputs, "
        "client."},
-      {crate_and("[body.clinet]\n"), "nearest known key is 'client'"},
-      {crate_and("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
-      {crate_and("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},
+      {scene_with_crate("[body.clinet]\n"), "nearest known key is 'client'"},
+      {scene_with_crate("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
+      {scene_with_crate("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},
       {"[[body]]\nidd = 1\nshape = { type = \"box\" }\n", "nearest known key is 'id'"},
       {"[[body]]\nid = 1\nshap = { type = \"box\" }\n", "nearest known key is 'shape'"},
       {"[[body]]\nid = 1\nshape = { type = \"box\", sizes = [1, 1, 1] }\n",
@@ -183,51 +184,53 @@ TEST(SceneFile, NamesTheNearestKeyOfAnUnknownOneInEveryTable) {
       {"[[body]]\nid = 1\nshape = { type = \"sphere\", stacks = 3 }\n",
        "expected one of type, radius, segments"},
   };
-  for (const auto& [text, told] : mistyped) {
-    const std::string message = refusal_of(text);
-    EXPECT_NE(message.find(told), std::string::npos) << message << "\nshould say: " << told;
+  for (const auto& [text, expected] : mistyped) {
+    const std::string message = parse_error(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\nexpected to contain: " << expected;
   }
 }
 
-TEST(SceneFile, RefusesWrongTypesAndRanges) {
+TEST(SceneFile, RejectsWrongTypesAndRanges) {
   const std::vector<std::pair<std::string, std::string>> wrong{
-      {crate_and("tolerance = 1.5\n"),
+      {scene_with_crate("tolerance = 1.5\n"),
        "pool.toml:4: body 7: tolerance = 1.5; expected a number from 0 to 1."},
-      {crate_and("tolerance = -0.1\n"), "tolerance = -0.1"},
-      {crate_and("tolerance = nan\n"), "tolerance = nan"},
-      {crate_and("tolerance = \"small\"\n"), "tolerance = \"small\"; expected a number"},
-      {crate_and("name = 3\n"), "name = 3; expected a text"},
-      {crate_and("name = \"\"\n"), "name = \"\"; expected a text"},
-      {crate_and("name = \"a\\u001bb\"\n"), "without control characters"},
-      {crate_and("method = \"exakt\"\n"),
+      {scene_with_crate("tolerance = -0.1\n"), "tolerance = -0.1"},
+      {scene_with_crate("tolerance = nan\n"), "tolerance = nan"},
+      {scene_with_crate("tolerance = \"small\"\n"), "tolerance = \"small\"; expected a number"},
+      {scene_with_crate("name = 3\n"), "name = 3; expected a string"},
+      {scene_with_crate("name = \"\"\n"), "name = \"\"; expected a string"},
+      {scene_with_crate("name = \"a\\u001bb\"\n"), "without control characters"},
+      {scene_with_crate("method = \"exakt\"\n"),
        "expected one of fast, improved, exact, fast_surface, exact_surface, hierarchical. The nearest is "
        "'exact'."},
-      {crate_and("method = \"a\\u001b[31m\"\n"), "method = \"a?[31m\"; expected"},
-      {crate_and("method = \"exat\"\n"), "The nearest is 'exact'."},
-      {crate_and("method = 3\n"), "method = 3; expected one of fast"},
-      {crate_and("open = \"refsue\"\n"), "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
-      {crate_and("open = true\n"), "open = true"},
-      {crate_and("outputs = [\"hydrostatics\"]\n"),
+      {scene_with_crate("method = \"a\\u001b[31m\"\n"), "method = \"a?[31m\"; expected"},
+      {scene_with_crate("method = \"exat\"\n"), "The nearest is 'exact'."},
+      {scene_with_crate("method = 3\n"), "method = 3; expected one of fast"},
+      {scene_with_crate("open = \"refsue\"\n"),
+       "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
+      {scene_with_crate("open = true\n"), "open = true"},
+      {scene_with_crate("outputs = [\"hydrostatics\"]\n"),
        "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"] or [\"wrench\", "
-       "\"hydrostatics\"]. Likely cause: wrenches are what every request is answered with. Write outputs = "
+       "\"hydrostatics\"]. Likely cause: every response holds wrenches. Write outputs = "
        "[\"wrench\", \"hydrostatics\"]."},
-      {crate_and("outputs = [\"wrench\", \"hydrostatic\"]\n"),
+      {scene_with_crate("outputs = [\"wrench\", \"hydrostatic\"]\n"),
        "The nearest to 'hydrostatic' is 'hydrostatics'."},
-      {crate_and("outputs = [\"wrench\", \"wrench\"]\n"), "expected [\"wrench\"] or [\"wrench\", "},
-      {crate_and("outputs = []\n"), "outputs = []; expected [\"wrench\"] or [\"wrench\", \"hydrostatics\"]"},
-      {crate_and("outputs = \"wrench\"\n"), "expected [\"wrench\"] or [\"wrench\", "},
-      {crate_and("outputs = [\"wrench\", 1]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {scene_with_crate("outputs = [\"wrench\", \"wrench\"]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {scene_with_crate("outputs = []\n"),
+       "outputs = []; expected [\"wrench\"] or [\"wrench\", \"hydrostatics\"]"},
+      {scene_with_crate("outputs = \"wrench\"\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {scene_with_crate("outputs = [\"wrench\", 1]\n"), "expected [\"wrench\"] or [\"wrench\", "},
 
-      {crate_and("reference_point = [1, 2]\n"), "expected an array of 3 finite numbers (m)"},
-      {crate_and("reference_point = [1, 2, inf]\n"), "expected an array of 3 finite numbers (m)"},
-      {crate_and("reference_point = [1, 2, \"3\"]\n"), "expected an array of 3 finite numbers (m)"},
-      {crate_and("reference_point = 3\n"), "expected an array of 3 finite numbers (m)"},
-      {crate_and("client = 3\n"), "client = 3; expected a table"},
-      {crate_and("scale = 2\n"), "'scale' beside 'shape'"},
-      {crate_and("mesh = \"duck.dae\"\n"), "both 'mesh' and 'shape'"},
+      {scene_with_crate("reference_point = [1, 2]\n"), "expected an array of 3 finite numbers (m)"},
+      {scene_with_crate("reference_point = [1, 2, inf]\n"), "expected an array of 3 finite numbers (m)"},
+      {scene_with_crate("reference_point = [1, 2, \"3\"]\n"), "expected an array of 3 finite numbers (m)"},
+      {scene_with_crate("reference_point = 3\n"), "expected an array of 3 finite numbers (m)"},
+      {scene_with_crate("client = 3\n"), "client = 3; expected a table"},
+      {scene_with_crate("scale = 2\n"), "'scale' beside 'shape'"},
+      {scene_with_crate("mesh = \"duck.dae\"\n"), "both 'mesh' and 'shape'"},
       {"[[body]]\nid = 1\n", "neither 'mesh' nor 'shape'"},
       {"[[body]]\nid = 1\nmesh = \"duck.dae\"\nscale = 0\n", "scale = 0; expected a finite number above 0."},
-      {"[[body]]\nid = 1\nmesh = 5\n", "mesh = 5; expected a text"},
+      {"[[body]]\nid = 1\nmesh = 5\n", "mesh = 5; expected a string"},
       {"[[body]]\nid = 1\nshape = \"box\"\n", "shape = \"box\"; expected a table"},
       {"[[body]]\nshape = { type = \"box\" }\n", "[[body]] number 1: no key 'id'"},
       {"[[body]]\nid = 1.0\nshape = { type = \"box\" }\n", "id = 1.0; expected a whole number"},
@@ -236,85 +239,88 @@ TEST(SceneFile, RefusesWrongTypesAndRanges) {
       {"body = [1, 2]\n", "expected a section [[body]] for each body"},
       {"body = []\n", "no body"},
       {"", "no body"},
-      {crate_and("[[body]]\nid = 7\nshape = { type = \"box\" }\n"),
-       "pool.toml:4: body 7: id = 7; expected an id of its own for each body. Likely cause: the body at "
+      {scene_with_crate("[[body]]\nid = 7\nshape = { type = \"box\" }\n"),
+       "pool.toml:4: body 7: id = 7; expected a unique id for each body. Likely cause: the body at "
        "pool.toml:1 has the same id."},
-      {crate_and("[world]\nup = [0, 0, 0]\n"), "up = [0, 0, 0]; expected a direction"},
-      {crate_and("[world]\ngravity = -9.8\n"),
+      {scene_with_crate("[world]\nup = [0, 0, 0]\n"), "up = [0, 0, 0]; expected a direction"},
+      {scene_with_crate("[world]\ngravity = -9.8\n"),
        "gravity = -9.8; expected a finite number of at least 0 (m/s^2)"},
-      {crate_and("[water]\ndensity = inf\n"), "density = inf"},
-      {crate_and("[water]\nlevel = \"high\"\n"), "level = \"high\"; expected a finite number (m)"},
-      {"water = 3\n" + crate_and(), "water = 3; expected a table"},
-      {crate_and("[limits]\nmesh_bytes = 0\n"), "mesh_bytes = 0; expected a whole number of at least 1"},
-      {crate_and("[limits]\nvertices = 1.5\n"), "vertices = 1.5"},
-      {crate_and("[limits]\nfaces = -1\n"), "faces = -1"},
-      {crate_and("[limits]\nimport_seconds = 0\n"), "import_seconds = 0"},
-      {crate_and("[body.client]\nmass = 1\ndensity = 2\n"), "both 'mass' and 'density'"},
-      {crate_and("[body.client]\ndensity = 0\n"), "density = 0; expected a finite number above 0 (kg/m^3)"},
-      {crate_and("[body.client]\norientation = [0, 0, 0, 0]\n"),
+      {scene_with_crate("[water]\ndensity = inf\n"), "density = inf"},
+      {scene_with_crate("[water]\nlevel = \"high\"\n"), "level = \"high\"; expected a finite number (m)"},
+      {"water = 3\n" + scene_with_crate(), "water = 3; expected a table"},
+      {scene_with_crate("[limits]\nmesh_bytes = 0\n"),
+       "mesh_bytes = 0; expected a whole number of at least 1"},
+      {scene_with_crate("[limits]\nvertices = 1.5\n"), "vertices = 1.5"},
+      {scene_with_crate("[limits]\nfaces = -1\n"), "faces = -1"},
+      {scene_with_crate("[limits]\nimport_seconds = 0\n"), "import_seconds = 0"},
+      {scene_with_crate("[body.client]\nmass = 1\ndensity = 2\n"), "both 'mass' and 'density'"},
+      {scene_with_crate("[body.client]\ndensity = 0\n"),
+       "density = 0; expected a finite number above 0 (kg/m^3)"},
+      {scene_with_crate("[body.client]\norientation = [0, 0, 0, 0]\n"),
        "expected a quaternion (w, x, y, z), not zero"},
-      {crate_and("[body.client]\norientation = [1, 0, 0]\n"), "expected an array of 4 finite numbers"},
-      {crate_and("[body.client]\ninertia = [1, 1]\n"), "expected an array of 3 or 6 finite numbers (kg m^2)"},
-      {crate_and("[body.client]\ninertia = [1, 1, 0]\n"), "expected a positive definite matrix"},
-      {crate_and("[body.client]\ninertia = [1, 1, 1, 2, 0, 0]\n"), "expected a positive definite matrix"},
-      {crate_and("[body.client]\ninertia = [0, 0, 0]\n"), "expected a positive definite matrix"},
-      {crate_and("[body.client]\ninertia = [2, 0, 0, 2, 0, 3]\n"), "URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz"},
-      {crate_and("[body.client]\nlinear_damping = -1\n"), "linear_damping = -1"},
-      {crate_and("[body.client]\nlinear_damping_quadratic = -1\n"), "linear_damping_quadratic = -1"},
-      {crate_and("[body.client]\nangular_damping = -1\n"), "angular_damping = -1"},
-      {crate_and("[body.client]\nangular_damping_quadratic = -1\n"), "angular_damping_quadratic = -1"},
-      {crate_and("[body.client]\ncenter_of_mass = 1\n"), "center_of_mass = 1"},
-      {crate_and("[body.client]\nposition = []\n"), "position = []"},
+      {scene_with_crate("[body.client]\norientation = [1, 0, 0]\n"), "expected an array of 4 finite numbers"},
+      {scene_with_crate("[body.client]\ninertia = [1, 1]\n"),
+       "expected an array of 3 or 6 finite numbers (kg m^2)"},
+      {scene_with_crate("[body.client]\ninertia = [1, 1, 0]\n"), "expected a positive definite matrix"},
+      {scene_with_crate("[body.client]\ninertia = [1, 1, 1, 2, 0, 0]\n"),
+       "expected a positive definite matrix"},
+      {scene_with_crate("[body.client]\ninertia = [0, 0, 0]\n"), "expected a positive definite matrix"},
+      {scene_with_crate("[body.client]\ninertia = [2, 0, 0, 2, 0, 3]\n"),
+       "URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz"},
+      {scene_with_crate("[body.client]\nlinear_damping = -1\n"), "linear_damping = -1"},
+      {scene_with_crate("[body.client]\nlinear_damping_quadratic = -1\n"), "linear_damping_quadratic = -1"},
+      {scene_with_crate("[body.client]\nangular_damping = -1\n"), "angular_damping = -1"},
+      {scene_with_crate("[body.client]\nangular_damping_quadratic = -1\n"), "angular_damping_quadratic = -1"},
+      {scene_with_crate("[body.client]\ncenter_of_mass = 1\n"), "center_of_mass = 1"},
+      {scene_with_crate("[body.client]\nposition = []\n"), "position = []"},
   };
-  for (const auto& [text, told] : wrong) {
-    const std::string message = refusal_of(text);
-    EXPECT_NE(message.find(told), std::string::npos) << message << "\nshould say: " << told;
+  for (const auto& [text, expected] : wrong) {
+    const std::string message = parse_error(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\nexpected to contain: " << expected;
   }
 }
 
-TEST(SceneFile, RefusesAnInertiaThatNoBodyHas) {
-  const auto refusal = [](const std::string& inertia) {
-    return refusal_of(crate_and("[body.client]\ninertia = " + inertia + "\n"));
+TEST(SceneFile, RejectsImpossibleInertia) {
+  const auto inertia_error = [](const std::string& inertia) {
+    return parse_error(scene_with_crate("[body.client]\ninertia = " + inertia + "\n"));
   };
   EXPECT_EQ(
-      refusal("[1, 1, 4]"),
-      "pool.toml:5: body 7, [body.client]: inertia = [1, 1, 4]; expected principal moments of which none is "
-      "above the sum of the other two, as of any body (here they are 1, 1, 4 kg m^2). Likely cause: a number "
-      "in "
-      "another unit, another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz), a product of "
-      "inertia "
-      "of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too much taken off to move it from "
-      "another "
-      "point to the centre of mass. Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] about the centre "
-      "of "
-      "mass, or leave inertia out: it is then a closed mesh's own.");
+      inertia_error("[1, 1, 4]"),
+      "pool.toml:5: body 7, [body.client]: inertia = [1, 1, 4]; expected principal moments of which none "
+      "exceeds the sum of the other two, as for any body (here they are 1, 1, 4 kg m^2). Likely cause: a "
+      "number in another unit, another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz), a "
+      "product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too large a "
+      "correction "
+      "from another point to the centre of mass. Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] "
+      "about "
+      "the centre of mass, or leave inertia out: it then follows from a closed mesh.");
   for (const char* inertia : {"[4, 1, 1]", "[1, 4, 1]", "[8.0, 230.0, 245.0]", "[1e300, 1e300, 4e300]",
                               "[1e-300, 1e-300, 4e-300]", "[2, 2, 2, 1.5, 0, 0]", "[1, 1, 2.03]"}) {
-    EXPECT_NE(refusal(inertia).find("the sum of the other two"), std::string::npos) << inertia;
+    EXPECT_NE(inertia_error(inertia).find("the sum of the other two"), std::string::npos) << inertia;
   }
 }
 
-TEST(SceneFile, TakesTheInertiaOfThinPlatesAndRods) {
+TEST(SceneFile, AcceptsInertiaOfThinPlatesAndRods) {
   for (const char* inertia :
        {"[1, 1, 2]", "[0.0833, 0.0833, 0.1667]", "[0.333, 0.333, 0.667]", "[1e-9, 1, 1]", "[0.1, 0.2, 0.3]",
         "[1.5, 1.5, 1, 0.5, 0, 0]", "[1e300, 1e300, 2e300]", "[5e-324, 5e-324, 5e-324]"}) {
     const Expected<SceneDescription> scene =
-        parsed(crate_and("[body.client]\ninertia = " + std::string(inertia) + "\n"));
+        parse(scene_with_crate("[body.client]\ninertia = " + std::string(inertia) + "\n"));
     EXPECT_TRUE(scene) << scene.error().message();
   }
 }
 
-TEST(SceneFile, SaysWhereItIsNotToml) {
-  const std::string message = refusal_of("[world]\nup = [0, 0, 1\n[water]\n");
+TEST(SceneFile, LocatesTomlSyntaxErrors) {
+  const std::string message = parse_error("[world]\nup = [0, 0, 1\n[water]\n");
   EXPECT_EQ(message.rfind("pool.toml:3:", 0), 0U) << message;
   EXPECT_NE(message.find("expected TOML"), std::string::npos) << message;
 }
 
-TEST(SceneFile, NamesTheFirstOfSeveralFaults) {
-  EXPECT_NE(refusal_of("[world]\ngravity = -1\n[[body]]\nid = \"x\"\n").find("gravity"), std::string::npos);
+TEST(SceneFile, ReportsFirstOfSeveralErrors) {
+  EXPECT_NE(parse_error("[world]\ngravity = -1\n[[body]]\nid = \"x\"\n").find("gravity"), std::string::npos);
 }
 
-TEST(SceneFile, ResolvesMeshesAgainstItsOwnDirectory) {
+TEST(SceneFile, ResolvesMeshesAgainstItsDirectory) {
   const TempDir directory;
   const auto path = directory.write("pool.toml", "[[body]]\nid = 1\nmesh = \"duck.dae\"\n");
   const Expected<SceneDescription> scene = read_scene_file(path);
@@ -323,24 +329,24 @@ TEST(SceneFile, ResolvesMeshesAgainstItsOwnDirectory) {
   EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].source).path, directory.path() / "duck.dae");
 }
 
-std::string file_refusal(const std::filesystem::path& path) {
+std::string file_error(const std::filesystem::path& path) {
   const Expected<SceneDescription> scene = read_scene_file(path);
   return scene ? "accepted" : scene.error().message();
 }
 
-TEST(SceneFile, IsNamedWhereItCannotBeRead) {
+TEST(SceneFile, NamesUnreadableFiles) {
   const TempDir directory;
   const std::filesystem::path missing = directory.path() / "missing.toml";
-  EXPECT_EQ(file_refusal(missing).rfind(missing.string() + ": no such file", 0), 0U);
-  EXPECT_EQ(file_refusal(directory.path()).rfind(directory.path().string() + ": is a directory", 0), 0U);
-  EXPECT_NE(file_refusal("/dev/null").find("is not a regular file"), std::string::npos);
-  EXPECT_NE(file_refusal(directory.write("empty.toml", "")).find("no body"), std::string::npos);
+  EXPECT_EQ(file_error(missing).rfind(missing.string() + ": no such file", 0), 0U);
+  EXPECT_EQ(file_error(directory.path()).rfind(directory.path().string() + ": is a directory", 0), 0U);
+  EXPECT_NE(file_error("/dev/null").find("is not a regular file"), std::string::npos);
+  EXPECT_NE(file_error(directory.write("empty.toml", "")).find("no body"), std::string::npos);
   const std::filesystem::path large = directory.write("large.toml", "");
   std::filesystem::resize_file(large, 64'000'001);
-  EXPECT_NE(file_refusal(large).find("64000001 bytes"), std::string::npos);
+  EXPECT_NE(file_error(large).find("64000001 bytes"), std::string::npos);
 }
 
-TEST(SingleMeshScenes, HoldOneBodyInTheStandardSea) {
+TEST(SingleMeshScene, HasOneBodyInDefaultWater) {
   const SceneDescription scene =
       single_mesh_scene("models/duck.dae", Method::kExactSurface, 0.25, OpenPolicy::kDryBoundary);
   EXPECT_EQ(scene.water.level, 0.0);
@@ -354,16 +360,17 @@ TEST(SingleMeshScenes, HoldOneBodyInTheStandardSea) {
   EXPECT_EQ(scene.bodies[0].open, OpenPolicy::kDryBoundary);
 }
 
-// A terminal obeys them: what a file holds must not reach it through a message.
-TEST(SceneFile, TellsWhatIsWrongWithoutTheFilesControlCharacters) {
+// A terminal would interpret control characters of the file, so messages must not contain them.
+TEST(SceneFile, RemovesControlCharactersFromErrors) {
   for (const std::string& text :
-       {crate_and("open = \x7f\n"), crate_and("\"sc\\u001bale\" = 1\n"),
-        crate_and("outputs = [\"wre\\u0007nch\"]\n"), crate_and("method = \"ex\\u009bact\\n\"\n")}) {
-    const std::string refusal = refusal_of(text);
-    EXPECT_NE(refusal, "accepted");
-    EXPECT_TRUE(std::none_of(refusal.begin(), refusal.end(), [](char c) {
+       {scene_with_crate("open = \x7f\n"), scene_with_crate("\"sc\\u001bale\" = 1\n"),
+        scene_with_crate("outputs = [\"wre\\u0007nch\"]\n"),
+        scene_with_crate("method = \"ex\\u009bact\\n\"\n")}) {
+    const std::string message = parse_error(text);
+    EXPECT_NE(message, "accepted");
+    EXPECT_TRUE(std::none_of(message.begin(), message.end(), [](char c) {
       return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    })) << refusal;
+    })) << message;
   }
 }
 

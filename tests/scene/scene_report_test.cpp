@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 Scene prepared(const std::string& text) {
-  Expected<Scene> scene = Scene::prepare(parsed(text).value());
+  Expected<Scene> scene = Scene::prepare(parse(text).value());
   return *std::move(scene);
 }
 
@@ -44,7 +44,7 @@ shape = { type = "box", size = [1, 2, 3] }
 mass = 3000
 )";
 
-TEST(SceneReports, HoldTheWaterAndEveryBodyAsJson) {
+TEST(SceneReport, WritesWaterAndBodiesAsJson) {
   const Json report = Json::parse(scene_report_json(prepared(kThreeBodies)));
   EXPECT_EQ(report["scene"], "pool.toml");
   EXPECT_EQ(report["water"]["level"], 1.5);
@@ -66,7 +66,7 @@ TEST(SceneReports, HoldTheWaterAndEveryBodyAsJson) {
   EXPECT_EQ(report["bodies"][2]["mesh"], 0);
 }
 
-TEST(SceneReports, HoldTheMassThatTheSimulatorWillUse) {
+TEST(SceneReport, WritesMassUsedBySimulator) {
   const Json report = Json::parse(scene_report_json(prepared(kThreeBodies)));
   EXPECT_NEAR(report["bodies"][0]["mass"], 1800.0, 1e-11);
   EXPECT_EQ(report["bodies"][0]["density"], 300.0);
@@ -76,7 +76,7 @@ TEST(SceneReports, HoldTheMassThatTheSimulatorWillUse) {
   EXPECT_NEAR(report["bodies"][2]["density"], 500.0, 1e-11);
 }
 
-TEST(SceneReports, HoldEveryMeshWithItsBodiesAsJson) {
+TEST(SceneReport, WritesMeshesWithTheirBodiesAsJson) {
   const Scene scene = prepared(kThreeBodies);
   const Json report = Json::parse(scene_report_json(scene));
   ASSERT_EQ(report["meshes"].size(), 2U);
@@ -103,7 +103,7 @@ TEST(SceneReports, HoldEveryMeshWithItsBodiesAsJson) {
   EXPECT_EQ(report["meshes"][1]["bodies"], Json({5}));
 }
 
-TEST(SceneReports, LeaveTheMassOfOpenMeshesUnknown) {
+TEST(SceneReport, WritesUnknownMassForOpenMeshes) {
   const TempDir directory;
   const std::string mesh =
       directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
@@ -112,23 +112,24 @@ TEST(SceneReports, LeaveTheMassOfOpenMeshesUnknown) {
   EXPECT_EQ(report["bodies"][0]["mass"], nullptr);
   EXPECT_EQ(report["meshes"][0]["closed"], false);
   EXPECT_EQ(report["meshes"][0]["holes"][0]["edges"], 3);
-  EXPECT_NE(scene_report_text(scene).find("mass          not known: the mesh is open"), std::string::npos);
+  EXPECT_NE(scene_report_text(scene).find("mass          unknown: the mesh is open"), std::string::npos);
 }
 
-TEST(SceneReports, TellPeopleOfEveryBodyAndMesh) {
+TEST(SceneReport, FormatsBodiesAndMeshesAsText) {
   const std::string text = scene_report_text(prepared(kThreeBodies));
-  for (const char* told : {"pool.toml\n", "up . x < 1.5 m", "1000 kg/m^3", "body 4  crate\n",
-                           "body 5  ball\n", "body 6  chest\n", "fast_surface, tolerance 0.25", "[1, 2, 3] m",
-                           "outputs       wrench, hydrostatics\n", "outputs       wrench\n",
-                           "1800 kg, 300 kg/m^3", "3000 kg, 500 kg/m^3", "mesh box\n", "mesh sphere\n",
-                           "used by       body 4, 6\n", "used by       body 5\n"}) {
-    EXPECT_NE(text.find(told), std::string::npos) << "missing: " << told << "\n" << text;
+  for (const char* expected :
+       {"pool.toml\n", "up . x < 1.5 m", "1000 kg/m^3", "body 4  crate\n", "body 5  ball\n",
+        "body 6  chest\n", "fast_surface, tolerance 0.25", "[1, 2, 3] m",
+        "outputs       wrench, hydrostatics\n", "outputs       wrench\n", "1800 kg, 300 kg/m^3",
+        "3000 kg, 500 kg/m^3", "mesh box\n", "mesh sphere\n", "used by       body 4, 6\n",
+        "used by       body 5\n"}) {
+    EXPECT_NE(text.find(expected), std::string::npos) << "missing: " << expected << "\n" << text;
   }
   EXPECT_EQ(text.back(), '\n');
 }
 
-TEST(SceneReports, WriteNullForNumbersThatAreNotFinite) {
-  // 1e300 kg in 1e-27 m^3: a density beyond double's range.
+TEST(SceneReport, WritesNullForNonFiniteNumbers) {
+  // The density of 1e300 kg in 1e-27 m^3 overflows.
   const Scene scene = prepared(
       "[[body]]\nid = 1\nshape = { type = \"box\", size = [1e-9, 1e-9, 1e-9] }\n[body.client]\nmass = "
       "1e300\n");

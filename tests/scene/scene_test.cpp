@@ -11,8 +11,7 @@
 namespace buoyancy {
 namespace {
 
-Expected<Scene> loaded(const TempDir& directory, const std::string& text,
-                       const PrepareOptions& options = {}) {
+Expected<Scene> load(const TempDir& directory, const std::string& text, const PrepareOptions& options = {}) {
   return Scene::load(directory.write("pool.toml", text), options);
 }
 
@@ -22,7 +21,7 @@ std::string body_with(int id, const std::string& keys) {
 
 TEST(Scene, PreparesGeneratedShapes) {
   const TempDir directory;
-  const auto scene = loaded(directory, body_with(4, "shape = { type = \"box\", size = [1, 2, 3] }"));
+  const auto scene = load(directory, body_with(4, "shape = { type = \"box\", size = [1, 2, 3] }"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->name(), (directory.path() / "pool.toml").string());
   ASSERT_EQ(scene->meshes().size(), 1U);
@@ -38,14 +37,13 @@ TEST(Scene, PreparesGeneratedShapes) {
   EXPECT_EQ(body.solver.method(), Method::kHierarchical);
 }
 
-TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
+TEST(Scene, CopiesBodySettings) {
   const TempDir directory;
-  const auto scene =
-      loaded(directory,
-             "[water]\nlevel = 3\n" + body_with(4,
-                                                "name = \"crate\"\nshape = { type = \"box\" }\nmethod = "
-                                                "\"fast\"\ntolerance = 0.25\nreference_point = [1, 2, 3]\n"
-                                                "[body.client]\nmass = 9"));
+  const auto scene = load(directory, "[water]\nlevel = 3\n" +
+                                         body_with(4,
+                                                   "name = \"crate\"\nshape = { type = \"box\" }\nmethod = "
+                                                   "\"fast\"\ntolerance = 0.25\nreference_point = [1, 2, 3]\n"
+                                                   "[body.client]\nmass = 9"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->water().level, 3.0);
   const Body& body = scene->bodies()[0];
@@ -57,16 +55,15 @@ TEST(Scene, HandsOnWhatTheFileSaysOfABody) {
   EXPECT_EQ(body.client.mass, 9.0);
 }
 
-TEST(Scene, GivesTheTreeToMeshesWhoseBodiesAskForHydrostatics) {
+TEST(Scene, BuildsTreeForRequestedHydrostatics) {
   const TempDir directory;
   const std::string exact_box = "shape = { type = \"box\" }\nmethod = \"exact\"\n";
-  const auto without = loaded(directory, body_with(1, exact_box));
+  const auto without = load(directory, body_with(1, exact_box));
   ASSERT_TRUE(without) << without.error().message();
   EXPECT_FALSE(without->bodies()[0].hydrostatics);
   EXPECT_FALSE(without->meshes()[0]->mesh.tree);
-  const auto with =
-      loaded(directory,
-             body_with(1, exact_box) + body_with(2, exact_box + "outputs = [\"wrench\", \"hydrostatics\"]"));
+  const auto with = load(directory, body_with(1, exact_box) +
+                                        body_with(2, exact_box + "outputs = [\"wrench\", \"hydrostatics\"]"));
   ASSERT_TRUE(with) << with.error().message();
   EXPECT_FALSE(with->bodies()[0].hydrostatics);
   EXPECT_TRUE(with->bodies()[1].hydrostatics);
@@ -74,14 +71,14 @@ TEST(Scene, GivesTheTreeToMeshesWhoseBodiesAskForHydrostatics) {
   EXPECT_TRUE(with->meshes()[0]->mesh.tree);
 }
 
-TEST(Scene, KnowsTheCentreOfMassWhereTheClientSaysHowTheMassLies) {
+TEST(Scene, DerivesCentreOfMassFromDynamics) {
   const TempDir directory;
   const std::string open_mesh =
       directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const std::string cone = "shape = { type = \"cone\", height = 2 }\n";
   const std::string open = "mesh = \"" + open_mesh + "\"\nopen = \"dry_boundary\"\n";
   const auto center = [&](const std::string& keys) {
-    const auto scene = loaded(directory, body_with(1, keys));
+    const auto scene = load(directory, body_with(1, keys));
     EXPECT_TRUE(scene) << scene.error().message();
     return scene->bodies()[0].center_of_mass_B;
   };
@@ -98,34 +95,33 @@ TEST(Scene, KnowsTheCentreOfMassWhereTheClientSaysHowTheMassLies) {
   EXPECT_EQ(center(open + "[body.client]\nmass = 3\ncenter_of_mass = [1, 2, 3]"), Vec3(1, 2, 3));
 }
 
-TEST(Scene, LoadsAMeshUsedTwiceOnce) {
+TEST(Scene, LoadsSharedMeshOnce) {
   const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
   std::filesystem::create_symlink(directory.path() / "tetrahedron.obj", directory.path() / "alias.obj");
-  const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
-                                           body_with(2, "mesh = \"./tetrahedron.obj\"\nmethod = \"fast\"") +
-                                           body_with(3, "mesh = \"alias.obj\""));
+  const auto scene = load(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
+                                         body_with(2, "mesh = \"./tetrahedron.obj\"\nmethod = \"fast\"") +
+                                         body_with(3, "mesh = \"alias.obj\""));
   ASSERT_TRUE(scene) << scene.error().message();
   ASSERT_EQ(scene->meshes().size(), 1U);
   for (const Body& body : scene->bodies()) EXPECT_EQ(body.prepared_mesh, scene->meshes()[0].get());
 }
 
-TEST(Scene, PreparesAMeshAgainForAnotherScaleOrOpenPolicy) {
+TEST(Scene, PreparesMeshPerScaleAndOpenPolicy) {
   const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
-  const auto scene =
-      loaded(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
-                            body_with(2, "mesh = \"tetrahedron.obj\"\nscale = 2") +
-                            body_with(3, "mesh = \"tetrahedron.obj\"\nopen = \"dry_boundary\""));
+  const auto scene = load(directory, body_with(1, "mesh = \"tetrahedron.obj\"") +
+                                         body_with(2, "mesh = \"tetrahedron.obj\"\nscale = 2") +
+                                         body_with(3, "mesh = \"tetrahedron.obj\"\nopen = \"dry_boundary\""));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->meshes().size(), 3U);
 }
 
-TEST(Scene, SharesEqualShapesOnly) {
+TEST(Scene, SharesOnlyEqualShapes) {
   const TempDir directory;
-  const auto scene = loaded(directory, body_with(1, "shape = { type = \"rock\", seed = 1 }") +
-                                           body_with(2, "shape = { type = \"rock\", seed = 2 }") +
-                                           body_with(3, "shape = { type = \"rock\" }"));
+  const auto scene = load(directory, body_with(1, "shape = { type = \"rock\", seed = 1 }") +
+                                         body_with(2, "shape = { type = \"rock\", seed = 2 }") +
+                                         body_with(3, "shape = { type = \"rock\" }"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->meshes().size(), 2U);
   EXPECT_EQ(scene->bodies()[0].prepared_mesh, scene->bodies()[2].prepared_mesh);
@@ -134,17 +130,17 @@ TEST(Scene, SharesEqualShapesOnly) {
 TEST(Scene, ScalesMeshesInDouble) {
   const TempDir directory;
   directory.write("tetrahedron.ply", tetrahedron::binary_ply());
-  const auto scene = loaded(directory, body_with(1, "mesh = \"tetrahedron.ply\"\nscale = 0.1"));
+  const auto scene = load(directory, body_with(1, "mesh = \"tetrahedron.ply\"\nscale = 0.1"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->meshes()[0]->report.box.max_B, Vec3(0.1, 0.1, 0.1));
   EXPECT_NEAR(scene->meshes()[0]->mass_properties.volume, 1e-3 / 6.0, 1e-18);
 }
 
-TEST(Scene, FindsBodiesByTheirId) {
+TEST(Scene, FindsBodiesById) {
   const TempDir directory;
-  const auto scene = loaded(directory, body_with(9, "shape = { type = \"box\" }") +
-                                           body_with(-5, "shape = { type = \"box\" }") +
-                                           body_with(2, "shape = { type = \"box\" }"));
+  const auto scene = load(directory, body_with(9, "shape = { type = \"box\" }") +
+                                         body_with(-5, "shape = { type = \"box\" }") +
+                                         body_with(2, "shape = { type = \"box\" }"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->index_of(9), 0U);
   EXPECT_EQ(scene->index_of(-5), 1U);
@@ -155,37 +151,37 @@ TEST(Scene, FindsBodiesByTheirId) {
   EXPECT_EQ(scene->find(3), nullptr);
 }
 
-TEST(Scene, AnswersAfterItHasBeenMoved) {
+TEST(Scene, StaysValidAfterMove) {
   const TempDir directory;
-  auto scene = loaded(directory, body_with(1, "shape = { type = \"box\" }\nmethod = \"fast\""));
+  auto scene = load(directory, body_with(1, "shape = { type = \"box\" }\nmethod = \"fast\""));
   ASSERT_TRUE(scene) << scene.error().message();
-  const WaterPlane all_wet{Vec3::UnitZ(), 10.0};
-  const Displacement before = scene->bodies()[0].solver.displacement(all_wet);
+  const WaterPlane fully_submerged{Vec3::UnitZ(), 10.0};
+  const Displacement before = scene->bodies()[0].solver.displacement(fully_submerged);
   const Scene moved = *std::move(scene);
-  EXPECT_EQ(moved.bodies()[0].solver.displacement(all_wet).volume, before.volume);
+  EXPECT_EQ(moved.bodies()[0].solver.displacement(fully_submerged).volume, before.volume);
   EXPECT_NEAR(before.volume, 1.0, 1e-15);
 }
 
-TEST(Scene, CountsIntersectionsOnRequestOnly) {
+TEST(Scene, CountsIntersectionsOnlyOnRequest) {
   const TempDir directory;
   const std::string text = body_with(1, "shape = { type = \"box\" }");
-  const auto plain = loaded(directory, text);
+  const auto plain = load(directory, text);
   ASSERT_TRUE(plain) << plain.error().message();
   EXPECT_FALSE(plain->meshes()[0]->report.intersecting_pairs);
-  const auto counted = loaded(directory, text, {.count_intersecting_pairs = true});
+  const auto counted = load(directory, text, {.count_intersecting_pairs = true});
   ASSERT_TRUE(counted) << counted.error().message();
   EXPECT_EQ(counted->meshes()[0]->report.intersecting_pairs, 0);
 }
 
-std::string refusal(const Expected<Scene>& scene) {
+std::string load_error(const Expected<Scene>& scene) {
   return scene ? "accepted" : scene.error().message();
 }
 
-TEST(Scene, NamesFileLineBodyAndMeshWhereAMeshCannotBeUsed) {
+TEST(Scene, NamesFileLineBodyAndMeshInErrors) {
   const TempDir directory;
   directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   for (const std::string mesh : {"missing.obj", "open.obj"}) {
-    const std::string message = refusal(loaded(
+    const std::string message = load_error(load(
         directory, body_with(1, "shape = { type = \"box\" }") + body_with(22, "mesh = \"" + mesh + "\"")));
     const std::string start = (directory.path() / "pool.toml").string() + ":4: body 22, ";
     EXPECT_EQ(message.rfind(start, 0), 0U) << message;
@@ -193,27 +189,27 @@ TEST(Scene, NamesFileLineBodyAndMeshWhereAMeshCannotBeUsed) {
   }
 }
 
-TEST(Scene, TakesOpenMeshesWhereTheFileSaysSo) {
+TEST(Scene, AcceptsOpenMeshesWithDryBoundaryPolicy) {
   const TempDir directory;
   directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
-  const auto scene = loaded(directory, body_with(1, "mesh = \"open.obj\"\nopen = \"dry_boundary\""));
+  const auto scene = load(directory, body_with(1, "mesh = \"open.obj\"\nopen = \"dry_boundary\""));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_TRUE(scene->bodies()[0].prepared_mesh->mesh.is_open());
 }
 
-TEST(Scene, RefusesMeshesBeyondItsLimits) {
+TEST(Scene, RejectsMeshesBeyondLimits) {
   const TempDir directory;
   directory.write("tetrahedron.obj", tetrahedron::obj());
   const std::string message =
-      refusal(loaded(directory, "[limits]\nfaces = 3\n" + body_with(1, "mesh = \"tetrahedron.obj\"")));
+      load_error(load(directory, "[limits]\nfaces = 3\n" + body_with(1, "mesh = \"tetrahedron.obj\"")));
   EXPECT_NE(message.find("body 1, "), std::string::npos) << message;
 }
 
-TEST(Scene, NamesOnlyTheMeshWhereThereIsNoSceneFile) {
+TEST(Scene, NamesOnlyMeshWithoutSceneFile) {
   const TempDir directory;
   const std::filesystem::path mesh = directory.path() / "missing.obj";
   const std::string message =
-      refusal(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0, OpenPolicy::kRefuse)));
+      load_error(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0, OpenPolicy::kRefuse)));
   EXPECT_EQ(message.rfind(mesh.string() + ": ", 0), 0U) << message;
 }
 

@@ -1,4 +1,4 @@
-// Scenes as texts, for tests.
+// Scene texts for tests.
 #pragma once
 
 #include <string>
@@ -7,18 +7,18 @@
 
 namespace buoyancy {
 
-// One body, on lines 1 to 3; what is added begins on line 4.
-inline std::string crate_and(const std::string& more = "") {
+// Returns a scene of one body on lines 1 to 3, followed by `more` from line 4.
+inline std::string scene_with_crate(const std::string& more = "") {
   return "[[body]]\nid = 7\nshape = { type = \"box\" }\n" + more;
 }
 
-inline Expected<SceneDescription> parsed(const std::string& text) {
+inline Expected<SceneDescription> parse(const std::string& text) {
   return parse_scene(text, "pool.toml", "scenes");
 }
 
-// What a person is told about the text.
-inline std::string refusal_of(const std::string& text) {
-  const Expected<SceneDescription> scene = parsed(text);
+// Returns the error message for the text, or "accepted".
+inline std::string parse_error(const std::string& text) {
+  const Expected<SceneDescription> scene = parse(text);
   return scene ? "accepted" : scene.error().message();
 }
 

@@ -13,7 +13,7 @@ std::string with_shape(const std::string& shape) {
   return "[[body]]\nid = 1\nshape = " + shape + "\n";
 }
 
-TEST(ShapeTables, GiveEveryShapeAllItsSizes) {
+TEST(ParseShape, ReadsAllSizesOfEveryShape) {
   const std::vector<std::pair<std::string, Shape>> shapes{
       {R"({ type = "box", size = [1, 2.5, 3], segments = [4, 5, 6] })", BoxShape{{1, 2.5, 3}, {4, 5, 6}}},
       {R"({ type = "sphere", radius = 2, segments = 7 })", SphereShape{2, 7}},
@@ -28,23 +28,23 @@ TEST(ShapeTables, GiveEveryShapeAllItsSizes) {
        RockShape{2, 5, 0.5, 99}},
   };
   for (const auto& [text, shape] : shapes) {
-    const auto scene = parsed(with_shape(text));
+    const auto scene = parse(with_shape(text));
     ASSERT_TRUE(scene) << scene.error().message();
     EXPECT_EQ(std::get<Shape>(scene->bodies[0].source), shape) << text;
   }
 }
 
-TEST(ShapeTables, TakeDefaultsForSizesLeftOut) {
+TEST(ParseShape, UsesDefaultsForMissingSizes) {
   const std::vector<Shape> defaults{BoxShape{},       SphereShape{}, CylinderShape{}, ConeShape{},
                                     TorusKnotShape{}, WigleyShape{}, RockShape{}};
   for (const Shape& shape : defaults) {
-    const auto scene = parsed(with_shape("{ type = \"" + std::string(type_name(shape)) + "\" }"));
+    const auto scene = parse(with_shape("{ type = \"" + std::string(type_name(shape)) + "\" }"));
     ASSERT_TRUE(scene) << scene.error().message();
     EXPECT_EQ(std::get<Shape>(scene->bodies[0].source), shape);
   }
 }
 
-TEST(ShapeTables, SayWhatIsWrongWithTheLine) {
+TEST(ParseShape, ReportsErrorsWithLine) {
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"{ }", "pool.toml:3: body 1, shape: no key 'type'"},
       {"{ typ = \"box\" }", "no key 'type'"},
@@ -60,9 +60,9 @@ TEST(ShapeTables, SayWhatIsWrongWithTheLine) {
       {"{ type = \"rock\", seed = -1 }", "seed = -1; expected a whole number of at least 0"},
       {"{ type = \"rock\", roughness = 0.9 }", "roughness = 0.9"},
   };
-  for (const auto& [shape, told] : wrong) {
-    const std::string message = refusal_of(with_shape(shape));
-    EXPECT_NE(message.find(told), std::string::npos) << message << "\nshould say: " << told;
+  for (const auto& [shape, expected] : wrong) {
+    const std::string message = parse_error(with_shape(shape));
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\nexpected to contain: " << expected;
   }
 }
 

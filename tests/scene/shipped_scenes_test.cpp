@@ -1,4 +1,4 @@
-// The scenes that come with the project, as a user meets them.
+// Tests of the scenes that are installed with the project.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -15,7 +15,7 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(BUOYANCY_SOURCE_DIR) / "scenes" / name;
 }
 
-TEST(ShippedScenes, AreAllReadable) {
+TEST(ShippedScenes, AreReadable) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(shipped(""))) {
     const Expected<SceneDescription> scene = read_scene_file(entry.path());
@@ -25,7 +25,7 @@ TEST(ShippedScenes, AreAllReadable) {
   EXPECT_GE(count, 5U);
 }
 
-TEST(ShippedScenes, OfGeneratedShapesHoldBodiesThatFloat) {
+TEST(ShippedScenes, HaveFloatingBodies) {
   for (const auto& entry : std::filesystem::directory_iterator(shipped(""))) {
     if (entry.path().filename() == "duck.toml") continue;
     const Expected<Scene> scene = Scene::load(entry.path());
@@ -38,12 +38,12 @@ TEST(ShippedScenes, OfGeneratedShapesHoldBodiesThatFloat) {
   }
 }
 
-TEST(ShippedScenes, LetADuckOfSensibleSizeFallIntoTheWater) {
+TEST(ShippedScenes, DropDuckOfPlausibleSize) {
   const Expected<SceneDescription> description = read_scene_file(shipped("duck.toml"));
   ASSERT_TRUE(description) << description.error().message();
   const std::filesystem::path model = std::get<MeshFile>(description->bodies.at(0).source).path;
   if (!std::filesystem::exists(model)) {
-    GTEST_SKIP() << model << " is not there: the package assimp-testmodels is not installed";
+    GTEST_SKIP() << model << " was not found: the package assimp-testmodels is not installed";
   }
   const Expected<Scene> scene = Scene::prepare(*description);
   ASSERT_TRUE(scene) << scene.error().message();
@@ -51,18 +51,18 @@ TEST(ShippedScenes, LetADuckOfSensibleSizeFallIntoTheWater) {
   EXPECT_EQ(duck.prepared_mesh->report.triangles, 4'212);
   EXPECT_TRUE(duck.prepared_mesh->report.closed());
 
-  // Its lowest point is above the water, its head is up.
-  double lowest = 1e9;
-  double highest = -1e9;
+  // Its lowest point is above the water and its head is up.
+  double min_z = 1e9;
+  double max_z = -1e9;
   const HydrostaticMesh& mesh = duck.prepared_mesh->mesh;
   for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
     const Vec3 vertex_B = mesh.center_B + Vec3(mesh.surface.x[i], mesh.surface.y[i], mesh.surface.z[i]);
     const Vec3 vertex_W = duck.client.position + duck.client.orientation * vertex_B;
-    lowest = std::min(lowest, vertex_W.z());
-    highest = std::max(highest, vertex_W.z());
+    min_z = std::min(min_z, vertex_W.z());
+    max_z = std::max(max_z, vertex_W.z());
   }
-  EXPECT_GT(lowest, 0.0);
-  EXPECT_LT(highest, 3.0);
+  EXPECT_GT(min_z, 0.0);
+  EXPECT_LT(max_z, 3.0);
   const Vec3 head_up_W = duck.client.orientation * Vec3::UnitY();
   EXPECT_GT(head_up_W.z(), 0.7);
 }
