@@ -1,5 +1,5 @@
-# Defines buoyancy::lcm, whatever LCM is installed: 1.3.1 of Debian 12 has no CMake config, 1.4 and newer have one
-# with a target that is called lcm or lcm::lcm. Sets LCM_GEN_EXECUTABLE where lcm-gen is found.
+# Defines the target buoyancy::lcm for every supported LCM version: 1.3.1 (Debian 12) has no CMake package; 1.4 and newer
+# have one whose target is named lcm or lcm::lcm. Sets LCM_GEN_EXECUTABLE if lcm-gen is found.
 if(NOT TARGET buoyancy::lcm)
   add_library(buoyancy::lcm INTERFACE IMPORTED)
   find_package(lcm CONFIG QUIET)

@@ -1,15 +1,15 @@
-# The message types in Java, as one jar: what lcm-spy needs to decode them (client/buoyancy-spy.in). Defines the target
-# buoyancy_java_types where a Java compiler and LCM's own jar are installed.
+# The message types as a Java archive, which lcm-spy needs to decode them (client/buoyancy-spy.in). Defines the target
+# buoyancy_java_types if a Java compiler and LCM's jar are installed.
 find_package(Java COMPONENTS Development QUIET)
 set(java_packages "default-jdk-headless liblcm-java")
 if(NOT Java_FOUND)
-  message(STATUS "buoyancy-spy is left out: there is no Java compiler. On Debian: apt-get install ${java_packages}")
+  message(STATUS "buoyancy-spy is not built: no Java compiler was found. On Debian: apt-get install ${java_packages}")
   return()
 endif()
 include(UseJava)
 find_jar(LCM_JAR NAMES lcm)
 if(NOT LCM_JAR)
-  message(STATUS "buoyancy-spy is left out: lcm.jar was not found. On Debian: apt-get install ${java_packages}")
+  message(STATUS "buoyancy-spy is not built: lcm.jar was not found. On Debian: apt-get install ${java_packages}")
   return()
 endif()
 
@@ -21,7 +21,7 @@ add_custom_command(
   DEPENDS ${type_files}
   COMMENT "Generating Java from the message definitions"
   VERBATIM)
-# Classes that any Java from 8 on reads. In a directory that lies to the programs as in an installation.
+# The classes run on Java 8 and newer. The path relative to the programs is the same as in an installation.
 set(CMAKE_JAVA_COMPILE_FLAGS -encoding UTF-8 -Xlint:-options --release 8)
 add_jar(
   buoyancy_java_types

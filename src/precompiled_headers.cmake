@@ -1,11 +1,11 @@
-# Precompiled headers: other projects' headers that many of our sources include, parsed once instead of once per source.
-# They save compile time and nothing else: every source still includes what it uses, and
-# -DBUOYANCY_PRECOMPILED_HEADERS=OFF builds the same programs. Included last, when all targets are known.
+# Precompiled headers: third-party headers that many sources include are parsed once instead of once per source. They
+# only save compile time: every source still includes what it uses, and -DBUOYANCY_PRECOMPILED_HEADERS=OFF builds the
+# same programs. The top-level CMakeLists.txt includes this file last, when all targets are known.
 set(standard_headers
     <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory> <mutex>
     <optional> <sstream> <string> <string_view> <thread> <utility> <vector> <Eigen/Geometry> <tl/expected.hpp>)
 
-# buoyancy_precompiled_headers(<kind> HEADERS ... LIBRARIES ...): the target whose headers all targets of a kind reuse.
+# buoyancy_precompiled_headers(<kind> HEADERS ... LIBRARIES ...) adds the target whose headers all targets of a kind reuse.
 function(buoyancy_precompiled_headers kind)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/precompiled_${kind}.cpp)
@@ -16,7 +16,7 @@ function(buoyancy_precompiled_headers kind)
   target_precompile_headers(buoyancy_precompiled_${kind} PRIVATE ${standard_headers} ${ARG_HEADERS})
 endfunction()
 
-# Of one kind are targets that are compiled with the same options and the same definitions of what the headers read.
+# Targets of one kind are compiled with the same options and the same macro definitions.
 buoyancy_precompiled_headers(library)
 set_target_properties(buoyancy_precompiled_library PROPERTIES POSITION_INDEPENDENT_CODE ON)
 buoyancy_precompiled_headers(
@@ -29,8 +29,8 @@ if(BUOYANCY_BUILD_TESTS)
                                LIBRARIES GTest::gtest nlohmann_json::nlohmann_json)
 endif()
 
-# Whether a library, or one that it links, makes those who link it generate other code. g++ takes such options from where
-# a header was precompiled, and does not always say so.
+# Sets <result> to whether a library, or one that it links, passes code generation options to its users. g++ applies the
+# options with which a header was precompiled and does not always warn about a difference.
 function(buoyancy_changes_code library result)
   set(${result} FALSE PARENT_SCOPE)
   if(NOT TARGET ${library} OR library STREQUAL buoyancy_compile_options)
@@ -51,14 +51,14 @@ function(buoyancy_changes_code library result)
   endforeach()
 endfunction()
 
-# Reuses them in the targets of a folder and those below it that are compiled with our options.
+# Reuses the precompiled headers in the targets of a folder and its subfolders that use buoyancy_compile_options.
 function(buoyancy_reuse_precompiled_headers folder)
   get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
-  foreach(below ${folders})
-    buoyancy_reuse_precompiled_headers(${below})
+  foreach(subfolder ${folders})
+    buoyancy_reuse_precompiled_headers(${subfolder})
   endforeach()
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
-  get_property(options_of_all DIRECTORY ${folder} PROPERTY COMPILE_OPTIONS)
+  get_property(folder_options DIRECTORY ${folder} PROPERTY COMPILE_OPTIONS)
   foreach(target ${targets})
     get_target_property(type ${target} TYPE)
     get_target_property(libraries ${target} LINK_LIBRARIES)
@@ -66,8 +66,8 @@ function(buoyancy_reuse_precompiled_headers folder)
     if(NOT type MATCHES "^(EXECUTABLE|STATIC_LIBRARY)$" OR NOT "${libraries}" MATCHES "buoyancy_compile_options")
       continue()
     endif()
-    if(options AND NOT "${options}" STREQUAL "${options_of_all}")
-      continue()  # it is compiled otherwise
+    if(options AND NOT "${options}" STREQUAL "${folder_options}")
+      continue()  # the target has compile options of its own
     endif()
     set(changed FALSE)
     foreach(library ${libraries})
