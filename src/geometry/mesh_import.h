@@ -5,7 +5,7 @@
 // triangles, node transforms are applied in double, and the winding of mirrored nodes is reversed so that
 // normals keep pointing outward; points and lines are left out and counted. Vertices are returned as stored:
 // unwelded, in assimp's single precision. Formats, by extension: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX,
-// 3DS. If a file's content does not match its extension, the error says so.
+// 3DS. If a file's content does not match its extension, the error names both.
 #pragma once
 
 #include <cstdint>

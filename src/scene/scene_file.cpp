@@ -72,8 +72,7 @@ void check_inertia(TomlTable& table, const Mat3& inertia_B) {
                   "principal moments of which none exceeds the sum of the other two, as for any body" + here,
                   "a number in another unit, " + other_order +
                       ", a product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or "
-                      "too large a "
-                      "correction from another point to the centre of mass",
+                      "too large a correction from another point to the centre of mass",
                   hint);
   }
 }
@@ -181,7 +180,7 @@ void read_source(TomlTable& table, BodyDescription& body, const std::filesystem:
   if (has_mesh && has_shape) {
     table.fail("both 'mesh' and 'shape'", "one of them", {}, "Remove one");
   } else if (has_shape && table.has("scale")) {
-    table.fail("'scale' beside 'shape'", "a scale only with a mesh file", {},
+    table.fail("both 'scale' and 'shape'", "a scale only with a mesh file", {},
                "Give the shape its sizes in metres");
   }
   if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};

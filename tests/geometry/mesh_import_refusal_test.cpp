@@ -258,8 +258,8 @@ TEST_F(MeshImportErrors, AreCompleteForCorruptedFiles) {
 TEST_F(MeshImportErrors, RejectSharedMalformedFiles) {
   const fs::path malformed = shared_mesh_file("malformed");
   if (!fs::exists(malformed)) {
-    // Their licences keep them out of the project (shared_mesh_files.h).
-    GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
+    // Their licences exclude them from the project (shared_mesh_files.h).
+    GTEST_SKIP() << "the shared meshes were not found; set BUOYANCY_MESHES to their directory";
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(malformed)) import_error(entry.path());
 }

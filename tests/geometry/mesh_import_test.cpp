@@ -238,8 +238,8 @@ TEST(MeshImportRealFiles, MatchIndependentTriangleAndVertexCounts) {
       SharedMesh{"wheels_2comp_78164.obj", 78'164, 234'492},
   };
   if (!fs::exists(shared_mesh_file(kMeshes[0].name))) {
-    // Their licences keep them out of the project (shared_mesh_files.h).
-    GTEST_SKIP() << "the meshes beside the project are not here; set BUOYANCY_MESHES to their directory";
+    // Their licences exclude them from the project (shared_mesh_files.h).
+    GTEST_SKIP() << "the shared meshes were not found; set BUOYANCY_MESHES to their directory";
   }
   for (const SharedMesh& expected : kMeshes) {
     const ImportedMesh found = imported(shared_mesh_file(expected.name));

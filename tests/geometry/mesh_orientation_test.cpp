@@ -95,8 +95,8 @@ TEST(MeshOrientation, HandlesRaysThroughEdgesAndVertices) {
   const TriangleMesh outer = make_shape(BoxShape{{4, 4, 4}, {8, 8, 8}});
   const TriangleMesh inner = make_shape(BoxShape{{2, 2, 2}, {4, 4, 4}});
   EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(inner))).volume, 64.0 - 8.0);
-  const TriangleMesh beside = moved_mesh(inner, Mat3::Identity(), {6, 0, 0});
-  EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(beside))).volume, 64.0 + 8.0);
+  const TriangleMesh adjacent = moved_mesh(inner, Mat3::Identity(), {6, 0, 0});
+  EXPECT_DOUBLE_EQ(report_of(joined(outer, inside_out(adjacent))).volume, 64.0 + 8.0);
 }
 
 TEST(MeshOrientation, DoesNotNestIntersectingComponents) {

@@ -226,7 +226,7 @@ TEST(SceneFile, RejectsWrongTypesAndRanges) {
       {scene_with_crate("reference_point = [1, 2, \"3\"]\n"), "expected an array of 3 finite numbers (m)"},
       {scene_with_crate("reference_point = 3\n"), "expected an array of 3 finite numbers (m)"},
       {scene_with_crate("client = 3\n"), "client = 3; expected a table"},
-      {scene_with_crate("scale = 2\n"), "'scale' beside 'shape'"},
+      {scene_with_crate("scale = 2\n"), "both 'scale' and 'shape'"},
       {scene_with_crate("mesh = \"duck.dae\"\n"), "both 'mesh' and 'shape'"},
       {"[[body]]\nid = 1\n", "neither 'mesh' nor 'shape'"},
       {"[[body]]\nid = 1\nmesh = \"duck.dae\"\nscale = 0\n", "scale = 0; expected a finite number above 0."},
@@ -290,10 +290,8 @@ TEST(SceneFile, RejectsImpossibleInertia) {
       "exceeds the sum of the other two, as for any body (here they are 1, 1, 4 kg m^2). Likely cause: a "
       "number in another unit, another order of the numbers (URDF's is Ixx, Ixy, Ixz, Iyy, Iyz, Izz), a "
       "product of inertia of the wrong sign, sums of m x^2 instead of m (y^2 + z^2), or too large a "
-      "correction "
-      "from another point to the centre of mass. Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz] "
-      "about "
-      "the centre of mass, or leave inertia out: it then follows from a closed mesh.");
+      "correction from another point to the centre of mass. Give [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, "
+      "Ixz, Iyz] about the centre of mass, or leave inertia out: it then follows from a closed mesh.");
   for (const char* inertia : {"[4, 1, 1]", "[1, 4, 1]", "[8.0, 230.0, 245.0]", "[1e300, 1e300, 4e300]",
                               "[1e-300, 1e-300, 4e-300]", "[2, 2, 2, 1.5, 0, 0]", "[1, 1, 2.03]"}) {
     EXPECT_NE(inertia_error(inertia).find("the sum of the other two"), std::string::npos) << inertia;
