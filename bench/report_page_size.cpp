@@ -114,7 +114,7 @@ Made make_page(const std::string& directory, int bodies, std::int64_t megabytes)
 }
 
 // s, from the start of loading to the first picture, by the page's own clock.
-double opening_time(Browser& browser, const std::string& page) {
+double opening_time(view::Browser& browser, const std::string& page) {
   browser.open_file(page);
   return 1e-3 * browser.wait_until("window.buoyancy_report && buoyancy_report.shown_after").get<double>();
 }
@@ -122,7 +122,7 @@ double opening_time(Browser& browser, const std::string& page) {
 void run(const std::string& directory, std::int64_t megabytes) {
   std::vector<Made> pages;
   for (const int bodies : {1, 100}) pages.push_back(make_page(directory, bodies, megabytes));
-  Browser browser;
+  view::Browser browser;
   std::printf(
       "| log | rows | made in | memory | page | shown in a browser after "
       "|\n|---|---:|---:|---:|---:|---:|\n");

@@ -60,7 +60,7 @@ class WatchedView {
   explicit WatchedView(const std::string& scene)
       : process_({BUOYANCY_VIEW, "--scene", directory_.write("scene.toml", scene), "-l",
                   url_of_port(kServicePort), "--port", "0"}),
-        reader_(port_said(process_.child().standard_output())),
+        reader_(view::port_from_ready_line(process_.child().standard_output())),
         thread_([this] {
           while (!ended_) {
             if (reader_.next(0.5)) ++snapshots_;
@@ -78,7 +78,7 @@ class WatchedView {
  private:
   TempDir directory_;
   ReadyProcess process_;
-  EventReader reader_;
+  view::EventReader reader_;
   std::atomic<std::int64_t> snapshots_{0};
   std::atomic<bool> ended_{false};
   std::thread thread_;

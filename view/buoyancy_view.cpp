@@ -1,5 +1,4 @@
-// buoyancy-view: shows in a browser what a buoyancy service and its clients say to each other. Exit codes: 0
-// ended by SIGINT or SIGTERM, 1 it ran and failed, 2 wrong arguments, scene or mesh.
+// buoyancy-view: shows live LCM traffic between a buoyancy service and its clients in a browser.
 
 #include <string>
 #include <utility>
@@ -19,7 +18,7 @@
 #include "view/live/live_view.h"
 #include "view/live/page_server.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 struct Arguments {
@@ -29,43 +28,46 @@ struct Arguments {
   int port = 8667;
   std::string three = kThreeJs;
   std::string scheduling = "idle";
-  WatchedChannels channels;
+  ObservedChannels channels;
   PoseOptions poses;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-view " BUOYANCY_VERSION);
-  app.add_option("--scene", arguments.scene, "Scene file: what the service loaded")->required();
+  app.add_option("--scene", arguments.scene, "Scene file (TOML) that the service has loaded")->required();
   app.add_option("-l,--lcm-url", arguments.lcm_url, "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
-  app.add_option("--port", arguments.port, "Port of the page; 0: any that is free")
+  app.add_option("--port", arguments.port, "TCP port of the page (0 = any free port)")
       ->check(CLI::Range(0, 65535))
-      ->option_text("PORT [8667]");
+      ->capture_default_str();
   app.add_option("--listen", arguments.address,
-                 "Address to serve the page on. Whoever reaches another than a loopback's sees the scene and "
-                 "the run: there is no password")
-      ->option_text("ADDRESS [127.0.0.1]");
-  app.add_option("--three", arguments.three, "three.js, which draws the bodies: a three.min.js")
-      ->option_text("FILE [" + std::string(kThreeJs) + "]");
-  app.add_option(
-         "--scheduling", arguments.scheduling,
-         "When to run. idle: only while a processor would otherwise be idle. normal: as other programs, "
-         "for a machine that is never idle")
+                 "Address to listen on. There is no authentication: anyone who can reach a non-loopback "
+                 "address sees the scene and the run")
+      ->capture_default_str();
+  app.add_option("--three", arguments.three, "three.js library (three.min.js), which draws the bodies")
+      ->capture_default_str();
+  app.add_option("--scheduling", arguments.scheduling,
+                 "Scheduling policy. idle: run only while a processor would otherwise be idle; normal: run "
+                 "like other "
+                 "programs, for a machine that is never idle")
       ->check(CLI::IsMember({"idle", "normal"}))
-      ->option_text("POLICY [idle]");
-  app.add_option("--states-channel", arguments.channels.states, "Channel of the requests")
       ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.channels.wrenches, "Channel of the responses")
+  app.add_option("--states-channel", arguments.channels.states, "LCM channel for requests (body_states_t)")
       ->capture_default_str();
-  app.add_option("--hydrostatics-channel", arguments.channels.hydrostatics, "Channel of the hydrostatics")
+  app.add_option("--wrenches-channel", arguments.channels.wrenches,
+                 "LCM channel for responses (body_wrenches_t)")
       ->capture_default_str();
-  app.add_option("--status-channel", arguments.channels.status, "Channel of the service's status")
+  app.add_option("--hydrostatics-channel", arguments.channels.hydrostatics,
+                 "LCM channel for hydrostatics (bodies_hydrostatics_t)")
+      ->capture_default_str();
+  app.add_option("--status-channel", arguments.channels.status,
+                 "LCM channel for the service's status (service_status_t)")
       ->capture_default_str();
   add_pose_channel_options(app, arguments.poses);
 }
 
-// What no single option shows.
+// Checks what CLI11 cannot check per option.
 Expected<void> check_arguments(const Arguments& arguments) {
-  const WatchedChannels& channels = arguments.channels;
+  const ObservedChannels& channels = arguments.channels;
   if (Expected<void> checked = check_channels_distinct(
           {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
       !checked) {
@@ -86,27 +88,27 @@ int show(const CLI::App& app, const Arguments& arguments) {
   }
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kUsageError);
-  WatchedChannels channels = arguments.channels;
+  ObservedChannels channels = arguments.channels;
   Expected<PoseChannels> poses = pose_channels(
       arguments.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
   if (!poses) return report(app, poses.error(), kUsageError);
   channels.poses = *std::move(poses);
   Expected<std::vector<StaticResource>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);
   if (!page) return report(app, page.error(), kFailure);
-  TerminationSignals termination;  // before any thread is started, which must not get them
+  TerminationSignals termination;  // blocks the signals, so it precedes the start of any thread
   if (arguments.scheduling == "idle") use_idle_scheduling();
-  SnapshotBroadcaster hub;
-  Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, hub);
+  SnapshotBroadcaster broadcaster;
+  Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, broadcaster);
   if (!view) return report(app, view.error(), kFailure);
-  const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), hub);
+  const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), broadcaster);
   if (!server) return report(app, server.error(), kFailure);
 
   if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailure;
   view->run(termination, [&server] { return (*server)->serving(); });
   if (!(*server)->serving()) {
     return report(app,
-                  {(*server)->url(), "the kernel gives no more connections", "a port that lasts",
-                   "memory or file descriptors are at their end", "Start the view again"},
+                  {(*server)->url(), "cannot accept connections", "a working listening socket",
+                   "out of memory or file descriptors", "Restart the view"},
                   kFailure);
   }
   return kSuccess;
@@ -114,12 +116,10 @@ int show(const CLI::App& app, const Arguments& arguments) {
 
 int view_main(int argc, char** argv) {
   CLI::App app(
-      "Shows in a browser what a buoyancy service and its clients say to each other on LCM: the bodies in "
-      "the "
-      "water,\n"
-      "latency, counters, losses. Only listens.\n"
-      "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
-      "mesh.",
+      R"(Shows live LCM traffic between a buoyancy service and its clients in a browser: the bodies in
+the water, latency, counters and losses. Publishes nothing on LCM.
+Exit status: 0 on success, including termination by SIGINT or SIGTERM; 1 on a runtime error; 2 on
+invalid arguments, scene or mesh.)",
       "buoyancy-view");
   Arguments arguments;
   add_options(app, arguments);
@@ -128,8 +128,8 @@ int view_main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view
 
 int main(int argc, char** argv) {
-  return buoyancy::view_main(argc, argv);
+  return buoyancy::view::view_main(argc, argv);
 }

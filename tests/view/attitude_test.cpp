@@ -6,7 +6,7 @@
 
 #include "geometry/rotation_between.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -51,4 +51,4 @@ TEST(TheAttitude, IsTheSameInAWorldWhoseUpIsAnotherAxis) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

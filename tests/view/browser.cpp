@@ -14,7 +14,7 @@
 
 #include "tests/support/timeouts.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using nlohmann::json;
@@ -302,4 +302,4 @@ std::string Browser::console_errors_in_lines() {
   return lines.empty() ? " none" : lines;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

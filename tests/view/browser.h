@@ -27,7 +27,7 @@ namespace httplib {
 class Client;
 }
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 struct Screen {  // what the page has to itself, without the window around it
   int width = 0;
@@ -106,4 +106,4 @@ class Browser {
   Screen screen_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -22,7 +22,7 @@
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using testing::Contains;
@@ -371,4 +371,4 @@ TEST(BrowserProcesses, FailWithTheNamesOfTheirPackagesWhereTheyAreMissing) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

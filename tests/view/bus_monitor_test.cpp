@@ -14,7 +14,7 @@
 #include "tests/messages/upright_pose.h"
 #include "view/live/snapshot_json.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using nlohmann::json;
@@ -46,21 +46,21 @@ BodyWrench lifted(std::int32_t id, double force) {
 
 class WatchedBus : public testing::Test {
  protected:
-  explicit WatchedBus(PoseChannels poses = {}) : watch_(scene_, 0.0, std::move(poses)) {}
+  explicit WatchedBus(PoseChannels poses = {}) : monitor_(scene_, 0.0, std::move(poses)) {}
   ArrivalTime at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
-  json snapshot(double now) { return json::parse(snapshot_json(watch_, 1, 0.0, now, now)); }
+  json snapshot(double now) { return json::parse(snapshot_json(monitor_, 1, 0.0, now, now)); }
 
   const Scene scene_ = box_scene();
-  BusMonitor watch_;
+  BusMonitor monitor_;
 };
 
 TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
   EXPECT_TRUE(snapshot(0.0)["bodies"].empty()) << "nothing was asked yet";
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0), upright(kFastBox, 3.0)}), at(0.1));
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0), upright(kFastBox, 3.0)}), at(0.1));
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["f"].is_null()) << "asked, not answered";
-  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0), lifted(kFastBox, 6.0)}), at(0.1));
-  watch_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.5)}), at(0.2));
-  watch_.on_response(response_bytes({0, 1, 2}, {lifted(kBox, 7.0)}), at(0.2));
+  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0), lifted(kFastBox, 6.0)}), at(0.1));
+  monitor_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.5)}), at(0.2));
+  monitor_.on_response(response_bytes({0, 1, 2}, {lifted(kBox, 7.0)}), at(0.2));
   const json bodies = snapshot(0.5)["bodies"];
   ASSERT_EQ(bodies.size(), 2U);
   EXPECT_EQ(bodies[0]["id"], kBox);
@@ -74,71 +74,71 @@ TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
 }
 
 TEST_F(WatchedBus, KeepsTheLastPoseThatIsOneAndSaysTheStatus) {
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   BodyState bad = upright(kBox, 1.0);
   bad.position[0] = kNan;
-  watch_.on_request(request_bytes({0, 1, 2}, {bad}), at(0.2));
+  monitor_.on_request(request_bytes({0, 1, 2}, {bad}), at(0.2));
   bad = upright(kBox, 1.0);
   bad.quaternion_wxyz[0] = 1.1;
-  watch_.on_request(request_bytes({0, 1, 3}, {bad}), at(0.3));
+  monitor_.on_request(request_bytes({0, 1, 3}, {bad}), at(0.3));
   BodyWrench refused;
   refused.body_id = kBox;
   refused.status = BodyStatus::kBadQuaternion;
-  watch_.on_response(response_bytes({0, 1, 3}, {refused}), at(0.3));
+  monitor_.on_response(response_bytes({0, 1, 3}, {refused}), at(0.3));
   const json body = snapshot(0.3)["bodies"][0];
   EXPECT_EQ(body["p"], json({3.0, -2.0, 2.0}));
   EXPECT_EQ(body["status"], 3);
 }
 
 TEST_F(WatchedBus, ShowsNoWrenchBesideAPoseThatItIsTooOldFor) {
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
-  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
   EXPECT_FALSE(snapshot(100.0)["bodies"][0]["f"].is_null()) << "nobody asked since";
   for (const double now : {0.5, 1.05}) {
-    watch_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
+    monitor_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
     EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the response is still being waited for";
   }
-  watch_.on_request(request_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
+  monitor_.on_request(request_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
   for (const char* unknown : {"status", "f", "t", "b", "volume"}) {
     EXPECT_TRUE(snapshot(1.2)["bodies"][0][unknown].is_null()) << unknown;
   }
-  watch_.on_response(response_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
+  monitor_.on_response(response_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
   EXPECT_EQ(snapshot(1.3)["bodies"][0]["f"], json({0.0, 0.0, 6.0}));
 }
 
 TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
   BodyHydrostatics body;
   body.body_id = kHydrostaticBox;
   body.metacenters = {{{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}};
   body.metacentric_heights = {0.75, kNan};
   std::vector<std::uint8_t> bytes;
   encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
-  watch_.on_hydrostatics(bytes);
+  monitor_.on_hydrostatics(bytes);
   json shown = snapshot(0.1)["bodies"][0];
   EXPECT_EQ(shown["m"], json({{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}));
   EXPECT_EQ(shown["gm"], json({0.75, nullptr}));
   body.metacenters[1][2] = kNan;  // dry
   encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
-  watch_.on_hydrostatics(bytes);
+  monitor_.on_hydrostatics(bytes);
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }
 
 TEST_F(WatchedBus, RoundsNoPositionFarFromTheWorldsOrigin) {
   constexpr double kFarHeight = 5'000'000.125;  // m: a float would be 0.5 m apart there
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
   EXPECT_EQ(snapshot(0.0)["bodies"][0]["p"], json({3.0, -2.0, kFarHeight}));
 }
 
 TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   std::array<std::int64_t, 4> expected{};
   for (const MalformedMessage& malformed : malformed_messages()) {
-    watch_.on_request(malformed.bytes, at(0.0));
+    monitor_.on_request(malformed.bytes, at(0.0));
     ++expected[static_cast<std::size_t>(malformed.error)];
   }
-  EXPECT_EQ(watch_.counts().malformed, expected);
-  EXPECT_EQ(watch_.tracker().requests, 0);
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
+  EXPECT_EQ(monitor_.counts().malformed, expected);
+  EXPECT_EQ(monitor_.tracker().requests, 0);
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 1U);
 }
 
@@ -147,13 +147,13 @@ class WatchedPoses : public WatchedBus {
  protected:
   WatchedPoses() : WatchedBus({.channels = {{"BOX", kBox, ""}, {"FAST", kFastBox, "FORCE"}}}) {}
   void on_pose(std::size_t channel, std::int64_t utime, double height) {
-    watch_.on_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
+    monitor_.on_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
                    at(1e-6 * static_cast<double>(utime)));
   }
   void hear_force(std::int64_t utime, double force, double now) {
     std::vector<std::uint8_t> bytes;
     encode_six_axis_force_torque(utime, {0.0, 0.0, force}, {1.0, 2.0, 3.0}, bytes);
-    watch_.on_force_torque(1, bytes, at(now));
+    monitor_.on_force_torque(1, bytes, at(now));
   }
 };
 
@@ -161,14 +161,14 @@ TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
   on_pose(0, 100'000, 0.25);
   on_pose(1, 100'000, 0.5);
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 2U);
-  watch_.on_response(response_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
-  EXPECT_EQ(watch_.tracker().responses, 1) << "its session and number are the service's own";
-  EXPECT_NEAR(watch_.latency().max, 0.003, 1e-5);
+  monitor_.on_response(response_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
+  EXPECT_EQ(monitor_.tracker().responses, 1) << "its session and number are the service's own";
+  EXPECT_NEAR(monitor_.latency().max, 0.003, 1e-5);
   hear_force(100'000, 7.0, 0.104);
-  EXPECT_EQ(watch_.tracker().responses, 2);
-  EXPECT_EQ(watch_.tracker().requests, 2);
-  EXPECT_EQ(watch_.tracker().responses_without_request, 0);
-  EXPECT_EQ(watch_.service_state(0.2), ServiceState::kAnswering);
+  EXPECT_EQ(monitor_.tracker().responses, 2);
+  EXPECT_EQ(monitor_.tracker().requests, 2);
+  EXPECT_EQ(monitor_.tracker().responses_without_request, 0);
+  EXPECT_EQ(monitor_.service_state(0.2), ServiceState::kAnswering);
   const json bodies = snapshot(0.2)["bodies"];
   EXPECT_EQ(bodies[0]["p"], json({0.0, 0.0, 0.25}));
   EXPECT_EQ(bodies[0]["f"], json({0.0, 0.0, 5.0}));
@@ -182,115 +182,115 @@ TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
 
 TEST_F(WatchedPoses, LeaveNoGapsAndWaitInVainLikeAnyQuestion) {
   for (std::int64_t i = 0; i < 5; ++i) on_pose(0, 10'000 * i, 0.0);
-  watch_.on_response(response_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
-  watch_.on_response(response_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
-  watch_.tick(3.0);
-  EXPECT_EQ(watch_.tracker().requests_missed, 0);
-  EXPECT_EQ(watch_.tracker().unanswered, 4);
-  EXPECT_EQ(watch_.tracker().responses_without_request, 1) << "a microsecond beside the newest pose";
+  monitor_.on_response(response_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
+  monitor_.on_response(response_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
+  monitor_.tick(3.0);
+  EXPECT_EQ(monitor_.tracker().requests_missed, 0);
+  EXPECT_EQ(monitor_.tracker().unanswered, 4);
+  EXPECT_EQ(monitor_.tracker().responses_without_request, 1) << "a microsecond beside the newest pose";
 }
 
 TEST_F(WatchedPoses, DoNotTakeAnAnswerThatBelongsToAQuestion) {
   on_pose(0, 100'000, 0.25);
-  watch_.on_request(request_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
-  watch_.on_response(response_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
-  EXPECT_NEAR(watch_.latency().max, 0.005, 1e-5) << "from the request, not from the pose";
-  watch_.tick(3.0);
-  EXPECT_EQ(watch_.tracker().responses, 1);
-  EXPECT_EQ(watch_.tracker().unanswered, 1) << "the pose";
+  monitor_.on_request(request_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
+  monitor_.on_response(response_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
+  EXPECT_NEAR(monitor_.latency().max, 0.005, 1e-5) << "from the request, not from the pose";
+  monitor_.tick(3.0);
+  EXPECT_EQ(monitor_.tracker().responses, 1);
+  EXPECT_EQ(monitor_.tracker().unanswered, 1) << "the pose";
 }
 
 TEST_F(WatchedPoses, ThatAreNoneAreCountedByTheirCause) {
-  watch_.on_pose(0, Bytes(), at(0.0));
-  watch_.on_pose(0, request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
+  monitor_.on_pose(0, Bytes(), at(0.0));
+  monitor_.on_pose(0, request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
   std::vector<std::uint8_t> longer = encoded_by_lcm(upright_pose(0.0, 1));
-  watch_.on_force_torque(1, longer, at(0.0));
+  monitor_.on_force_torque(1, longer, at(0.0));
   longer.push_back(0);
-  watch_.on_pose(0, longer, at(0.0));
-  const std::array<std::int64_t, 4>& malformed = watch_.counts().malformed;
+  monitor_.on_pose(0, longer, at(0.0));
+  const std::array<std::int64_t, 4>& malformed = monitor_.counts().malformed;
   EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kTruncated)], 1);
   EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kFingerprint)], 2);
   EXPECT_EQ(malformed[static_cast<std::size_t>(DecodeError::kLength)], 1);
-  EXPECT_EQ(watch_.tracker().requests, 0);
+  EXPECT_EQ(monitor_.tracker().requests, 0);
 }
 
 TEST_F(WatchedBus, CountsBodiesThatItsSceneDoesNotHave) {
-  watch_.on_request(request_bytes({0, 1, 1}, {upright(kNoBody, 2.0), upright(kBox, 1.0)}), at(0.0));
-  watch_.on_response(response_bytes({0, 1, 1}, {lifted(kNoBody, 1.0)}), at(0.0));
-  EXPECT_EQ(watch_.counts().bodies_not_in_scene, 1);
+  monitor_.on_request(request_bytes({0, 1, 1}, {upright(kNoBody, 2.0), upright(kBox, 1.0)}), at(0.0));
+  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kNoBody, 1.0)}), at(0.0));
+  EXPECT_EQ(monitor_.counts().bodies_not_in_scene, 1);
   EXPECT_EQ(snapshot(0.0)["bodies"].size(), 1U);
 }
 
 TEST_F(WatchedBus, TellsPercentilesOfEachSecondAndOfAll) {
   for (int i = 0; i < 100; ++i) {
     const double begin = 0.1 + 0.001 * i;
-    watch_.on_request(request_bytes({0, 1, i}, {}), at(begin));
-    watch_.on_response(response_bytes({0, 1, i}, {}), at(begin + (i < 60 ? 0.001 : 0.004)));
+    monitor_.on_request(request_bytes({0, 1, i}, {}), at(begin));
+    monitor_.on_response(response_bytes({0, 1, i}, {}), at(begin + (i < 60 ? 0.001 : 0.004)));
   }
-  watch_.tick(1.0);
-  ASSERT_EQ(watch_.seconds().size(), 1U);
-  const SecondStats& second = watch_.seconds().back();
+  monitor_.tick(1.0);
+  ASSERT_EQ(monitor_.seconds().size(), 1U);
+  const SecondStats& second = monitor_.seconds().back();
   EXPECT_EQ(second.requests, 100);
   EXPECT_EQ(second.responses, 100);
   EXPECT_NEAR(second.latency.p50, 0.001, 0.03 * 0.001);
   EXPECT_NEAR(second.latency.max, 0.004, 1e-5);
-  watch_.tick(2.0);
-  EXPECT_EQ(watch_.seconds().back().responses, 0);
+  monitor_.tick(2.0);
+  EXPECT_EQ(monitor_.seconds().back().responses, 0);
   EXPECT_TRUE(snapshot(2.0)["second"]["p50"].is_null());
   EXPECT_NEAR(snapshot(2.0)["latency"]["p50"].get<double>(), 0.001, 0.03 * 0.001);
 }
 
 TEST_F(WatchedBus, KeepsAMinuteOfSecondsAndNoneOfATimeInWhichItStoodStill) {
-  for (int i = 1; i <= 100; ++i) watch_.tick(i);
-  EXPECT_EQ(watch_.seconds().size(), BusMonitor::kSecondsKept);
-  EXPECT_EQ(watch_.seconds().back().number, 99);
-  watch_.tick(1e6);
-  watch_.tick(1e6 + 0.5);
-  EXPECT_EQ(watch_.seconds().back().number, 100);
-  EXPECT_EQ(json::parse(history_json(watch_)).size(), BusMonitor::kSecondsKept);
+  for (int i = 1; i <= 100; ++i) monitor_.tick(i);
+  EXPECT_EQ(monitor_.seconds().size(), BusMonitor::kSecondsKept);
+  EXPECT_EQ(monitor_.seconds().back().number, 99);
+  monitor_.tick(1e6);
+  monitor_.tick(1e6 + 0.5);
+  EXPECT_EQ(monitor_.seconds().back().number, 100);
+  EXPECT_EQ(json::parse(history_json(monitor_)).size(), BusMonitor::kSecondsKept);
 }
 
 TEST_F(WatchedBus, SaysWhetherTheServiceAnswersWaitsIsStuckOrIsSilent) {
-  EXPECT_EQ(watch_.service_state(0.0), ServiceState::kOffline) << "nothing was heard yet";
-  watch_.on_status(status_bytes(7), 1.0);
-  EXPECT_EQ(watch_.service_state(1.5), ServiceState::kWaiting);
-  watch_.on_request(request_bytes({0, 1, 1}, {}), at(2.0));
-  watch_.on_response(response_bytes({0, 1, 1}, {}), at(2.0));
-  EXPECT_EQ(watch_.service_state(2.1), ServiceState::kAnswering);
-  watch_.on_request(request_bytes({0, 1, 2}, {}), at(2.2));
-  watch_.on_request(request_bytes({0, 1, 2}, {}), at(3.2));
-  EXPECT_EQ(watch_.service_state(3.5), ServiceState::kNotAnswering) << "the last status is 2.5 s old";
-  watch_.on_request(request_bytes({0, 1, 2}, {}), at(4.2));
-  EXPECT_EQ(watch_.service_state(4.3), ServiceState::kOffline);
-  watch_.on_status(status_bytes(8), 5.0);
-  watch_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
-  watch_.on_response(response_bytes({0, 1, 2}, {}), at(5.1));
-  EXPECT_EQ(watch_.service_state(5.2), ServiceState::kAnswering);
-  EXPECT_EQ(watch_.counts().services_started, 2);
+  EXPECT_EQ(monitor_.service_state(0.0), ServiceState::kOffline) << "nothing was heard yet";
+  monitor_.on_status(status_bytes(7), 1.0);
+  EXPECT_EQ(monitor_.service_state(1.5), ServiceState::kIdle);
+  monitor_.on_request(request_bytes({0, 1, 1}, {}), at(2.0));
+  monitor_.on_response(response_bytes({0, 1, 1}, {}), at(2.0));
+  EXPECT_EQ(monitor_.service_state(2.1), ServiceState::kAnswering);
+  monitor_.on_request(request_bytes({0, 1, 2}, {}), at(2.2));
+  monitor_.on_request(request_bytes({0, 1, 2}, {}), at(3.2));
+  EXPECT_EQ(monitor_.service_state(3.5), ServiceState::kNotAnswering) << "the last status is 2.5 s old";
+  monitor_.on_request(request_bytes({0, 1, 2}, {}), at(4.2));
+  EXPECT_EQ(monitor_.service_state(4.3), ServiceState::kOffline);
+  monitor_.on_status(status_bytes(8), 5.0);
+  monitor_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
+  monitor_.on_response(response_bytes({0, 1, 2}, {}), at(5.1));
+  EXPECT_EQ(monitor_.service_state(5.2), ServiceState::kAnswering);
+  EXPECT_EQ(monitor_.counts().services_started, 2);
 }
 
 TEST_F(WatchedBus, WaitsAgainWhereNobodyAsksAnyMore) {
-  watch_.on_request(request_bytes({0, 1, 1}, {}), at(0.0));
-  for (const double now : {1.0, 2.0, 3.0, 4.0, 5.0}) watch_.on_status(status_bytes(7), now);
-  EXPECT_EQ(watch_.service_state(1.5), ServiceState::kNotAnswering);
-  EXPECT_EQ(watch_.service_state(5.0), ServiceState::kWaiting) << "that request is long forgotten";
-  watch_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
-  EXPECT_EQ(watch_.service_state(5.2), ServiceState::kWaiting) << "and a new one has its own patience";
+  monitor_.on_request(request_bytes({0, 1, 1}, {}), at(0.0));
+  for (const double now : {1.0, 2.0, 3.0, 4.0, 5.0}) monitor_.on_status(status_bytes(7), now);
+  EXPECT_EQ(monitor_.service_state(1.5), ServiceState::kNotAnswering);
+  EXPECT_EQ(monitor_.service_state(5.0), ServiceState::kIdle) << "that request is long forgotten";
+  monitor_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
+  EXPECT_EQ(monitor_.service_state(5.2), ServiceState::kIdle) << "and a new one has its own patience";
 }
 
 TEST_F(WatchedBus, NamesEveryServiceOnTheBusAndForgetsTheOneThatIsGone) {
-  watch_.on_status(status_bytes(7), 0.0);
-  watch_.on_status(status_bytes(std::numeric_limits<std::int64_t>::min()), 0.5);
-  watch_.on_status(status_bytes(7), 1.0);
+  monitor_.on_status(status_bytes(7), 0.0);
+  monitor_.on_status(status_bytes(std::numeric_limits<std::int64_t>::min()), 0.5);
+  monitor_.on_status(status_bytes(7), 1.0);
   EXPECT_EQ(snapshot(1.0)["services"], json({"7", "-9223372036854775808"}));
   EXPECT_EQ(snapshot(3.8)["services"], json({"7"}));
-  for (std::int64_t id = 100; id < 1'000; ++id) watch_.on_status(status_bytes(id), 4.0);
+  for (std::int64_t id = 100; id < 1'000; ++id) monitor_.on_status(status_bytes(id), 4.0);
   EXPECT_EQ(snapshot(4.0)["services"].size(), BusMonitor::kMaxServices);
 }
 
 TEST_F(WatchedBus, MakesJsonOfASceneNameThatIsNoUtf8) {
-  watch_.on_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
-  const std::string text = snapshot_json(watch_, 1, 0.0, 0.0, 0.0);
+  monitor_.on_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
+  const std::string text = snapshot_json(monitor_, 1, 0.0, 0.0, 0.0);
   EXPECT_EQ(text.find('\n'), std::string::npos) << "an event is a line";
   EXPECT_EQ(json::parse(text)["status"]["scene"], "sc\xEF\xBF\xBD\n\"ene");
 }
@@ -310,23 +310,23 @@ RC_GTEST_FIXTURE_PROP(WatchedBus, MakesJsonOfWhateverIsHeard, ()) {
     now += 0.1 * *rc::gen::inRange(0, 10);
     switch (*rc::gen::inRange(0, 4)) {
       case 0:
-        watch_.on_request(bytes, at(now));
+        monitor_.on_request(bytes, at(now));
         break;
       case 1:
-        watch_.on_response(bytes, at(now));
+        monitor_.on_response(bytes, at(now));
         break;
       case 2:
-        watch_.on_hydrostatics(bytes);
+        monitor_.on_hydrostatics(bytes);
         break;
       default:
-        watch_.on_status(bytes, now);
+        monitor_.on_status(bytes, now);
     }
-    watch_.tick(now);
-    const std::string text = snapshot_json(watch_, i, 0.0, now, now);
+    monitor_.tick(now);
+    const std::string text = snapshot_json(monitor_, i, 0.0, now, now);
     RC_ASSERT(json::accept(text));
     RC_ASSERT(text.find('\n') == std::string::npos);
   }
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
-Row row_of(double time, double heave, double energy = kUnknown) {
-  Row row;
+RunRow row_of(double time, double heave, double energy = kUnknown) {
+  RunRow row;
   row.fill(kUnknown);
   row[kTime] = time;
   row[kHeave] = heave;
@@ -19,42 +19,42 @@ Row row_of(double time, double heave, double energy = kUnknown) {
 }
 
 template <typename MakeRow>
-std::vector<Row> rows_made(int count, MakeRow make_row) {
-  std::vector<Row> rows(static_cast<std::size_t>(count));
+std::vector<RunRow> rows_made(int count, MakeRow make_row) {
+  std::vector<RunRow> rows(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) rows[static_cast<std::size_t>(i)] = make_row(i);
   return rows;
 }
 
-DecimatedRows decimated(std::size_t max_rows, const std::vector<Row>& rows) {
+DecimatedRows decimated(std::size_t max_rows, const std::vector<RunRow>& rows) {
   DecimatedRows kept(max_rows);
   for (std::size_t i = 0; i < rows.size(); ++i) kept.add(static_cast<std::int64_t>(i), rows[i]);
   return kept;
 }
 
 // NaN stands in most columns, and is itself nowhere.
-bool same_numbers(const Row& a, const Row& b) {
+bool same_numbers(const RunRow& a, const RunRow& b) {
   return std::ranges::equal(a, b,
                             [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
 TEST(DecimatedRows, AreAllRowsUpToTheBound) {
-  const std::vector<Row> rows = rows_made(100, [](int i) { return row_of(i, std::sin(i)); });
-  const std::vector<Row> kept = decimated(100, rows).rows();
+  const std::vector<RunRow> rows = rows_made(100, [](int i) { return row_of(i, std::sin(i)); });
+  const std::vector<RunRow> kept = decimated(100, rows).rows();
   EXPECT_TRUE(std::ranges::equal(kept, rows, same_numbers));
 }
 
 TEST(DecimatedRows, KeepAPeakThatOneRowAloneHas) {
-  const std::vector<Row> rows = rows_made(1'000'000, [](int i) {
+  const std::vector<RunRow> rows = rows_made(1'000'000, [](int i) {
     return row_of(i, i == 333'333 ? 7.0 : i == 777'777 ? -9.0 : std::sin(1e-4 * i));
   });
   const DecimatedRows all = decimated(500, rows);
-  const std::vector<Row> kept = all.rows();
+  const std::vector<RunRow> kept = all.rows();
   EXPECT_EQ(all.added(), 1'000'000);
   EXPECT_LE(kept.size(), 500);
   EXPECT_GE(kept.size(), 30);
   const auto has = [&kept](double time, double heave) {
     return std::ranges::any_of(kept,
-                               [&](const Row& row) { return row[kTime] == time && row[kHeave] == heave; });
+                               [&](const RunRow& row) { return row[kTime] == time && row[kHeave] == heave; });
   };
   EXPECT_TRUE(has(333'333, 7.0));
   EXPECT_TRUE(has(777'777, -9.0));
@@ -63,12 +63,12 @@ TEST(DecimatedRows, KeepAPeakThatOneRowAloneHas) {
 }
 
 TEST(DecimatedRows, KeepTheExtremesOfAColumnThatMostRowsDoNotKnow) {
-  const std::vector<Row> rows = rows_made(10'000, [](int i) {
+  const std::vector<RunRow> rows = rows_made(10'000, [](int i) {
     return row_of(i, 0.0, i == 5'000 ? 1.5 : i == 6'000 ? 2.5 : kUnknown);
   });
-  const std::vector<Row> kept = decimated(64, rows).rows();
+  const std::vector<RunRow> kept = decimated(64, rows).rows();
   for (const double energy : {1.5, 2.5}) {
-    EXPECT_TRUE(std::ranges::any_of(kept, [energy](const Row& row) { return row[kEnergy] == energy; }))
+    EXPECT_TRUE(std::ranges::any_of(kept, [energy](const RunRow& row) { return row[kEnergy] == energy; }))
         << energy;
   }
 }
@@ -76,13 +76,13 @@ TEST(DecimatedRows, KeepTheExtremesOfAColumnThatMostRowsDoNotKnow) {
 RC_GTEST_PROP(DecimatedRows, AreRowsThatWereAddedInOrderWithTheExtremesOfAll, ()) {
   const auto max_rows = *rc::gen::inRange<std::size_t>(32, 400);
   const auto count = *rc::gen::inRange(1, 5'000);
-  const std::vector<Row> rows =
+  const std::vector<RunRow> rows =
       rows_made(count, [](int i) { return row_of(i, *rc::gen::inRange(-1'000, 1'000)); });
-  const std::vector<Row> kept = decimated(max_rows, rows).rows();
+  const std::vector<RunRow> kept = decimated(max_rows, rows).rows();
   RC_ASSERT(kept.size() <= max_rows);
-  RC_ASSERT(std::ranges::is_sorted(kept, {}, [](const Row& row) { return row[kTime]; }));
-  for (const Row& row : kept) RC_ASSERT(same_numbers(row, rows[static_cast<std::size_t>(row[kTime])]));
-  const auto heave = [](const Row& row) { return row[kHeave]; };
+  RC_ASSERT(std::ranges::is_sorted(kept, {}, [](const RunRow& row) { return row[kTime]; }));
+  for (const RunRow& row : kept) RC_ASSERT(same_numbers(row, rows[static_cast<std::size_t>(row[kTime])]));
+  const auto heave = [](const RunRow& row) { return row[kHeave]; };
   const auto [least, most] = std::ranges::minmax(rows, {}, heave);
   const auto [kept_least, kept_most] = std::ranges::minmax(kept, {}, heave);
   RC_ASSERT(kept_least[kHeave] == least[kHeave]);
@@ -90,4 +90,4 @@ RC_GTEST_PROP(DecimatedRows, AreRowsThatWereAddedInOrderWithTheExtremesOfAll, ()
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

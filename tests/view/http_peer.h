@@ -17,7 +17,7 @@
 
 #include "base/unique_fd.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class HttpPeer {
  public:
@@ -84,7 +84,7 @@ class HttpPeer {
 };
 
 // The port of "ready: http://127.0.0.1:PORT/" on a view's standard output.
-inline std::uint16_t port_said(const std::string& standard_output) {
+inline std::uint16_t port_from_ready_line(const std::string& standard_output) {
   const std::string mark = "ready: http://127.0.0.1:";
   const std::size_t begin = standard_output.find(mark);
   if (begin == std::string::npos) throw std::runtime_error("the view says no port: " + standard_output);
@@ -123,4 +123,4 @@ class EventReader {
   std::string text_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -9,7 +9,7 @@
 
 #include <png.h>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 ColourPredicate is_near(const Colour& colour, int tolerance) {
   return [colour, tolerance](const Colour& other) {
@@ -76,4 +76,4 @@ double Image::share_of_pixels(const Region& region, const std::function<bool(int
   return static_cast<double>(count) / (static_cast<double>(region.width) * region.height);
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 struct Colour {  // 0 to 255 each, sRGB
   int red = 0;
@@ -55,4 +55,4 @@ class Image {
   std::vector<unsigned char> rgb_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

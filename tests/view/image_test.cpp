@@ -9,7 +9,7 @@
 
 #include "tests/support/temp_dir.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr Colour kSea{10, 20, 200};
@@ -87,4 +87,4 @@ TEST(Image, RefusesWhatIsNoPngAndWhatIsNotInIt) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -11,7 +11,7 @@
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 // A box of half the default density of water, 1025 kg/m^3, that floats in equilibrium, so that its picture is
@@ -224,4 +224,4 @@ TEST_F(LivePage, FitsAPhoneAndADesktopWithoutScrollingSideways) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

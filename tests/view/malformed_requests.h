@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class MalformedRequests {
  public:
@@ -53,4 +53,4 @@ class MalformedRequests {
   };
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -18,7 +18,7 @@
 #include "tests/view/malformed_requests.h"
 #include "tests/view/running_view.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::int64_t kMayGrow = 4'096;  // kB
@@ -126,7 +126,7 @@ int malformed_view_traffic_main(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view
 
 int main(int argc, char** argv) {
   return buoyancy::malformed_view_traffic_main(argc, argv);

@@ -12,7 +12,7 @@
 #include "tests/view/http_peer.h"
 #include "tests/view/malformed_requests.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 const std::string kModel(2'000'000, 'm');  // more than the kernel takes before somebody reads
@@ -40,7 +40,7 @@ class ServedPage : public testing::Test {
   explicit ServedPage(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0) {
     auto started = PageServer::start(
         address, port,
-        {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}}, hub_,
+        {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}}, broadcaster_,
         limits);
     if (!started) throw std::runtime_error(started.error().message());
     server_ = std::move(*started);
@@ -62,9 +62,9 @@ class ServedPage : public testing::Test {
 
   // Waits until so many streams are connected.
   void wait_for_listeners(int count) const {
-    if (!comes_true([&] { return hub_.listeners() == count; })) {
+    if (!comes_true([&] { return broadcaster_.listeners() == count; })) {
       throw std::runtime_error("not " + std::to_string(count) + " streams but " +
-                               std::to_string(hub_.listeners()));
+                               std::to_string(broadcaster_.listeners()));
     }
   }
 
@@ -79,7 +79,7 @@ class ServedPage : public testing::Test {
     return true;
   }
 
-  SnapshotBroadcaster hub_;
+  SnapshotBroadcaster broadcaster_;
   std::unique_ptr<PageServer> server_;
   std::uint16_t port_ = 0;
 };
@@ -153,7 +153,7 @@ TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
   HttpPeer second(port_);
   for (HttpPeer* peer : {&first, &second}) peer->send(get_request("/events"));
   wait_for_listeners(2);
-  hub_.publish("[1]", R"({"n":1})");
+  broadcaster_.publish("[1]", R"({"n":1})");
   for (HttpPeer* peer : {&first, &second}) {
     std::string text;
     while (text.find("data: {\"n\":1}\n\n") == std::string::npos) {
@@ -164,7 +164,7 @@ TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
     EXPECT_NE(text.find("Content-Type: text/event-stream\r\n"), std::string::npos);
     EXPECT_NE(text.find("event: history\ndata: [1]\n\n"), std::string::npos);
   }
-  hub_.publish("[2]", R"({"n":2})");
+  broadcaster_.publish("[2]", R"({"n":2})");
   std::string more;
   while (more.find("data: {\"n\":2}\n\n") == std::string::npos) {
     const std::optional<std::string> part = first.receive(kWaitTimeout);
@@ -181,8 +181,8 @@ TEST_F(ServedPage, ForgetsAListenerThatWentAway) {
     wait_for_listeners(1);
   }
   EXPECT_TRUE(comes_true([&] {
-    hub_.publish("[]", "{}");
-    return hub_.listeners() == 0;
+    broadcaster_.publish("[]", "{}");
+    return broadcaster_.listeners() == 0;
   }));
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
 }
@@ -199,8 +199,8 @@ TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
   wait_for_listeners(1);
   const std::string large = "{\"" + std::string(1'000'000, 'x') + "\":1}";
   EXPECT_TRUE(comes_true([&] {
-    hub_.publish("[]", large);
-    return hub_.listeners() == 0;
+    broadcaster_.publish("[]", large);
+    return broadcaster_.listeners() == 0;
   }));
   HttpPeer other(port_);
   other.send(get_request("/"));
@@ -217,24 +217,24 @@ TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadLongBeforeTheKernelHasNoRoomF
   constexpr int kFirst = 100;
   constexpr int kMost = 500;
   int published = 0;
-  while (hub_.listeners() > 0 && published < kMost) {
-    hub_.publish("[]", small);
+  while (broadcaster_.listeners() > 0 && published < kMost) {
+    broadcaster_.publish("[]", small);
     ++published;
     std::this_thread::sleep_for(
         std::chrono::duration<double>(published < kFirst ? 0.002 : kWaitTimeout / (kMost - kFirst)));
   }
-  EXPECT_EQ(hub_.listeners(), 0) << published << " snapshots";
+  EXPECT_EQ(broadcaster_.listeners(), 0) << published << " snapshots";
 }
 
 TEST_F(ImpatientPage, KeepsAListenerThatReadsAlthoughNothingIsPublishedForLong) {
   EventReader reader(port_);
   wait_for_listeners(1);
   for (int i = 0; i < 3; ++i) {
-    hub_.publish("[]", "{}");
+    broadcaster_.publish("[]", "{}");
     ASSERT_TRUE(reader.next(kWaitTimeout));
     std::this_thread::sleep_for(std::chrono::milliseconds(150));  // longer than the server waits for a reader
   }
-  EXPECT_EQ(hub_.listeners(), 1);
+  EXPECT_EQ(broadcaster_.listeners(), 1);
 }
 
 TEST_F(ServedPage, StreamsEveryLargeSnapshotToAReaderThatKeepsUp) {
@@ -242,7 +242,7 @@ TEST_F(ServedPage, StreamsEveryLargeSnapshotToAReaderThatKeepsUp) {
   wait_for_listeners(1);
   const std::string large = "{\"" + std::string(25'000, 'x') + "\":1}";  // a hundred bodies
   for (int i = 0; i < 300; ++i) {
-    hub_.publish("[]", large);
+    broadcaster_.publish("[]", large);
     ASSERT_EQ(reader.next(kWaitTimeout), large);
   }
 }
@@ -269,7 +269,7 @@ TEST_F(ServedPage, ServesPagesAndStreamsWhileMoreConnectionsAreHeldThanItHasRoom
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
   EventReader after(port_);
   wait_for_listeners(2);
-  hub_.publish("[]", "{}");
+  broadcaster_.publish("[]", "{}");
   EXPECT_TRUE(before.next(kWaitTimeout)) << "a stream gives way to nobody";
   EXPECT_TRUE(after.next(kWaitTimeout));
   EXPECT_TRUE(is_closed(held.front())) << "it has waited longest";
@@ -326,8 +326,8 @@ TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
 }
 
 TEST_F(ServedPage, SaysThatItsPortIsTaken) {
-  SnapshotBroadcaster other_hub;
-  const auto second = PageServer::start("127.0.0.1", port_, {}, other_hub);
+  SnapshotBroadcaster other_broadcaster;
+  const auto second = PageServer::start("127.0.0.1", port_, {}, other_broadcaster);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message().find("Address already in use"), std::string::npos)
       << second.error().message();
@@ -360,4 +360,4 @@ TEST(PageServer, ListensOnAddressesInDigitsOnly) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

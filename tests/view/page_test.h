@@ -11,7 +11,7 @@
 
 #include "tests/view/browser.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class PageTest : public testing::Test {
  protected:
@@ -44,4 +44,4 @@ class PageTest : public testing::Test {
   static inline std::unique_ptr<Browser> browser_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

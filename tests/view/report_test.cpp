@@ -17,7 +17,7 @@
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 // A box that floats half deep and is pushed 1 m down at the start.
@@ -470,4 +470,4 @@ TEST(ReportOfADamagedRun, IsWrittenAndFailsWithWhatWasLeftOut) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000;  // us
@@ -41,7 +41,7 @@ TEST(RequestTracker, MissesNoNumbersWhereTheyCountNothing) {
   RequestTracker tracker;
   for (const std::int64_t utime : {5, 1'005, 2'005}) {
     EXPECT_FALSE(tracker.remembers(key(1, utime)));
-    EXPECT_TRUE(tracker.on_request(key(1, utime), utime, 0.0, RequestTracker::Seq::kArbitrary));
+    EXPECT_TRUE(tracker.on_request(key(1, utime), utime, 0.0, SeqPolicy::kArbitrary));
     EXPECT_TRUE(tracker.remembers(key(1, utime)));
   }
   EXPECT_EQ(tracker.counts().requests_missed, 0);
@@ -53,9 +53,9 @@ TEST(RequestTracker, GivesUpAQuestionThatNobodyAnswersAndCountsALateAnswerAsOneW
   tracker.on_request(key(1, 0), 0, 0.0);
   tracker.on_request(key(1, 1), 0, 0.1);
   ASSERT_TRUE(tracker.on_response(key(1, 1), 0));
-  tracker.expire(RequestTracker::kPatience);
+  tracker.expire(RequestTracker::kTimeout);
   EXPECT_EQ(tracker.counts().unanswered, 0) << "its time is not over";
-  tracker.expire(RequestTracker::kPatience + 0.2);
+  tracker.expire(RequestTracker::kTimeout + 0.2);
   EXPECT_EQ(tracker.counts().unanswered, 1);
   EXPECT_EQ(tracker.remembered(), 0U);
   EXPECT_EQ(tracker.on_response(key(1, 0), 1), std::nullopt);
@@ -127,7 +127,7 @@ RC_GTEST_PROP(RequestTracker, KeepsItsBooksWhateverIsHeard, ()) {
         tracker.expire(now);
     }
   }
-  tracker.expire(now + 2.0 * RequestTracker::kPatience);
+  tracker.expire(now + 2.0 * RequestTracker::kTimeout);
   const RequestTracker::Counts& counts = tracker.counts();
   RC_ASSERT(tracker.remembered() == 0U);
   RC_ASSERT(counts.requests + counts.requests_repeated == heard_requests);
@@ -138,4 +138,4 @@ RC_GTEST_PROP(RequestTracker, KeepsItsBooksWhateverIsHeard, ()) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -19,7 +19,7 @@
 #include "view/report/body_list.h"
 #include "view/report/report_page.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 WrenchRequest request_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
@@ -80,11 +80,11 @@ TEST_F(ARunFile, OfPosesAloneHasItsForcesComputed) {
                               .value();
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 2);
-  const Row& half_deep = run.bodies[0].rows[0];
+  const RunRow& half_deep = run.bodies[0].rows[0];
   EXPECT_EQ(half_deep[kTime], 0.0);
   EXPECT_NEAR(half_deep[kFz], 12.0 * kDensity * kGravity, 1e-6);
   EXPECT_TRUE(std::isnan(half_deep[kEnergy])) << "nobody said the box's mass";
-  const Row& higher = run.bodies[0].rows[1];
+  const RunRow& higher = run.bodies[0].rows[1];
   EXPECT_DOUBLE_EQ(higher[kTime], 1e-3);
   EXPECT_EQ(higher[kHeave], 1.0);
   EXPECT_NEAR(higher[kForce], 6.0 * kDensity * kGravity, 1e-6);
@@ -97,7 +97,7 @@ TEST_F(ARunFile, KeepsWhatWasRecordedAndComputesNothingOfIt) {
           "bx,by,bz,energy\n"
           "0,1,0,0,0,1,0,0,0,0,0,0,0,0,0,0,1,2,3,4,5,6,7,8,9,10,11.25\n")
           .value();
-  const Row& row = run.bodies[0].rows.at(0);
+  const RunRow& row = run.bodies[0].rows.at(0);
   EXPECT_EQ(run.computed, 0);
   EXPECT_EQ(std::vector(row.begin() + kFx, row.begin() + kRoundTrip),
             (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.25}));
@@ -138,7 +138,7 @@ TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 10);
   EXPECT_EQ(run.computed, 0);
-  for (const Row& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
+  for (const RunRow& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
   EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
 }
 
@@ -185,7 +185,7 @@ TEST_F(ARunFile, KeepsItsOrderWhereAnswersNeverCame) {
     if (seq % 2 == 0) log_response(200'000 + 1'000 * seq + 100, request);
   }
   const RecordedRun run = read_log().value();
-  const std::vector<Row>& rows = run.bodies[0].rows;
+  const std::vector<RunRow>& rows = run.bodies[0].rows;
   ASSERT_EQ(rows.size(), 200U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     ASSERT_NEAR(rows[i][kTime], 1e-3 * static_cast<double>(i), 1e-9);
@@ -289,7 +289,7 @@ TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
   EXPECT_EQ(run.computed, 0);
   EXPECT_EQ(run.sessions, 1);
   EXPECT_TRUE(run.warnings.empty());
-  for (const Row& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
+  for (const RunRow& row : run.bodies[0].rows) EXPECT_NEAR(row[kRoundTrip], 250e-6, 1e-12);
   EXPECT_DOUBLE_EQ(run.bodies[0].rows[5][kTime], 5e-3);
   EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
 }
@@ -306,7 +306,7 @@ TEST_F(ARunFile, OfBotCorePosesComputesWhatNobodyAnsweredAndTheRestOfForcesAndTo
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 1);
   EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
-  const Row& answered = run.bodies[0].rows[1];
+  const RunRow& answered = run.bodies[0].rows[1];
   EXPECT_EQ(std::vector(answered.begin() + kFx, answered.begin() + kVolume),
             (std::vector<double>{1, 2, 3, 4, 5, 6}))
       << "as recorded";
@@ -335,7 +335,7 @@ TEST_F(ARunFile, OfBotCorePosesWhoseClockBeganAgainGoesOnBehind) {
   }
   const RecordedRun run = read_log().value();
   std::vector<double> times;
-  for (const Row& row : run.bodies[0].rows) times.push_back(row[kTime]);
+  for (const RunRow& row : run.bodies[0].rows) times.push_back(row[kTime]);
   ASSERT_EQ(times.size(), 5U);
   EXPECT_NEAR(times[1], 0.5e-3, 1e-9) << "a late one is put in its place";
   EXPECT_GE(times[3], times[2]);
@@ -464,4 +464,4 @@ TEST_F(ARunOfManyBodies, TakesListsOfIdsAndRanges) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

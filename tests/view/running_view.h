@@ -12,7 +12,7 @@
 #include "tests/support/timeouts.h"
 #include "tests/view/http_peer.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 // Ready when constructed.
 class RunningView {
@@ -24,7 +24,7 @@ class RunningView {
     if (!child_.wait_for_text("ready: ", kWaitTimeout)) {
       throw std::runtime_error("buoyancy-view did not get ready: " + child_.standard_error());
     }
-    port_ = port_said(child_.standard_output());
+    port_ = port_from_ready_line(child_.standard_output());
   }
 
   ChildProcess& child() { return child_; }
@@ -44,4 +44,4 @@ class RunningView {
   std::uint16_t port_ = 0;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

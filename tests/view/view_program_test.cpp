@@ -15,7 +15,7 @@
 #include "tests/support/timeouts.h"
 #include "tests/view/running_view.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using nlohmann::json;
@@ -240,4 +240,4 @@ TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -4,9 +4,9 @@
 #include <bit>
 #include <string_view>
 
-static_assert(std::endian::native == std::endian::little, "pages read little-endian numbers");
+static_assert(std::endian::native == std::endian::little, "pages decode little-endian numbers");
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -25,4 +25,4 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

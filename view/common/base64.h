@@ -1,18 +1,18 @@
-// Numbers as text that a page turns back into typed arrays without rounding.
+// Base64 encoding of numbers, which a page decodes into typed arrays without rounding.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 std::string base64(std::span<const std::uint8_t> bytes);
 
-// Of the numbers' own bytes, which are little-endian on every machine that this runs on.
+// Encodes the numbers' bytes in memory, which are little-endian (base64.cpp asserts it).
 template <typename T>
 std::string base64_of(std::span<const T> numbers) {
   return base64({reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size_bytes()});
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,18 +1,18 @@
-# Writes HEADER with the files FILES (separated by |) as text: page_files.h of page_assets.cpp.
+# Writes HEADER: the contents of FILES (separated by |) as string literals, included by page_assets.cpp as page_files.h.
 string(REPLACE "|" ";" files "${FILES}")
 set(text "// Written by embed_page.cmake from view/page.\n#pragma once\n\n#include <array>\n#include <string_view>\n\n")
-string(APPEND text "namespace buoyancy {\n\nstruct PageFile {\n  std::string_view name, text;\n};\n\n")
+string(APPEND text "namespace buoyancy::view {\n\nstruct PageFile {\n  std::string_view name, text;\n};\n\n")
 list(LENGTH files count)
 string(APPEND text "inline constexpr std::array<PageFile, ${count}> kPageFiles{{\n")
 foreach(file ${files})
   get_filename_component(name ${file} NAME)
   file(READ ${file} contents)
-  # Compilers need not take a longer literal than 65,536 characters.
+  # The C++ standard guarantees no literals longer than 65,536 characters.
   string(LENGTH "${contents}" length)
   if(length GREATER 60000)
-    message(FATAL_ERROR "${file} is too long for one literal: ${length} characters; make two files of it")
+    message(FATAL_ERROR "${file} has ${length} characters, too many for one literal; split the file")
   endif()
   string(APPEND text "    {\"${name}\", R\"__page(${contents})__page\"},\n")
 endforeach()
-string(APPEND text "}};\n\n}  // namespace buoyancy\n")
+string(APPEND text "}};\n\n}  // namespace buoyancy::view\n")
 file(WRITE ${HEADER} "${text}")

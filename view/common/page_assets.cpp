@@ -6,24 +6,24 @@
 
 #include "view/page_files.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::string_view kInsert = "<!-- insert ";
 constexpr std::string_view kInsertEnd = " -->";
 
 std::string element(std::string_view tag, std::string_view text) {
-  std::string made = "<";
-  made += tag;
-  made += ">\n";
-  made += text;
-  made += "\n</";
-  made += tag;
-  made += ">";
-  return made;
+  std::string html = "<";
+  html += tag;
+  html += ">\n";
+  html += text;
+  html += "\n</";
+  html += tag;
+  html += ">";
+  return html;
 }
 
-std::string inserted(std::string_view name, std::string_view three) {
+std::string insertion(std::string_view name, std::string_view three) {
   if (name == "three.js") return element("script", three);
   return element(name.ends_with(".css") ? "style" : "script", page_text(name));
 }
@@ -38,8 +38,8 @@ std::string_view page_text(std::string_view file_name) {
 }
 
 Expected<std::string> three_js(const std::filesystem::path& path) {
-  std::error_code no_such_file;
-  const bool is_directory = std::filesystem::is_directory(path, no_such_file);  // whose reading throws
+  std::error_code ignored;
+  const bool is_directory = std::filesystem::is_directory(path, ignored);  // reading one would throw
   std::ifstream file(path, std::ios::binary);
   std::string text;
   if (!is_directory) text.assign(std::istreambuf_iterator<char>(file), {});
@@ -49,8 +49,9 @@ Expected<std::string> three_js(const std::filesystem::path& path) {
                        "apt-get install libjs-three, or --three FILE"});
   }
   if (text.find("WebGLRenderer") == std::string::npos || text.find("</script") != std::string::npos) {
-    return make_error({subject, "is not the three.js that a page can hold",
-                       "a classic script (three.min.js) that defines THREE", "another file of that name",
+    return make_error({subject, "cannot be embedded in a page",
+                       "three.js as a classic script (three.min.js) that defines THREE",
+                       "a different file or a module build of three.js",
                        "--three /usr/share/javascript/three/three.min.js"});
   }
   return text;
@@ -64,7 +65,7 @@ std::string self_contained_page(std::string_view file_name, std::string_view thr
     const std::size_t end = rest.find(kInsertEnd, start);
     page += rest.substr(0, start);
     if (start == std::string_view::npos) return page;
-    page += inserted(rest.substr(start + kInsert.size(), end - start - kInsert.size()), three);
+    page += insertion(rest.substr(start + kInsert.size(), end - start - kInsert.size()), three);
     rest.remove_prefix(end + kInsertEnd.size());
   }
 }
@@ -82,4 +83,4 @@ std::string escaped_for_script(std::string_view json) {
   return escaped;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

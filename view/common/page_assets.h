@@ -1,5 +1,5 @@
-// The texts that a page is made of: ours, compiled in from view/page, and three.js, read from where Debian
-// installs it, so that no code of other people is in here.
+// The files that a page consists of: those of view/page, compiled in, and three.js, which is read from where
+// Debian installs it, so that the repository holds no third-party code.
 #pragma once
 
 #include <filesystem>
@@ -8,22 +8,22 @@
 
 #include "base/error.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 inline constexpr const char* kThreeJs = "/usr/share/javascript/three/three.min.js";
 
-// A file of view/page by its name, "style.css". Empty: there is no such file.
+// The contents of a file of view/page, such as "style.css"; empty if there is no such file.
 std::string_view page_text(std::string_view file_name);
 
-// three.js, to be put between <script> and </script>. Errors: not readable, not three.js, a file that would
-// end the script it is put into.
+// Reads three.js for insertion between <script> and </script>. Errors: the file cannot be read, is not
+// three.js, or contains "</script", which would end the element.
 Expected<std::string> three_js(const std::filesystem::path& path = kThreeJs);
 
-// A page that needs no other file: page_text(file_name) with each line "<!-- insert NAME -->" replaced by
-// page_text(NAME) as style or script, by its extension; by three.js where NAME is three.js.
+// A page that needs no other file: page_text(file_name) in which each "<!-- insert NAME -->" is replaced by
+// page_text(NAME) as a style or script element, depending on its extension, or by `three` for three.js.
 std::string self_contained_page(std::string_view file_name, std::string_view three);
 
-// JSON as a script's text, where "</script>" and "<!--" would mean something: '<' is escaped.
+// Escapes '<' in JSON, so that "</script>" and "<!--" have no effect inside a script element.
 std::string escaped_for_script(std::string_view json);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

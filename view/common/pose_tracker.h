@@ -1,6 +1,6 @@
-// Poses of other projects as an onlooker hears them. Who answers such a pose makes a request of it
-// (engine/pose_request_adapter.h) whose session and number nobody else knows; but its response repeats the
-// pose's utime. So a pose is known here by its body and that.
+// Identifies requests that other projects send as poses. The service converts such a pose into a request
+// (engine/pose_request_adapter.h) whose session_id and seq an observer does not know, but the response
+// repeats the pose's utime. A pose is therefore identified by its body and its utime.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 #include "messages/bot_core.h"
 #include "messages/request.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class PoseTracker {
  public:
@@ -22,17 +22,17 @@ class PoseTracker {
 
   const PoseChannels& channels() const { return poses_; }
 
-  // The request that a message on channels().channels[index] asks, with a key of our own: a session of its
-  // body's, which no client's is by any likelihood, and its utime for the number. Two poses of one body at
-  // one instant are the same request. Causes: as decode_bot_pose().
+  // Converts a message on channels().channels[index] to a request. Its session_id is derived from the body's
+  // id and is unlikely to be a client's; its seq is the pose's utime, so two poses of one body with the same
+  // utime are the same request. Errors: see decode_bot_pose().
   tl::expected<WrenchRequest, DecodeError> request(std::size_t index, Bytes pose) const;
 
-  // The key of the request that a response about this one body would belong to, if a pose asked it.
-  // nullopt: no channel has this body's poses. O(number of channels).
+  // The id of the request that a response about this one body belongs to if a pose caused it.
+  // nullopt: no channel carries this body's poses. O(number of channels).
   std::optional<RequestId> request_id_for_pose(std::int32_t body_id, std::int64_t utime) const;
 
  private:
   PoseChannels poses_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

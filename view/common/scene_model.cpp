@@ -11,17 +11,17 @@
 #include "scene/scene_report.h"
 #include "view/common/base64.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 struct Drawing {
-  std::vector<float> positions;        // three a vertex
-  std::vector<std::uint32_t> indices;  // three a triangle
+  std::vector<float> positions;        // three per vertex
+  std::vector<std::uint32_t> indices;  // three per triangle
 };
 
-Drawing whole_drawing(const TriangleMesh& mesh) {
+Drawing full_drawing(const TriangleMesh& mesh) {
   Drawing drawing;
   drawing.positions.reserve(3 * mesh.vertex_count());
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -37,7 +37,7 @@ Drawing whole_drawing(const TriangleMesh& mesh) {
 }
 
 void reduce(Drawing& drawing, std::size_t max_triangles) {
-  constexpr float kMaxError = 0.02F;  // of the mesh's extent
+  constexpr float kMaxError = 0.02F;  // relative to the mesh's extent
   constexpr std::size_t kVertexBytes = 3 * sizeof(float);
   const std::size_t vertices = drawing.positions.size() / 3;
   const std::size_t max_indices = 3 * max_triangles;
@@ -45,40 +45,40 @@ void reduce(Drawing& drawing, std::size_t max_triangles) {
   std::size_t count =
       meshopt_simplify(reduced.data(), drawing.indices.data(), drawing.indices.size(),
                        drawing.positions.data(), vertices, kVertexBytes, max_indices, kMaxError);
-  if (count > max_indices) {  // it keeps the topology, which a soup of small parts does not let it do
+  if (count > max_indices) {  // it preserves topology, so it cannot reduce many small disconnected parts
     count = meshopt_simplifySloppy(reduced.data(), drawing.indices.data(), drawing.indices.size(),
                                    drawing.positions.data(), vertices, kVertexBytes, max_indices, 1.0F);
   }
   reduced.resize(count);
   drawing.indices = std::move(reduced);
-  std::vector<float> used(drawing.positions.size());
+  std::vector<float> used_positions(drawing.positions.size());
   const std::size_t used_vertices =
-      meshopt_optimizeVertexFetch(used.data(), drawing.indices.data(), drawing.indices.size(),
+      meshopt_optimizeVertexFetch(used_positions.data(), drawing.indices.data(), drawing.indices.size(),
                                   drawing.positions.data(), vertices, kVertexBytes);
-  used.resize(3 * used_vertices);
-  drawing.positions = std::move(used);
+  used_positions.resize(3 * used_vertices);
+  drawing.positions = std::move(used_positions);
 }
 
-// The most triangles that each mesh may show so that all together stay within the budget and the small ones
-// whole.
-std::size_t largest_part(const Scene& scene, std::size_t max_triangles) {
+// The maximum number of triangles per mesh that keeps the total within max_triangles and reduces only meshes
+// that exceed an equal share of what the smaller ones leave.
+std::size_t max_triangles_per_mesh(const Scene& scene, std::size_t max_triangles) {
   std::vector<std::size_t> sizes;
   for (const auto& prepared : scene.meshes()) sizes.push_back(prepared->mesh.surface.triangles.size());
   std::ranges::sort(sizes);
-  std::size_t left = max_triangles;
+  std::size_t remaining = max_triangles;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const std::size_t part = left / (sizes.size() - i);
-    if (sizes[i] > part) return part;
-    left -= sizes[i];
+    const std::size_t share = remaining / (sizes.size() - i);
+    if (sizes[i] > share) return share;
+    remaining -= sizes[i];
   }
   return max_triangles;
 }
 
-std::string file_name_of(const Json& path) {
+std::string file_name(const Json& path) {
   return std::filesystem::path(path.get<std::string>()).filename().string();
 }
 
-Json array_of(const Vec3& v) {
+Json json_array(const Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
@@ -86,19 +86,19 @@ Json array_of(const Vec3& v) {
 
 Json scene_model(const Scene& scene, const SceneModelOptions& options) {
   Json model = Json::parse(scene_report_json(scene));
-  model["scene"] = file_name_of(model["scene"]);
+  model["scene"] = file_name(model["scene"]);
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const auto& center = scene.bodies()[i].center_of_mass_B;
-    model["bodies"][i]["center_of_mass"] = center ? array_of(*center) : Json(nullptr);
+    model["bodies"][i]["center_of_mass"] = center ? json_array(*center) : Json(nullptr);
   }
-  const std::size_t part = std::max<std::size_t>(4, largest_part(scene, options.max_triangles));
+  const std::size_t share = std::max<std::size_t>(4, max_triangles_per_mesh(scene, options.max_triangles));
   for (std::size_t i = 0; i < scene.meshes().size(); ++i) {
     const HydrostaticMesh& mesh = scene.meshes()[i]->mesh;
-    Drawing drawing = whole_drawing(mesh.surface);
-    if (mesh.surface.triangles.size() > part) reduce(drawing, part);
+    Drawing drawing = full_drawing(mesh.surface);
+    if (mesh.surface.triangles.size() > share) reduce(drawing, share);
     Json& description = model["meshes"][i];
-    description["name"] = file_name_of(description["name"]);
-    description["center"] = array_of(mesh.center_B);
+    description["name"] = file_name(description["name"]);
+    description["center"] = json_array(mesh.center_B);
     description["shown_triangles"] = drawing.indices.size() / 3;
     description["positions"] = base64_of<float>(drawing.positions);
     description["indices"] = base64_of<std::uint32_t>(drawing.indices);
@@ -106,4 +106,4 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
   return model;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

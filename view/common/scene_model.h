@@ -1,4 +1,4 @@
-// What a page needs to know of a scene, once: what --check reports of it (scene_report.h) and shapes to draw.
+// Describes a scene to a page: the report of buoyancyd --check (scene_report.h) and the shapes to draw.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +7,21 @@
 
 #include "scene/scene.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 struct SceneModelOptions {
-  std::size_t max_triangles =
-      60'000;  // of all meshes together; shared among those that have more than their part
+  // Of all meshes together; meshes that exceed their equal share are reduced to it.
+  std::size_t max_triangles = 60'000;
 };
 
-// The object of scene_report_json() with paths cut down to the files' names, and more in it:
-//   of a body   "center_of_mass": [3], m, B, or null where nobody said it
-//   of a mesh   "center": [3], m, B; "positions": float32, three a vertex, m, about the centre; "indices":
-//   uint32,
-//               three a triangle, counter-clockwise seen from outside; both base64 of little-endian numbers;
-//               "shown_triangles": how many these are
-// A mesh with more triangles than its part is reduced for the picture alone (meshoptimizer).
+// The object of scene_report_json() with paths reduced to file names, and additionally
+//   of each body   "center_of_mass": [3] [m], B, or null if the scene does not specify it
+//   of each mesh   "center": [3] [m], B
+//                  "positions": float32, three per vertex [m], relative to center
+//                  "indices": uint32, three per triangle, counter-clockwise seen from outside
+//                  "shown_triangles": the number of triangles in indices
+// positions and indices are base64 of little-endian numbers. A mesh with more triangles than its share of
+// max_triangles is reduced for drawing only (meshoptimizer).
 nlohmann::ordered_json scene_model(const Scene& scene, const SceneModelOptions& options = {});
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

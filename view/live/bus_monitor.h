@@ -1,8 +1,8 @@
-// What an onlooker makes of the messages on the bus: the newest pose and wrench of each body of the scene,
-// how long answers take, what was lost or malformed, which services there are and whether they still answer.
+// The state of the bus as an observer derives it from the messages: the latest pose and wrench of each body
+// of the scene, response times, lost and malformed messages, and which services are present and responding.
 //
-// Hears bytes and times and knows neither LCM nor a clock. Memory is bounded whatever arrives: by the scene,
-// by RequestTracker, by kMaxServices, and by the largest message that is heard.
+// Input is bytes and times: the class uses neither LCM nor a clock. Memory is bounded whatever arrives, by
+// the scene, by RequestTracker, by kMaxServices, and by the largest message received.
 #pragma once
 
 #include <array>
@@ -23,48 +23,49 @@
 #include "view/common/pose_tracker.h"
 #include "view/live/request_tracker.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-// When a message arrived, by two clocks: us since 1970 as the kernel stamped it, and s of a clock that never
-// jumps.
+// The arrival time of a message on two clocks.
 struct ArrivalTime {
-  std::int64_t utime = 0;
-  double now = 0.0;
+  std::int64_t utime = 0;  // [us since 1970], as the kernel stamped it
+  double now = 0.0;        // [s], monotonic
 };
 
-// The newest that was heard of one body.
+// The latest observations of one body.
 struct BodyMonitor {
   struct Pose {
-    std::array<double, 3> position;         // m, W; finite
-    std::array<double, 4> quaternion_wxyz;  // its norm is within 1e-3 of 1
+    std::array<double, 3> position;         // [m], W; finite
+    std::array<double, 4> quaternion_wxyz;  // abs(norm - 1) <= 1e-3
   };
   struct Metacenters {
-    std::array<std::array<double, 3>, 2> points;  // m, W axes, relative to position; finite
-    std::array<double, 2> heights;                // m, GM; NaN: not known
+    std::array<std::array<double, 3>, 2> points;  // [m], W axes, relative to position; finite
+    std::array<double, 2> heights;                // [m], GM; NaN: unknown
   };
   std::int32_t id = 0;
-  std::optional<Pose> pose;          // the newest that could be one: a NaN moves nothing
-  std::optional<double> asked;       // s, when the newest request about it came
-  std::optional<double> answered;    // s, when the newest wrench came
-  std::optional<BodyWrench> wrench;  // as answered, also where it is not OK
-  bool force_torque_only = false;    // wrench: it came as six_axis_force_torque_t, the rest is unknown
+  std::optional<Pose> pose;             // the latest valid one; an invalid pose is ignored
+  std::optional<double> last_request;   // [s], arrival of the latest request for it
+  std::optional<double> last_response;  // [s], arrival of the latest wrench
+  std::optional<BodyWrench> wrench;     // the latest, whatever its status
+  bool force_torque_only = false;  // wrench came as six_axis_force_torque_t, its other fields are unknown
   std::optional<Metacenters> metacenters;
 
-  // Is the wrench too old to belong to the pose that is shown?
-  bool response_overdue(double patience) const { return asked && answered && *answered + patience < *asked; }
+  // True if the wrench is too old to belong to the displayed pose.
+  bool response_overdue(double timeout) const {
+    return last_request && last_response && *last_response + timeout < *last_request;
+  }
 };
 
 struct SecondStats {
   std::int64_t number = 0;  // counted from the start
   std::int64_t requests = 0, responses = 0, unanswered = 0;
-  LatencyPercentiles latency;  // s; zeros where no request was answered
+  LatencyPercentiles latency;  // [s]; zeros if responses is 0
 };
 
 enum class ServiceState {
-  kAnswering,     // requests and answers
-  kWaiting,       // there is a service, and nobody asks
-  kNotAnswering,  // there is a service, and requests stay without a response
-  kOffline,       // nothing is heard of a service
+  kAnswering,     // responses arrive
+  kIdle,          // status messages arrive, no request is pending for long
+  kNotAnswering,  // status messages arrive, but requests get no response
+  kOffline,       // neither responses nor status messages arrive
 };
 std::string_view to_string(ServiceState state);  // "not answering"
 
@@ -72,57 +73,57 @@ class BusMonitor {
  public:
   static constexpr std::size_t kMaxServices = 16;
   static constexpr std::size_t kSecondsKept = 60;
-  static constexpr double kStatusTimeout = 3.0;  // s; a status is due every second
-  static constexpr double kResponseTimeout =
-      1.0;  // s; without a response for so long, a request waits too long
+  static constexpr double kStatusTimeout = 3.0;    // [s]; a status is due every second
+  static constexpr double kResponseTimeout = 1.0;  // [s]; an older request is overdue
 
   struct Counts {
     std::array<std::int64_t, 4> malformed{};  // by DecodeError
-    DropCounts losses;
-    std::int64_t bodies_not_in_scene = 0;  // asked about
+    DropCounts drops;
+    std::int64_t bodies_not_in_scene = 0;  // bodies of requests
     std::int64_t statuses = 0;
-    std::int64_t services_started = 0;  // another instance_id than those known; the first one too
+    std::int64_t services_started = 0;  // instance_ids that were not known yet, including the first
   };
 
-  // scene must live as long.
+  // scene must outlive the monitor.
   BusMonitor(const Scene& scene, double now, PoseChannels poses = {});
 
   void on_request(Bytes bytes, ArrivalTime arrival);
   void on_response(Bytes bytes, ArrivalTime arrival);
-  // On the pose channel of this index; on its channel for force and torque.
+  // index: of the pose channel on which the pose arrived, or to whose force-torque channel the response
+  // belongs.
   void on_pose(std::size_t index, Bytes bytes, ArrivalTime arrival);
   void on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arrival);
   void on_hydrostatics(Bytes bytes);
   void on_status(Bytes bytes, double now);
-  void record_drops(const DropCounts& losses);  // so far
+  void record_drops(const DropCounts& drops);  // totals since the start
 
-  // To be called many times a second: gives up what waited too long, closes a second that is over.
+  // Drops expired requests and closes a second that is over; to be called many times per second.
   void tick(double now);
 
   const std::vector<BodyMonitor>& bodies() const { return bodies_; }  // in the scene's order
   const Counts& counts() const { return counts_; }
   const RequestTracker::Counts& tracker() const { return tracker_.counts(); }
-  LatencyPercentiles latency() const { return latency_.percentiles(); }           // s, since the start
-  const std::deque<SecondStats>& seconds() const { return seconds_; }             // the newest last
-  const std::optional<ServiceStatus>& status() const { return status_; }          // the newest
-  std::optional<double> status_received() const { return status_received_; }      // s
-  std::optional<double> response_received() const { return response_received_; }  // s, of the newest
-  std::optional<double> request_received() const { return request_received_; }    // s, of the newest
-  std::vector<std::int64_t> services(double now) const;  // instance_ids heard within kStatusTimeout
+  LatencyPercentiles latency() const { return latency_.percentiles(); }           // [s], since the start
+  const std::deque<SecondStats>& seconds() const { return seconds_; }             // the latest last
+  const std::optional<ServiceStatus>& status() const { return status_; }          // the latest
+  std::optional<double> status_received() const { return status_received_; }      // [s]
+  std::optional<double> response_received() const { return response_received_; }  // [s], of the latest
+  std::optional<double> request_received() const { return request_received_; }    // [s], of the latest
+  std::vector<std::int64_t> services(double now) const;  // instance_ids seen within kStatusTimeout
   ServiceState service_state(double now) const;
 
  private:
   struct Service {
     std::int64_t instance_id;
-    double heard;
+    double last_seen;
   };
 
   template <typename Message>
   bool decode_or_count(Bytes bytes, Message& message);
-  void count_malformed(DecodeError cause);
+  void count_malformed(DecodeError error);
   BodyMonitor* find(std::int32_t id);
-  void note_request(const WrenchRequest& request, ArrivalTime arrival, RequestTracker::Seq seq);
-  void note_response(const RequestId& key, ArrivalTime arrival);
+  void record_request(const WrenchRequest& request, ArrivalTime arrival, SeqPolicy policy);
+  void record_response(const RequestId& key, ArrivalTime arrival);
 
   const Scene* scene_;
   PoseTracker poses_;
@@ -131,18 +132,18 @@ class BusMonitor {
   Counts counts_;
   LatencyHistogram latency_;
   LatencyHistogram latency_of_second_;
-  RequestTracker::Counts at_second_;  // as counted when the second began
-  double second_begun_;
+  RequestTracker::Counts counts_at_second_start_;
+  double second_start_;
   std::int64_t second_number_ = 0;
   std::deque<SecondStats> seconds_;
   std::optional<ServiceStatus> status_;
   std::optional<double> status_received_, response_received_, request_received_;
-  std::optional<double> waiting_since_;  // s, of the oldest request after the newest response
+  std::optional<double> waiting_since_;  // [s], arrival of the oldest request after the latest response
   std::vector<Service> services_;
-  WrenchRequest request_;  // reused, as the next three
+  WrenchRequest request_;  // decode buffers, reused
   WrenchResponse response_;
   BodiesHydrostatics hydrostatics_;
   ServiceStatus incoming_status_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

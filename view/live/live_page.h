@@ -1,5 +1,5 @@
-// The texts of the live page, as PageServer serves them: the page, its scripts and styles, and the scene as
-// JSON. Nothing of it is inline, so that the browser may be told to run nothing else.
+// The resources of the live page, served by PageServer: the page, its scripts and styles, and the scene as
+// JSON. Scripts and styles are separate files, so that the content security policy can forbid inline scripts.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 #include "scene/scene.h"
 #include "view/live/page_server.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-// version: of this program, as shown. Errors: three.js cannot be read.
+// version: of this program, as displayed. Errors: three.js cannot be read.
 Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::string& version,
                                                 const std::filesystem::path& three);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

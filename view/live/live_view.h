@@ -1,9 +1,9 @@
-// Listens on the bus and lays down snapshots for the page, kSnapshotsPerSecond times a second, as long as
-// somebody looks: one thread.
+// Receives from the bus and publishes snapshots to the page, kSnapshotsPerSecond times a second while a
+// listener is connected; single-threaded.
 //
-// It must not slow down what it looks at: messages do not wake it (UdpmReceiver), and it runs where a
-// processor has nothing better to do (use_idle_scheduling()). A machine that never has, shows fewer
-// snapshots, and packets that the kernel had to drop.
+// It must not slow down the programs that it observes: messages do not wake it (UdpmReceiver polls), and it
+// can run while a processor would otherwise be idle (use_idle_scheduling()). On a machine that is never idle
+// it publishes fewer snapshots and reports packets that the kernel had to drop.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,9 @@
 #include "view/live/bus_monitor.h"
 #include "view/live/snapshot_broadcaster.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-struct WatchedChannels {
+struct ObservedChannels {
   std::string states{kStatesChannel};
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
@@ -28,42 +28,41 @@ struct WatchedChannels {
   PoseChannels poses;
 };
 
-// This thread, and those that it starts from here on, run only while a processor would otherwise be idle.
+// Applies SCHED_IDLE to this thread and to those that it starts afterwards.
 void use_idle_scheduling();
 
 class LiveView {
  public:
   static constexpr double kSnapshotsPerSecond = 30.0;
 
-  // scene and hub must live as long. Listens from here on. Errors: as UdpmReceiver::open, and two channels of
-  // one name.
+  // Receives from here on. scene and broadcaster must outlive the view. Errors: see UdpmReceiver::open; two
+  // channels have the same name.
   static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
-                                 const WatchedChannels& channels, SnapshotBroadcaster& hub);
+                                 const ObservedChannels& channels, SnapshotBroadcaster& broadcaster);
 
-  // Until a signal of termination comes or keep_running says no; once.
+  // Runs until a termination signal arrives or keep_running returns false; to be called once.
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
  private:
-  // What a channel of the receiver carries.
-  enum class MessageKind { kRequests, kResponses, kHydrostatics, kStatus, kPoses, kForceTorques };
+  enum class MessageKind { kRequest, kResponse, kHydrostatics, kStatus, kPose, kForceTorque };
   struct Route {
-    MessageKind carries;
+    MessageKind kind;
     std::size_t index = 0;  // of the pose channel
   };
 
   LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route> routes, PoseChannels poses,
-           SnapshotBroadcaster& hub);
-  void take_in();
-  void hear(const Route& route, Bytes bytes, ArrivalTime arrival);
+           SnapshotBroadcaster& broadcaster);
+  void drain();
+  void dispatch(const Route& route, Bytes bytes, ArrivalTime arrival);
   void publish();
 
   UdpmReceiver receiver_;
-  std::vector<Route> routes_;  // by the receiver's number of the channel
-  SnapshotBroadcaster* hub_;
-  double start_;  // s, of the steady clock
+  std::vector<Route> routes_;  // by the receiver's channel number
+  SnapshotBroadcaster* broadcaster_;
+  double start_;  // [s], steady clock
   double now_;
-  BusMonitor watch_;
+  BusMonitor monitor_;
   std::int64_t snapshots_ = 0;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

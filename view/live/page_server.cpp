@@ -22,87 +22,89 @@
 
 #include "view/live/request_stream.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
-constexpr std::size_t kSlice = 65'536;  // bytes of a text that are one chunk
+constexpr std::size_t kMaxChunkBytes = 65'536;  // of a resource's body
 
-// Sent and not taken yet, at a time. The kernel would let it grow to megabytes: snapshots that are old before
-// they are read, for each of many connections.
-constexpr int kSendBuffer = 131'072;  // bytes
+// Size of a connection's send buffer. By default the kernel grows it to megabytes of outdated snapshots, for
+// each of many connections.
+constexpr int kSendBufferBytes = 131'072;
 
-// The connections that are held, in the order in which they came.
+// The open connections, in order of arrival.
 class Connections {
  public:
-  enum class Phase { kHead, kResponse, kStream };
+  enum class Phase { kHeader, kResponse, kStream };
   struct Connection {
-    explicit Connection(socket_t its_socket) : socket(its_socket) {}
+    explicit Connection(socket_t socket_of_client) : socket(socket_of_client) {}
     socket_t socket;
-    Phase phase = Phase::kHead;
-    std::atomic<bool> given_up{false};
+    Phase phase = Phase::kHeader;
+    std::atomic<bool> stopping{false};
   };
 
-  // most: more than there can be streams.
-  explicit Connections(int most) : most_(static_cast<std::size_t>(most)) {}
+  // max_connections: more than there can be streams.
+  explicit Connections(int max_connections) : max_connections_(static_cast<std::size_t>(max_connections)) {}
 
-  // Waits for the one that gives way, which is at once: its thread is woken, and waits for nobody.
+  // If all places are taken, evicts a connection and waits for its thread, which ends immediately.
   Connection& add(socket_t socket) {
     std::unique_lock lock(mutex_);
-    if (delay_line_.size() >= most_) give_up_one();
-    room_.wait(lock, [this] { return delay_line_.size() < most_; });
-    Connection& added = delay_line_.emplace_back(socket);
-    added.given_up = ended_;
+    if (open_.size() >= max_connections_) evict_one();
+    closed_.wait(lock, [this] { return open_.size() < max_connections_; });
+    Connection& added = open_.emplace_back(socket);
+    added.stopping = stopping_;
     return added;
   }
 
-  // False: it was given up.
+  // False: the connection is being closed.
   bool set_phase(Connection& connection, Phase phase) {
     const std::lock_guard lock(mutex_);
     connection.phase = phase;
-    return !connection.given_up;
+    return !connection.stopping;
   }
 
   void close(const Connection& connection) {
     {
-      const std::lock_guard lock(mutex_);  // else its number could be another's when it is given up
+      // Under the lock, so that evict_one() cannot shut down a reused file descriptor.
+      const std::lock_guard lock(mutex_);
       ::close(connection.socket);
-      delay_line_.remove_if([&connection](const Connection& held) { return &held == &connection; });
+      open_.remove_if([&connection](const Connection& other) { return &other == &connection; });
     }
-    room_.notify_one();
+    closed_.notify_one();
   }
 
-  // Gives up all, and whatever comes.
-  void end() {
+  // Stops all connections, including those added later.
+  void stop_all() {
     const std::lock_guard lock(mutex_);
-    ended_ = true;
-    for (Connection& held : delay_line_) held.given_up = true;
+    stopping_ = true;
+    for (Connection& connection : open_) connection.stopping = true;
   }
 
  private:
-  // The oldest whose request has not come; where there is none, the oldest that is slow to take its response.
-  void give_up_one() {
-    for (const Phase phase : {Phase::kHead, Phase::kResponse}) {
+  // Evicts the oldest connection that still waits for its request; if there is none, the oldest that is
+  // sending a response. Streams are never evicted.
+  void evict_one() {
+    for (const Phase phase : {Phase::kHeader, Phase::kResponse}) {
       const auto oldest = std::ranges::find_if(
-          delay_line_, [phase](const Connection& held) { return held.phase == phase && !held.given_up; });
-      if (oldest == delay_line_.end()) continue;
-      oldest->given_up = true;
-      ::shutdown(oldest->socket, SHUT_RDWR);  // wakes its thread
+          open_, [phase](const Connection& other) { return other.phase == phase && !other.stopping; });
+      if (oldest == open_.end()) continue;
+      oldest->stopping = true;
+      ::shutdown(oldest->socket, SHUT_RDWR);  // wakes the connection's thread
       return;
     }
   }
 
-  const std::size_t most_;
+  const std::size_t max_connections_;
   std::mutex mutex_;
-  std::condition_variable room_;
-  std::list<Connection> delay_line_;
-  bool ended_ = false;
+  std::condition_variable closed_;
+  std::list<Connection> open_;
+  bool stopping_ = false;
 };
 
-// The connection that this thread serves.
-thread_local Connections::Connection* served = nullptr;
+// The connection that the current thread serves.
+thread_local Connections::Connection* current_connection = nullptr;
 
-// Runs httplib's tasks on the thread that accepts: they only hand a connection to a thread of its own.
-class OnTheSpot : public httplib::TaskQueue {
+// Runs httplib's tasks on the accepting thread; they only hand the connection to a worker thread.
+class InlineTaskQueue : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> task) override { task(); }
   void shutdown() override {}
@@ -112,7 +114,7 @@ bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
 }
 
-// 127.0.0.0/8, also as IPv6 has it, and ::1, however written.
+// True for 127.0.0.0/8, also as an IPv4-mapped IPv6 address, and for ::1 in any notation.
 bool is_loopback(const std::string& address) {
   in_addr ipv4{};
   if (::inet_pton(AF_INET, address.c_str(), &ipv4) == 1) return ntohl(ipv4.s_addr) >> 24 == 127;
@@ -121,11 +123,11 @@ bool is_loopback(const std::string& address) {
   return IN6_IS_ADDR_LOOPBACK(&ipv6) || (IN6_IS_ADDR_V4MAPPED(&ipv6) && ipv6.s6_addr[12] == 127);
 }
 
-std::string in_url(const std::string& address) {
+std::string url_host(const std::string& address) {
   return is_ipv6(address) ? "[" + address + "]" : address;
 }
 
-// "127.0.0.1" of "127.0.0.1:8667".
+// Removes the port: "127.0.0.1:8667" -> "127.0.0.1".
 std::string_view without_port(std::string_view host) {
   const std::size_t colon = host.rfind(':');
   const std::size_t bracket = host.rfind(']');
@@ -134,14 +136,14 @@ std::string_view without_port(std::string_view host) {
   return has_port ? host.substr(0, colon) : host;
 }
 
-// Does a Host without its port name the loopback? An address may: nobody else's web page is at one of these.
+// True if a Host without its port names the loopback. No web page of another origin has one of these hosts.
 bool names_loopback(std::string_view host) {
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
   const std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
   return address == "localhost" ? !bracketed : bracketed == is_ipv6(address) && is_loopback(address);
 }
 
-void response_with(httplib::Response& response, int status, const std::string& text) {
+void set_text(httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   response.set_content(text + "\n", "text/plain; charset=utf-8");
 }
@@ -157,25 +159,32 @@ std::string raw_response(const std::string& status, const std::string& text) {
 Expected<void> check_listen_address(const std::string& address) {
   in6_addr parsed{};
   if (::inet_pton(is_ipv6(address) ? AF_INET6 : AF_INET, address.c_str(), &parsed) == 1) return {};
-  return make_error({"--listen " + address, "not an IP address", "digits, such as 127.0.0.1, ::1 or 0.0.0.0",
-                     "a host's name", "Name the address of the interface to listen on"});
+  return make_error({"--listen " + address, "not an IP address",
+                     "a numeric address, such as 127.0.0.1, ::1 or 0.0.0.0", "a host name",
+                     "Specify the address of the interface to listen on"});
 }
 
 class PageServer::Http : public httplib::Server {
  public:
-  Http(std::string address, std::vector<StaticResource> texts, SnapshotBroadcaster& hub,
+  Http(std::string address, std::vector<StaticResource> resources, SnapshotBroadcaster& broadcaster,
        const PageLimits& limits)
-      : address_(std::move(address)), hub_(hub), limits_(limits), connections_(limits.connections) {
-    for (StaticResource& text : texts) {
-      texts_.emplace(std::move(text.path), Text{std::move(text.content_type),
-                                                std::make_shared<const std::string>(std::move(text.body))});
+      : address_(std::move(address)),
+        broadcaster_(broadcaster),
+        limits_(limits),
+        connections_(limits.connections) {
+    for (StaticResource& resource : resources) {
+      resources_.emplace(std::move(resource.path),
+                         Resource{std::move(resource.content_type),
+                                  std::make_shared<const std::string>(std::move(resource.body))});
     }
-    new_task_queue = [] { return new OnTheSpot; };  // httplib deletes it
-    // httplib's own SO_REUSEPORT would share the port with another view instead of reporting it taken.
+    new_task_queue = [] { return new InlineTaskQueue; };  // httplib deletes it
+    // httplib's default, SO_REUSEPORT, would share the port with another view instead of reporting that it is
+    // taken.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-      ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);  // its connections' too
+      ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes,
+                   sizeof kSendBufferBytes);  // inherited by connections
     });
     set_tcp_nodelay(true);
     set_default_headers({
@@ -194,15 +203,15 @@ class PageServer::Http : public httplib::Server {
     });
     set_exception_handler(
         [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-          response_with(response, 500, "This request could not be answered.");
+          set_text(response, 500, "The request could not be processed.");
         });
   }
 
-  // The port; negative: errno says why not.
+  // Returns the port; negative: failed, errno has the reason.
   int bind(int port) {
     errno = 0;
     const int bound = port == 0 ? bind_to_any_port(address_) : bind_to_port(address_, port) ? port : -1;
-    // httplib has room for five that wait to be accepted; a sixth would ask again only after a second.
+    // httplib's backlog is 5; a client beyond it would retry only after a second.
     if (bound >= 0) ::listen(svr_sock_, limits_.connections);
     return bound;
   }
@@ -214,20 +223,20 @@ class PageServer::Http : public httplib::Server {
       listen_after_bind();
       serving_ = false;
     });
-    while (serving_ && !is_running()) std::this_thread::yield();  // stop() before it would do nothing
+    while (serving_ && !is_running()) std::this_thread::yield();  // a stop() before that has no effect
   }
   bool serving() const { return serving_; }
 
   void end() {
-    connections_.end();
-    hub_.close();
+    connections_.stop_all();
+    broadcaster_.close();
     stop();
     thread_.join();
     threads_->shutdown();
   }
 
  private:
-  struct Text {
+  struct Resource {
     std::string content_type;
     std::shared_ptr<const std::string> body;
   };
@@ -239,88 +248,87 @@ class PageServer::Http : public httplib::Server {
   }
 
   void serve(Connections::Connection& connection) {
-    served = &connection;
+    current_connection = &connection;
     RequestStream stream(
         connection.socket,
         {limits_.max_header_bytes, Seconds(limits_.header_timeout), Seconds(limits_.write_timeout)},
-        connection.given_up);
-    const RequestStream::Head head = stream.read_head();
-    if (connections_.set_phase(connection, Connections::Phase::kResponse)) respond(stream, head);
-    connections_.set_phase(connection, Connections::Phase::kResponse);  // no stream any more
+        connection.stopping);
+    const RequestStream::HeaderResult header = stream.read_header();
+    if (connections_.set_phase(connection, Connections::Phase::kResponse)) respond(stream, header);
+    connections_.set_phase(connection, Connections::Phase::kResponse);  // may be evicted again after a stream
     stream.finish();
     connections_.close(connection);
   }
 
-  void respond(RequestStream& stream, RequestStream::Head head) {
-    switch (head) {
-      case RequestStream::Head::kRead: {
+  void respond(RequestStream& stream, RequestStream::HeaderResult header) {
+    switch (header) {
+      case RequestStream::HeaderResult::kComplete: {
         bool closed = false;
-        // Texts are given whole and as they are: parts of them, and compression, only cost time.
+        // Resources are sent completely and uncompressed: ranges and compression only cost time.
         process_request(stream, true, closed, [](httplib::Request& request) {
           request.ranges.clear();
           request.headers.erase("Accept-Encoding");
         });
         break;
       }
-      case RequestStream::Head::kTooLarge:
-        stream.write(
-            raw_response("431 Request Header Fields Too Large",
-                         "A request may have " + std::to_string(limits_.max_header_bytes) + " bytes."));
+      case RequestStream::HeaderResult::kTooLarge:
+        stream.write(raw_response(
+            "431 Request Header Fields Too Large",
+            "The header of a request is limited to " + std::to_string(limits_.max_header_bytes) + " bytes."));
         break;
-      case RequestStream::Head::kTooSlow:
-        stream.write(raw_response("408 Request Timeout", "The request did not come in time."));
+      case RequestStream::HeaderResult::kTooSlow:
+        stream.write(raw_response("408 Request Timeout", "The request did not arrive in time."));
         break;
-      case RequestStream::Head::kNothing:
+      case RequestStream::HeaderResult::kEmpty:
         break;
     }
   }
 
-  bool is_host_ours(const httplib::Request& request) const {
+  bool is_host_allowed(const httplib::Request& request) const {
     if (!is_loopback(address_)) return true;
     return request.get_header_value_count("Host") == 1 &&
            names_loopback(without_port(request.get_header_value("Host")));
   }
 
   void respond(const httplib::Request& request, httplib::Response& response) {
-    if (!is_host_ours(request)) {
-      response_with(response, 403,
-                    "The Host of this request is not this machine's loopback. Open "
-                    "http://" +
-                        in_url(address_) + " with the port.");
+    if (!is_host_allowed(request)) {
+      set_text(response, 403,
+               "The Host of this request is not a name of the loopback. Open http://" + url_host(address_) +
+                   " with the port.");
       return;
     }
     if (request.method != "GET") {
       response.set_header("Allow", "GET");
-      response_with(response, 405, "Only GET.");
+      set_text(response, 405, "Only GET is supported.");
       return;
     }
     if (request.path == "/events") {
       stream_events(response);
       return;
     }
-    const auto found = texts_.find(request.path);
-    if (found == texts_.end()) {
-      response_with(response, 404, "There is nothing here; the page is at /.");
+    const auto found = resources_.find(request.path);
+    if (found == resources_.end()) {
+      set_text(response, 404, "Not found; the page is at /.");
       return;
     }
-    const Text& text = found->second;
+    const Resource& resource = found->second;
     response.status = 200;
     response.set_content_provider(
-        text.body->size(), text.content_type,
-        [body = text.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-          return sink.write(body->data() + offset, std::min(length, kSlice));
+        resource.body->size(), resource.content_type,
+        [body = resource.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+          return sink.write(body->data() + offset, std::min(length, kMaxChunkBytes));
         });
   }
 
   void stream_events(httplib::Response& response) {
-    auto listener = std::make_shared<SnapshotBroadcaster::Listener>(hub_, limits_.streams);
+    auto listener = std::make_shared<SnapshotBroadcaster::Listener>(broadcaster_, limits_.streams);
     if (!listener->admitted()) {
       response.set_header("Retry-After", "5");
-      response_with(response, 503,
-                    "Already " + std::to_string(limits_.streams) + " pages show this view: close one.");
+      set_text(response, 503,
+               std::to_string(limits_.streams) + " pages are already connected to this view; close one.");
       return;
     }
-    if (!connections_.set_phase(*served, Connections::Phase::kStream)) return;
+    if (!connections_.set_phase(*current_connection, Connections::Phase::kStream)) return;
     response.status = 200;
     response.set_chunked_content_provider(
         "text/event-stream",
@@ -342,9 +350,9 @@ class PageServer::Http : public httplib::Server {
   using Seconds = std::chrono::duration<double>;
 
   std::string address_;
-  SnapshotBroadcaster& hub_;
+  SnapshotBroadcaster& broadcaster_;
   PageLimits limits_;
-  std::unordered_map<std::string, Text> texts_;
+  std::unordered_map<std::string, Resource> resources_;
   Connections connections_;
   std::atomic<bool> serving_{false};
   std::unique_ptr<httplib::ThreadPool> threads_;
@@ -359,21 +367,22 @@ PageServer::~PageServer() {
 }
 
 Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& address, int port,
-                                                        std::vector<StaticResource> texts,
-                                                        SnapshotBroadcaster& hub, const PageLimits& limits) {
+                                                        std::vector<StaticResource> resources,
+                                                        SnapshotBroadcaster& broadcaster,
+                                                        const PageLimits& limits) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
-  auto http = std::make_unique<Http>(address, std::move(texts), hub, limits);
+  auto http = std::make_unique<Http>(address, std::move(resources), broadcaster, limits);
   const int bound = http->bind(port);
   if (bound < 0) {
     const std::string reason = errno != 0 ? std::generic_category().message(errno) : "it cannot be bound";
-    return make_error({"port " + std::to_string(port) + " of " + address, reason,
-                       "a free port of this machine",
-                       "another program, perhaps another view, has it, or the address is not this machine's",
-                       "Choose another --port, or 0 for any that is free"});
+    return make_error(
+        {"port " + std::to_string(port) + " of " + address, reason, "a free port of this machine",
+         "another program, such as another view, uses it, or the address is not one of this machine",
+         "Choose another --port, or 0 for a free one"});
   }
   http->start();
-  const std::string url = "http://" + in_url(address) + ":" + std::to_string(bound) + "/";
+  const std::string url = "http://" + url_host(address) + ":" + std::to_string(bound) + "/";
   return std::unique_ptr<PageServer>(new PageServer(std::move(http), url));
 }
 
@@ -381,4 +390,4 @@ bool PageServer::serving() const {
   return http_->serving();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

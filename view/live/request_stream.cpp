@@ -9,15 +9,15 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestSleep{100};  // an end is seen after so long
-constexpr std::chrono::milliseconds kLinger{200};
+constexpr std::chrono::milliseconds kMaxPollTime{100};  // delay until stopping is noticed
+constexpr std::chrono::milliseconds kLingerTime{200};
 
-bool is_whole(const std::string& head, std::size_t from) {
+bool is_complete(const std::string& header, std::size_t from) {
   from -= std::min<std::size_t>(from, 3);
-  return head.find("\r\n\r\n", from) != std::string::npos || head.find("\n\n", from) != std::string::npos;
+  return header.find("\r\n\r\n", from) != std::string::npos || header.find("\n\n", from) != std::string::npos;
 }
 
 bool would_block() {
@@ -27,35 +27,36 @@ bool would_block() {
 }  // namespace
 
 bool RequestStream::wait_for(short events, Clock::time_point deadline) const {
-  while (!ending_.load()) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-    if (left.count() <= 0) return false;
+  while (!stopping_.load()) {
+    const auto remaining = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (remaining.count() <= 0) return false;
     pollfd waiting{socket_, events, 0};
-    if (::poll(&waiting, 1, static_cast<int>(std::min(left, kLongestSleep).count())) > 0) return true;
+    if (::poll(&waiting, 1, static_cast<int>(std::min(remaining, kMaxPollTime).count())) > 0) return true;
   }
   return false;
 }
 
-RequestStream::Head RequestStream::read_head() {
-  const auto deadline = in(limits_.head);
+RequestStream::HeaderResult RequestStream::read_header() {
+  const auto deadline = deadline_after(limits_.header_timeout);
   std::array<char, 4096> part{};
   while (wait_for(POLLIN, deadline)) {
     const ssize_t size = ::recv(socket_, part.data(), part.size(), MSG_DONTWAIT);
     if (size < 0 && would_block()) continue;
-    if (size <= 0) return head_.empty() ? Head::kNothing : Head::kRead;
-    const std::size_t before = head_.size();
-    head_.append(part.data(), static_cast<std::size_t>(size));
-    if (is_whole(head_, before))
-      return head_.size() <= limits_.max_header_bytes + part.size() ? Head::kRead : Head::kTooLarge;
-    if (head_.size() > limits_.max_header_bytes) return Head::kTooLarge;
+    if (size <= 0) return header_.empty() ? HeaderResult::kEmpty : HeaderResult::kComplete;
+    const std::size_t before = header_.size();
+    header_.append(part.data(), static_cast<std::size_t>(size));
+    if (is_complete(header_, before))
+      return header_.size() <= limits_.max_header_bytes + part.size() ? HeaderResult::kComplete
+                                                                      : HeaderResult::kTooLarge;
+    if (header_.size() > limits_.max_header_bytes) return HeaderResult::kTooLarge;
   }
-  return head_.empty() ? Head::kNothing : Head::kTooSlow;
+  return header_.empty() ? HeaderResult::kEmpty : HeaderResult::kTooSlow;
 }
 
 void RequestStream::finish() {
-  // A socket closed while it holds unread bytes resets the connection, and the peer may lose the response.
+  // Closing a socket that holds unread bytes resets the connection, and the peer may lose the response.
   ::shutdown(socket_, SHUT_WR);
-  const auto deadline = Clock::now() + kLinger;
+  const auto deadline = Clock::now() + kLingerTime;
   std::array<char, 4096> ignored{};
   while (wait_for(POLLIN, deadline)) {
     const ssize_t size = ::recv(socket_, ignored.data(), ignored.size(), MSG_DONTWAIT);
@@ -64,30 +65,30 @@ void RequestStream::finish() {
 }
 
 bool RequestStream::is_writable() const {
-  return wait_for(POLLOUT, in(limits_.chunk));
+  return wait_for(POLLOUT, deadline_after(limits_.write_timeout));
 }
 
 ssize_t RequestStream::read(char* to, std::size_t size) {
-  const std::size_t given = head_.copy(to, size, read_);
-  read_ += given;
-  return static_cast<ssize_t>(given);
+  const std::size_t copied = header_.copy(to, size, read_);
+  read_ += copied;
+  return static_cast<ssize_t>(copied);
 }
 
-bool RequestStream::is_taking() {
-  int waiting = 0;
-  if (::ioctl(socket_, SIOCOUTQ, &waiting) != 0) return false;
-  const std::size_t taken = written_ - std::min(written_, static_cast<std::size_t>(waiting));
+bool RequestStream::peer_is_reading() {
+  int pending = 0;
+  if (::ioctl(socket_, SIOCOUTQ, &pending) != 0) return false;
+  const std::size_t acknowledged = written_ - std::min(written_, static_cast<std::size_t>(pending));
   const Clock::time_point now = Clock::now();
-  if (taken == written_ || taken > taken_) {
-    taken_ = taken;
-    taken_at_ = now;
+  if (acknowledged == written_ || acknowledged > acknowledged_) {
+    acknowledged_ = acknowledged;
+    acknowledged_at_ = now;
   }
-  return now - taken_at_ <= limits_.chunk;
+  return now - acknowledged_at_ <= limits_.write_timeout;
 }
 
 ssize_t RequestStream::write(const char* from, std::size_t size) {
-  if (!is_taking()) return -1;
-  const auto deadline = in(limits_.chunk);
+  if (!peer_is_reading()) return -1;
+  const auto deadline = deadline_after(limits_.write_timeout);
   std::size_t sent = 0;
   while (sent < size) {
     const ssize_t part = ::send(socket_, from + sent, size - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -101,4 +102,4 @@ ssize_t RequestStream::write(const char* from, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,7 +1,7 @@
-// One request and its response on a socket, with bounds that httplib's own stream does not have: a request's
-// head is read whole, within limits, before httplib sees it, and what follows it is never read. A chunk that
-// is written is taken within its time or the connection is given up, also where the kernel has room for many
-// chunks that nobody reads.
+// One HTTP request and its response on a socket, with limits that httplib's own stream does not have. The
+// header of a request is read completely, within limits, before httplib parses it; what follows it is never
+// read. The connection is dropped if the peer does not read what was written in time, even while the kernel
+// still has room to buffer it.
 #pragma once
 
 #include <atomic>
@@ -11,29 +11,30 @@
 
 #include <httplib.h>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class RequestStream : public httplib::Stream {
  public:
   struct Limits {
     std::size_t max_header_bytes;
-    std::chrono::duration<double> head, chunk;
+    std::chrono::duration<double> header_timeout;
+    std::chrono::duration<double> write_timeout;  // per chunk
   };
-  enum class Head { kRead, kNothing, kTooLarge, kTooSlow };
+  enum class HeaderResult { kComplete, kEmpty, kTooLarge, kTooSlow };
 
-  // socket: stays the caller's. ending: set when nobody is to be waited for any more; must live as long.
-  RequestStream(socket_t socket, const Limits& limits, const std::atomic<bool>& ending)
-      : socket_(socket), limits_(limits), ending_(ending) {}
+  // The caller keeps the socket. stopping: if set, no wait continues; must outlive the stream.
+  RequestStream(socket_t socket, const Limits& limits, const std::atomic<bool>& stopping)
+      : socket_(socket), limits_(limits), stopping_(stopping) {}
 
-  // kRead also where the peer ended before its head did: httplib finds out what is missing.
-  Head read_head();
-  // Ends the response, and lets the peer read what was written before the socket is closed.
+  // Also returns kComplete if the peer closes in the middle of the header; httplib then rejects it.
+  HeaderResult read_header();
+  // Ends the response and lets the peer read the rest of it before the caller closes the socket.
   void finish();
 
-  bool is_readable() const override { return read_ < head_.size(); }
+  bool is_readable() const override { return read_ < header_.size(); }
   bool is_writable() const override;
-  ssize_t read(char* to, std::size_t size) override;           // 0 after the head
-  ssize_t write(const char* from, std::size_t size) override;  // all of it, or -1
+  ssize_t read(char* to, std::size_t size) override;           // 0 after the header
+  ssize_t write(const char* from, std::size_t size) override;  // size, or -1
   using Stream::write;
   void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
   void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
@@ -41,22 +42,22 @@ class RequestStream : public httplib::Stream {
 
  private:
   using Clock = std::chrono::steady_clock;
-  // Has the peer taken something within its time, or nothing to take?
-  bool is_taking();
-  // Waits for events of poll(); false: not before the deadline, or all is ending.
+  // True if the peer has read everything, or something within write_timeout.
+  bool peer_is_reading();
+  // Waits for events of poll(). False: the deadline has passed, or stopping is set.
   bool wait_for(short events, Clock::time_point deadline) const;
-  static Clock::time_point in(std::chrono::duration<double> patience) {
-    return Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
+  static Clock::time_point deadline_after(std::chrono::duration<double> timeout) {
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
   }
 
   socket_t socket_;
   Limits limits_;
-  const std::atomic<bool>& ending_;
-  std::string head_;
+  const std::atomic<bool>& stopping_;
+  std::string header_;
   std::size_t read_ = 0;
   std::size_t written_ = 0;
-  std::size_t taken_ = 0;  // of what was written, when the peer last took something
-  Clock::time_point taken_at_;
+  std::size_t acknowledged_ = 0;  // bytes of written_, when the peer last acknowledged some
+  Clock::time_point acknowledged_at_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

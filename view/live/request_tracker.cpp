@@ -2,43 +2,43 @@
 
 #include <algorithm>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-bool RequestTracker::on_request(const RequestId& key, std::int64_t utime, double now, Seq seq) {
+bool RequestTracker::on_request(const RequestId& key, std::int64_t utime, double now, SeqPolicy policy) {
   const Key request{key.session_id, key.seq};
-  const bool is_new = note_in_session(key, now, seq);
+  const bool is_new = update_session(key, now, policy);
   if (requests_.contains(request)) {
     ++counts_.requests_repeated;
     return false;
   }
-  if (requests_.size() == kMaxPending) forget_oldest();
-  requests_.emplace(request, CachedResult{utime, now, false});
+  if (requests_.size() == kMaxPending) drop_oldest();
+  requests_.emplace(request, TrackedRequest{utime, now, false});
   order_.push_back(request);
   ++(is_new ? counts_.requests : counts_.requests_repeated);
   return is_new;
 }
 
-bool RequestTracker::note_in_session(const RequestId& key, double now, Seq seq) {
+bool RequestTracker::update_session(const RequestId& key, double now, SeqPolicy policy) {
   const auto found = sessions_.find(key.session_id);
   if (found == sessions_.end()) {
     if (sessions_.size() == kMaxSessions) {
-      sessions_.erase(
-          std::ranges::min_element(sessions_, {}, [](const auto& session) { return session.second.heard; }));
+      sessions_.erase(std::ranges::min_element(
+          sessions_, {}, [](const auto& session) { return session.second.last_active; }));
     }
     sessions_.emplace(key.session_id, Session{key.seq, now});
     ++counts_.sessions;
     return true;
   }
   Session& session = found->second;
-  session.heard = now;
-  // Without a sign: the distance of any two numbers is one.
+  session.last_active = now;
+  // Unsigned, so that the distance of any two numbers is representable.
   const std::uint64_t ahead =
-      static_cast<std::uint64_t>(key.seq) - static_cast<std::uint64_t>(session.newest_seq);
+      static_cast<std::uint64_t>(key.seq) - static_cast<std::uint64_t>(session.latest_seq);
   const bool is_repeat = ahead == 0;
-  if (seq == Seq::kConsecutive && key.seq > session.newest_seq && ahead <= kMaxSeqGap) {
+  if (policy == SeqPolicy::kConsecutive && key.seq > session.latest_seq && ahead <= kMaxSeqGap) {
     counts_.requests_missed += static_cast<std::int64_t>(ahead) - 1;
   }
-  session.newest_seq = key.seq;
+  session.latest_seq = key.seq;
   return !is_repeat;
 }
 
@@ -48,26 +48,26 @@ std::optional<double> RequestTracker::on_response(const RequestId& key, std::int
     ++counts_.responses_without_request;
     return std::nullopt;
   }
-  CachedResult& request = found->second;
-  if (request.answered) {
+  TrackedRequest& request = found->second;
+  if (request.has_response) {
     ++counts_.responses_repeated;
     return std::nullopt;
   }
-  request.answered = true;
+  request.has_response = true;
   ++counts_.responses;
   constexpr double kSecondsPerMicrosecond = 1e-6;
   return kSecondsPerMicrosecond * static_cast<double>(std::max<std::int64_t>(utime - request.utime, 0));
 }
 
 void RequestTracker::expire(double now) {
-  while (!order_.empty() && requests_.at(order_.front()).heard + kPatience < now) forget_oldest();
+  while (!order_.empty() && requests_.at(order_.front()).received + kTimeout < now) drop_oldest();
 }
 
-void RequestTracker::forget_oldest() {
+void RequestTracker::drop_oldest() {
   const auto oldest = requests_.find(order_.front());
-  if (!oldest->second.answered) ++counts_.unanswered;
+  if (!oldest->second.has_response) ++counts_.unanswered;
   requests_.erase(oldest);
   order_.pop_front();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,10 +1,10 @@
-// Which answer belongs to which request, as somebody sees it who hears both pass by: pairs them by
-// (session_id, seq), tells the time between them, and counts what has no partner.
+// Matches responses to requests that an observer receives on the bus: pairs them by (session_id, seq),
+// measures the time between them, and counts those without a partner.
 //
-// A request is remembered for kPatience after it was heard first, and no more than kMaxPending are: the
-// oldest goes first, given up early. Sessions are remembered for the sake of their newest seq alone; the
-// least recently heard of more than kMaxSessions goes. So memory is bounded whatever arrives. O(1), but for
-// a new session once all places are taken: O(kMaxSessions).
+// A request is tracked for kTimeout after its first arrival. At most kMaxPending are tracked; beyond that the
+// oldest is dropped early. A session is tracked only for its latest seq; of more than kMaxSessions the one
+// that was inactive longest is dropped. Memory is therefore bounded whatever arrives. O(1), except for a new
+// session beyond kMaxSessions: O(kMaxSessions).
 #pragma once
 
 #include <cstddef>
@@ -16,42 +16,46 @@
 
 #include "messages/request.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
+
+enum class SeqPolicy {
+  kConsecutive,  // seq increases by one with each request of a session: a gap is a loss
+  kArbitrary,    // gaps have no meaning
+};
 
 class RequestTracker {
  public:
-  static constexpr double kPatience = 2.0;  // s
+  static constexpr double kTimeout = 2.0;  // [s]
   static constexpr std::size_t kMaxPending = 16'384;
   static constexpr std::size_t kMaxSessions = 256;
-  static constexpr std::uint64_t kMaxSeqGap = 1'000'000;  // beyond it a seq is a new beginning, not a loss
+  static constexpr std::uint64_t kMaxSeqGap = 1'000'000;  // a larger jump of seq is a restart, not a loss
 
   struct Counts {
-    std::int64_t requests = 0;                   // each once, however often it was heard
-    std::int64_t requests_repeated = 0;          // heard again
-    std::int64_t responses = 0;                  // the first to a request
-    std::int64_t responses_repeated = 0;         // any further one
-    std::int64_t responses_without_request = 0;  // its request was not heard, or longer ago than kPatience
-    std::int64_t unanswered = 0;                 // requests given up
-    std::int64_t requests_missed = 0;            // numbers left out between two requests of a session
-    std::int64_t sessions = 0;                   // begun
+    std::int64_t requests = 0;            // distinct requests
+    std::int64_t requests_repeated = 0;   // repeats of these
+    std::int64_t responses = 0;           // first responses to a request
+    std::int64_t responses_repeated = 0;  // further responses to it
+    std::int64_t responses_without_request =
+        0;                             // the request was not observed, or more than kTimeout earlier
+    std::int64_t unanswered = 0;       // requests dropped without a response
+    std::int64_t requests_missed = 0;  // numbers skipped between two requests of a session
+    std::int64_t sessions = 0;         // started
   };
 
-  // What seq is: counted up by one with each request of a session, so that a gap is a loss; or any number.
-  enum class Seq { kConsecutive, kArbitrary };
+  // utime: arrival [us since 1970]; now: arrival on a monotonic clock [s]. Returns false for a repeat.
+  bool on_request(const RequestId& key, std::int64_t utime, double now,
+                  SeqPolicy policy = SeqPolicy::kConsecutive);
+  bool contains(const RequestId& key) const { return requests_.contains({key.session_id, key.seq}); }
 
-  // utime: us since 1970, when it arrived; now: s of a clock that never jumps, for kPatience. False: a
-  // repeat.
-  bool on_request(const RequestId& key, std::int64_t utime, double now, Seq seq = Seq::kConsecutive);
-  bool remembers(const RequestId& key) const { return requests_.contains({key.session_id, key.seq}); }
-
-  // s: between the first hearing of its request and this first response to it; 0 where the clock went back.
-  // nullopt: no such request is waiting.
+  // Returns the time [s] from the first arrival of the request to its first response, 0 if the clock went
+  // back. nullopt: no such request is pending.
   std::optional<double> on_response(const RequestId& key, std::int64_t utime);
 
+  // Drops the requests that are older than kTimeout.
   void expire(double now);
 
   const Counts& counts() const { return counts_; }
-  std::size_t remembered() const { return requests_.size(); }
+  std::size_t size() const { return requests_.size(); }
 
  private:
   struct Key {
@@ -63,23 +67,24 @@ class RequestTracker {
       return std::hash<std::int64_t>()(key.session_id) * 31 + std::hash<std::int64_t>()(key.seq);
     }
   };
-  struct CachedResult {
+  struct TrackedRequest {
     std::int64_t utime;
-    double heard;
-    bool answered;
+    double received;
+    bool has_response;
   };
   struct Session {
-    std::int64_t newest_seq;
-    double heard;
+    std::int64_t latest_seq;
+    double last_active;
   };
 
-  bool note_in_session(const RequestId& key, double now, Seq seq);  // false: heard before
-  void forget_oldest();
+  // Returns false if key repeats the latest request of its session.
+  bool update_session(const RequestId& key, double now, SeqPolicy policy);
+  void drop_oldest();
 
-  std::unordered_map<Key, CachedResult, HashKey> requests_;
-  std::deque<Key> order_;  // of questions_, the oldest in front
+  std::unordered_map<Key, TrackedRequest, HashKey> requests_;
+  std::deque<Key> order_;  // keys of requests_, the oldest first
   std::unordered_map<std::int64_t, Session> sessions_;
   Counts counts_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

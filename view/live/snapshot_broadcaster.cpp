@@ -2,27 +2,29 @@
 
 #include <utility>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-SnapshotBroadcaster::Listener::Listener(SnapshotBroadcaster& hub, int most) : hub_(hub) {
-  const std::lock_guard lock(hub_.mutex_);
-  admitted_ = hub_.listeners_ < most;
+SnapshotBroadcaster::Listener::Listener(SnapshotBroadcaster& broadcaster, int max_listeners)
+    : broadcaster_(broadcaster) {
+  const std::lock_guard lock(broadcaster_.mutex_);
+  admitted_ = broadcaster_.listeners_ < max_listeners;
   if (!admitted_) return;
-  ++hub_.listeners_;
-  seen_ = hub_.newest_.number;  // made before this one came, perhaps long before
+  ++broadcaster_.listeners_;
+  received_ = broadcaster_.latest_.number;  // skips a snapshot that may be old
 }
 
 SnapshotBroadcaster::Listener::~Listener() {
-  const std::lock_guard lock(hub_.mutex_);
-  if (admitted_) --hub_.listeners_;
+  const std::lock_guard lock(broadcaster_.mutex_);
+  if (admitted_) --broadcaster_.listeners_;
 }
 
 SnapshotBroadcaster::Published SnapshotBroadcaster::Listener::next() {
-  std::unique_lock lock(hub_.mutex_);
-  hub_.published_anew_.wait(lock, [this] { return hub_.closed_ || hub_.newest_.number > seen_; });
-  if (hub_.closed_) return {};
-  seen_ = hub_.newest_.number;
-  return hub_.newest_;
+  std::unique_lock lock(broadcaster_.mutex_);
+  broadcaster_.changed_.wait(
+      lock, [this] { return broadcaster_.closed_ || broadcaster_.latest_.number > received_; });
+  if (broadcaster_.closed_) return {};
+  received_ = broadcaster_.latest_.number;
+  return broadcaster_.latest_;
 }
 
 void SnapshotBroadcaster::publish(std::string history, std::string snapshot) {
@@ -30,10 +32,10 @@ void SnapshotBroadcaster::publish(std::string history, std::string snapshot) {
                  std::make_shared<const std::string>(std::move(snapshot))};
   {
     const std::lock_guard lock(mutex_);
-    next.number = newest_.number + 1;
-    newest_ = std::move(next);
+    next.number = latest_.number + 1;
+    latest_ = std::move(next);
   }
-  published_anew_.notify_all();
+  changed_.notify_all();
 }
 
 int SnapshotBroadcaster::listeners() const {
@@ -46,7 +48,7 @@ void SnapshotBroadcaster::close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
   }
-  published_anew_.notify_all();
+  changed_.notify_all();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,6 +1,6 @@
-// Where one thread lays down the newest texts and many take them: each text is made once and shared by all
-// who wait. Nobody waits for a slow taker: it gets the newest when it comes again, and what lay between is
-// gone.
+// Distributes the latest snapshot from one thread to many. Each text is made once and shared by all
+// listeners. The publisher never waits for a slow listener, which receives the latest snapshot next and
+// misses those in between.
 #pragma once
 
 #include <condition_variable>
@@ -9,43 +9,43 @@
 #include <mutex>
 #include <string>
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 class SnapshotBroadcaster {
  public:
   using Text = std::shared_ptr<const std::string>;
   struct Published {
-    std::int64_t number = 0;  // 0: nothing yet
+    std::int64_t number = 0;  // 0: nothing published yet
     Text history, snapshot;
   };
 
-  // Somebody who takes. At most `most` at a time.
+  // A listener is admitted if there are fewer than max_listeners.
   class Listener {
    public:
-    Listener(SnapshotBroadcaster& hub, int most);
+    Listener(SnapshotBroadcaster& broadcaster, int max_listeners);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
     ~Listener();
     bool admitted() const { return admitted_; }
-    // Waits for texts that this listener has not got. number 0: closed.
+    // Waits for a snapshot that this listener has not received yet. number 0: closed.
     Published next();
 
    private:
-    SnapshotBroadcaster& hub_;
+    SnapshotBroadcaster& broadcaster_;
     bool admitted_;
-    std::int64_t seen_ = 0;
+    std::int64_t received_ = 0;
   };
 
   void publish(std::string history, std::string snapshot);
   int listeners() const;
-  void close();  // every next() returns, now and from here on
+  void close();  // every next() returns, now and later
 
  private:
   mutable std::mutex mutex_;
-  std::condition_variable published_anew_;
-  Published newest_;
+  std::condition_variable changed_;
+  Published latest_;
   int listeners_ = 0;
   bool closed_ = false;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

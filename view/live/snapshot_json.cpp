@@ -9,23 +9,23 @@
 
 #include <nlohmann/json.hpp>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using nlohmann::json;
 
-// The bodies' part is written by hand: thirty times a second and a hundred bodies, most of a snapshot.
-class BodyText {
+// Writes the bodies without nlohmann::json: they are most of a snapshot, with a hundred bodies at 30 Hz.
+class BodyWriter {
  public:
-  explicit BodyText(std::string& text) : text_(text) {}
+  explicit BodyWriter(std::string& text) : text_(text) {}
 
-  BodyText& plain(std::string_view characters) {
+  BodyWriter& plain(std::string_view characters) {
     text_ += characters;
     return *this;
   }
-  // As many digits as its type needs.
+  // Writes the shortest text that reads back as the same T.
   template <typename T>
-  BodyText& number_as(double value) {
+  BodyWriter& number_as(double value) {
     const auto rounded = static_cast<T>(value);
     if (!std::isfinite(rounded)) return plain("null");
     std::array<char, 32> digits{};
@@ -33,14 +33,14 @@ class BodyText {
     text_.append(digits.data(), end);
     return *this;
   }
-  BodyText& number(double value) { return number_as<float>(value); }
-  BodyText& whole_number(std::int64_t value) { return plain(std::to_string(value)); }
+  BodyWriter& number(double value) { return number_as<float>(value); }
+  BodyWriter& whole_number(std::int64_t value) { return plain(std::to_string(value)); }
   template <std::size_t kSize>
-  BodyText& numbers(const std::array<double, kSize>& values) {
+  BodyWriter& numbers(const std::array<double, kSize>& values) {
     return numbers_as<float>(values);
   }
   template <typename T, std::size_t kSize>
-  BodyText& numbers_as(const std::array<double, kSize>& values) {
+  BodyWriter& numbers_as(const std::array<double, kSize>& values) {
     for (std::size_t i = 0; i < kSize; ++i) plain(i == 0 ? "[" : ",").template number_as<T>(values[i]);
     return plain("]");
   }
@@ -52,15 +52,15 @@ class BodyText {
 void append(std::string& text, const BodyMonitor& body, double now) {
   const bool overdue = body.response_overdue(BusMonitor::kResponseTimeout);
   const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
-  const bool whole = wrench != nullptr && !body.force_torque_only;
-  BodyText out(text);
+  const bool complete = wrench != nullptr && !body.force_torque_only;
+  BodyWriter out(text);
   out.plain(R"({"id":)").whole_number(body.id).plain(R"(,"status":)");
-  if (whole) {
+  if (complete) {
     out.whole_number(static_cast<std::int64_t>(wrench->status));
   } else {
     out.plain("null");
   }
-  // Whole: a thousand kilometres from W's origin a float is half a metre.
+  // As double: 5,000 km from W's origin, adjacent floats are 0.5 m apart.
   out.plain(R"(,"p":)").numbers_as<double>(body.pose->position);
   out.plain(R"(,"q":)").numbers(body.pose->quaternion_wxyz);
   if (wrench != nullptr) {
@@ -68,7 +68,7 @@ void append(std::string& text, const BodyMonitor& body, double now) {
   } else {
     out.plain(R"(,"f":null,"t":null)");
   }
-  if (whole) {
+  if (complete) {
     out.plain(R"(,"b":)").numbers(wrench->center_of_buoyancy);
     out.plain(R"(,"volume":)").number(wrench->submerged_volume);
     out.plain(R"(,"force_bound":)").number(wrench->force_error_bound);
@@ -83,11 +83,7 @@ void append(std::string& text, const BodyMonitor& body, double now) {
   } else {
     out.plain(R"(,"m":null,"gm":null)");
   }
-  out.plain(R"(,"age":)").number(now - *body.asked).plain("}");
-}
-
-json or_null(std::optional<double> value) {
-  return value ? json(*value) : json();
+  out.plain(R"(,"age":)").number(now - *body.last_request).plain("}");
 }
 
 json percentiles_json(const LatencyPercentiles& latency) {
@@ -95,17 +91,14 @@ json percentiles_json(const LatencyPercentiles& latency) {
 }
 
 json second_json(const SecondStats& second) {
-  const auto where_answered = [&second](double value) { return second.responses > 0 ? json(value) : json(); };
-  return {{"number", second.number},
-          {"requests", second.requests},
-          {"responses", second.responses},
-          {"unanswered", second.unanswered},
-          {"p50", where_answered(second.latency.p50)},
-          {"p99", where_answered(second.latency.p99)},
-          {"max", where_answered(second.latency.max)}};
+  const auto if_any = [&second](double value) { return second.responses > 0 ? json(value) : json(); };
+  return {{"number", second.number},           {"requests", second.requests},
+          {"responses", second.responses},     {"unanswered", second.unanswered},
+          {"p50", if_any(second.latency.p50)}, {"p99", if_any(second.latency.p99)},
+          {"max", if_any(second.latency.max)}};
 }
 
-// Of ServiceCounters what says something to an onlooker; names as in service_status_t.
+// The fields that matter to an observer; names as in service_status_t.
 json status_json(const ServiceStatus& status) {
   const ServiceCounters& counters = status.counters;
   json bodies;
@@ -144,13 +137,13 @@ json status_json(const ServiceStatus& status) {
           {"queue_wait", status.queue_wait}};
 }
 
-json counts_json(const BusMonitor& watch) {
-  const RequestTracker::Counts& tracker = watch.tracker();
-  const BusMonitor::Counts& counts = watch.counts();
+json counts_json(const BusMonitor& monitor) {
+  const RequestTracker::Counts& tracker = monitor.tracker();
+  const BusMonitor::Counts& counts = monitor.counts();
   json malformed;
-  for (const DecodeError rejection :
+  for (const DecodeError error :
        {DecodeError::kTruncated, DecodeError::kFingerprint, DecodeError::kCount, DecodeError::kLength}) {
-    malformed[to_string(rejection)] = counts.malformed[static_cast<std::size_t>(rejection)];
+    malformed[to_string(error)] = counts.malformed[static_cast<std::size_t>(error)];
   }
   return {{"requests", tracker.requests},
           {"requests_repeated", tracker.requests_repeated},
@@ -161,42 +154,44 @@ json counts_json(const BusMonitor& watch) {
           {"unanswered", tracker.unanswered},
           {"sessions", tracker.sessions},
           {"malformed", malformed},
-          {"packets_dropped", counts.losses.packets},
-          {"fragments_dropped", counts.losses.fragments},
+          {"packets_dropped", counts.drops.packets},
+          {"fragments_dropped", counts.drops.fragments},
           {"bodies_not_in_scene", counts.bodies_not_in_scene},
           {"statuses", counts.statuses},
           {"services_started", counts.services_started}};
 }
 
-// A scene's name may hold bytes that are no UTF-8, which must not end the program.
-std::string text_of(const json& value) {
+// Replaces invalid UTF-8, which a scene's name may contain, instead of throwing.
+std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace
 
-std::string snapshot_json(const BusMonitor& watch, std::int64_t number, double time, double listening,
+std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now) {
-  const auto age = [now](std::optional<double> heard) { return heard ? or_null(now - *heard) : json(); };
+  const auto age = [now](std::optional<double> received) {
+    return received ? json(now - *received) : json();
+  };
   json services = json::array();
-  for (const std::int64_t id : watch.services(now)) services.push_back(std::to_string(id));
+  for (const std::int64_t id : monitor.services(now)) services.push_back(std::to_string(id));
   const json rest{{"number", number},
                   {"time", time},
                   {"listening", listening},
-                  {"service", to_string(watch.service_state(now))},
+                  {"service", to_string(monitor.service_state(now))},
                   {"services", services},
-                  {"status", watch.status() ? status_json(*watch.status()) : json()},
-                  {"status_age", age(watch.status_received())},
-                  {"response_age", age(watch.response_received())},
-                  {"request_age", age(watch.request_received())},
-                  {"second", watch.seconds().empty() ? json() : second_json(watch.seconds().back())},
-                  {"latency", percentiles_json(watch.latency())},
-                  {"counts", counts_json(watch)}};
-  std::string text = text_of(rest);
-  text.back() = ',';  // instead of the closing brace
+                  {"status", monitor.status() ? status_json(*monitor.status()) : json()},
+                  {"status_age", age(monitor.status_received())},
+                  {"response_age", age(monitor.response_received())},
+                  {"request_age", age(monitor.request_received())},
+                  {"second", monitor.seconds().empty() ? json() : second_json(monitor.seconds().back())},
+                  {"latency", percentiles_json(monitor.latency())},
+                  {"counts", counts_json(monitor)}};
+  std::string text = dump(rest);
+  text.back() = ',';  // replaces the closing brace
   text += R"("bodies":[)";
   bool first = true;
-  for (const BodyMonitor& body : watch.bodies()) {
+  for (const BodyMonitor& body : monitor.bodies()) {
     if (!body.pose) continue;
     if (!std::exchange(first, false)) text += ',';
     append(text, body, now);
@@ -205,10 +200,10 @@ std::string snapshot_json(const BusMonitor& watch, std::int64_t number, double t
   return text;
 }
 
-std::string history_json(const BusMonitor& watch) {
+std::string history_json(const BusMonitor& monitor) {
   json seconds = json::array();
-  for (const SecondStats& second : watch.seconds()) seconds.push_back(second_json(second));
-  return text_of(seconds);
+  for (const SecondStats& second : monitor.seconds()) seconds.push_back(second_json(second));
+  return dump(seconds);
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,6 +1,6 @@
-// What BusMonitor knows, as the JSON texts that the live page reads. Numbers that are NaN or infinite are
-// null; numbers of bodies have float's precision, which is more than a screen shows; ids of 64 bits are
-// strings, since JavaScript's numbers end at 2^53.
+// The state of BusMonitor as the JSON texts that the live page reads. Numbers that are NaN or infinite are
+// null; numbers of bodies have float precision, except positions; 64-bit ids are strings, since JavaScript
+// represents integers exactly only up to 2^53.
 #pragma once
 
 #include <cstdint>
@@ -8,37 +8,37 @@
 
 #include "view/live/bus_monitor.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 // One line, without a line break:
 //
 //   number         of this snapshot
-//   time           s since 1970
-//   listening      s since the start
-//   bodies         those whose pose was heard, each
+//   time           [s since 1970]
+//   listening      [s since the start]
+//   bodies         those with a pose, each
 //                    id
 //                    status       a BodyStatus as a number
 //                    p, q         [3], [w, x, y, z]
 //                    f, t         [3]
 //                    b            [3], the centre of buoyancy
-//                    m, gm        [[3], [3]], the metacentres, and [2], their heights
+//                    m, gm        [[3], [3]], the metacentres, and [2], the metacentric heights
 //                    volume, force_bound, torque_bound
-//                    age          s since the body was asked about
-//                  b and m relative to p in W's axes. null: from f to torque_bound what was not answered, not
-//                  yet or not since BusMonitor::kResponseTimeout; status, b, volume and the bounds too where
-//                  a six_axis_force_torque_t answered
-//   service        as to_string(ServiceState)
-//   services       the instance ids heard within 3 s
-//   status         the newest service_status_t, or null
-//   status_age, answer_age, question_age   s, or null
-//   second         the last whole second, as in history_json, or null
-//   latency        p50, p99, p999, max: s, since the start
-//   counts         as BusMonitor counts
-std::string snapshot_json(const BusMonitor& watch, std::int64_t number, double time, double listening,
+//                    age          [s] since the latest request for the body
+//                  b and m are relative to p in W's axes. From f to torque_bound, null means: no response
+//                  yet, or none since BusMonitor::kResponseTimeout; status, b, volume and the bounds are also
+//                  null if the response was a six_axis_force_torque_t
+//   service        to_string(ServiceState)
+//   services       the instance ids seen within BusMonitor::kStatusTimeout
+//   status         the latest service_status_t, or null
+//   status_age, response_age, request_age   [s], or null
+//   second         the last complete second, same as in history_json, or null
+//   latency        p50, p99, p999, max [s] since the start
+//   counts         BusMonitor::Counts and RequestTracker::Counts
+std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now);
 
-// The last minute: an array, the newest last, of {"number", "requests", "answers", "unanswered", "p50",
-// "p99", "max"}; the last three null where nothing was answered.
-std::string history_json(const BusMonitor& watch);
+// The last minute: an array, the latest second last, of {"number", "requests", "responses", "unanswered",
+// "p50", "p99", "max"}; the last three are null for a second without responses.
+std::string history_json(const BusMonitor& monitor);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -6,7 +6,7 @@
 
 #include "geometry/rotation_between.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 Eigen::Quaterniond upright(MeshUp mesh_up) {
@@ -34,4 +34,4 @@ Attitude attitude(const Pose& pose, const Water& water, MeshUp mesh_up) {
           .pitch = kDegrees * std::asin(std::clamp(2.0 * (q.w() * q.y() - q.z() * q.x()), -1.0, 1.0))};
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,4 +1,4 @@
-// A list of bodies as somebody types it: ids and ranges of ids, "1-50,900".
+// Parses a list of bodies given on the command line: ids and ranges of ids, "1-50,900".
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,11 @@
 #include "base/error.h"
 #include "scene/scene.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-// The bodies named, as indices into scene.bodies(), ascending, each once. A range may name ids that the scene
-// does not have. Errors: not such a list, an id or a range without a body, more bodies than a page shows.
+// The bodies in the list as indices into scene.bodies(), ascending, without duplicates. A range may contain
+// ids that the scene does not have. Errors: invalid syntax, an id or a range without a body, more bodies than
+// a page can show.
 Expected<std::vector<std::size_t>> body_list(const std::string& list, const Scene& scene);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

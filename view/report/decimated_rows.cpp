@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::size_t kMinRows = 32;
@@ -11,73 +11,72 @@ constexpr std::size_t kMinRows = 32;
 }  // namespace
 
 DecimatedRows::DecimatedRows(std::size_t max_rows)
-    : max_rows_(std::max(max_rows, kMinRows)), max_cuts_((max_rows_ - 1) / kKeptOfCut / 2 * 2) {}
+    : max_rows_(std::max(max_rows, kMinRows)), max_bins_((max_rows_ - 1) / kRowsPerBin / 2 * 2) {}
 
-DecimatedRows::Cut DecimatedRows::cut_of(const Numbered& row) {
-  Cut cut;
-  cut.fill(row);
-  return cut;
+DecimatedRows::Bin DecimatedRows::make_bin(const NumberedRow& row) {
+  Bin bin;
+  bin.fill(row);
+  return bin;
 }
 
-void DecimatedRows::join(Cut& cut, const Cut& other) {
+void DecimatedRows::merge(Bin& bin, const Bin& other) {
   for (std::size_t i = 0; i < kExtremaColumns.size(); ++i) {
-    const Column column = kExtremaColumns[i];
-    Numbered& least = cut[1 + 2 * i];
-    Numbered& largest = cut[2 + 2 * i];
-    const Numbered& other_least = other[1 + 2 * i];
-    const Numbered& other_largest = other[2 + 2 * i];
-    // A NaN is passed over and gives way to any number.
-    if (other_least.row[column] < least.row[column] || std::isnan(least.row[column])) least = other_least;
-    if (other_largest.row[column] > largest.row[column] || std::isnan(largest.row[column]))
-      largest = other_largest;
+    const RunColumn column = kExtremaColumns[i];
+    NumberedRow& min = bin[1 + 2 * i];
+    NumberedRow& max = bin[2 + 2 * i];
+    const NumberedRow& other_min = other[1 + 2 * i];
+    const NumberedRow& other_max = other[2 + 2 * i];
+    // Any number replaces a NaN, and a NaN replaces nothing but a NaN.
+    if (other_min.row[column] < min.row[column] || std::isnan(min.row[column])) min = other_min;
+    if (other_max.row[column] > max.row[column] || std::isnan(max.row[column])) max = other_max;
   }
 }
 
-void DecimatedRows::add(std::int64_t number, const Row& row) {
+void DecimatedRows::add(std::int64_t number, const RunRow& row) {
   last_ = {number, row};
   ++added_;
-  if (!cuts_.empty()) {
-    add_to_cuts(last_);
+  if (!bins_.empty()) {
+    add_to_bins(last_);
     return;
   }
   all_.push_back(last_);
   if (all_.size() <= max_rows_) return;
-  rows_of_cut_ = static_cast<std::int64_t>((all_.size() + max_cuts_ - 1) / max_cuts_);
-  rows_in_last_cut_ = rows_of_cut_;
-  for (const Numbered& kept : all_) add_to_cuts(kept);
+  bin_size_ = static_cast<std::int64_t>((all_.size() + max_bins_ - 1) / max_bins_);
+  last_bin_size_ = bin_size_;
+  for (const NumberedRow& kept : all_) add_to_bins(kept);
   all_ = {};
 }
 
-void DecimatedRows::add_to_cuts(const Numbered& row) {
-  if (rows_in_last_cut_ < rows_of_cut_) {
-    join(cuts_.back(), cut_of(row));
-    ++rows_in_last_cut_;
+void DecimatedRows::add_to_bins(const NumberedRow& row) {
+  if (last_bin_size_ < bin_size_) {
+    merge(bins_.back(), make_bin(row));
+    ++last_bin_size_;
     return;
   }
-  if (cuts_.size() == max_cuts_) {
-    for (std::size_t i = 0; i < max_cuts_ / 2; ++i) {
-      Cut joined = cuts_[2 * i];
-      join(joined, cuts_[2 * i + 1]);
-      cuts_[i] = joined;
+  if (bins_.size() == max_bins_) {
+    for (std::size_t i = 0; i < max_bins_ / 2; ++i) {
+      Bin merged = bins_[2 * i];
+      merge(merged, bins_[2 * i + 1]);
+      bins_[i] = merged;
     }
-    cuts_.resize(max_cuts_ / 2);
-    rows_of_cut_ *= 2;
+    bins_.resize(max_bins_ / 2);
+    bin_size_ *= 2;
   }
-  cuts_.push_back(cut_of(row));
-  rows_in_last_cut_ = 1;
+  bins_.push_back(make_bin(row));
+  last_bin_size_ = 1;
 }
 
-std::vector<Row> DecimatedRows::rows() const {
-  std::vector<Numbered> kept = all_;
-  for (const Cut& cut : cuts_) kept.insert(kept.end(), cut.begin(), cut.end());
-  if (!cuts_.empty()) kept.push_back(last_);
-  std::ranges::sort(kept, {}, &Numbered::number);
-  const auto same_row = [](const Numbered& a, const Numbered& b) { return a.number == b.number; };
+std::vector<RunRow> DecimatedRows::rows() const {
+  std::vector<NumberedRow> kept = all_;
+  for (const Bin& bin : bins_) kept.insert(kept.end(), bin.begin(), bin.end());
+  if (!bins_.empty()) kept.push_back(last_);
+  std::ranges::sort(kept, {}, &NumberedRow::number);
+  const auto same_row = [](const NumberedRow& a, const NumberedRow& b) { return a.number == b.number; };
   kept.erase(std::unique(kept.begin(), kept.end(), same_row), kept.end());
-  std::vector<Row> rows;
+  std::vector<RunRow> rows;
   rows.reserve(kept.size());
-  for (const Numbered& numbered : kept) rows.push_back(numbered.row);
+  for (const NumberedRow& numbered : kept) rows.push_back(numbered.row);
   return rows;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

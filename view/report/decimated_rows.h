@@ -1,9 +1,9 @@
-// Rows of a run of any length in bounded memory, with the extremes kept.
+// Decimates the rows of a run of any length to bounded memory and keeps the extremes.
 //
-// Up to the bound all rows are kept. Beyond it time is cut into equal numbers of rows, and of each cut the
-// first row is kept and, for every watched column, those with its least and its largest number; the very last
-// row as well. So what is left is a subset of the rows as they were, and no peak of a watched column is lost,
-// however short. When the cuts become too many, neighbours are joined, two and two.
+// Up to max_rows all rows are kept. Beyond that, the rows are divided into bins of equally many. Of each bin
+// the first row is kept and, for every column of kExtremaColumns, the rows with its minimum and its maximum;
+// the very last row is kept as well. The result is therefore a subset of the original rows, and no peak of
+// these columns is lost, however short. When there are too many bins, adjacent pairs are merged.
 #pragma once
 
 #include <array>
@@ -13,42 +13,42 @@
 
 #include "view/report/run.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 inline constexpr std::array kExtremaColumns{kHeave, kRoll, kPitch, kForce, kTorque, kEnergy, kRoundTrip};
 
 class DecimatedRows {
  public:
-  // At most so many rows are left, and no fewer than 32 where there are as many. Memory: twice that.
+  // Keeps at most max(max_rows, 32) rows; uses memory for up to twice as many.
   explicit DecimatedRows(std::size_t max_rows);
 
-  // number: place among all rows; rows may come a little out of that order.
-  void add(std::int64_t number, const Row& row);
+  // number: the position among all rows; rows may arrive slightly out of order.
+  void add(std::int64_t number, const RunRow& row);
 
-  std::vector<Row> rows() const;  // in order of their numbers
+  std::vector<RunRow> rows() const;  // in order of their numbers
   std::int64_t added() const { return added_; }
 
  private:
-  struct Numbered {
+  struct NumberedRow {
     std::int64_t number = 0;
-    Row row{};
+    RunRow row{};
   };
-  // The first row and two of each watched column, least and largest; index 0 is the first.
-  static constexpr std::size_t kKeptOfCut = 1 + 2 * kExtremaColumns.size();
-  using Cut = std::array<Numbered, kKeptOfCut>;
+  // The first row, then the rows with the minimum and the maximum of each column of kExtremaColumns.
+  static constexpr std::size_t kRowsPerBin = 1 + 2 * kExtremaColumns.size();
+  using Bin = std::array<NumberedRow, kRowsPerBin>;
 
-  static Cut cut_of(const Numbered& row);
-  static void join(Cut& cut, const Cut& other);
-  void add_to_cuts(const Numbered& row);
+  static Bin make_bin(const NumberedRow& row);
+  static void merge(Bin& bin, const Bin& other);
+  void add_to_bins(const NumberedRow& row);
 
   std::size_t max_rows_;
-  std::size_t max_cuts_;       // even
-  std::vector<Numbered> all_;  // while they are few
-  std::vector<Cut> cuts_;      // then
-  std::int64_t rows_of_cut_ = 0;
-  std::int64_t rows_in_last_cut_ = 0;
+  std::size_t max_bins_;          // even
+  std::vector<NumberedRow> all_;  // all rows, up to max_rows_
+  std::vector<Bin> bins_;         // afterwards
+  std::int64_t bin_size_ = 0;     // rows per bin
+  std::int64_t last_bin_size_ = 0;
   std::int64_t added_ = 0;
-  Numbered last_;
+  NumberedRow last_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

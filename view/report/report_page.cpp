@@ -9,17 +9,18 @@
 #include "engine/body_evaluation.h"
 #include "hydrostatics/hydrostatics.h"
 #include "view/common/base64.h"
+#include "view/common/body_statuses.h"
 #include "view/common/page_assets.h"
 #include "view/common/scene_model.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kQueriesTimed = 200;
+constexpr std::size_t kMaxTimedQueries = 200;
 
-BodyState state_of(const Body& body, const Row& row) {
+BodyState body_state(const Body& body, const RunRow& row) {
   return {.body_id = body.id,
           .position = {row[kPx], row[kPy], row[kPz]},
           .quaternion_wxyz = {row[kQw], row[kQx], row[kQy], row[kQz]},
@@ -27,18 +28,18 @@ BodyState state_of(const Body& body, const Row& row) {
           .angular_velocity = {}};
 }
 
-// ns, the median of what `query` takes for the rows that it answers true for; null: for none.
+// The median duration [ns] of `query` over the rows for which it returns true; null if there are none.
 template <typename Query>
 Json median_time(const Body& body, const BodyRun& run, Query query) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> times;
-  const std::size_t stride = std::max<std::size_t>(1, run.rows.size() / kQueriesTimed);
+  const std::size_t stride = std::max<std::size_t>(1, run.rows.size() / kMaxTimedQueries);
   for (std::size_t i = 0; i < run.rows.size(); i += stride) {
-    const ValidatedPose asked = validate_pose(state_of(body, run.rows[i]), 0.0);
-    if (asked.status != BodyStatus::kOk) continue;
+    const ValidatedPose pose = validate_pose(body_state(body, run.rows[i]), 0.0);
+    if (pose.status != BodyStatus::kOk) continue;
     const Clock::time_point start = Clock::now();
-    const bool counts = query(asked);
-    if (counts) times.push_back(std::chrono::duration<double, std::nano>(Clock::now() - start).count());
+    const bool counted = query(pose);
+    if (counted) times.push_back(std::chrono::duration<double, std::nano>(Clock::now() - start).count());
   }
   if (times.empty()) return nullptr;
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
@@ -46,44 +47,44 @@ Json median_time(const Body& body, const BodyRun& run, Query query) {
   return *middle;
 }
 
-// What of this body's rows was skipped, and what a query costs with and without.
-Json skipping_of(const Body& body, const BodyRun& run, const Water& water) {
-  const FullySubmerged wet = fully_submerged(body.solver.mesh(), water, body.reference_B);
+// How the body's rows are evaluated, and the cost [ns] of an evaluation from the bounds and of a full query.
+Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) {
+  const FullySubmerged submerged = fully_submerged(body.solver.mesh(), water, body.reference_B);
   BodyOutcome outcome;
-  return {{"unchanged", run.skipped.unchanged},
-          {"dry", run.skipped.dry},
-          {"wet", run.skipped.wet},
-          {"crossing", run.skipped.crossing},
-          {"refused", run.skipped.refused},
+  return {{"unchanged", run.evaluations.unchanged},
+          {"dry", run.evaluations.dry},
+          {"wet", run.evaluations.wet},
+          {"crossing", run.evaluations.crossing},
+          {"rejected", run.evaluations.rejected},
           {"bounds_ns", median_time(body, run,
-                                    [&](const ValidatedPose& asked) {
-                                      return try_evaluate_from_bounds(body, wet, water, asked, outcome);
+                                    [&](const ValidatedPose& pose) {
+                                      return try_evaluate_from_bounds(body, submerged, water, pose, outcome);
                                     })},
-          {"query_ns", median_time(body, run, [&](const ValidatedPose& asked) {
-             evaluate(body, water, asked, outcome);
+          {"query_ns", median_time(body, run, [&](const ValidatedPose& pose) {
+             evaluate(body, water, pose, outcome);
              return outcome.result.immersion == Immersion::kPiercing;
            })}};
 }
 
-// Column after column.
-std::string rows_text(const std::vector<Row>& rows) {
+// Base64 of the rows, column by column.
+std::string encode_rows(const std::vector<RunRow>& rows) {
   std::vector<double> numbers;
   numbers.reserve(rows.size() * kColumnCount);
   for (std::size_t column = 0; column < kColumnCount; ++column) {
-    for (const Row& row : rows) numbers.push_back(row[column]);
+    for (const RunRow& row : rows) numbers.push_back(row[column]);
   }
   return base64_of<double>(numbers);
 }
 
-// Row after row: two points, m, W axes, from B's origin; NaN where there are none.
-std::string metacenters_text(const Body& body, const BodyRun& run, const Water& water) {
+// Base64 of two points per row [m], W axes, relative to B's origin; NaN if there are none.
+std::string encode_metacenters(const Body& body, const BodyRun& run, const Water& water) {
   std::vector<float> numbers;
   numbers.reserve(run.rows.size() * 6);
-  for (const Row& row : run.rows) {
-    const ValidatedPose asked = validate_pose(state_of(body, row), 0.0);
+  for (const RunRow& row : run.rows) {
+    const ValidatedPose pose = validate_pose(body_state(body, row), 0.0);
     std::optional<Hydrostatics> found;
-    if (asked.status == BodyStatus::kOk && row[kStatus] == 0.0) {
-      found = hydrostatics(body.solver.mesh(), asked.pose, water, body.reference_B, body.center_of_mass_B);
+    if (pose.status == BodyStatus::kOk && row[kStatus] == 0.0) {
+      found = hydrostatics(body.solver.mesh(), pose.pose, water, body.reference_B, body.center_of_mass_B);
     }
     const Hydrostatics shown = found.value_or(Hydrostatics{});
     for (const Vec3& center : shown.metacenters_W) {
@@ -116,6 +117,7 @@ Json status_json(const ServiceStatus& status) {
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options) {
   Json data{{"file", options.file},
             {"version", options.version},
+            {"body_statuses", body_statuses()},
             {"columns", kColumnNames},
             {"selected", options.selected},
             {"sessions", run.sessions},
@@ -128,17 +130,17 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
             {"bodies", Json::array()}};
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
-    const BodyRun& of_body = run.bodies[i];
+    const BodyRun& body_run = run.bodies[i];
     Json described{{"id", body.id},
-                   {"recorded", of_body.recorded},
-                   {"statuses", of_body.statuses},
-                   {"largest_force", of_body.largest_force},  // null: not known
-                   {"shown", of_body.shown},
-                   {"rows", of_body.rows.size()}};
-    if (of_body.shown) {
-      described["data"] = rows_text(of_body.rows);
-      described["skipped"] = skipping_of(body, of_body, scene.water());
-      if (body.hydrostatics) described["metacenters"] = metacenters_text(body, of_body, scene.water());
+                   {"recorded", body_run.recorded},
+                   {"statuses", body_run.statuses},
+                   {"max_force", body_run.max_force},  // null: unknown
+                   {"shown", body_run.shown},
+                   {"rows", body_run.rows.size()}};
+    if (body_run.shown) {
+      described["data"] = encode_rows(body_run.rows);
+      described["evaluations"] = evaluations_json(body, body_run, scene.water());
+      if (body.hydrostatics) described["metacenters"] = encode_metacenters(body, body_run, scene.water());
     }
     data["bodies"].push_back(std::move(described));
   }
@@ -146,12 +148,12 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
 }
 
 std::string report_page(const std::string& data, std::string_view three) {
-  constexpr std::string_view kPlace = "<!-- data -->";
+  constexpr std::string_view kPlaceholder = "<!-- data -->";
   std::string page = self_contained_page("report.html", three);
-  const std::size_t place = page.find(kPlace);
-  page.replace(place, kPlace.size(),
+  const std::size_t position = page.find(kPlaceholder);
+  page.replace(position, kPlaceholder.size(),
                "<script type=\"application/json\" id=\"data\">" + escaped_for_script(data) + "</script>");
   return page;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,4 +1,4 @@
-// A run as one HTML file that needs no other: three.js, shapes, rows and all.
+// Writes a run as one HTML file that contains everything it needs: three.js, meshes and rows.
 #pragma once
 
 #include <string>
@@ -6,18 +6,18 @@
 #include "scene/scene.h"
 #include "view/report/run.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 struct ReportOptions {
-  std::string file;  // the run's, as shown
+  std::string file;  // name of the run's file, as displayed
   std::string version;
-  bool selected = false;  // somebody chose the bodies that are shown
+  bool selected = false;  // the bodies that are shown were selected by the user
 };
 
-// The data that the page's script reads (view/page/report.js). Of bodies that ask for hydrostatics the
-// metacentres are computed for every row that is left. O(rows * a query).
+// The JSON data that the page's script reads (view/page/report.js). For bodies with the output "hydrostatics"
+// the metacentres of every kept row are computed. O(rows * cost of a query).
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options);
 
 std::string report_page(const std::string& data, std::string_view three);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,5 +1,5 @@
-// A run as a page shows it: of every body a summary, of those that are shown the rows in time, and what was
-// found on the way.
+// A run as a page shows it: a summary of every body, the rows over time of the bodies that are shown, and the
+// warnings of the reader.
 #pragma once
 
 #include <array>
@@ -13,21 +13,22 @@
 #include "messages/request.h"
 #include "messages/status.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-// The columns of a row, all doubles; NaN: not known. In W, as in body_state_t and body_wrench_t:
-//   kTime            s since the run's first row
-//   kPx .. kQz       B's origin, m; q_WB
+// The columns of a row, all doubles; NaN: unknown. Vectors are in W, same as in body_state_t and
+// body_wrench_t:
+//   kTime            time since the run's first row [s]
+//   kPx .. kQz       B's origin [m]; q_WB
 //   kStatus          a BodyStatus
-//   kFx .. kTz       N; N m about the reference point
-//   kVolume          m^3, submerged
-//   kBx .. kBz       m, from B's origin to the centre of buoyancy
-//   kEnergy          J, mechanical (simulation/rigid_body.h)
-//   kRoundTrip       s, from request to answer, by the clock of whoever recorded them
-//   kHeave           m, of B's origin over the water
-//   kRoll, kPitch    degrees from upright (attitude.h)
-//   kForce, kTorque  N, N m: lengths
-enum Column : std::size_t {
+//   kFx .. kTz       force [N]; torque about the reference point [N m]
+//   kVolume          submerged volume [m^3]
+//   kBx .. kBz       from B's origin to the centre of buoyancy [m]
+//   kEnergy          mechanical energy [J] (simulation/rigid_body.h)
+//   kRoundTrip       time from request to response [s], by the recorder's clock
+//   kHeave           height of B's origin over the water [m]
+//   kRoll, kPitch    angles from upright [degrees] (attitude.h)
+//   kForce, kTorque  norms [N], [N m]
+enum RunColumn : std::size_t {
   kTime,
   kPx,
   kPy,
@@ -61,39 +62,38 @@ inline constexpr std::array<std::string_view, kColumnCount> kColumnNames{
     "fx",   "fy",     "fz",         "tx",    "ty",   "tz",    "volume", "bx",    "by",
     "bz",   "energy", "round_trip", "heave", "roll", "pitch", "force",  "torque"};
 
-using Row = std::array<double, kColumnCount>;
+using RunRow = std::array<double, kColumnCount>;
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// What a body's pose let the service leave out, by row.
+// Rows of a body by how the service evaluates their poses.
 struct EvaluationCounts {
-  std::int64_t unchanged = 0;  // the same pose as the row before, bit for bit: answered from it
-  std::int64_t dry = 0;        // clear of the water: answered from the bounds
-  std::int64_t wet = 0;        // wholly under water: from the bounds and constants
+  std::int64_t unchanged = 0;  // pose bitwise equal to that of the previous row: cached result
+  std::int64_t dry = 0;        // above the water: from the bounds
+  std::int64_t wet = 0;        // fully submerged: from the bounds and constants
   std::int64_t crossing = 0;   // computed
-  std::int64_t refused = 0;    // a pose that has no response
+  std::int64_t rejected = 0;   // invalid pose
 };
 
 struct BodyRun {
   std::int64_t recorded = 0;  // rows of the file
-  // Of these, by BodyStatus, the last for statuses of a later version; fewer than `recorded` where neither
-  // the file says the status nor anything was computed.
+  // Number of these rows by BodyStatus; the last element counts statuses of later versions. The sum is less
+  // than `recorded` if the file does not contain the status and nothing was computed.
   std::array<std::int64_t, kBodyStatusCount + 1> statuses{};
-  double largest_force = kUnknown;  // N, of the rows that are OK
-  // Of the bodies that are shown, alone:
+  double max_force = kUnknown;  // [N], of the rows with status OK
   bool shown = false;
-  std::vector<Row> rows;  // in order of time; what is left of `recorded`
-  EvaluationCounts skipped;
+  // Only of bodies that are shown:
+  std::vector<RunRow> rows;  // in order of time, after decimation
+  EvaluationCounts evaluations;
 };
 
 struct RecordedRun {
-  std::vector<BodyRun> bodies;      // as Scene::bodies()
-  std::int64_t unknown_bodies = 0;  // rows about bodies that the scene has not
-  std::int64_t sessions = 0;        // of requests; one after the other on the axis of time
-  std::int64_t computed =
-      0;  // rows of shown bodies whose file has no response, computed from the scene instead
-  std::vector<std::string> warnings;  // what could not be read: the first of them
+  std::vector<BodyRun> bodies;      // in the order of Scene::bodies()
+  std::int64_t unknown_bodies = 0;  // rows about bodies that the scene does not have
+  std::int64_t sessions = 0;        // of requests
+  std::int64_t computed = 0;  // rows of shown bodies without a recorded response, computed from the scene
+  std::vector<std::string> warnings;  // the first ones about input that could not be read
   std::int64_t suppressed_warnings = 0;
-  std::optional<ServiceStatus> status;  // the last that was recorded
+  std::optional<ServiceStatus> status;  // the last one recorded
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

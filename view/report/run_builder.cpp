@@ -5,17 +5,17 @@
 
 #include "messages/conversions.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::size_t kMaxRowsOfBody = 12'000;
-constexpr std::size_t kWarningsKept = 20;
-constexpr std::size_t kSessionsCounted = 10'000;
-constexpr std::size_t kClocksKept = 8;
-constexpr std::int64_t kClockBeganAgain = 1'000'000;          // us: what is back by less came late
-constexpr std::int64_t kAnotherClock = 86'400 * 1'000'000LL;  // us
+constexpr std::size_t kMaxWarnings = 20;
+constexpr std::size_t kMaxSessionsCounted = 10'000;
+constexpr std::size_t kMaxClocks = 8;
+constexpr std::int64_t kMaxReordering = 1'000'000;      // [us]; a larger step back is a clock restart
+constexpr std::int64_t kMaxGap = 86'400 * 1'000'000LL;  // [us]; a larger step forward is another clock
 
-// A file may say any utime.
+// A file may contain any utime, so sums and differences wrap.
 std::int64_t wrapped_sum(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
 }
@@ -23,13 +23,13 @@ std::int64_t wrapped_difference(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
 
-// offset where it puts utime at least least_ahead, and less than a day, behind latest; else the one that puts
-// it at `otherwise`.
-std::int64_t fitting_offset(std::int64_t utime, std::int64_t offset, std::int64_t latest,
-                            std::int64_t least_ahead, std::int64_t otherwise) {
+// Returns offset if min_ahead <= utime + offset - latest <= kMaxGap; else the offset that maps utime to
+// fallback.
+std::int64_t choose_offset(std::int64_t utime, std::int64_t offset, std::int64_t latest,
+                           std::int64_t min_ahead, std::int64_t fallback) {
   const std::int64_t ahead = wrapped_difference(wrapped_sum(utime, offset), latest);
-  const bool fits = ahead >= least_ahead && ahead <= kAnotherClock;
-  return fits ? offset : wrapped_difference(otherwise, utime);
+  const bool fits = ahead >= min_ahead && ahead <= kMaxGap;
+  return fits ? offset : wrapped_difference(fallback, utime);
 }
 
 MeshUp mesh_up_of(const Body& body) {
@@ -37,7 +37,7 @@ MeshUp mesh_up_of(const Body& body) {
   return axis == "y" ? MeshUp::kY : axis == "x" ? MeshUp::kX : MeshUp::kZ;
 }
 
-// A pose that nobody could answer is still a row: it is shown where its numbers are.
+// The pose as recorded: an invalid one is a row too, shown with the values it has.
 Pose raw_pose(const BodyState& state) {
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   const Eigen::Quaterniond q(w, x, y, z);
@@ -57,14 +57,14 @@ double energy_of(const RigidBody& rigid, const RecordedState& recorded, const Bo
 }
 
 template <std::size_t kSize>
-void put(Row& row, Column first, const std::array<double, kSize>& values) {
+void put(RunRow& row, RunColumn first, const std::array<double, kSize>& values) {
   std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-BodyWrench computed_wrench(const Body& body, const Water& water, const ValidatedPose& asked) {
+BodyWrench compute_wrench(const Body& body, const Water& water, const ValidatedPose& pose) {
   BodyOutcome outcome;
-  outcome.status = asked.status;
-  if (asked.status == BodyStatus::kOk) evaluate(body, water, asked, outcome);
+  outcome.status = pose.status;
+  if (pose.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
   return to_wrench(body.id, outcome);
 }
 
@@ -72,16 +72,15 @@ void count_row(BodyRun& body, BodyStatus status, double force) {
   ++body.recorded;
   const auto value = static_cast<std::size_t>(static_cast<std::uint32_t>(status));
   ++body.statuses[std::min<std::size_t>(value, kBodyStatusCount)];
-  if (status == BodyStatus::kOk && !(force <= body.largest_force) && std::isfinite(force))
-    body.largest_force = force;
+  if (status == BodyStatus::kOk && !(force <= body.max_force) && std::isfinite(force)) body.max_force = force;
 }
 
-// Of a body that is not shown: what the file and the pose say, nothing computed.
-void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose& asked) {
+// Counts a row of a body that is not shown, without computing anything.
+void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose& pose) {
   if (recorded.wrench) {
     count_row(body, recorded.wrench->status, to_vec3(recorded.wrench->force).norm());
-  } else if (asked.status != BodyStatus::kOk) {
-    count_row(body, asked.status, 0.0);
+  } else if (pose.status != BodyStatus::kOk) {
+    count_row(body, pose.status, 0.0);
   } else if (recorded.force_torque) {
     count_row(body, BodyStatus::kOk, to_vec3(recorded.force_torque->force).norm());
   } else {
@@ -93,19 +92,20 @@ void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose
 
 RunBuilder::RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected)
     : scene_(scene) {
-  const std::size_t most = selected.empty() ? std::min(scene.bodies().size(), kMaxBodies) : selected.size();
-  max_rows_of_body_ = std::min(max_rows / most, kMaxRowsOfBody);
+  const std::size_t max_shown =
+      selected.empty() ? std::min(scene.bodies().size(), kMaxBodies) : selected.size();
+  max_rows_of_body_ = std::min(max_rows / max_shown, kMaxRowsOfBody);
   run_.bodies.resize(scene.bodies().size());
   bodies_.resize(scene.bodies().size());
-  room_ = most;
+  free_places_ = max_shown;
   for (const std::size_t index : selected) show(index);
 }
 
-RunBuilder::Collected* RunBuilder::show(std::size_t index) {
-  if (bodies_[index] != nullptr || room_ == 0) return bodies_[index].get();
-  --room_;
+RunBuilder::ShownBody* RunBuilder::show(std::size_t index) {
+  if (bodies_[index] != nullptr || free_places_ == 0) return bodies_[index].get();
+  --free_places_;
   const Body& body = scene_.bodies()[index];
-  bodies_[index] = std::make_unique<Collected>(max_rows_of_body_);
+  bodies_[index] = std::make_unique<ShownBody>(max_rows_of_body_);
   bodies_[index]->mesh_up = mesh_up_of(body);
   run_.bodies[index].shown = true;
   if (body.client.given) {
@@ -118,24 +118,24 @@ RunBuilder::Collected* RunBuilder::show(std::size_t index) {
 std::int64_t RunBuilder::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
   const std::optional<std::size_t> index = scene_.index_of(body_id);
   if (!index) return 0;
-  if (sessions_.size() < kSessionsCounted) sessions_.insert(session_id);
-  Collected* const collected = show(*index);
-  if (collected == nullptr) return 0;
-  Collected& body = *collected;
+  if (sessions_.size() < kMaxSessionsCounted) sessions_.insert(session_id);
+  ShownBody* const shown = show(*index);
+  if (shown == nullptr) return 0;
+  ShownBody& body = *shown;
   if (!first_utime_) first_utime_ = utime;
 
-  const std::int64_t behind = wrapped_sum(body.last_time, body.last_step);
-  auto clock = std::ranges::find(body.clocks, session_id, &Clock::session_id);
+  const std::int64_t next_time = wrapped_sum(body.last_time, body.last_step);
+  auto clock = std::ranges::find(body.clocks, session_id, &SessionClock::session_id);
   if (clock != body.clocks.end()) {
-    clock->offset = fitting_offset(utime, clock->offset, clock->latest, -kClockBeganAgain, behind);
+    clock->offset = choose_offset(utime, clock->offset, clock->latest, -kMaxReordering, next_time);
   } else {
-    // Another body's states may be older than those that came before.
+    // The first state of another body may be older than the latest of all.
     const std::int64_t offset =
         body.clocks.empty()
-            ? fitting_offset(utime, wrapped_difference(0, *first_utime_), latest_, -kAnotherClock, latest_)
-            : fitting_offset(utime, body.clocks.front().offset, body.last_time, 1, behind);
+            ? choose_offset(utime, wrapped_difference(0, *first_utime_), latest_, -kMaxGap, latest_)
+            : choose_offset(utime, body.clocks.front().offset, body.last_time, 1, next_time);
     body.clocks.push_front({session_id, offset, wrapped_sum(utime, offset)});
-    if (body.clocks.size() > kClocksKept) body.clocks.pop_back();
+    if (body.clocks.size() > kMaxClocks) body.clocks.pop_back();
     clock = body.clocks.begin();
   }
   const std::int64_t time = wrapped_sum(utime, clock->offset);
@@ -148,27 +148,27 @@ std::int64_t RunBuilder::time_of(std::int32_t body_id, std::int64_t session_id, 
   return time;
 }
 
-void RunBuilder::classify(Collected& collected, const Body& body, const ValidatedPose& asked) const {
-  if (asked.status != BodyStatus::kOk) {
-    ++collected.skipped.refused;
-    collected.last_pose.reset();
+void RunBuilder::count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const {
+  if (pose.status != BodyStatus::kOk) {
+    ++shown.evaluations.rejected;
+    shown.last_pose.reset();
     return;
   }
-  const PoseBits bits = pose_bits(asked.pose);
-  if (collected.last_pose && equal_branch_free(*collected.last_pose, bits)) {
-    ++collected.skipped.unchanged;
+  const PoseBits bits = pose_bits(pose.pose);
+  if (shown.last_pose && equal_branch_free(*shown.last_pose, bits)) {
+    ++shown.evaluations.unchanged;
     return;
   }
-  collected.last_pose = bits;
-  switch (quick_immersion(body.solver.mesh(), asked.pose, scene_.water())) {
+  shown.last_pose = bits;
+  switch (quick_immersion(body.solver.mesh(), pose.pose, scene_.water())) {
     case Immersion::kDry:
-      ++collected.skipped.dry;
+      ++shown.evaluations.dry;
       break;
     case Immersion::kSubmerged:
-      ++(body.solver.method() == Method::kHierarchical ? collected.skipped.wet : collected.skipped.crossing);
+      ++(body.solver.method() == Method::kHierarchical ? shown.evaluations.wet : shown.evaluations.crossing);
       break;
     case Immersion::kPiercing:
-      ++collected.skipped.crossing;
+      ++shown.evaluations.crossing;
       break;
   }
 }
@@ -180,16 +180,15 @@ void RunBuilder::add(const RecordedState& recorded) {
     return;
   }
   const Body& body = scene_.bodies()[*index];
-  const ValidatedPose asked = validate_pose(recorded.state, recorded.lead_time);
-  Collected* const shown = show(*index);
+  const ValidatedPose pose = validate_pose(recorded.state, recorded.lead_time);
+  ShownBody* const shown = show(*index);
   if (shown == nullptr) {
-    summarize(run_.bodies[*index], recorded, asked);
+    summarize(run_.bodies[*index], recorded, pose);
     return;
   }
-  Collected& collected = *shown;
-  classify(collected, body, asked);
+  count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
-  BodyWrench wrench = recorded.wrench ? *recorded.wrench : computed_wrench(body, scene_.water(), asked);
+  BodyWrench wrench = recorded.wrench ? *recorded.wrench : compute_wrench(body, scene_.water(), pose);
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;
@@ -197,7 +196,7 @@ void RunBuilder::add(const RecordedState& recorded) {
 
   count_row(run_.bodies[*index], wrench.status, to_vec3(wrench.force).norm());
 
-  Row row;
+  RunRow row;
   row[kTime] = 1e-6 * static_cast<double>(recorded.time);
   put(row, kPx, recorded.state.position);
   put(row, kQw, recorded.state.quaternion_wxyz);
@@ -209,21 +208,21 @@ void RunBuilder::add(const RecordedState& recorded) {
   row[kEnergy] = kUnknown;
   if (recorded.energy) {
     row[kEnergy] = *recorded.energy;
-  } else if (recorded.velocities && collected.rigid && wrench.status == BodyStatus::kOk) {
-    row[kEnergy] = energy_of(*collected.rigid, recorded, wrench, scene_.water());
+  } else if (recorded.velocities && shown->rigid && wrench.status == BodyStatus::kOk) {
+    row[kEnergy] = energy_of(*shown->rigid, recorded, wrench, scene_.water());
   }
   row[kRoundTrip] = recorded.round_trip;
-  const Attitude lies = attitude(raw_pose(recorded.state), scene_.water(), collected.mesh_up);
-  row[kHeave] = lies.heave;
-  row[kRoll] = lies.roll;
-  row[kPitch] = lies.pitch;
+  const Attitude body_attitude = attitude(raw_pose(recorded.state), scene_.water(), shown->mesh_up);
+  row[kHeave] = body_attitude.heave;
+  row[kRoll] = body_attitude.roll;
+  row[kPitch] = body_attitude.pitch;
   row[kForce] = to_vec3(wrench.force).norm();
   row[kTorque] = to_vec3(wrench.torque).norm();
-  collected.rows.add(number_++, row);
+  shown->rows.add(rows_added_++, row);
 }
 
 void RunBuilder::add_warning(std::string warning) {
-  if (run_.warnings.size() < kWarningsKept) {
+  if (run_.warnings.size() < kMaxWarnings) {
     run_.warnings.push_back(std::move(warning));
   } else {
     ++run_.suppressed_warnings;
@@ -235,12 +234,12 @@ RecordedRun RunBuilder::finish() {
     if (bodies_[i] == nullptr) continue;
     BodyRun& body = run_.bodies[i];
     body.rows = bodies_[i]->rows.rows();
-    body.skipped = bodies_[i]->skipped;
-    // A request that waited in vain comes late.
-    std::ranges::stable_sort(body.rows, {}, [](const Row& row) { return row[kTime]; });
+    body.evaluations = bodies_[i]->evaluations;
+    // Requests without a response were added late.
+    std::ranges::stable_sort(body.rows, {}, [](const RunRow& row) { return row[kTime]; });
   }
   run_.sessions = static_cast<std::int64_t>(sessions_.size());
   return std::move(run_);
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,7 +1,7 @@
-// Rows of a recorded run, put together from states and wrenches as a file has them: what the file lacks is
-// computed from the scene, time gets one axis, and each body's rows are thinned. That is done for the bodies
-// that are shown; of the others the rows are counted and the recorded forces compared, which costs next to
-// nothing.
+// Builds a recorded run from states and wrenches as a file contains them: computes missing values from the
+// scene, maps the clients' clocks to one time axis, and decimates each body's rows. This is done for the
+// bodies that are shown; of the others only the rows are counted and the recorded forces compared, at
+// negligible cost.
 #pragma once
 
 #include <cstdint>
@@ -20,74 +20,76 @@
 #include "view/report/decimated_rows.h"
 #include "view/report/run.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
-inline constexpr std::size_t kMaxBodies = 1'000;  // that one page shows
+inline constexpr std::size_t kMaxBodies = 1'000;  // shown in one page
 
-// What a file says of one body at one instant.
+// The contents of a file about one body at one instant.
 struct RecordedState {
-  std::int64_t time = 0;  // us, on the run's axis: as RunBuilder::time_of() said when it came
+  std::int64_t time = 0;  // [us], on the run's time axis; from RunBuilder::time_of()
   BodyState state;
-  double lead_time = 0.0;            // s
+  double lead_time = 0.0;            // [s]
   std::optional<BodyWrench> wrench;  // nullopt: to be computed
   std::optional<BotForceTorque>
-      force_torque;              // where nothing else of the wrench is known: the rest is computed
-  std::optional<double> energy;  // J; nullopt: to be computed, where velocities and [body.client] allow it
-  bool velocities = false;       // state has them
-  double round_trip = kUnknown;  // s
+      force_torque;              // if the file holds no more of the wrench; the rest is computed
+  std::optional<double> energy;  // [J]; nullopt: computed if velocities and [body.client] are known
+  bool velocities = false;       // true if state's velocities are known
+  double round_trip = kUnknown;  // [s]
 };
 
 class RunBuilder {
  public:
-  // scene must outlive this. max_rows: of all bodies together, roughly. selected: the bodies to show, as
-  // indices into scene.bodies(), at most kMaxBodies; empty: the first kMaxBodies that the run names.
+  // scene must outlive the builder. max_rows: approximate limit for all bodies together. selected: the bodies
+  // to show, as indices into scene.bodies(), at most kMaxBodies; empty: the first kMaxBodies in the run.
   RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected = {});
 
-  // Where on the run's axis a state of this body stands, us. To be asked once about each, in the order in
-  // which they came; 0 of a body that is not shown. The axis begins with the run's first state. A clock that
-  // began again, in a session of its own or within one, goes on behind what the body had before; so does
-  // one that differs by more than a day, which is another clock.
+  // Maps a state's utime to the run's time axis [us]; 0 for a body that is not shown. To be called once for
+  // each state, in order of arrival. The axis starts at the run's first state. If a clock restarts, in a new
+  // session or within one, its times continue after the body's previous ones; so do those of a clock that
+  // differs by more than a day.
   std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
   // In any order.
   void add(const RecordedState& recorded);
   void add_warning(std::string warning);
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 
-  // What it all came to; the builder is done for then.
+  // Returns the run; the builder must not be used afterwards.
   RecordedRun finish();
 
  private:
-  // A session's, as a body knows it.
-  struct Clock {
+  // The clock of a session, for one body.
+  struct SessionClock {
     std::int64_t session_id = 0;
-    std::int64_t offset = 0;  // us: time on the axis less utime, modulo 2^64
-    std::int64_t latest = 0;  // us, on the axis
+    std::int64_t offset = 0;  // [us]: time on the axis - utime, modulo 2^64
+    std::int64_t latest = 0;  // [us], on the axis
   };
-  struct Collected {
-    explicit Collected(std::size_t max_rows) : rows(max_rows) {}
+  struct ShownBody {
+    explicit ShownBody(std::size_t max_rows) : rows(max_rows) {}
 
     DecimatedRows rows;
     std::optional<RigidBody> rigid;
     MeshUp mesh_up = MeshUp::kZ;
-    EvaluationCounts skipped;
+    EvaluationCounts evaluations;
     std::optional<PoseBits> last_pose;
-    std::deque<Clock> clocks;    // of its last sessions, the newest in front
-    std::int64_t last_time = 0;  // the latest
+    std::deque<SessionClock> clocks;  // of its last sessions, the latest first
+    std::int64_t last_time = 0;       // the maximum so far
     std::int64_t last_step = 0;
   };
 
-  Collected* show(std::size_t index);  // nullptr: the body is not shown, there is no room for it
-  void classify(Collected& collected, const Body& body, const ValidatedPose& asked) const;
+  // Returns nullptr if the body is not shown.
+  ShownBody* show(std::size_t index);
+  void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
 
   const Scene& scene_;
   std::size_t max_rows_of_body_;
-  std::size_t room_ = 0;                            // for further bodies, where none are selected
-  std::vector<std::unique_ptr<Collected>> bodies_;  // as Scene::bodies(); nullptr: not shown (yet)
-  std::unordered_set<std::int64_t> sessions_;       // up to a bound
+  std::size_t free_places_ = 0;  // number of bodies that can still be shown
+  std::vector<std::unique_ptr<ShownBody>>
+      bodies_;                                 // in the order of Scene::bodies(); nullptr: not shown (yet)
+  std::unordered_set<std::int64_t> sessions_;  // at most kMaxSessionsCounted
   std::optional<std::int64_t> first_utime_;
-  std::int64_t latest_ = 0;  // us, on the axis: of all bodies
-  std::int64_t number_ = 0;
+  std::int64_t latest_ = 0;  // [us], on the axis, of all bodies
+  std::int64_t rows_added_ = 0;
   RecordedRun run_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

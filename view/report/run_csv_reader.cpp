@@ -6,12 +6,12 @@
 #include <initializer_list>
 #include <string_view>
 
-namespace buoyancy {
+namespace buoyancy::view {
 namespace {
 
 constexpr std::int64_t kRowsBetweenProgress = 4'096;
 
-std::vector<std::string_view> fields_of(std::string_view line) {
+std::vector<std::string_view> split_fields(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string_view> fields;
   while (true) {
@@ -22,12 +22,12 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
-// Where each group of columns stands; empty: not all of it is there.
 class Header {
  public:
-  explicit Header(std::string_view line) : names_(fields_of(line)) {}
+  explicit Header(std::string_view line) : names_(split_fields(line)) {}
 
-  std::vector<std::size_t> places(std::initializer_list<std::string_view> group) const {
+  // The positions of a group of columns; empty if the group is incomplete.
+  std::vector<std::size_t> positions(std::initializer_list<std::string_view> group) const {
     std::vector<std::size_t> found;
     for (const std::string_view name : group) {
       for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -43,15 +43,16 @@ class Header {
   std::vector<std::string_view> names_;
 };
 
-struct Places {
+struct ColumnPositions {
   std::vector<std::size_t> key, pose, velocities, wrench, energy;
 };
 
-// The numbers of a group, in its order; false: one of them is none.
+// Reads the numbers of a group in its order; false if one of them is invalid.
 template <typename T>
-bool read(const std::vector<std::string_view>& fields, const std::vector<std::size_t>& places, T* numbers) {
-  for (const std::size_t place : places) {
-    const std::string_view field = fields[place];
+bool read(const std::vector<std::string_view>& fields, const std::vector<std::size_t>& positions,
+          T* numbers) {
+  for (const std::size_t position : positions) {
+    const std::string_view field = fields[position];
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), *numbers++);
     if (error != std::errc() || end != field.data() + field.size()) return false;
   }
@@ -59,40 +60,40 @@ bool read(const std::vector<std::string_view>& fields, const std::vector<std::si
 }
 
 template <std::size_t kSize>
-std::array<double, kSize> part(const double* numbers) {
+std::array<double, kSize> array_from(const double* numbers) {
   std::array<double, kSize> values{};
   std::copy_n(numbers, kSize, values.begin());
   return values;
 }
 
-bool read_row(const std::vector<std::string_view>& fields, const Places& places, std::int64_t& utime,
-              RecordedState& row) {
+bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions& positions,
+              std::int64_t& utime, RecordedState& row) {
   std::array<std::int64_t, 2> key{};
   std::array<double, 7> pose{};
   std::array<double, 6> velocities{};
   std::array<double, 11> wrench{};
   double energy = 0.0;
-  if (!read(fields, places.key, key.data()) || !read(fields, places.pose, pose.data()) ||
-      !read(fields, places.velocities, velocities.data()) || !read(fields, places.wrench, wrench.data()) ||
-      !read(fields, places.energy, &energy)) {
+  if (!read(fields, positions.key, key.data()) || !read(fields, positions.pose, pose.data()) ||
+      !read(fields, positions.velocities, velocities.data()) ||
+      !read(fields, positions.wrench, wrench.data()) || !read(fields, positions.energy, &energy)) {
     return false;
   }
   utime = key[0];
   row.state = {.body_id = static_cast<std::int32_t>(key[1]),
-               .position = part<3>(pose.data()),
-               .quaternion_wxyz = part<4>(pose.data() + 3),
-               .linear_velocity = part<3>(velocities.data()),
-               .angular_velocity = part<3>(velocities.data() + 3)};
-  row.velocities = !places.velocities.empty();
-  if (!places.wrench.empty()) {
+               .position = array_from<3>(pose.data()),
+               .quaternion_wxyz = array_from<4>(pose.data() + 3),
+               .linear_velocity = array_from<3>(velocities.data()),
+               .angular_velocity = array_from<3>(velocities.data() + 3)};
+  row.velocities = !positions.velocities.empty();
+  if (!positions.wrench.empty()) {
     row.wrench = {.body_id = row.state.body_id,
                   .status = static_cast<BodyStatus>(static_cast<std::int32_t>(wrench[0])),
-                  .force = part<3>(wrench.data() + 1),
-                  .torque = part<3>(wrench.data() + 4),
+                  .force = array_from<3>(wrench.data() + 1),
+                  .torque = array_from<3>(wrench.data() + 4),
                   .submerged_volume = wrench[7],
-                  .center_of_buoyancy = part<3>(wrench.data() + 8)};
+                  .center_of_buoyancy = array_from<3>(wrench.data() + 8)};
   }
-  if (!places.energy.empty()) row.energy = energy;
+  if (!positions.energy.empty()) row.energy = energy;
   return true;
 }
 
@@ -104,33 +105,32 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
   std::string header_line;
   if (!file.is_open() || (!std::getline(file, header_line) && !file.eof())) {
     return make_error(
-        {path.string(), "cannot be read", "a CSV file", "no such file, or no right to read it", ""});
+        {path.string(), "cannot be read", "a CSV file", "the file does not exist or is not readable", ""});
   }
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (header_line.starts_with(kByteOrderMark)) header_line.erase(0, kByteOrderMark.size());
   const Header header(header_line);
-  const Places places{
-      header.places({"utime", "body_id"}), header.places({"px", "py", "pz", "qw", "qx", "qy", "qz"}),
-      header.places({"vx", "vy", "vz", "wx", "wy", "wz"}),
-      header.places({"status", "fx", "fy", "fz", "tx", "ty", "tz", "volume", "bx", "by", "bz"}),
-      header.places({"energy"})};
-  if (places.key.empty() || places.pose.empty()) {
+  const ColumnPositions positions{
+      header.positions({"utime", "body_id"}), header.positions({"px", "py", "pz", "qw", "qx", "qy", "qz"}),
+      header.positions({"vx", "vy", "vz", "wx", "wy", "wz"}),
+      header.positions({"status", "fx", "fy", "fz", "tx", "ty", "tz", "volume", "bx", "by", "bz"}),
+      header.positions({"energy"})};
+  if (positions.key.empty() || positions.pose.empty()) {
     return make_error(
         {path.string(), "first line '" + header_line.substr(0, 120) + "'",
-         "columns utime, body_id, px, py, pz, qw, qx, qy, qz and what else buoyancy-client --csv writes",
-         "answers alone, as buoyancy-replay writes them, have no poses to show",
-         "give the file that was replayed"});
+         "columns utime, body_id, px, py, pz, qw, qx, qy, qz; optionally the others of buoyancy-client --csv",
+         "the output of buoyancy-replay contains no poses", "Use the file that was replayed"});
   }
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::string line;
   for (std::int64_t number = 2; std::getline(file, line); ++number) {
     if (line.empty() || line == "\r") continue;
-    const std::vector<std::string_view> fields = fields_of(line);
+    const std::vector<std::string_view> fields = split_fields(line);
     RecordedState row;
     std::int64_t utime = 0;
-    if (fields.size() != header.size() || !read_row(fields, places, utime, row)) {
-      builder.add_warning("line " + std::to_string(number) + " is not " + std::to_string(header.size()) +
-                          " numbers: left out");
+    if (fields.size() != header.size() || !read_row(fields, positions, utime, row)) {
+      builder.add_warning("line " + std::to_string(number) + " skipped: expected " +
+                          std::to_string(header.size()) + " numbers");
       continue;
     }
     row.time = builder.time_of(row.state.body_id, 0, utime);
@@ -142,4 +142,4 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
   return {};
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

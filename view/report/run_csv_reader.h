@@ -1,11 +1,11 @@
-// A run as CSV: see run_file.h.
+// Reads a run from a CSV file; see run_file.h for the format.
 #pragma once
 
 #include "view/report/run_file.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOptions& options,
                             RunBuilder& builder);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

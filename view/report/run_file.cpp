@@ -6,7 +6,7 @@
 #include "view/report/run_csv_reader.h"
 #include "view/report/run_log_reader.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t max_rows,
                                const RunFileOptions& options) {
@@ -15,7 +15,7 @@ Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& s
     return make_error({path.string(), "extension '" + extension + "'", ".csv or .lcmlog", "", ""});
   }
   if (extension == ".csv" && !options.poses.channels.empty()) {
-    return make_error({"--pose", path.string(), "an .lcmlog as RUN", "CSV has no channels", ""});
+    return make_error({"--pose", path.string(), "an .lcmlog file as RUN", "CSV has no channels", ""});
   }
   RunBuilder builder(scene, max_rows, options.bodies);
   const Expected<void> read =
@@ -27,15 +27,16 @@ Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& s
     return run;
   if (const auto other = std::ranges::find_if(run.bodies, is_recorded); other != run.bodies.end()) {
     const Body& body = scene.bodies()[static_cast<std::size_t>(other - run.bodies.begin())];
-    return make_error(
-        {path.string(), "no rows about a body of --bodies", "rows about one of them at least", "",
-         "It has rows about " + pluralize(std::ranges::count_if(run.bodies, is_recorded), "body", "bodies") +
-             " of the scene, the first with the id " + std::to_string(body.id)});
+    return make_error({path.string(), "no rows about a body of --bodies", "rows about at least one of them",
+                       "",
+                       "The run has rows about " +
+                           pluralize(std::ranges::count_if(run.bodies, is_recorded), "body", "bodies") +
+                           " of the scene, the first with id " + std::to_string(body.id)});
   }
   return make_error(
       {path.string(), std::to_string(run.unknown_bodies) + " rows, none about a body of " + scene.name(),
-       "states of the scene's bodies", "the scene is of another run, or the log's channels have other names",
+       "states of the scene's bodies", "the scene belongs to another run, or the log uses other channels",
        "See --states-channel, --pose for poses of bot_core, and buoyancyd --check for the scene's ids"});
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,14 +1,13 @@
-// A recorded run, read from what is left of it: the CSV of buoyancy-client, poses alone as buoyancy-replay
-// takes them, or a log of lcm-logger.
+// Reads a recorded run: a CSV file of buoyancy-client, a CSV file of poses as for buoyancy-replay, or an LCM
+// log of lcm-logger.
 //
-// CSV: the columns are found by their names in the first line. utime, body_id, px..pz, qw..qz there must be;
-// of vx..wz; status, fx..tz, volume, bx..bz; energy each group is read where all of it is there. What lacks
-// is computed.
+// CSV: the header line names the columns, in any order. Required: utime, body_id, px..pz, qw..qz. Optional,
+// each group only if complete: vx..wz; status, fx..tz, volume, bx..bz; energy. Missing values are computed.
 //
-// Log: requests and answers are matched by session and seq, poses and their responses by body and utime; a
-// repeated request is one, and a response that never came is computed. Of a response that is force and torque
-// alone the rest is computed. At most 4,096 requests wait for their responses. What is damaged is passed over
-// (recording/event_log.h).
+// Log: requests and responses are matched by session_id and seq, poses and their responses by body and utime.
+// A repeated request counts once, and a missing response is computed, as are the missing fields of a response
+// that holds only force and torque. At most 4,096 requests wait for their responses. Corrupt sections are
+// skipped (recording/event_log.h).
 #pragma once
 
 #include <cstdint>
@@ -22,22 +21,23 @@
 #include "messages/wire.h"
 #include "view/report/run_builder.h"
 
-namespace buoyancy {
+namespace buoyancy::view {
 
 struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log
-  std::vector<std::size_t> bodies;  // to show (RunBuilder); empty: the first that the run names
-  // Called now and then: bytes read, bytes in all, rows. False: stop reading, what was read is the run.
+  std::vector<std::size_t> bodies;  // to show, see RunBuilder; empty: the first in the run
+  // Called periodically with bytes read, bytes in total, rows. If it returns false, reading stops, and the
+  // run consists of what was read.
   std::function<bool(std::int64_t, std::int64_t, std::int64_t)> progress;
 };
 
-// By the extension: .csv or .lcmlog. Memory does not grow with the file. Errors: another extension, not
-// readable, a first line that is no such header, a .csv where options name pose channels, not one row about a
-// body of the scene, or about those that options name.
+// The extension selects the format: .csv or .lcmlog. Memory does not grow with the file. Errors: another
+// extension, an unreadable file, an invalid CSV header, pose channels for a .csv file, no row about a body of
+// the scene or of options.bodies.
 Expected<RecordedRun> read_run(const std::filesystem::path& path, const Scene& scene, std::size_t max_rows,
                                const RunFileOptions& options);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::view

@@ -1,0 +1,41 @@
+#include "view/common/body_statuses.h"
+
+#include "messages/request.h"
+
+namespace buoyancy::view {
+namespace {
+
+const char* meaning(BodyStatus status) {
+  switch (status) {
+    case BodyStatus::kOk:
+      return "";
+    case BodyStatus::kUnknownBody:
+      return "the scene has no body with this id";
+    case BodyStatus::kNonFinitePose:
+      return "position or quaternion is NaN or infinite";
+    case BodyStatus::kBadQuaternion:
+      return "the quaternion's norm is not 1";
+    case BodyStatus::kNonFiniteTwist:
+      return "a velocity is NaN or infinite";
+    case BodyStatus::kBadLeadTime:
+      return "the lead time is NaN or infinite";
+    case BodyStatus::kOpenEdgeWet:
+      return "the mesh is open and its boundary is not entirely dry";
+    case BodyStatus::kOutOfRange:
+      return "the result exceeds the range of double";
+  }
+  return "";
+}
+
+}  // namespace
+
+nlohmann::ordered_json body_statuses() {
+  nlohmann::ordered_json statuses = nlohmann::ordered_json::array();
+  for (int i = 0; i < kBodyStatusCount; ++i) {
+    const auto status = static_cast<BodyStatus>(i);
+    statuses.push_back(nlohmann::ordered_json::array({to_string(status), meaning(status)}));
+  }
+  return statuses;
+}
+
+}  // namespace buoyancy::view
