@@ -19,39 +19,39 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::runtime_error("browser: " + what);
+[[noreturn]] void fail(const std::string& message) {
+  throw std::runtime_error("browser: " + message);
 }
 
-// Its home is the scratch directory; without a bus it does not look for the desktop's settings.
-ChildCommand with_scratch_home(std::vector<std::string> arguments, const TempDir& directory) {
+// Sets the home to a temporary directory; without D-Bus, Chromium does not look for the desktop's settings.
+ChildCommand with_temporary_home(std::vector<std::string> arguments, const TempDir& directory) {
   std::filesystem::create_directories(directory.path("tmp"));
-  ChildCommand whole = command_of(std::move(arguments));
-  whole.with_descendants = true;
-  whole.environment = {
+  ChildCommand command = command_of(std::move(arguments));
+  command.with_descendants = true;
+  command.environment = {
       "HOME=" + directory.path("home"),           "XDG_CONFIG_HOME=" + directory.path("home"),
       "XDG_CACHE_HOME=" + directory.path("home"), "TMPDIR=" + directory.path("tmp"),
       "DBUS_SESSION_BUS_ADDRESS=disabled:",       "LANGUAGE=en",
   };
-  return whole;
+  return command;
 }
 
-// We start Chromium ourselves and let chromedriver join it: one that chromedriver starts outlives a
-// chromedriver that is killed.
+// Chromium is started here and chromedriver attaches to it: a Chromium that chromedriver starts outlives a
+// killed chromedriver.
 ChildCommand chromium(const TempDir& directory) {
-  return with_scratch_home(
+  return with_temporary_home(
       {
           "chromium",
           "--headless=new",
           "--remote-debugging-port=0",
           "--user-data-dir=" + directory.path("profile"),
-          // Neither root nor most containers can have the sandbox, and the pages are our own.
+          // The sandbox is unavailable to root and in most containers, and the pages are trusted.
           "--no-sandbox",
           // A container's /dev/shm is often too small.
           "--disable-dev-shm-usage",
           "--use-angle=swiftshader",
           "--enable-unsafe-swiftshader",
-          // By the software renderer that only makes the page slower.
+          // GPU rasterization with software rendering only slows the page down.
           "--disable-gpu-rasterization",
           "--force-color-profile=srgb",
           "--force-device-scale-factor=1",
@@ -68,37 +68,37 @@ ChildCommand chromium(const TempDir& directory) {
 }
 
 ChildCommand chromedriver(const TempDir& directory) {
-  return with_scratch_home({"chromedriver", "--port=0"}, directory);
+  return with_temporary_home({"chromedriver", "--port=0"}, directory);
 }
 
-// The port that a program says it listens on.
-int port_of(ChildProcess& program, const std::string& name, const std::regex& announcement) {
+// The port in the line that a program prints when it listens.
+int wait_for_port(ChildProcess& program, const std::string& name, const std::regex& pattern) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   std::optional<int> exit_code;
-  std::string said;
+  std::string output;
   while (!exit_code && std::chrono::steady_clock::now() < deadline) {
     exit_code = program.wait(0.01);
-    said = program.standard_output() + program.standard_error();
+    output = program.standard_output() + program.standard_error();
     std::smatch match;
-    if (std::regex_search(said, match, announcement)) return std::stoi(match[1]);
+    if (std::regex_search(output, match, pattern)) return std::stoi(match[1]);
   }
   if (exit_code == 127) {
-    fail("there is no " + name +
-         ". Install Debian's packages chromium and chromium-driver (scripts/setup test). " +
-         "It said: " + said);
+    fail(name + " not found. Install Debian's packages chromium and chromium-driver (scripts/setup test). " +
+         "Output: " + output);
   }
-  if (exit_code) fail(name + " ended with " + std::to_string(*exit_code) + " before it was ready: " + said);
-  fail(name + " did not get ready: " + said);
+  if (exit_code)
+    fail(name + " exited with " + std::to_string(*exit_code) + " before it was ready: " + output);
+  fail(name + " did not become ready: " + output);
 }
 
-std::string decoded(const std::string& base64) {
+std::string decode_base64(const std::string& base64) {
   std::string bytes(base64.size() / 4 * 3, '\0');
-  // OpenSSL's and our bytes are the same; its type for them is unsigned.
+  // OpenSSL uses unsigned char for bytes.
   const int size =
       EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
                       reinterpret_cast<const unsigned char*>(base64.data()), static_cast<int>(base64.size()));
-  if (size < 0) fail("the screenshot is no base64");
-  // It decodes the padding too, to zeros.
+  if (size < 0) fail("the screenshot is not base64");
+  // OpenSSL decodes the padding to zero bytes.
   const std::size_t padding = base64.size() - (base64.find_last_not_of('=') + 1);
   bytes.resize(static_cast<std::size_t>(size) - padding);
   return bytes;
@@ -123,7 +123,7 @@ std::string key_code(std::string_view key) {
   for (const Key& named : kKeys) {
     if (named.name == key) return named.code;
   }
-  return std::string(key);  // chromedriver refuses what is more than one character
+  return std::string(key);  // chromedriver rejects more than one character
 }
 
 }  // namespace
@@ -131,34 +131,34 @@ std::string key_code(std::string_view key) {
 Browser::Browser(const Screen& screen)
     : chromium_(chromium(directory_)), chromedriver_(chromedriver(directory_)) {
   const int driver_port =
-      port_of(chromedriver_, "chromedriver", std::regex("started successfully on port ([0-9]+)\\."));
-  const int browser_port =
-      port_of(chromium_, "chromium", std::regex("DevTools listening on ws://127\\.0\\.0\\.1:([0-9]+)/"));
+      wait_for_port(chromedriver_, "chromedriver", std::regex("started successfully on port ([0-9]+)\\."));
+  const int browser_port = wait_for_port(chromium_, "chromium",
+                                         std::regex("DevTools listening on ws://127\\.0\\.0\\.1:([0-9]+)/"));
   client_ = std::make_unique<httplib::Client>("127.0.0.1", driver_port);
   client_->set_keep_alive(true);
   client_->set_tcp_nodelay(true);
   client_->set_read_timeout(std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(
-      2.0 * kWaitTimeout)));  // chromedriver says what it waits for, so it goes first
+      2.0 * kWaitTimeout)));  // so that chromedriver's timeout, whose message is better, comes first
 
-  const json wanted = {
+  const json capabilities = {
       {"goog:chromeOptions", {{"debuggerAddress", "127.0.0.1:" + std::to_string(browser_port)}}},
       {"goog:loggingPrefs", {{"browser", "ALL"}}},
       {"timeouts", {{"pageLoad", kWaitTimeout * 1e3}, {"script", kWaitTimeout * 1e3}}}};
-  const json session = command("/session", {{"capabilities", {{"alwaysMatch", wanted}}}});
+  const json session = command("/session", {{"capabilities", {{"alwaysMatch", capabilities}}}});
   session_ = "/session/" + session.at("sessionId").get<std::string>();
   resize(screen);
 }
 
 Browser::~Browser() {
-  // Chromium ends in order where it can; what it started and what does not end is killed by its supervisor.
-  // The members' destructors wait for that, so nothing writes into the scratch directory while it is removed.
+  // Chromium terminates by itself if it can; its supervisor kills the rest. The members' destructors wait for
+  // that, so that no process writes into the temporary directory while it is removed.
   chromium_.send_signal(SIGTERM);
   chromium_.wait(kWaitTimeout);
 }
 
 void Browser::resize(const Screen& screen) {
   screen_ = screen;
-  // Not the window's size: of that the browser takes what its frame needs, and it has a least width.
+  // Not the window's size, which includes the frame and has a minimum width.
   development_tool("Emulation.setDeviceMetricsOverride", {{"width", screen.width},
                                                           {"height", screen.height},
                                                           {"deviceScaleFactor", 1},
@@ -200,17 +200,17 @@ json Browser::wait_until(const std::string& expression, double seconds) {
       "); } catch (e) { error = String(e); }"
       "return {done: Boolean(value), value, error};";
   while (true) {
-    json seen = run(script);
-    if (seen.at("done") == true) return seen.at("value");
+    json result = run(script);
+    if (result.at("done") == true) return result.at("value");
     if (std::chrono::steady_clock::now() >= deadline) {
       std::ostringstream text;
       text << "waited " << seconds << " s for " << expression << "; it is ";
-      if (seen.at("error").is_null()) {
-        text << seen.at("value").dump();
+      if (result.at("error").is_null()) {
+        text << result.at("value").dump();
       } else {
-        text << "an exception: " << seen.at("error").get<std::string>();
+        text << "an exception: " << result.at("error").get<std::string>();
       }
-      fail(text.str() + ". Errors on the console:" + console_errors_in_lines());
+      fail(text.str() + ". Errors on the console:" + format_console_errors());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -242,7 +242,7 @@ void Browser::press(std::string_view key) {
 }
 
 Image Browser::screenshot() {
-  return Image(decoded(send(session_ + "/screenshot", "").get<std::string>()));
+  return Image(decode_base64(send(session_ + "/screenshot", "").get<std::string>()));
 }
 
 Region Browser::region_of(const std::string& selector) {
@@ -268,15 +268,15 @@ json Browser::send(const std::string& path, const std::string& body) {
   const httplib::Result result =
       body.empty() ? client_->Get(path) : client_->Post(path, body, "application/json");
   if (const std::optional<int> exit_code = chromium_.wait(0.0)) {
-    fail("chromium has ended with " + std::to_string(*exit_code) + ": " + chromium_.standard_error());
+    fail("chromium has exited with " + std::to_string(*exit_code) + ": " + chromium_.standard_error());
   }
   if (!result) {
-    fail("chromedriver does not answer " + path + ": " + httplib::to_string(result.error()) +
-         "; it said: " + chromedriver_.standard_output() + chromedriver_.standard_error());
+    fail("no response from chromedriver to " + path + ": " + httplib::to_string(result.error()) +
+         "; output: " + chromedriver_.standard_output() + chromedriver_.standard_error());
   }
   json value = json::parse(result->body).at("value");
   if (result->status != 200) {
-    // Below the first line is chromedriver's own stack.
+    // The lines after the first are chromedriver's stack trace.
     const std::string message = value.at("message").get<std::string>();
     fail(value.at("error").get<std::string>() + ": " + message.substr(0, message.find('\n')));
   }
@@ -296,7 +296,7 @@ void Browser::act(const std::string& type, const json& actions) {
   command("/actions", {{"actions", json::array({source})}});
 }
 
-std::string Browser::console_errors_in_lines() {
+std::string Browser::format_console_errors() {
   std::string lines;
   for (const std::string& error : console_errors()) lines += "\n  " + error;
   return lines.empty() ? " none" : lines;

@@ -1,13 +1,13 @@
-// A page as somebody meets it: Debian's headless Chromium, WebGL drawn by the processor, driven through
-// Debian's chromedriver (WebDriver: JSON over HTTP).
+// Drives a page in Debian's headless Chromium with software-rendered WebGL, through Debian's chromedriver
+// (WebDriver: JSON over HTTP).
 //
-// The browser reaches this machine's loopback and files and nothing else: every other host is unknown to it,
-// so that a page that needs the network fails everywhere, not only where there is none. It needs no display,
-// no network beyond loopback and no right; one pixel of the page is one of the picture, colours are sRGB.
+// The browser reaches only this machine's loopback and files; no other host resolves, so that a page that
+// needs the network fails on every machine. It needs no display, no network beyond the loopback and no
+// privileges. One pixel of the page is one pixel of a screenshot; colours are sRGB.
 //
-// Starting takes a second or two of an idle machine: one browser for all tests of a program, see page_test.h.
-// Whatever goes wrong throws std::runtime_error that says what; nothing waits longer than kWaitTimeout. One
-// thread at a time.
+// Starting takes one to two seconds on an idle machine: use one browser for all tests of a program, see
+// page_test.h. Every failure throws std::runtime_error with its cause; nothing waits longer than
+// kWaitTimeout. Not thread-safe.
 #pragma once
 
 #include <memory>
@@ -29,10 +29,10 @@ class Client;
 
 namespace buoyancy::view {
 
-struct Screen {  // what the page has to itself, without the window around it
+struct Screen {  // the viewport of the page
   int width = 0;
   int height = 0;
-  bool phone = false;  // touch, and 980 pixels wide for a page without <meta name="viewport">
+  bool phone = false;  // with touch; 980 pixels wide for a page without <meta name="viewport">
 };
 
 inline constexpr Screen kDesktop{1280, 720, false};
@@ -40,21 +40,21 @@ inline constexpr Screen kPhone{390, 844, true};
 
 class Browser {
  public:
-  // All its processes have ended when the destructor returns; if the test is killed, they end soon after it.
+  // The destructor returns when all processes have ended; if the test is killed, they end soon after it.
   explicit Browser(const Screen& screen = kDesktop);
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
   ~Browser();
 
-  // A page that is open is laid out anew.
+  // Lays out an open page again.
   void resize(const Screen& screen);
 
-  // Return after the page's load event; what an earlier page wrote to the console is forgotten.
+  // These return after the page's load event and discard the console messages of an earlier page.
   void open(const std::string& url);
   void open_file(const std::string& path);
 
-  // Runs the body of a function, with arguments[0] and so on, and returns what it returns: JSON (undefined is
-  // null), and of a promise what it comes to. Throws what the script throws.
+  // Runs the body of a function with arguments[0] and so on, and returns its result as JSON: null for
+  // undefined, the resolved value for a promise. Throws what the script throws.
   template <typename... Arguments>
   nlohmann::json run(const std::string& script, const Arguments&... arguments) {
     nlohmann::json list = nlohmann::json::array();
@@ -62,47 +62,48 @@ class Browser {
     return execute(script, list);
   }
 
-  // Returns the expression's value as soon as JavaScript takes it for true. An expression that throws is not
-  // true yet. What it throws after `seconds` holds the last value, and the console's errors.
+  // Returns the expression's value as soon as it is truthy; an expression that throws counts as false. After
+  // `seconds`, throws an error with the last value and the console's errors.
   nlohmann::json wait_until(const std::string& expression, double seconds = kWaitTimeout);
 
-  // What the console got at level "error" since the page was opened or since the last call: console.error,
-  // uncaught exceptions and rejections, whatever could not be loaded. Of a server Chromium also wants
-  // /favicon.ico, unless the page has an icon: <link rel="icon" href="data:,">.
+  // The console messages of level "error" since the page was opened or since the last call: console.error,
+  // uncaught exceptions and rejections, resources that could not be loaded. From a server, Chromium also
+  // requests /favicon.ico unless the page has an icon: <link rel="icon" href="data:,">.
   std::vector<std::string> console_errors();
 
-  // In the middle of the first element that fits the CSS selector, scrolled to if need be. Throws where there
-  // is none, or where another element lies above it.
+  // Clicks the middle of the first element that matches the CSS selector, after scrolling to it if necessary.
+  // Throws if there is none or if another element covers it.
   void click(const std::string& selector);
 
-  // From the element's middle with the left button down, to the right and down by so many pixels.
+  // Drags from the element's middle with the left button, by `right` and `down` [pixels].
   void drag(const std::string& selector, int right, int down);
 
-  // One key, down and up, for the element that has the focus: a character, or a name as KeyboardEvent.key has
-  // it (ArrowLeft, ArrowUp, ArrowRight, ArrowDown, Home, End, PageUp, PageDown, Enter, Escape, Tab).
+  // Presses and releases one key for the element that has the focus: a character, or a name of
+  // KeyboardEvent.key (ArrowLeft, ArrowUp, ArrowRight, ArrowDown, Home, End, PageUp, PageDown, Enter, Escape,
+  // Tab).
   void press(std::string_view key);
 
-  // What is on the screen, as large as the screen.
+  // The viewport, in the size of the screen.
   Image screenshot();
 
-  // Where the first element that fits the selector is in a screenshot: the part of it that is on the screen,
-  // which may be empty.
+  // The region of a screenshot with the first element that matches the selector, clipped to the screen; it
+  // may be empty.
   Region region_of(const std::string& selector);
 
  private:
   nlohmann::json execute(const std::string& script, const nlohmann::json& arguments);
   nlohmann::json command(const std::string& path, const nlohmann::json& body);
-  nlohmann::json send(const std::string& path, const std::string& body);  // an empty body: GET
+  nlohmann::json send(const std::string& path, const std::string& body);  // GET if body is empty
   void development_tool(const std::string& method, const nlohmann::json& parameters);
   nlohmann::json element(const std::string& selector);
   void act(const std::string& type, const nlohmann::json& actions);
-  std::string console_errors_in_lines();
+  std::string format_console_errors();
 
-  TempDir directory_;  // its home, its profile, its temporary files
+  TempDir directory_;  // home, profile, temporary files
   ChildProcess chromium_;
   ChildProcess chromedriver_;
   std::unique_ptr<httplib::Client> client_;
-  std::string session_;  // path
+  std::string session_;  // path of its WebDriver session
   Screen screen_;
 };
 

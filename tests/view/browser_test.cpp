@@ -41,7 +41,7 @@ class BrowserTest : public PageTest {
             body));
   }
 
-  static std::string what_is_thrown(const std::function<void()>& act) {
+  static std::string thrown_message(const std::function<void()>& act) {
     try {
       act();
     } catch (const std::runtime_error& error) {
@@ -54,7 +54,7 @@ class BrowserTest : public PageTest {
   TempDir directory_;
 };
 
-TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
+TEST_F(BrowserTest, DrawsWebGl) {
   show(
       R"(<canvas id="sea" width="300" height="200" style="position: absolute; left: 100px; top: 50px"></canvas>
     <script>
@@ -88,10 +88,10 @@ TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
   browser().wait_until("window.drawn");
   EXPECT_THAT(browser().console_errors(), IsEmpty());
 
-  const Image picture = browser().screenshot();
-  EXPECT_EQ(picture.share({100, 50, 150, 200}, is_near({255, 204, 0})), 1.0);
-  EXPECT_EQ(picture.share({250, 50, 150, 200}, is_near({0, 102, 204})), 1.0);
-  EXPECT_EQ(picture.pixel(99, 49), (Colour{255, 255, 255}));
+  const Image image = browser().screenshot();
+  EXPECT_EQ(image.share({100, 50, 150, 200}, is_near({255, 204, 0})), 1.0);
+  EXPECT_EQ(image.share({250, 50, 150, 200}, is_near({0, 102, 204})), 1.0);
+  EXPECT_EQ(image.pixel(99, 49), (Colour{255, 255, 255}));
   const Region canvas = browser().region_of("#sea");
   EXPECT_EQ(canvas.left, 100);
   EXPECT_EQ(canvas.top, 50);
@@ -106,9 +106,9 @@ TEST_F(BrowserTest, DrawsWhatWebGlDraws) {
 TEST_F(BrowserTest, DrawsText) {
   show(R"(<style>p { font: 40px sans-serif; margin: 0; width: 60px; height: 60px }</style>
     <p id="a">A</p><p id="b">B</p><p id="rho">ρ</p><p id="nothing"></p>)");
-  const Image picture = browser().screenshot();
+  const Image image = browser().screenshot();
   const auto ink = [&](const std::string& selector) {
-    return picture.share(browser().region_of(selector), [](const Colour& c) { return c.green < 128; });
+    return image.share(browser().region_of(selector), [](const Colour& c) { return c.green < 128; });
   };
   EXPECT_EQ(ink("#nothing"), 0.0);
   for (const char* letter : {"#a", "#b", "#rho"}) {
@@ -118,9 +118,9 @@ TEST_F(BrowserTest, DrawsText) {
   EXPECT_NE(ink("#a"), ink("#b")) << "a font without letters draws the same box for each";
 }
 
-TEST_F(BrowserTest, FindsErrorsOfTheConsoleAndNothingElse) {
+TEST_F(BrowserTest, ReturnsConsoleErrorsOnly) {
   show(R"(<script>
-      console.log("said");
+      console.log("logged");
       console.warn("warned");
       console.error("something", 42);
       setTimeout(() => { throw new Error("nobody caught me"); });
@@ -137,8 +137,8 @@ TEST_F(BrowserTest, FindsErrorsOfTheConsoleAndNothingElse) {
   EXPECT_THAT(browser().console_errors(), IsEmpty());
 }
 
-TEST_F(BrowserTest, ForgetsTheErrorsOfThePageBefore) {
-  show("<script>console.error('of the page before')</script>");
+TEST_F(BrowserTest, DiscardsErrorsOfPreviousPage) {
+  show("<script>console.error('of the previous page')</script>");
   show("<script>console.error('of this page')</script>");
   EXPECT_THAT(browser().console_errors(), ElementsAre(HasSubstr("of this page")));
 }
@@ -150,10 +150,10 @@ TEST_F(BrowserTest, PressesKeys) {
     browser().press(key);
     EXPECT_EQ(browser().run("return keys.pop()"), key);
   }
-  EXPECT_THAT(what_is_thrown([] { browser().press("ArrowSideways"); }), HasSubstr("invalid argument"));
+  EXPECT_THAT(thrown_message([] { browser().press("ArrowSideways"); }), HasSubstr("invalid argument"));
 }
 
-TEST_F(BrowserTest, PressesKeysForTheElementThatWasClicked) {
+TEST_F(BrowserTest, PressesKeysForFocusedElement) {
   show(R"(<input id="slider" type="range" min="0" max="9" value="4"><input id="other">)");
   browser().click("#slider");
   browser().press("Home");
@@ -161,20 +161,20 @@ TEST_F(BrowserTest, PressesKeysForTheElementThatWasClicked) {
   EXPECT_EQ(browser().run("return document.getElementById('slider').value"), "1");
 }
 
-TEST_F(BrowserTest, ClicksInTheMiddleOfAnElementWhereverItIs) {
+TEST_F(BrowserTest, ClicksMiddleOfElementAfterScrolling) {
   show(R"(<div style="height: 3000px"></div>
     <button id="go" style="width: 100px; height: 40px; border: 0" onclick="window.at = [event.offsetX, event.offsetY]">go</button>)");
   browser().click("#go");
   EXPECT_EQ(browser().wait_until("window.at"), nlohmann::json({50, 20}));
 }
 
-TEST_F(BrowserTest, ClicksNothingThatAPersonCouldNotClick) {
+TEST_F(BrowserTest, RefusesToClickCoveredOrMissingElement) {
   show(R"(<button id="go">go</button><div style="position: fixed; inset: 0"></div>)");
-  EXPECT_THAT(what_is_thrown([] { browser().click("#go"); }), HasSubstr("click intercepted"));
-  EXPECT_THAT(what_is_thrown([] { browser().click("#nowhere"); }), HasSubstr("#nowhere"));
+  EXPECT_THAT(thrown_message([] { browser().click("#go"); }), HasSubstr("click intercepted"));
+  EXPECT_THAT(thrown_message([] { browser().click("#nowhere"); }), HasSubstr("#nowhere"));
 }
 
-TEST_F(BrowserTest, Drags) {
+TEST_F(BrowserTest, DragsPointer) {
   show(R"(<div id="view" style="width: 600px; height: 400px"></div>
     <script>
       const path = [];
@@ -188,7 +188,7 @@ TEST_F(BrowserTest, Drags) {
   EXPECT_GT(browser().run("return path.length"), 2);
 }
 
-TEST_F(BrowserTest, ShowsThePageOnAScreenOfTheSizeThatWasAskedFor) {
+TEST_F(BrowserTest, ResizesScreen) {
   const std::string size = "return [innerWidth, innerHeight, devicePixelRatio, navigator.maxTouchPoints > 0]";
   show("<p>before</p>");
   EXPECT_EQ(browser().run(size), nlohmann::json({1280, 720, 1, false}));
@@ -196,9 +196,9 @@ TEST_F(BrowserTest, ShowsThePageOnAScreenOfTheSizeThatWasAskedFor) {
   EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
   show("<button id='go' onclick='window.clicked = true'>after</button>");
   EXPECT_EQ(browser().run(size), nlohmann::json({390, 844, 1, true}));
-  const Image picture = browser().screenshot();
-  EXPECT_EQ(picture.width(), 390);
-  EXPECT_EQ(picture.height(), 844);
+  const Image image = browser().screenshot();
+  EXPECT_EQ(image.width(), 390);
+  EXPECT_EQ(image.height(), 844);
   browser().click("#go");
   browser().wait_until("window.clicked");
   browser().resize(kDesktop);
@@ -206,28 +206,28 @@ TEST_F(BrowserTest, ShowsThePageOnAScreenOfTheSizeThatWasAskedFor) {
   EXPECT_EQ(browser().run(size), nlohmann::json({1280, 720, 1, false}));
 }
 
-TEST_F(BrowserTest, TakesArgumentsAndReturnsWhatTheScriptReturns) {
+TEST_F(BrowserTest, PassesArgumentsAndReturnsResult) {
   show("");
   EXPECT_EQ(browser().run("return arguments[0] + arguments[1].b[0]", 40, nlohmann::json{{"b", {2, 3}}}), 42);
   EXPECT_EQ(browser().run("return Promise.resolve('later')"), "later");
   EXPECT_TRUE(browser().run("document.title = arguments[0]", "title").is_null());
   EXPECT_EQ(browser().run("return document.title"), "title");
-  EXPECT_THAT(what_is_thrown([] { browser().run("throw new Error('out of water')"); }),
+  EXPECT_THAT(thrown_message([] { browser().run("throw new Error('out of water')"); }),
               HasSubstr("out of water"));
 }
 
-TEST_F(BrowserTest, SaysWhatItSawInsteadOfWhatItWaitedFor) {
+TEST_F(BrowserTest, ReportsLastValueOnTimeout) {
   show("<script>console.error('the duck is lost'); window.steps = 0;</script>");
   EXPECT_THAT(
-      what_is_thrown([] { browser().wait_until("steps > 0 && 'done'", 0.1); }),
+      thrown_message([] { browser().wait_until("steps > 0 && 'done'", 0.1); }),
       testing::AllOf(HasSubstr("steps > 0"), HasSubstr("it is false"), HasSubstr("the duck is lost")));
-  EXPECT_THAT(what_is_thrown([] { browser().wait_until("replay.ready", 0.1); }),
+  EXPECT_THAT(thrown_message([] { browser().wait_until("replay.ready", 0.1); }),
               HasSubstr("ReferenceError: replay is not defined"));
   browser().run("setTimeout(() => { window.steps = 7; }, 50)");
   EXPECT_EQ(browser().wait_until("steps"), 7);
 }
 
-TEST_F(BrowserTest, KnowsNoOtherHost) {
+TEST_F(BrowserTest, ResolvesNoOtherHost) {
   show(R"(<script>
       const fetched = url => fetch(url, {mode: "no-cors"}).then(() => "reached", error => "refused");
       window.all = Promise.all([fetched("http://example.org/"), fetched("http://192.0.2.1/")]);
@@ -237,14 +237,14 @@ TEST_F(BrowserTest, KnowsNoOtherHost) {
   EXPECT_THAT(errors, ElementsAre(HasSubstr("ERR_NAME_NOT_RESOLVED"), HasSubstr("ERR_NAME_NOT_RESOLVED")));
 }
 
-TEST_F(BrowserTest, ShowsAPageOfAServerThatNeverStopsSending) {
+TEST_F(BrowserTest, OpensPageWithEndlessEventStream) {
   httplib::Server server;
   server.set_keep_alive_timeout(1);  // s; stopping waits for it
   std::atomic<bool> over = false;
   server.Get("/", [](const httplib::Request&, httplib::Response& response) {
     response.set_content(
-        "<!doctype html><link rel='icon' href='data:,'><script>const heard = [];"
-        "new EventSource('events').onmessage = event => heard.push(event.data);</script>",
+        "<!doctype html><link rel='icon' href='data:,'><script>const received = [];"
+        "new EventSource('events').onmessage = event => received.push(event.data);</script>",
         "text/html");
   });
   server.Get("/events", [&](const httplib::Request&, httplib::Response& response) {
@@ -258,24 +258,25 @@ TEST_F(BrowserTest, ShowsAPageOfAServerThatNeverStopsSending) {
   const int port = server.bind_to_any_port("127.0.0.1");
   std::thread serving([&] { server.listen_after_bind(); });
 
-  const std::string warning = what_is_thrown([&] {
+  const std::string error = thrown_message([&] {
     browser().open("http://127.0.0.1:" + std::to_string(port) + "/");
-    EXPECT_EQ(browser().wait_until("heard.length > 3 && heard[3]"), "a wave");
+    EXPECT_EQ(browser().wait_until("received.length > 3 && received[3]"), "a wave");
     EXPECT_THAT(browser().console_errors(), IsEmpty());
     browser().open("about:blank");
   });
   over = true;
   server.stop();
   serving.join();
-  EXPECT_EQ(warning, "nothing");
+  EXPECT_EQ(error, "nothing");
 }
 
-// Processes that have the path in their environment or arguments, and the option in their arguments. Chromium
-// writes a child's title over its environment, and chromedriver has the path in its environment alone.
-int processes_that_name(const std::string& path, const std::string& option = {}) {
+// The number of processes with the path in their environment or arguments and the option in their arguments.
+// Chromium overwrites a child's environment with its title, and chromedriver has the path only in its
+// environment.
+int count_processes(const std::string& path, const std::string& option = {}) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-    // A process that has ended has neither, and one that ends just now cannot be read.
+    // A process that has exited has neither, and one that is exiting cannot be read.
     const std::string arguments = read_file(entry.path() / "cmdline");
     const std::string environment = read_file(entry.path() / "environ");
     if ((arguments + environment).find(path) != std::string::npos &&
@@ -287,7 +288,7 @@ int processes_that_name(const std::string& path, const std::string& option = {})
 }
 
 template <typename Condition>
-bool comes_true(Condition&& condition) {
+bool becomes_true(Condition&& condition) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (!condition()) {
     if (std::chrono::steady_clock::now() >= deadline) return false;
@@ -296,26 +297,27 @@ bool comes_true(Condition&& condition) {
   return true;
 }
 
-// A test of this program as a process of its own, whose browser has its files in `directory`.
+// A test of this program as a separate process, whose browser keeps its files in `directory`.
 ChildCommand this_program(std::vector<std::string> arguments, const TempDir& directory) {
   arguments.insert(arguments.begin(), std::filesystem::read_symlink("/proc/self/exe").string());
-  ChildCommand whole = command_of(std::move(arguments));
-  whole.environment = {"TMPDIR=" + directory.path("")};
-  return whole;
+  ChildCommand command = command_of(std::move(arguments));
+  command.environment = {"TMPDIR=" + directory.path("")};
+  return command;
 }
 
-// Not a test of its own: it shows a page until its standard input ends.
-TEST_F(BrowserTest, DISABLED_ShowsAPageUntilItsInputEnds) {
+// Not a test itself: shows a page until its standard input ends.
+TEST_F(BrowserTest, DISABLED_ShowsPageUntilInputEnds) {
   show("<p>a page</p>");
   std::cout << "the page is shown" << std::endl;
   EXPECT_EQ(std::cin.get(), std::char_traits<char>::eof());
 }
 
-// That test as a process; constructed when the page is shown.
+// That test as a process; the constructor returns when the page is shown.
 class PageInAnotherProcess {
  public:
   explicit PageInAnotherProcess(const TempDir& directory) : test_(command(directory)) {
-    // The child opens its input before it starts the program, and either end waits for the other.
+    // Opening either end of the FIFO waits for the other; the child opens its end before it starts the
+    // program.
     writer_.open(input_.path("input"));
     if (!test_.wait_for_text("the page is shown", kWaitTimeout)) {
       throw std::runtime_error(test_.standard_output());
@@ -327,12 +329,11 @@ class PageInAnotherProcess {
 
  private:
   ChildCommand command(const TempDir& directory) const {
-    ChildCommand whole = this_program(
-        {"--gtest_filter=*DISABLED_ShowsAPageUntilItsInputEnds", "--gtest_also_run_disabled_tests"},
-        directory);
-    whole.standard_input = input_.path("input");
-    if (::mkfifo(whole.standard_input.c_str(), 0600) != 0) throw std::runtime_error("no FIFO");
-    return whole;
+    ChildCommand child = this_program(
+        {"--gtest_filter=*DISABLED_ShowsPageUntilInputEnds", "--gtest_also_run_disabled_tests"}, directory);
+    child.standard_input = input_.path("input");
+    if (::mkfifo(child.standard_input.c_str(), 0600) != 0) throw std::runtime_error("cannot create the FIFO");
+    return child;
   }
 
   TempDir input_;
@@ -340,27 +341,27 @@ class PageInAnotherProcess {
   std::ofstream writer_;
 };
 
-TEST(BrowserProcesses, LeaveNothingBehind) {
+TEST(BrowserLifecycle, LeavesNoProcessesOrFiles) {
   const TempDir directory;
   PageInAnotherProcess page(directory);
-  EXPECT_GT(processes_that_name(directory.path(""), "--type=renderer"), 0);
+  EXPECT_GT(count_processes(directory.path(""), "--type=renderer"), 0);
   page.end_input();
   EXPECT_EQ(page.test().wait(kWaitTimeout), 0) << page.test().standard_output();
-  EXPECT_EQ(processes_that_name(directory.path("")), 0);
+  EXPECT_EQ(count_processes(directory.path("")), 0);
   EXPECT_TRUE(std::filesystem::is_empty(directory.path("")));
 }
 
-TEST(BrowserProcesses, EndWithATestThatIsKilled) {
+TEST(BrowserLifecycle, EndsProcessesOfKilledTest) {
   const TempDir directory;
   PageInAnotherProcess page(directory);
-  EXPECT_GT(processes_that_name(directory.path(""), "--type=renderer"), 0);
-  EXPECT_GT(processes_that_name(directory.path(""), "chromedriver"), 0);
+  EXPECT_GT(count_processes(directory.path(""), "--type=renderer"), 0);
+  EXPECT_GT(count_processes(directory.path(""), "chromedriver"), 0);
   page.test().send_signal(SIGKILL);
   EXPECT_EQ(page.test().wait(kWaitTimeout), 128 + SIGKILL);
-  EXPECT_TRUE(comes_true([&] { return processes_that_name(directory.path("")) == 0; }));
+  EXPECT_TRUE(becomes_true([&] { return count_processes(directory.path("")) == 0; }));
 }
 
-TEST(BrowserProcesses, FailWithTheNamesOfTheirPackagesWhereTheyAreMissing) {
+TEST(BrowserLifecycle, NamesMissingPackages) {
   const TempDir directory;
   ChildCommand without = this_program({"--gtest_filter=BrowserTest.DrawsText"}, directory);
   without.environment.emplace_back("PATH=" + directory.path(""));

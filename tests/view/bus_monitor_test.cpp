@@ -37,16 +37,16 @@ std::vector<std::uint8_t> status_bytes(std::int64_t instance_id, const std::stri
   return bytes;
 }
 
-BodyWrench lifted(std::int32_t id, double force) {
+BodyWrench vertical_force(std::int32_t id, double force) {
   BodyWrench wrench;
   wrench.body_id = id;
   wrench.force = {0.0, 0.0, force};
   return wrench;
 }
 
-class WatchedBus : public testing::Test {
+class BusMonitorTest : public testing::Test {
  protected:
-  explicit WatchedBus(PoseChannels poses = {}) : monitor_(scene_, 0.0, std::move(poses)) {}
+  explicit BusMonitorTest(PoseChannels poses = {}) : monitor_(scene_, 0.0, std::move(poses)) {}
   ArrivalTime at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
   json snapshot(double now) { return json::parse(snapshot_json(monitor_, 1, 0.0, now, now)); }
 
@@ -54,13 +54,14 @@ class WatchedBus : public testing::Test {
   BusMonitor monitor_;
 };
 
-TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
-  EXPECT_TRUE(snapshot(0.0)["bodies"].empty()) << "nothing was asked yet";
+TEST_F(BusMonitorTest, ShowsLatestPoseAndWrenchOfEachBody) {
+  EXPECT_TRUE(snapshot(0.0)["bodies"].empty()) << "no request yet";
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0), upright(kFastBox, 3.0)}), at(0.1));
-  EXPECT_TRUE(snapshot(0.1)["bodies"][0]["f"].is_null()) << "asked, not answered";
-  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0), lifted(kFastBox, 6.0)}), at(0.1));
+  EXPECT_TRUE(snapshot(0.1)["bodies"][0]["f"].is_null()) << "no response yet";
+  monitor_.on_response(response_bytes({0, 1, 1}, {vertical_force(kBox, 5.0), vertical_force(kFastBox, 6.0)}),
+                       at(0.1));
   monitor_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.5)}), at(0.2));
-  monitor_.on_response(response_bytes({0, 1, 2}, {lifted(kBox, 7.0)}), at(0.2));
+  monitor_.on_response(response_bytes({0, 1, 2}, {vertical_force(kBox, 7.0)}), at(0.2));
   const json bodies = snapshot(0.5)["bodies"];
   ASSERT_EQ(bodies.size(), 2U);
   EXPECT_EQ(bodies[0]["id"], kBox);
@@ -73,7 +74,7 @@ TEST_F(WatchedBus, ShowsTheNewestPoseAndWrenchOfEachBody) {
   EXPECT_EQ(bodies[1]["f"], json({0.0, 0.0, 6.0}));
 }
 
-TEST_F(WatchedBus, KeepsTheLastPoseThatIsOneAndSaysTheStatus) {
+TEST_F(BusMonitorTest, KeepsLastValidPoseAndShowsStatus) {
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
   BodyState bad = upright(kBox, 1.0);
   bad.position[0] = kNan;
@@ -81,32 +82,32 @@ TEST_F(WatchedBus, KeepsTheLastPoseThatIsOneAndSaysTheStatus) {
   bad = upright(kBox, 1.0);
   bad.quaternion_wxyz[0] = 1.1;
   monitor_.on_request(request_bytes({0, 1, 3}, {bad}), at(0.3));
-  BodyWrench refused;
-  refused.body_id = kBox;
-  refused.status = BodyStatus::kBadQuaternion;
-  monitor_.on_response(response_bytes({0, 1, 3}, {refused}), at(0.3));
+  BodyWrench rejected;
+  rejected.body_id = kBox;
+  rejected.status = BodyStatus::kBadQuaternion;
+  monitor_.on_response(response_bytes({0, 1, 3}, {rejected}), at(0.3));
   const json body = snapshot(0.3)["bodies"][0];
   EXPECT_EQ(body["p"], json({3.0, -2.0, 2.0}));
   EXPECT_EQ(body["status"], 3);
 }
 
-TEST_F(WatchedBus, ShowsNoWrenchBesideAPoseThatItIsTooOldFor) {
+TEST_F(BusMonitorTest, HidesOverdueWrench) {
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.1));
-  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kBox, 5.0)}), at(0.1));
-  EXPECT_FALSE(snapshot(100.0)["bodies"][0]["f"].is_null()) << "nobody asked since";
+  monitor_.on_response(response_bytes({0, 1, 1}, {vertical_force(kBox, 5.0)}), at(0.1));
+  EXPECT_FALSE(snapshot(100.0)["bodies"][0]["f"].is_null()) << "no request since";
   for (const double now : {0.5, 1.05}) {
     monitor_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 1.0)}), at(now));
-    EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the response is still being waited for";
+    EXPECT_EQ(snapshot(now)["bodies"][0]["status"], 0) << "the response is not overdue yet";
   }
   monitor_.on_request(request_bytes({0, 1, 3}, {upright(kBox, 0.5)}), at(1.2));
   for (const char* unknown : {"status", "f", "t", "b", "volume"}) {
     EXPECT_TRUE(snapshot(1.2)["bodies"][0][unknown].is_null()) << unknown;
   }
-  monitor_.on_response(response_bytes({0, 1, 3}, {lifted(kBox, 6.0)}), at(1.3));
+  monitor_.on_response(response_bytes({0, 1, 3}, {vertical_force(kBox, 6.0)}), at(1.3));
   EXPECT_EQ(snapshot(1.3)["bodies"][0]["f"], json({0.0, 0.0, 6.0}));
 }
 
-TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
+TEST_F(BusMonitorTest, ShowsKnownMetacentres) {
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kHydrostaticBox, 0.0)}), at(0.1));
   BodyHydrostatics body;
   body.body_id = kHydrostaticBox;
@@ -124,13 +125,13 @@ TEST_F(WatchedBus, ShowsMetacentresWhereTheyAreThere) {
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }
 
-TEST_F(WatchedBus, RoundsNoPositionFarFromTheWorldsOrigin) {
-  constexpr double kFarHeight = 5'000'000.125;  // m: a float would be 0.5 m apart there
+TEST_F(BusMonitorTest, KeepsPositionsFarFromOriginExact) {
+  constexpr double kFarHeight = 5'000'000.125;  // [m]; adjacent floats are 0.5 m apart
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, kFarHeight)}), at(0.0));
   EXPECT_EQ(snapshot(0.0)["bodies"][0]["p"], json({3.0, -2.0, kFarHeight}));
 }
 
-TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
+TEST_F(BusMonitorTest, CountsMalformedMessagesByError) {
   std::array<std::int64_t, 4> expected{};
   for (const MalformedMessage& malformed : malformed_messages()) {
     monitor_.on_request(malformed.bytes, at(0.0));
@@ -142,29 +143,29 @@ TEST_F(WatchedBus, CountsWhatIsMalformedByItsCauseAndGoesOn) {
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 1U);
 }
 
-// Poses of bot_core: of the box, answered as wrenches, and of the fast box, answered as force and torque.
-class WatchedPoses : public WatchedBus {
+// Poses of bot_core: responses are wrenches for the box, force and torque for the fast box.
+class BusMonitorPoses : public BusMonitorTest {
  protected:
-  WatchedPoses() : WatchedBus({.channels = {{"BOX", kBox, ""}, {"FAST", kFastBox, "FORCE"}}}) {}
+  BusMonitorPoses() : BusMonitorTest({.channels = {{"BOX", kBox, ""}, {"FAST", kFastBox, "FORCE"}}}) {}
   void on_pose(std::size_t channel, std::int64_t utime, double height) {
     monitor_.on_pose(channel, encoded_by_lcm(upright_pose(height, utime)),
-                   at(1e-6 * static_cast<double>(utime)));
+                     at(1e-6 * static_cast<double>(utime)));
   }
-  void hear_force(std::int64_t utime, double force, double now) {
+  void on_force(std::int64_t utime, double force, double now) {
     std::vector<std::uint8_t> bytes;
     encode_six_axis_force_torque(utime, {0.0, 0.0, force}, {1.0, 2.0, 3.0}, bytes);
     monitor_.on_force_torque(1, bytes, at(now));
   }
 };
 
-TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
+TEST_F(BusMonitorPoses, MatchesResponsesByBodyAndTime) {
   on_pose(0, 100'000, 0.25);
   on_pose(1, 100'000, 0.5);
   EXPECT_EQ(snapshot(0.1)["bodies"].size(), 2U);
-  monitor_.on_response(response_bytes({100'000, 8'765, 4'321}, {lifted(kBox, 5.0)}), at(0.103));
-  EXPECT_EQ(monitor_.tracker().responses, 1) << "its session and number are the service's own";
+  monitor_.on_response(response_bytes({100'000, 8'765, 4'321}, {vertical_force(kBox, 5.0)}), at(0.103));
+  EXPECT_EQ(monitor_.tracker().responses, 1) << "session_id and seq are unknown to the observer";
   EXPECT_NEAR(monitor_.latency().max, 0.003, 1e-5);
-  hear_force(100'000, 7.0, 0.104);
+  on_force(100'000, 7.0, 0.104);
   EXPECT_EQ(monitor_.tracker().responses, 2);
   EXPECT_EQ(monitor_.tracker().requests, 2);
   EXPECT_EQ(monitor_.tracker().responses_without_request, 0);
@@ -175,32 +176,32 @@ TEST_F(WatchedPoses, AreQuestionsWhoseAnswersAreKnownByBodyAndTime) {
   EXPECT_EQ(bodies[0]["status"], 0);
   EXPECT_EQ(bodies[1]["f"], json({0.0, 0.0, 7.0}));
   EXPECT_EQ(bodies[1]["t"], json({1.0, 2.0, 3.0}));
-  for (const char* pending : {"status", "b", "volume", "force_bound", "torque_bound"}) {
-    EXPECT_TRUE(bodies[1][pending].is_null()) << pending;
+  for (const char* unknown : {"status", "b", "volume", "force_bound", "torque_bound"}) {
+    EXPECT_TRUE(bodies[1][unknown].is_null()) << unknown;
   }
 }
 
-TEST_F(WatchedPoses, LeaveNoGapsAndWaitInVainLikeAnyQuestion) {
+TEST_F(BusMonitorPoses, CountsUnansweredPosesButNoGaps) {
   for (std::int64_t i = 0; i < 5; ++i) on_pose(0, 10'000 * i, 0.0);
-  monitor_.on_response(response_bytes({40'000, 1, 4}, {lifted(kBox, 1.0)}), at(0.041));
-  monitor_.on_response(response_bytes({40'001, 1, 5}, {lifted(kBox, 1.0)}), at(0.042));
+  monitor_.on_response(response_bytes({40'000, 1, 4}, {vertical_force(kBox, 1.0)}), at(0.041));
+  monitor_.on_response(response_bytes({40'001, 1, 5}, {vertical_force(kBox, 1.0)}), at(0.042));
   monitor_.tick(3.0);
   EXPECT_EQ(monitor_.tracker().requests_missed, 0);
   EXPECT_EQ(monitor_.tracker().unanswered, 4);
-  EXPECT_EQ(monitor_.tracker().responses_without_request, 1) << "a microsecond beside the newest pose";
+  EXPECT_EQ(monitor_.tracker().responses_without_request, 1) << "1 us after the latest pose";
 }
 
-TEST_F(WatchedPoses, DoNotTakeAnAnswerThatBelongsToAQuestion) {
+TEST_F(BusMonitorPoses, PrefersRequestOverPoseForResponse) {
   on_pose(0, 100'000, 0.25);
   monitor_.on_request(request_bytes({100'000, 1, 1}, {upright(kBox, 2.0)}), at(0.105));
-  monitor_.on_response(response_bytes({100'000, 1, 1}, {lifted(kBox, 5.0)}), at(0.11));
+  monitor_.on_response(response_bytes({100'000, 1, 1}, {vertical_force(kBox, 5.0)}), at(0.11));
   EXPECT_NEAR(monitor_.latency().max, 0.005, 1e-5) << "from the request, not from the pose";
   monitor_.tick(3.0);
   EXPECT_EQ(monitor_.tracker().responses, 1);
   EXPECT_EQ(monitor_.tracker().unanswered, 1) << "the pose";
 }
 
-TEST_F(WatchedPoses, ThatAreNoneAreCountedByTheirCause) {
+TEST_F(BusMonitorPoses, CountsMalformedPosesByError) {
   monitor_.on_pose(0, Bytes(), at(0.0));
   monitor_.on_pose(0, request_bytes({0, 1, 1}, {upright(kBox, 2.0)}), at(0.0));
   std::vector<std::uint8_t> longer = encoded_by_lcm(upright_pose(0.0, 1));
@@ -214,14 +215,14 @@ TEST_F(WatchedPoses, ThatAreNoneAreCountedByTheirCause) {
   EXPECT_EQ(monitor_.tracker().requests, 0);
 }
 
-TEST_F(WatchedBus, CountsBodiesThatItsSceneDoesNotHave) {
+TEST_F(BusMonitorTest, CountsBodiesNotInScene) {
   monitor_.on_request(request_bytes({0, 1, 1}, {upright(kNoBody, 2.0), upright(kBox, 1.0)}), at(0.0));
-  monitor_.on_response(response_bytes({0, 1, 1}, {lifted(kNoBody, 1.0)}), at(0.0));
+  monitor_.on_response(response_bytes({0, 1, 1}, {vertical_force(kNoBody, 1.0)}), at(0.0));
   EXPECT_EQ(monitor_.counts().bodies_not_in_scene, 1);
   EXPECT_EQ(snapshot(0.0)["bodies"].size(), 1U);
 }
 
-TEST_F(WatchedBus, TellsPercentilesOfEachSecondAndOfAll) {
+TEST_F(BusMonitorTest, ComputesPercentilesPerSecondAndInTotal) {
   for (int i = 0; i < 100; ++i) {
     const double begin = 0.1 + 0.001 * i;
     monitor_.on_request(request_bytes({0, 1, i}, {}), at(begin));
@@ -240,7 +241,7 @@ TEST_F(WatchedBus, TellsPercentilesOfEachSecondAndOfAll) {
   EXPECT_NEAR(snapshot(2.0)["latency"]["p50"].get<double>(), 0.001, 0.03 * 0.001);
 }
 
-TEST_F(WatchedBus, KeepsAMinuteOfSecondsAndNoneOfATimeInWhichItStoodStill) {
+TEST_F(BusMonitorTest, KeepsOneMinuteAndSkipsPauses) {
   for (int i = 1; i <= 100; ++i) monitor_.tick(i);
   EXPECT_EQ(monitor_.seconds().size(), BusMonitor::kSecondsKept);
   EXPECT_EQ(monitor_.seconds().back().number, 99);
@@ -250,8 +251,8 @@ TEST_F(WatchedBus, KeepsAMinuteOfSecondsAndNoneOfATimeInWhichItStoodStill) {
   EXPECT_EQ(json::parse(history_json(monitor_)).size(), BusMonitor::kSecondsKept);
 }
 
-TEST_F(WatchedBus, SaysWhetherTheServiceAnswersWaitsIsStuckOrIsSilent) {
-  EXPECT_EQ(monitor_.service_state(0.0), ServiceState::kOffline) << "nothing was heard yet";
+TEST_F(BusMonitorTest, ReportsServiceState) {
+  EXPECT_EQ(monitor_.service_state(0.0), ServiceState::kOffline) << "no message yet";
   monitor_.on_status(status_bytes(7), 1.0);
   EXPECT_EQ(monitor_.service_state(1.5), ServiceState::kIdle);
   monitor_.on_request(request_bytes({0, 1, 1}, {}), at(2.0));
@@ -269,16 +270,16 @@ TEST_F(WatchedBus, SaysWhetherTheServiceAnswersWaitsIsStuckOrIsSilent) {
   EXPECT_EQ(monitor_.counts().services_started, 2);
 }
 
-TEST_F(WatchedBus, WaitsAgainWhereNobodyAsksAnyMore) {
+TEST_F(BusMonitorTest, BecomesIdleWithoutNewRequests) {
   monitor_.on_request(request_bytes({0, 1, 1}, {}), at(0.0));
   for (const double now : {1.0, 2.0, 3.0, 4.0, 5.0}) monitor_.on_status(status_bytes(7), now);
   EXPECT_EQ(monitor_.service_state(1.5), ServiceState::kNotAnswering);
-  EXPECT_EQ(monitor_.service_state(5.0), ServiceState::kIdle) << "that request is long forgotten";
+  EXPECT_EQ(monitor_.service_state(5.0), ServiceState::kIdle) << "the request is older than kStatusTimeout";
   monitor_.on_request(request_bytes({0, 1, 2}, {}), at(5.1));
-  EXPECT_EQ(monitor_.service_state(5.2), ServiceState::kIdle) << "and a new one has its own patience";
+  EXPECT_EQ(monitor_.service_state(5.2), ServiceState::kIdle) << "a new request has its own timeout";
 }
 
-TEST_F(WatchedBus, NamesEveryServiceOnTheBusAndForgetsTheOneThatIsGone) {
+TEST_F(BusMonitorTest, ListsServicesSeenRecently) {
   monitor_.on_status(status_bytes(7), 0.0);
   monitor_.on_status(status_bytes(std::numeric_limits<std::int64_t>::min()), 0.5);
   monitor_.on_status(status_bytes(7), 1.0);
@@ -288,25 +289,26 @@ TEST_F(WatchedBus, NamesEveryServiceOnTheBusAndForgetsTheOneThatIsGone) {
   EXPECT_EQ(snapshot(4.0)["services"].size(), BusMonitor::kMaxServices);
 }
 
-TEST_F(WatchedBus, MakesJsonOfASceneNameThatIsNoUtf8) {
+TEST_F(BusMonitorTest, ReplacesInvalidUtf8InSceneName) {
   monitor_.on_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
   const std::string text = snapshot_json(monitor_, 1, 0.0, 0.0, 0.0);
-  EXPECT_EQ(text.find('\n'), std::string::npos) << "an event is a line";
+  EXPECT_EQ(text.find('\n'), std::string::npos) << "an event is a single line";
   EXPECT_EQ(json::parse(text)["status"]["scene"], "sc\xEF\xBF\xBD\n\"ene");
 }
 
-// Bytes as they come from a network that anybody may write to: any at all, or messages damaged in one place.
-RC_GTEST_FIXTURE_PROP(WatchedBus, MakesJsonOfWhateverIsHeard, ()) {
+// Messages with one random byte, some truncated, as from an untrusted network.
+RC_GTEST_FIXTURE_PROP(BusMonitorTest, WritesValidJsonForAnyTraffic, ()) {
   double now = 0.0;
   const std::vector<std::vector<std::uint8_t>> messages{
       request_bytes({1, 2, 3}, {upright(kBox, 1.0), upright(kHydrostaticBox, kNan)}, 0.5),
-      response_bytes({1, 2, 3}, {lifted(kBox, 1e300), lifted(kFastBox, kNan)}), status_bytes(5)};
+      response_bytes({1, 2, 3}, {vertical_force(kBox, 1e300), vertical_force(kFastBox, kNan)}),
+      status_bytes(5)};
   const int count = *rc::gen::inRange(0, 50);
   for (int i = 0; i < count; ++i) {
     std::vector<std::uint8_t> bytes = *rc::gen::elementOf(messages);
-    const auto place = *rc::gen::inRange<std::size_t>(0, bytes.size());
-    bytes[place] = *rc::gen::arbitrary<std::uint8_t>();
-    if (*rc::gen::inRange(0, 8) == 0) bytes.resize(place);
+    const auto position = *rc::gen::inRange<std::size_t>(0, bytes.size());
+    bytes[position] = *rc::gen::arbitrary<std::uint8_t>();
+    if (*rc::gen::inRange(0, 8) == 0) bytes.resize(position);
     now += 0.1 * *rc::gen::inRange(0, 10);
     switch (*rc::gen::inRange(0, 4)) {
       case 0:

@@ -9,7 +9,7 @@
 namespace buoyancy::view {
 namespace {
 
-RunRow row_of(double time, double heave, double energy = kUnknown) {
+RunRow make_row(double time, double heave, double energy = kUnknown) {
   RunRow row;
   row.fill(kUnknown);
   row[kTime] = time;
@@ -18,36 +18,36 @@ RunRow row_of(double time, double heave, double energy = kUnknown) {
   return row;
 }
 
-template <typename MakeRow>
-std::vector<RunRow> rows_made(int count, MakeRow make_row) {
+template <typename RowAt>
+std::vector<RunRow> make_rows(int count, RowAt row_at) {
   std::vector<RunRow> rows(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) rows[static_cast<std::size_t>(i)] = make_row(i);
+  for (int i = 0; i < count; ++i) rows[static_cast<std::size_t>(i)] = row_at(i);
   return rows;
 }
 
-DecimatedRows decimated(std::size_t max_rows, const std::vector<RunRow>& rows) {
+DecimatedRows decimate(std::size_t max_rows, const std::vector<RunRow>& rows) {
   DecimatedRows kept(max_rows);
   for (std::size_t i = 0; i < rows.size(); ++i) kept.add(static_cast<std::int64_t>(i), rows[i]);
   return kept;
 }
 
-// NaN stands in most columns, and is itself nowhere.
+// Equality that treats NaN, the value of most columns, as equal to itself.
 bool same_numbers(const RunRow& a, const RunRow& b) {
   return std::ranges::equal(a, b,
                             [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
-TEST(DecimatedRows, AreAllRowsUpToTheBound) {
-  const std::vector<RunRow> rows = rows_made(100, [](int i) { return row_of(i, std::sin(i)); });
-  const std::vector<RunRow> kept = decimated(100, rows).rows();
+TEST(DecimatedRows, KeepsAllRowsUpToLimit) {
+  const std::vector<RunRow> rows = make_rows(100, [](int i) { return make_row(i, std::sin(i)); });
+  const std::vector<RunRow> kept = decimate(100, rows).rows();
   EXPECT_TRUE(std::ranges::equal(kept, rows, same_numbers));
 }
 
-TEST(DecimatedRows, KeepAPeakThatOneRowAloneHas) {
-  const std::vector<RunRow> rows = rows_made(1'000'000, [](int i) {
-    return row_of(i, i == 333'333 ? 7.0 : i == 777'777 ? -9.0 : std::sin(1e-4 * i));
+TEST(DecimatedRows, KeepsPeakOfSingleRow) {
+  const std::vector<RunRow> rows = make_rows(1'000'000, [](int i) {
+    return make_row(i, i == 333'333 ? 7.0 : i == 777'777 ? -9.0 : std::sin(1e-4 * i));
   });
-  const DecimatedRows all = decimated(500, rows);
+  const DecimatedRows all = decimate(500, rows);
   const std::vector<RunRow> kept = all.rows();
   EXPECT_EQ(all.added(), 1'000'000);
   EXPECT_LE(kept.size(), 500);
@@ -62,31 +62,31 @@ TEST(DecimatedRows, KeepAPeakThatOneRowAloneHas) {
   EXPECT_TRUE(has(999'999, std::sin(1e-4 * 999'999))) << "the last row";
 }
 
-TEST(DecimatedRows, KeepTheExtremesOfAColumnThatMostRowsDoNotKnow) {
-  const std::vector<RunRow> rows = rows_made(10'000, [](int i) {
-    return row_of(i, 0.0, i == 5'000 ? 1.5 : i == 6'000 ? 2.5 : kUnknown);
+TEST(DecimatedRows, KeepsExtremesOfMostlyUnknownColumn) {
+  const std::vector<RunRow> rows = make_rows(10'000, [](int i) {
+    return make_row(i, 0.0, i == 5'000 ? 1.5 : i == 6'000 ? 2.5 : kUnknown);
   });
-  const std::vector<RunRow> kept = decimated(64, rows).rows();
+  const std::vector<RunRow> kept = decimate(64, rows).rows();
   for (const double energy : {1.5, 2.5}) {
     EXPECT_TRUE(std::ranges::any_of(kept, [energy](const RunRow& row) { return row[kEnergy] == energy; }))
         << energy;
   }
 }
 
-RC_GTEST_PROP(DecimatedRows, AreRowsThatWereAddedInOrderWithTheExtremesOfAll, ()) {
+RC_GTEST_PROP(DecimatedRows, KeepsOrderedSubsetWithExtremes, ()) {
   const auto max_rows = *rc::gen::inRange<std::size_t>(32, 400);
   const auto count = *rc::gen::inRange(1, 5'000);
   const std::vector<RunRow> rows =
-      rows_made(count, [](int i) { return row_of(i, *rc::gen::inRange(-1'000, 1'000)); });
-  const std::vector<RunRow> kept = decimated(max_rows, rows).rows();
+      make_rows(count, [](int i) { return make_row(i, *rc::gen::inRange(-1'000, 1'000)); });
+  const std::vector<RunRow> kept = decimate(max_rows, rows).rows();
   RC_ASSERT(kept.size() <= max_rows);
   RC_ASSERT(std::ranges::is_sorted(kept, {}, [](const RunRow& row) { return row[kTime]; }));
   for (const RunRow& row : kept) RC_ASSERT(same_numbers(row, rows[static_cast<std::size_t>(row[kTime])]));
   const auto heave = [](const RunRow& row) { return row[kHeave]; };
-  const auto [least, most] = std::ranges::minmax(rows, {}, heave);
-  const auto [kept_least, kept_most] = std::ranges::minmax(kept, {}, heave);
-  RC_ASSERT(kept_least[kHeave] == least[kHeave]);
-  RC_ASSERT(kept_most[kHeave] == most[kHeave]);
+  const auto [min, max] = std::ranges::minmax(rows, {}, heave);
+  const auto [kept_min, kept_max] = std::ranges::minmax(kept, {}, heave);
+  RC_ASSERT(kept_min[kHeave] == min[kHeave]);
+  RC_ASSERT(kept_max[kHeave] == max[kHeave]);
 }
 
 }  // namespace

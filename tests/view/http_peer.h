@@ -1,5 +1,5 @@
-// A peer of the live view's HTTP server that knows no HTTP library: it sends what it is told to, well-formed
-// or not, and hands over what comes back.
+// A client of the live view's HTTP server without an HTTP library: it sends arbitrary bytes, well-formed or
+// not, and returns what it receives.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ namespace buoyancy::view {
 
 class HttpPeer {
  public:
-  // Connects to the port of 127.0.0.1. Throws where nobody listens. receive_buffer: bytes that the kernel
-  // takes before they are received; 0: as many as it likes.
+  // Connects to the port on 127.0.0.1. Throws if no server listens. receive_buffer: size of the kernel's
+  // receive buffer [bytes]; 0: the kernel's default.
   explicit HttpPeer(std::uint16_t port, int receive_buffer = 0)
       : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     if (receive_buffer > 0) {
@@ -33,11 +33,11 @@ class HttpPeer {
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (::connect(socket_.value(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-      throw std::runtime_error("nobody listens on port " + std::to_string(port));
+      throw std::runtime_error("no server listens on port " + std::to_string(port));
     }
   }
 
-  // False: the server took no more of it.
+  // Returns false if the server closed the connection before all was sent.
   bool send(const std::string& bytes) {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
@@ -49,8 +49,8 @@ class HttpPeer {
   }
   void end_sending() { ::shutdown(socket_.value(), SHUT_WR); }
 
-  // What has come since the last call, at least one byte. Empty: the server closed. nullopt: nothing within
-  // `seconds`.
+  // Returns what has arrived since the last call, at least one byte. Empty: the server closed the connection.
+  // nullopt: nothing arrived within `seconds`.
   std::optional<std::string> receive(double seconds) {
     pollfd waiting{socket_.value(), POLLIN, 0};
     if (::poll(&waiting, 1, static_cast<int>(1e3 * seconds)) <= 0) return std::nullopt;
@@ -59,7 +59,7 @@ class HttpPeer {
     return std::string(part.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
   }
 
-  // As receive(0), but it stays to be received.
+  // Same as receive(0), but leaves the bytes to be received.
   std::optional<std::string> peek() {
     std::array<char, 1'024> part;
     const ssize_t size = ::recv(socket_.value(), part.data(), part.size(), MSG_PEEK | MSG_DONTWAIT);
@@ -67,7 +67,7 @@ class HttpPeer {
     return std::string(part.data(), static_cast<std::size_t>(size));
   }
 
-  // All that comes until the server closes; what has come where that takes longer than `seconds`.
+  // Returns everything until the server closes the connection, or until `seconds` have passed.
   std::string receive_all(double seconds) {
     std::string all;
     const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -83,11 +83,11 @@ class HttpPeer {
   UniqueFd socket_;
 };
 
-// The port of "ready: http://127.0.0.1:PORT/" on a view's standard output.
+// The port in "ready: http://127.0.0.1:PORT/", which buoyancy-view prints.
 inline std::uint16_t port_from_ready_line(const std::string& standard_output) {
   const std::string mark = "ready: http://127.0.0.1:";
   const std::size_t begin = standard_output.find(mark);
-  if (begin == std::string::npos) throw std::runtime_error("the view says no port: " + standard_output);
+  if (begin == std::string::npos) throw std::runtime_error("no ready line with a port: " + standard_output);
   return static_cast<std::uint16_t>(std::stoul(standard_output.substr(begin + mark.size())));
 }
 
@@ -95,12 +95,12 @@ inline std::string get_request(const std::string& path, const std::string& more_
   return "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + more_headers + "\r\n";
 }
 
-// Reads the snapshots of /events; connected when constructed.
+// Reads the snapshots of /events; the constructor connects.
 class EventReader {
  public:
   explicit EventReader(std::uint16_t port) : peer_(port) { peer_.send(get_request("/events")); }
 
-  // The next snapshot's JSON. nullopt: none within `seconds`, or the stream ended.
+  // Returns the next snapshot's JSON; nullopt: none arrived within `seconds`, or the stream ended.
   std::optional<std::string> next(double seconds) {
     const std::string begin = "\ndata: {";
     while (true) {

@@ -1,4 +1,4 @@
-// What a page looks like, pixel by pixel, and what tests ask of that.
+// A screenshot as pixels, with measures for tests.
 #pragma once
 
 #include <functional>
@@ -16,17 +16,17 @@ struct Colour {  // 0 to 255 each, sRGB
 
 using ColourPredicate = std::function<bool(const Colour&)>;
 
-// No component differs from the colour's by more than `tolerance`.
+// True for colours of which no component differs by more than `tolerance`.
 ColourPredicate is_near(const Colour& colour, int tolerance = 2);
 
-struct Region {  // pixels, from the picture's top left corner
+struct Region {  // [pixels], from the image's top left corner
   int left = 0;
   int top = 0;
   int width = 0;
   int height = 0;
 };
 
-// Throws std::runtime_error where the bytes are no PNG, and where a pixel or region is not in the picture.
+// Throws std::runtime_error if the bytes are not a PNG, or if a pixel or region is not inside the image.
 class Image {
  public:
   explicit Image(std::string png);
@@ -36,18 +36,18 @@ class Image {
   Region whole() const { return {0, 0, width_, height_}; }
   Colour pixel(int x, int y) const;
 
-  // The part of the region's pixels that satisfies the predicate, 0 to 1.
-  double share(const Region& region, const ColourPredicate& wanted) const;
+  // The share of the region's pixels that satisfies the predicate, 0 to 1.
+  double share(const Region& region, const ColourPredicate& matches) const;
 
-  // The part of the region's pixels that another picture of the same size has in another colour, by more than
-  // `tolerance` in one component.
+  // The share of the region's pixels whose colour differs from that in `other`, an image of the same size, by
+  // more than `tolerance` in one component.
   double share_changed(const Image& other, const Region& region, int tolerance = 2) const;
 
-  // As a PNG. Makes the folder if need be.
+  // Writes a PNG; creates the folder if necessary.
   void save(const std::string& path) const;
 
  private:
-  double share_of_pixels(const Region& region, const std::function<bool(int x, int y)>& wanted) const;
+  double share_of_pixels(const Region& region, const std::function<bool(int x, int y)>& matches) const;
 
   std::string png_;
   int width_ = 0;

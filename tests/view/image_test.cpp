@@ -15,7 +15,7 @@ namespace {
 constexpr Colour kSea{10, 20, 200};
 constexpr Colour kDuck{250, 220, 0};
 
-// Two rows of three pixels; the duck is at (1, 0) and (1, 1), or wherever `duck` says.
+// A PNG of two rows of three pixels; column `duck` has the colour kDuck, the others have kSea.
 std::string three_by_two(int duck = 1) {
   std::array<png_byte, 18> pixels{};
   for (int at = 0; at < 6; ++at) {
@@ -37,30 +37,30 @@ std::string three_by_two(int duck = 1) {
   return png;
 }
 
-TEST(Image, HoldsEveryPixelOfThePng) {
-  const Image picture(three_by_two());
-  EXPECT_EQ(picture.width(), 3);
-  EXPECT_EQ(picture.height(), 2);
-  EXPECT_EQ(picture.pixel(0, 0), kSea);
-  EXPECT_EQ(picture.pixel(1, 1), kDuck);
-  EXPECT_EQ(picture.pixel(2, 1), kSea);
+TEST(Image, DecodesEveryPixelOfPng) {
+  const Image image(three_by_two());
+  EXPECT_EQ(image.width(), 3);
+  EXPECT_EQ(image.height(), 2);
+  EXPECT_EQ(image.pixel(0, 0), kSea);
+  EXPECT_EQ(image.pixel(1, 1), kDuck);
+  EXPECT_EQ(image.pixel(2, 1), kSea);
 }
 
-TEST(Image, CountsThePixelsOfARegionThatAreWanted) {
-  const Image picture(three_by_two());
-  EXPECT_DOUBLE_EQ(picture.share(picture.whole(), is_near(kDuck)), 2.0 / 6.0);
-  EXPECT_DOUBLE_EQ(picture.share({1, 0, 2, 2}, is_near(kDuck)), 0.5);
-  EXPECT_DOUBLE_EQ(picture.share({1, 1, 1, 1}, is_near(kDuck)), 1.0);
+TEST(Image, ComputesShareOfMatchingPixels) {
+  const Image image(three_by_two());
+  EXPECT_DOUBLE_EQ(image.share(image.whole(), is_near(kDuck)), 2.0 / 6.0);
+  EXPECT_DOUBLE_EQ(image.share({1, 0, 2, 2}, is_near(kDuck)), 0.5);
+  EXPECT_DOUBLE_EQ(image.share({1, 1, 1, 1}, is_near(kDuck)), 1.0);
 }
 
-TEST(Image, IsNearAColourWithinItsToleranceAlone) {
+TEST(Image, ComparesColoursWithinTolerance) {
   EXPECT_TRUE(is_near(kSea, 5)({15, 15, 205}));
   EXPECT_FALSE(is_near(kSea, 5)({16, 20, 200}));
   EXPECT_FALSE(is_near(kSea, 5)({10, 14, 200}));
   EXPECT_FALSE(is_near(kSea, 5)({10, 20, 206}));
 }
 
-TEST(Image, SaysHowMuchOfARegionChanged) {
+TEST(Image, ComputesShareOfChangedPixels) {
   const Image before(three_by_two(1));
   const Image after(three_by_two(2));
   EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole()), 4.0 / 6.0);
@@ -68,22 +68,22 @@ TEST(Image, SaysHowMuchOfARegionChanged) {
   EXPECT_DOUBLE_EQ(before.share_changed(after, before.whole(), 255), 0.0);
 }
 
-TEST(Image, IsTheSameAfterItWasSaved) {
+TEST(Image, SavesIdenticalPng) {
   const TempDir directory;
-  const std::string path = directory.path("a/folder/that/is/not/there.png");
+  const std::string path = directory.path("a/new/folder/image.png");
   Image(three_by_two()).save(path);
   EXPECT_EQ(read_file(path), three_by_two());
 }
 
-TEST(Image, RefusesWhatIsNoPngAndWhatIsNotInIt) {
+TEST(Image, ThrowsForInvalidPngOrRegion) {
   EXPECT_THROW(Image("not a PNG"), std::runtime_error);
   const std::string png = three_by_two();
   EXPECT_THROW(Image(png.substr(0, png.size() / 2)), std::runtime_error);
-  const Image picture(png);
-  EXPECT_THROW(picture.pixel(3, 0), std::runtime_error);
-  EXPECT_THROW(picture.pixel(0, -1), std::runtime_error);
-  EXPECT_THROW(picture.share({2, 0, 2, 1}, is_near(kSea)), std::runtime_error);
-  EXPECT_THROW(picture.share({0, 0, 0, 1}, is_near(kSea)), std::runtime_error);
+  const Image image(png);
+  EXPECT_THROW(image.pixel(3, 0), std::runtime_error);
+  EXPECT_THROW(image.pixel(0, -1), std::runtime_error);
+  EXPECT_THROW(image.share({2, 0, 2, 1}, is_near(kSea)), std::runtime_error);
+  EXPECT_THROW(image.share({0, 0, 0, 1}, is_near(kSea)), std::runtime_error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The live page in a real browser, of the real programs over UDP.
+// The live page in a real browser, with the real programs over UDP.
 #include <csignal>
 #include <memory>
 #include <string>
@@ -14,8 +14,8 @@
 namespace buoyancy::view {
 namespace {
 
-// A box of half the default density of water, 1025 kg/m^3, that floats in equilibrium, so that its picture is
-// the same at every step of a run, and one that the client does not know.
+// A box of half the default density of water, 1025 kg/m^3, which floats in equilibrium and therefore looks
+// the same at every step, and a second box without [body.client].
 const std::string kScene = R"(
 [[body]]
 id = 1
@@ -31,7 +31,7 @@ name = "second box"
 shape = { type = "box", size = [1, 1, 1] }
 )";
 
-// Of the second box.
+// Channels of the second box.
 const std::vector<std::string> kPoseChannels{"--pose", "POSE=2", "--force-torque", "FORCE=2"};
 
 class LivePage : public PageTest {
@@ -51,9 +51,9 @@ class LivePage : public PageTest {
     view_.reset();
     service_.reset();
   }
-  static void wait_for_news(int snapshots = 3) {
-    browser().run("window.wanted = buoyancyView.snapshots + arguments[0];", snapshots);
-    browser().wait_until("buoyancyView.snapshots >= window.wanted");
+  static void wait_for_snapshots(int snapshots = 3) {
+    browser().run("window.target = buoyancyView.snapshots + arguments[0];", snapshots);
+    browser().wait_until("buoyancyView.snapshots >= window.target");
   }
 
   std::unique_ptr<RunningService> service_;
@@ -61,7 +61,7 @@ class LivePage : public PageTest {
   std::unique_ptr<ChildProcess> client_;
 };
 
-TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
+TEST_F(LivePage, ShowsRunWithoutConsoleErrors) {
   browser().wait_until(
       "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 3");
   browser().wait_until("buoyancyView.history.some((second) => second.p50 > 0)");
@@ -71,94 +71,95 @@ TEST_F(LivePage, ShowsARunWithoutAnErrorOnTheConsole) {
   browser().press(" ");
   EXPECT_NEAR(browser().run("return buoyancyView.scene.bodies.get(1).group.position.z;").get<double>(), 0.0,
               1e-6)
-      << "half under water";
-  const Image picture = browser().screenshot();
+      << "half submerged";
+  const Image image = browser().screenshot();
   const Region canvas = browser().region_of("#canvas");
   const auto amber = [](const Colour& colour) {
     return colour.red > colour.green + 20 && colour.red > colour.blue + 60;
   };
-  EXPECT_GT(picture.share(canvas, amber), 0.01) << "of the box over the water";
+  EXPECT_GT(image.share(canvas, amber), 0.01) << "dry part of the box";
   const auto dark_blue = [](const Colour& colour) {
     return colour.blue > colour.red + 80 && colour.red < 90;
   };
-  EXPECT_GT(picture.share(canvas, dark_blue), 0.01) << "of the box under water";
-  EXPECT_GT(picture.share(canvas, is_near({255, 255, 255}, 4)), 0.0005) << "of the waterline";
-  EXPECT_TRUE(is_near({234, 243, 250}, 4)(picture.pixel(canvas.left + 6, canvas.top + 6))) << "the sky";
-  const Colour water = picture.pixel(canvas.left + 6, canvas.top + canvas.height - 6);
-  EXPECT_GT(water.blue, water.red + 50) << "the water";
+  EXPECT_GT(image.share(canvas, dark_blue), 0.01) << "wetted part of the box";
+  EXPECT_GT(image.share(canvas, is_near({255, 255, 255}, 4)), 0.0005) << "waterline";
+  EXPECT_TRUE(is_near({234, 243, 250}, 4)(image.pixel(canvas.left + 6, canvas.top + 6))) << "sky";
+  const Colour water = image.pixel(canvas.left + 6, canvas.top + canvas.height - 6);
+  EXPECT_GT(water.blue, water.red + 50) << "water";
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(LivePage, SaysThatTheServiceIsGoneAndThatItIsBack) {
+TEST_F(LivePage, ShowsServiceOfflineAndBack) {
   browser().wait_until("window.buoyancyView && buoyancyView.state === 'answering'");
   service_->child().send_signal(SIGKILL);
-  browser().wait_until("buoyancyView.state === 'silent'");
-  browser().wait_until("document.getElementById('state_text').textContent === 'The service is silent'");
+  browser().wait_until("buoyancyView.state === 'offline'");
+  browser().wait_until("document.getElementById('state_text').textContent === 'The service is offline'");
   browser().wait_until(
-      "document.getElementById('notices').textContent.includes('Nothing is heard of the service')");
+      "document.getElementById('notices').textContent.includes('No message from the service')");
   service_ = std::make_unique<RunningService>(std::vector<std::string>{}, kScene);
   browser().wait_until("buoyancyView.state === 'answering'");
-  browser().wait_until("!document.getElementById('notices').textContent.includes('Nothing is heard')");
+  browser().wait_until(
+      "!document.getElementById('notices').textContent.includes('No message from the service')");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(LivePage, SaysThatTheServiceIsGoneWhileItsPictureIsPaused) {
+TEST_F(LivePage, ShowsServiceOfflineWhilePaused) {
   browser().wait_until(
       "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 3");
   browser().press(" ");
   const nlohmann::json renders = browser().run("return buoyancyView.renders;");
   service_->child().send_signal(SIGKILL);
-  browser().wait_until("document.getElementById('state_text').textContent === 'The service is silent'");
+  browser().wait_until("document.getElementById('state_text').textContent === 'The service is offline'");
   browser().wait_until(
-      "document.getElementById('notices').textContent.includes('Nothing is heard of the service')");
+      "document.getElementById('notices').textContent.includes('No message from the service')");
   EXPECT_EQ(browser().run("return [buoyancyView.paused, buoyancyView.renders];"),
             nlohmann::json({true, renders}));
 }
 
-TEST_F(LivePage, NoticesThatTheServiceHasASceneOfAnotherName) {
-  const std::string another =
+TEST_F(LivePage, WarnsAboutDifferentSceneName) {
+  const std::string warned =
       "document.getElementById('notices').textContent.includes(\"The service's scene is other.toml\")";
   browser().wait_until("window.buoyancyView && buoyancyView.last && buoyancyView.last.status");
-  wait_for_news();
+  wait_for_snapshots();
   EXPECT_EQ(browser().run("return document.getElementById('notices').textContent;"), "")
-      << "another folder is no news";
+      << "the folder is ignored";
   service_->child().send_signal(SIGKILL);
   service_->write("other.toml", kScene);
   ChildProcess other(command_of({BUOYANCYD, "--scene", service_->path("other.toml")}));
-  browser().wait_until(another);
+  browser().wait_until(warned);
 }
 
-TEST_F(LivePage, ShowsNoForceOfABodyThatIsNotAnsweredYet) {
+TEST_F(LivePage, ShowsNoForceWithoutResponse) {
   browser().wait_until(
       "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 1");
   service_->child().send_signal(SIGKILL);
-  browser().wait_until("buoyancyView.state === 'silent'");
+  browser().wait_until("buoyancyView.state === 'offline'");
   browser().press("n");
   RawLcmSocket socket;
   socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
   const std::string facts = "document.getElementById('body_facts').textContent";
   browser().wait_until(facts + ".includes('requested, no response yet')");
   browser().wait_until(facts + ".includes('force, N–')");
-  wait_for_news(30);
+  wait_for_snapshots(30);
   EXPECT_EQ(browser().run("const body = buoyancyView.scene.bodies.get(2);"
-                          "return [body.group.visible, body.marks.force.visible];"),
+                          "return [body.group.visible, body.markers.force.visible];"),
             nlohmann::json({true, false}));
   EXPECT_EQ(browser().run("return Array.from(document.querySelectorAll('#plots figure')).at(-1).className;"),
             "empty");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(LivePage, NamesEveryStatusAsTheMessagesDo) {
+TEST_F(LivePage, NamesEveryBodyStatus) {
   browser().wait_until("window.buoyancyView !== undefined");
-  EXPECT_EQ(browser().run("return status_text(0);"), "OK");
+  EXPECT_EQ(browser().run("return status_text(buoyancyView.body_statuses, 0);"), "OK");
   for (int i = 1; i < kBodyStatusCount; ++i) {
-    EXPECT_EQ(browser().run("return status_text(arguments[0]).split(':')[0];", i),
+    EXPECT_EQ(browser().run("return status_text(buoyancyView.body_statuses, arguments[0]).split(':')[0];", i),
               to_string(static_cast<BodyStatus>(i)));
   }
 }
 
-TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {
-  // The kernel gives no connection this port, so it is free when the view comes back.
+TEST_F(LivePage, ReconnectsToRestartedView) {
+  // Outside the ephemeral range, so that the port is still free when the view restarts.
   constexpr std::uint16_t kPort = 8667;
   view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, kPort);
   browser().open(view_->url());
@@ -167,33 +168,33 @@ TEST_F(LivePage, ConnectsAgainToAViewThatWasStartedAnew) {
   browser().wait_until("buoyancyView.state === 'connecting'");
   view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, kPort);
   browser().wait_until("buoyancyView.connections >= 2 && buoyancyView.state === 'answering'");
-  wait_for_news();
+  wait_for_snapshots();
 }
 
-TEST_F(LivePage, ShowsABodyThatIsPosedByBotCoreAndAForceOfWhichNothingElseIsSaid) {
+TEST_F(LivePage, ShowsBotCorePoseAndForceTorque) {
   browser().wait_until("window.buoyancyView && buoyancyView.renders > 1");
   RawLcmSocket socket;
   socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
   browser().press("n");
   browser().wait_until(
-      "document.getElementById('body_facts').textContent.includes('not said: force and torque alone')");
+      "document.getElementById('body_facts').textContent.includes('unknown: force and torque only')");
   const nlohmann::json body = browser().run("return buoyancyView.last.bodies.find((one) => one.id === 2);");
   EXPECT_NEAR(body["f"][2].get<double>(), 0.25 * 1'025.0 * 9.80665, 1.0) << "a quarter of a cubic metre";
-  browser().wait_until("buoyancyView.scene.bodies.get(2).marks.force.visible");
-  EXPECT_EQ(browser().run("const marks = buoyancyView.scene.bodies.get(2).marks;"
-                          "return [marks.centre_of_buoyancy.visible, marks.force.position.z];"),
+  browser().wait_until("buoyancyView.scene.bodies.get(2).markers.force.visible");
+  EXPECT_EQ(browser().run("const markers = buoyancyView.scene.bodies.get(2).markers;"
+                          "return [markers.centre_of_buoyancy.visible, markers.force.position.z];"),
             nlohmann::json({false, 0.25}))
       << "at the body's origin";
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(LivePage, IsWorkedByKeys) {
+TEST_F(LivePage, RespondsToKeys) {
   browser().wait_until("window.buoyancyView && buoyancyView.renders > 1");
   browser().press("n");
-  EXPECT_EQ(browser().run("return buoyancyView.chosen;"), 2);
-  browser().wait_until("document.getElementById('body_facts').textContent.includes('not asked about yet')");
+  EXPECT_EQ(browser().run("return buoyancyView.selected;"), 2);
+  browser().wait_until("document.getElementById('body_facts').textContent.includes('no request yet')");
   browser().press("p");
-  EXPECT_EQ(browser().run("return buoyancyView.chosen;"), 1);
+  EXPECT_EQ(browser().run("return buoyancyView.selected;"), 1);
   browser().press("f");
   EXPECT_EQ(browser().run("return [buoyancyView.following, document.getElementById('follow').checked];"),
             nlohmann::json({true, true}));
@@ -203,13 +204,13 @@ TEST_F(LivePage, IsWorkedByKeys) {
   browser().press(" ");
   EXPECT_EQ(browser().run("return buoyancyView.paused;"), true);
   const nlohmann::json renders = browser().run("return buoyancyView.renders;");
-  wait_for_news();
+  wait_for_snapshots();
   EXPECT_EQ(browser().run("return buoyancyView.renders;"), renders);
   browser().press(" ");
   browser().wait_until("buoyancyView.renders > " + renders.dump());
 }
 
-TEST_F(LivePage, FitsAPhoneAndADesktopWithoutScrollingSideways) {
+TEST_F(LivePage, FitsPhoneAndDesktopScreens) {
   for (const Screen& screen : {kPhone, kDesktop}) {
     browser().resize(screen);
     browser().wait_until("window.buoyancyView && buoyancyView.renders > 3");
@@ -220,7 +221,7 @@ TEST_F(LivePage, FitsAPhoneAndADesktopWithoutScrollingSideways) {
   EXPECT_EQ(
       browser().run("return document.getElementById('pause').getBoundingClientRect().bottom <= innerHeight;"),
       true)
-      << "picture and controls are on a desktop's first screen";
+      << "3D view and controls fit a desktop screen";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Requests that are none, or none that a page would make, one of every kind we could think of, and damaged
-// ever further: for the server itself and for the program.
+// Generates malformed and unusual HTTP requests: one of each kind, then the same with more and more random
+// bytes overwritten.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@ class MalformedRequests {
  public:
   explicit MalformedRequests(std::uint32_t seed) : random_(seed) {}
 
-  // The same series from the same seed.
+  // The sequence depends only on the seed.
   std::string next() {
     std::string request = kinds_[count_ % kinds_.size()];
-    const std::size_t corrupt_sections = count_++ / kinds_.size() % kMaxDamages;
-    for (std::size_t i = 0; i < corrupt_sections && !request.empty(); ++i) {
+    const std::size_t corruptions = count_++ / kinds_.size() % kMaxCorruptions;
+    for (std::size_t i = 0; i < corruptions && !request.empty(); ++i) {
       request[random_() % request.size()] = static_cast<char>(random_());
     }
     return request;
   }
 
  private:
-  static constexpr std::size_t kMaxDamages = 25;
+  static constexpr std::size_t kMaxCorruptions = 25;
 
   std::mt19937 random_;
   std::size_t count_ = 0;

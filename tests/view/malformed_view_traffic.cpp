@@ -1,10 +1,11 @@
-// Throws requests that are none at a real buoyancy-view, holds connections open, idle, half asked, renewed or
-// never read, while a page is connected and a service runs: it must serve others at once, and not grow.
+// Sends malformed requests to a real buoyancy-view and holds connections open (idle, with incomplete
+// requests, renewed, or never read) while a page is connected and a service runs. The view must keep serving
+// others without delay, and its memory must not grow.
 //
 //   malformed_view_traffic [--requests N] [--connections N]
 //
-// To be run in a network namespace with a multicast route (scripts/attack_view). Exit codes: 0 it served on;
-// 1 it did not; 2 wrong arguments.
+// Must run in a network namespace with a multicast route (scripts/attack_view). Exit status: 0 if the view
+// kept serving; 1 if it did not; 2 on invalid arguments.
 #include <chrono>
 #include <cinttypes>
 #include <cstdio>
@@ -21,10 +22,10 @@
 namespace buoyancy::view {
 namespace {
 
-constexpr std::int64_t kMayGrow = 4'096;  // kB
-constexpr double kAtOnce = 2.0;           // s; an idle connection would go by itself after 5
-constexpr double kUntilDropped = 15.0;    // s, for streams that are not read
-constexpr int kStreams = 32;              // that there is room for
+constexpr std::int64_t kMaxGrowth = 4'096;     // [kB]
+constexpr double kMaxDelay = 2.0;              // [s]; idle connections time out only after 5 s
+constexpr double kUnreadStreamTimeout = 15.0;  // [s], until an unread stream is dropped
+constexpr int kStreams = 32;                   // limit of the view
 constexpr int kSmallBuffer = 2'048;
 
 using Clock = std::chrono::steady_clock;
@@ -37,17 +38,17 @@ bool streams(const RunningView& view) {
   return EventReader(view.port()).next(kWaitTimeout).has_value();
 }
 
-// A page and a new stream's first snapshot, at the first try.
+// True if the page and the first snapshot of a new stream are served at the first attempt within kMaxDelay.
 bool serves(const RunningView& view) {
   const auto start = Clock::now();
   HttpPeer peer(view.port());
   peer.send(get_request("/"));
   return peer.receive_all(kWaitTimeout).starts_with("HTTP/1.1 200 ") && streams(view) &&
-         seconds_since(start) < kAtOnce;
+         seconds_since(start) < kMaxDelay;
 }
 
-int complain(const char* what) {
-  std::printf("%s\n", what);
+int fail(const char* message) {
+  std::printf("%s\n", message);
   return 1;
 }
 
@@ -63,64 +64,62 @@ int run(int requests, int connections) {
     }
   };
   MalformedRequests malformed(1);
-  const auto throw_some = [&](int count) {
+  const auto send_malformed = [&](int count) {
     for (int i = 0; i < count; ++i) {
       HttpPeer peer(view.port());
       peer.send(malformed.next());
       peer.end_sending();
       peer.receive_all(kWaitTimeout);
-      while (page.next(0.0)) {  // who does not read is dropped
+      while (page.next(0.0)) {  // keeps reading, so that the view does not drop the page
       }
     }
   };
-  throw_some(1'000);
-  hold(1'000);  // until every thread has been used
+  send_malformed(1'000);
+  hold(1'000);  // uses every thread once
   const std::int64_t before = resident_kb(view.child().pid());
   const auto start = Clock::now();
-  throw_some(requests);
+  send_malformed(requests);
   const double seconds = seconds_since(start);
-  if (!serves(view)) return complain("after malformed requests the page is not served");
-  std::printf("%d malformed requests in %.1f s, and the page is served\n", requests, seconds);
+  if (!serves(view)) return fail("the page is not served after malformed requests");
+  std::printf("%d malformed requests in %.1f s; the page is still served\n", requests, seconds);
 
   hold(connections);
-  if (!serves(view)) return complain("while connections are held the page is not served at once");
+  if (!serves(view)) return fail("the page is not served in time while connections are held");
   for (int i = 0; i < 100; ++i) {
     hold(20);
-    if (!serves(view)) return complain("while connections are renewed the page is not served at once");
+    if (!serves(view)) return fail("the page is not served in time while connections are renewed");
   }
-  std::printf("%d connections held and renewed, and page and stream are served at once\n", connections);
+  std::printf("%d connections held and renewed; page and stream are served in time\n", connections);
 
   while (page.next(0.0)) {
   }
   std::list<HttpPeer> unread;
-  for (int i = 0; i < 2 * kStreams; ++i) {  // those that were closed above go with the next snapshot
+  for (int i = 0; i < 2 * kStreams; ++i) {  // twice: streams closed above end with the next snapshot only
     unread.emplace_back(view.port(), kSmallBuffer).send(get_request("/events"));
-    if (!page.next(kWaitTimeout)) return complain("a page that reads is dropped for others that do not");
+    if (!page.next(kWaitTimeout)) return fail("a page that reads was dropped while others do not read");
   }
   const auto filled = Clock::now();
-  while (!streams(view) && seconds_since(filled) < kUntilDropped) {
+  while (!streams(view) && seconds_since(filled) < kUnreadStreamTimeout) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     while (page.next(0.0)) {
     }
   }
-  if (!streams(view)) return complain("streams that are not read keep their places");
-  std::printf("%d streams that are not read: a new one is served after %.1f s\n", kStreams,
-              seconds_since(filled));
+  if (!streams(view)) return fail("unread streams are not dropped");
+  std::printf("%d unread streams: a new one is served after %.1f s\n", kStreams, seconds_since(filled));
   if (!page.next(kWaitTimeout))
-    return complain("the page that was connected before gets no snapshots any more");
+    return fail("the page that was connected first receives no snapshots any more");
 
-  const std::int64_t grown = resident_kb(view.child().pid()) - before;
-  std::printf("memory: %" PRId64 " kB, %+" PRId64 " kB\n", before + grown, grown);
-  return grown <= kMayGrow ? 0 : complain("it grew");
+  const std::int64_t growth = resident_kb(view.child().pid()) - before;
+  std::printf("memory: %" PRId64 " kB, %+" PRId64 " kB\n", before + growth, growth);
+  return growth <= kMaxGrowth ? 0 : fail("memory of the view grew");
 }
 
 int malformed_view_traffic_main(int argc, char** argv) {
-  buoyancy::ToolCommandLine command_line("Throws what is no request at buoyancy-view",
-                                         "malformed_view_traffic");
+  ToolCommandLine command_line("Sends malformed requests to buoyancy-view", "malformed_view_traffic");
   int requests = 10'000;
   int connections = 100;
-  command_line.add_number("--requests", requests, 1, 100'000'000, "Malformed requests", true);
-  command_line.add_number("--connections", connections, 1, 900, "Connections held at a time", true);
+  command_line.add_number("--requests", requests, 1, 100'000'000, "Number of malformed requests", true);
+  command_line.add_number("--connections", connections, 1, 900, "Number of connections held at a time", true);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run(requests, connections);
 }
@@ -129,5 +128,5 @@ int malformed_view_traffic_main(int argc, char** argv) {
 }  // namespace buoyancy::view
 
 int main(int argc, char** argv) {
-  return buoyancy::malformed_view_traffic_main(argc, argv);
+  return buoyancy::view::malformed_view_traffic_main(argc, argv);
 }

@@ -15,7 +15,7 @@
 namespace buoyancy::view {
 namespace {
 
-const std::string kModel(2'000'000, 'm');  // more than the kernel takes before somebody reads
+const std::string kModel(2'000'000, 'm');  // exceeds the kernel's buffers
 constexpr int kSmallBuffer = 2'048;
 
 std::string status_line(const std::string& response) {
@@ -33,15 +33,16 @@ bool is_closed(HttpPeer& peer) {
 
 const PageLimits kLimits;
 
-class ServedPage : public testing::Test {
+class PageServerTest : public testing::Test {
  protected:
-  ServedPage() : ServedPage(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = kWaitTimeout}) {}
-  // port: 0 for any that is free.
-  explicit ServedPage(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0) {
+  PageServerTest()
+      : PageServerTest(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = kWaitTimeout}) {}
+  // port: 0 selects a free one.
+  explicit PageServerTest(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0) {
     auto started = PageServer::start(
         address, port,
-        {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}}, broadcaster_,
-        limits);
+        {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}},
+        broadcaster_, limits);
     if (!started) throw std::runtime_error(started.error().message());
     server_ = std::move(*started);
     port_ = static_cast<std::uint16_t>(std::stoul(server_->url().substr(server_->url().rfind(':') + 1)));
@@ -55,22 +56,22 @@ class ServedPage : public testing::Test {
   }
   std::string status_of(const std::string& request) const { return status_line(response_to(request)); }
 
-  // What answers a request with these Host headers.
+  // The status of a request with these Host headers.
   std::string status_for(const std::string& hosts) const {
     return status_of("GET /model HTTP/1.1\r\n" + hosts + "\r\n");
   }
 
-  // Waits until so many streams are connected.
+  // Waits until `count` streams are connected.
   void wait_for_listeners(int count) const {
-    if (!comes_true([&] { return broadcaster_.listeners() == count; })) {
-      throw std::runtime_error("not " + std::to_string(count) + " streams but " +
+    if (!becomes_true([&] { return broadcaster_.listeners() == count; })) {
+      throw std::runtime_error("expected " + std::to_string(count) + " streams, found " +
                                std::to_string(broadcaster_.listeners()));
     }
   }
 
-  // Calls `condition` once a millisecond until it is true. False: not within kWaitTimeout.
+  // Polls `condition` every millisecond. Returns false if it is not true within kWaitTimeout.
   template <typename Condition>
-  static bool comes_true(Condition&& condition) {
+  static bool becomes_true(Condition&& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
     while (!condition()) {
       if (std::chrono::steady_clock::now() >= deadline) return false;
@@ -84,7 +85,7 @@ class ServedPage : public testing::Test {
   std::uint16_t port_ = 0;
 };
 
-TEST_F(ServedPage, GivesItsTextsWithHeadersThatKeepThemToThemselves) {
+TEST_F(PageServerTest, ServesResourcesWithSecurityHeaders) {
   const std::string page = response_to(get_request("/"));
   EXPECT_EQ(status_line(page), "HTTP/1.1 200 OK");
   EXPECT_EQ(body(page), "<!doctype html>");
@@ -97,14 +98,14 @@ TEST_F(ServedPage, GivesItsTextsWithHeadersThatKeepThemToThemselves) {
   EXPECT_TRUE(body(response_to(get_request("/model"))) == kModel);
 }
 
-TEST_F(ServedPage, GivesATextWholeWhateverPartOrCompressionIsAskedFor) {
+TEST_F(PageServerTest, IgnoresRangesAndCompression) {
   for (const char* header :
        {"Range: bytes=0-1\r\n", "Range: bytes=0-,0-,0-,0-,0-\r\n", "Accept-Encoding: gzip, br\r\n"}) {
     EXPECT_TRUE(body(response_to(get_request("/model", header))) == kModel) << header;
   }
 }
 
-TEST_F(ServedPage, HasNothingAtAnyOtherPath) {
+TEST_F(PageServerTest, ReturnsNotFoundForOtherPaths) {
   for (const char* path : {"/events/", "/model/", "//", "/index.html", "/../etc/passwd", "/%2e%2e/etc/passwd",
                            "/%2e%2e%2fetc%2fpasswd", "/..%5c..%5cetc", "//etc/passwd", "/etc/passwd",
                            "/proc/self/environ", "/model/../../etc/passwd", "/%00", "/model%00", "/./model",
@@ -113,7 +114,7 @@ TEST_F(ServedPage, HasNothingAtAnyOtherPath) {
   }
 }
 
-TEST_F(ServedPage, TakesNoMethodButGet) {
+TEST_F(PageServerTest, RejectsMethodsOtherThanGet) {
   for (const char* method : {"HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "CONNECT", "TRACE"}) {
     const std::string request =
         std::string(method) + " /model HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 3\r\n\r\nabc";
@@ -122,7 +123,7 @@ TEST_F(ServedPage, TakesNoMethodButGet) {
   }
 }
 
-TEST_F(ServedPage, AnswersOnlyWhoCallsItByANameOfTheLoopback) {
+TEST_F(PageServerTest, RejectsHostsOtherThanLoopback) {
   for (const char* host : {"127.0.0.1", "localhost", "[::1]", "127.0.0.1:8667", "localhost:1", "[::1]:80",
                            "127.0.0.2", "[::ffff:7f00:1]:8667"}) {
     EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 200 OK") << host;
@@ -131,24 +132,24 @@ TEST_F(ServedPage, AnswersOnlyWhoCallsItByANameOfTheLoopback) {
                            "10.0.0.1", "[::ffff:a00:1]", "[localhost]", "[127.0.0.1]", "::1", "[]", "["}) {
     EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 403 Forbidden") << host;
   }
-  EXPECT_EQ(status_for(""), "HTTP/1.1 403 Forbidden") << "no Host at all";
+  EXPECT_EQ(status_for(""), "HTTP/1.1 403 Forbidden") << "no Host";
   EXPECT_EQ(status_for("Host: 127.0.0.1\r\nHost: evil.example\r\n"), "HTTP/1.1 403 Forbidden") << "two";
 }
 
-// 127.0.0.1, as IPv6 has it.
-class MappedPage : public ServedPage {
+// On 127.0.0.1 as an IPv4-mapped IPv6 address.
+class PageServerMappedAddress : public PageServerTest {
  protected:
-  MappedPage() : ServedPage(kLimits, "::ffff:127.0.0.1") {}
+  PageServerMappedAddress() : PageServerTest(kLimits, "::ffff:127.0.0.1") {}
 };
 
-TEST_F(MappedPage, IsOnTheLoopbackTooAndAnswersOnlyWhoCallsItSo) {
+TEST_F(PageServerMappedAddress, RejectsHostsOtherThanLoopback) {
   for (const char* host : {"[::ffff:127.0.0.1]", "[::ffff:7f00:1]:8667", "127.0.0.1", "localhost"}) {
     EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 200 OK") << host;
   }
   EXPECT_EQ(status_for("Host: evil.example\r\n"), "HTTP/1.1 403 Forbidden");
 }
 
-TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
+TEST_F(PageServerTest, StreamsHistoryAndSnapshotsToAllListeners) {
   HttpPeer first(port_);
   HttpPeer second(port_);
   for (HttpPeer* peer : {&first, &second}) peer->send(get_request("/events"));
@@ -171,34 +172,34 @@ TEST_F(ServedPage, StreamsTheHistoryAndThenEverySnapshotToAllWhoListen) {
     ASSERT_TRUE(part && !part->empty());
     more += *part;
   }
-  EXPECT_EQ(more.find("history"), std::string::npos) << "once for each listener";
+  EXPECT_EQ(more.find("history"), std::string::npos) << "sent once per listener";
 }
 
-TEST_F(ServedPage, ForgetsAListenerThatWentAway) {
+TEST_F(PageServerTest, RemovesDisconnectedListener) {
   {
     HttpPeer peer(port_);
     peer.send(get_request("/events"));
     wait_for_listeners(1);
   }
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(becomes_true([&] {
     broadcaster_.publish("[]", "{}");
     return broadcaster_.listeners() == 0;
   }));
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
 }
 
-// Where the server waits only shortly for what it wrote to be taken.
-class ImpatientPage : public ServedPage {
+class PageServerWriteTimeout : public PageServerTest {
  protected:
-  ImpatientPage() : ServedPage(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = 0.1}) {}
+  PageServerWriteTimeout()
+      : PageServerTest(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = 0.1}) {}
 };
 
-TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
-  HttpPeer lazy(port_);
-  lazy.send(get_request("/events"));
+TEST_F(PageServerWriteTimeout, DropsUnreadStreamAndServesOthers) {
+  HttpPeer unread(port_);
+  unread.send(get_request("/events"));
   wait_for_listeners(1);
   const std::string large = "{\"" + std::string(1'000'000, 'x') + "\":1}";
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(becomes_true([&] {
     broadcaster_.publish("[]", large);
     return broadcaster_.listeners() == 0;
   }));
@@ -207,47 +208,47 @@ TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadAndServesTheOthers) {
   EXPECT_TRUE(other.receive_all(kWaitTimeout).starts_with("HTTP/1.1 "));
 }
 
-TEST_F(ImpatientPage, DropsAListenerThatDoesNotReadLongBeforeTheKernelHasNoRoomForMore) {
-  HttpPeer lazy(port_, kSmallBuffer);
-  lazy.send(get_request("/events"));
+TEST_F(PageServerWriteTimeout, DropsUnreadStreamBeforeKernelBufferIsFull) {
+  HttpPeer unread(port_, kSmallBuffer);
+  unread.send(get_request("/events"));
   wait_for_listeners(1);
   const std::string small = "{\"" + std::string(100, 'x') + "\":1}";
-  // 50 kB at most, a fraction of what the kernel takes: the first fill the reader's small buffer, the others
-  // come slowly enough that the limit on their number is no limit on the server's time.
+  // At most 50 kB, a fraction of the kernel's buffers: the first snapshots fill the reader's small buffer,
+  // the others follow slowly enough to give the server kWaitTimeout.
   constexpr int kFirst = 100;
-  constexpr int kMost = 500;
+  constexpr int kMaxSnapshots = 500;
   int published = 0;
-  while (broadcaster_.listeners() > 0 && published < kMost) {
+  while (broadcaster_.listeners() > 0 && published < kMaxSnapshots) {
     broadcaster_.publish("[]", small);
     ++published;
     std::this_thread::sleep_for(
-        std::chrono::duration<double>(published < kFirst ? 0.002 : kWaitTimeout / (kMost - kFirst)));
+        std::chrono::duration<double>(published < kFirst ? 0.002 : kWaitTimeout / (kMaxSnapshots - kFirst)));
   }
   EXPECT_EQ(broadcaster_.listeners(), 0) << published << " snapshots";
 }
 
-TEST_F(ImpatientPage, KeepsAListenerThatReadsAlthoughNothingIsPublishedForLong) {
+TEST_F(PageServerWriteTimeout, KeepsReaderDuringPauseOfSnapshots) {
   EventReader reader(port_);
   wait_for_listeners(1);
   for (int i = 0; i < 3; ++i) {
     broadcaster_.publish("[]", "{}");
     ASSERT_TRUE(reader.next(kWaitTimeout));
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // longer than the server waits for a reader
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // exceeds write_timeout
   }
   EXPECT_EQ(broadcaster_.listeners(), 1);
 }
 
-TEST_F(ServedPage, StreamsEveryLargeSnapshotToAReaderThatKeepsUp) {
+TEST_F(PageServerTest, StreamsLargeSnapshotsToFastReader) {
   EventReader reader(port_);
   wait_for_listeners(1);
-  const std::string large = "{\"" + std::string(25'000, 'x') + "\":1}";  // a hundred bodies
+  const std::string large = "{\"" + std::string(25'000, 'x') + "\":1}";  // about 100 bodies
   for (int i = 0; i < 300; ++i) {
     broadcaster_.publish("[]", large);
     ASSERT_EQ(reader.next(kWaitTimeout), large);
   }
 }
 
-TEST_F(ServedPage, HasRoomForSoManyStreamsAndTellsFurtherOnes) {
+TEST_F(PageServerTest, RejectsStreamsBeyondLimit) {
   std::list<HttpPeer> peers;
   for (int i = 0; i < kLimits.streams; ++i) {
     peers.emplace_back(port_).send(get_request("/events"));
@@ -256,10 +257,10 @@ TEST_F(ServedPage, HasRoomForSoManyStreamsAndTellsFurtherOnes) {
   const std::string refused = response_to(get_request("/events"));
   EXPECT_EQ(status_line(refused), "HTTP/1.1 503 Service Unavailable");
   EXPECT_NE(body(refused).find("close one"), std::string::npos);
-  EXPECT_EQ(status_of(get_request("/model")), "HTTP/1.1 200 OK") << "the texts are there still";
+  EXPECT_EQ(status_of(get_request("/model")), "HTTP/1.1 200 OK") << "other resources are still served";
 }
 
-TEST_F(ServedPage, ServesPagesAndStreamsWhileMoreConnectionsAreHeldThanItHasRoomFor) {
+TEST_F(PageServerTest, ServesWhileConnectionLimitIsExceeded) {
   EventReader before(port_);
   wait_for_listeners(1);
   std::list<HttpPeer> held;
@@ -270,15 +271,15 @@ TEST_F(ServedPage, ServesPagesAndStreamsWhileMoreConnectionsAreHeldThanItHasRoom
   EventReader after(port_);
   wait_for_listeners(2);
   broadcaster_.publish("[]", "{}");
-  EXPECT_TRUE(before.next(kWaitTimeout)) << "a stream gives way to nobody";
+  EXPECT_TRUE(before.next(kWaitTimeout)) << "streams are not evicted";
   EXPECT_TRUE(after.next(kWaitTimeout));
-  EXPECT_TRUE(is_closed(held.front())) << "it has waited longest";
+  EXPECT_TRUE(is_closed(held.front())) << "the longest waiting connection";
   EXPECT_FALSE(is_closed(held.back()));
   EXPECT_GE(std::ranges::count_if(held, [](HttpPeer& peer) { return !is_closed(peer); }),
             kLimits.connections - 3);
 }
 
-TEST_F(ServedPage, ServesWhileConnectionsAreHeldAndRenewed) {
+TEST_F(PageServerTest, ServesWhileConnectionsAreRenewed) {
   std::list<HttpPeer> held;
   for (int i = 0; i < 2'000; ++i) {
     held.emplace_back(port_);
@@ -289,7 +290,7 @@ TEST_F(ServedPage, ServesWhileConnectionsAreHeldAndRenewed) {
   }
 }
 
-TEST_F(ServedPage, ServesWhileMoreResponsesAreNotReadThanItHasRoomFor) {
+TEST_F(PageServerTest, ServesWhileResponsesAreNotRead) {
   std::list<HttpPeer> held;
   for (int i = 0; i < 300; ++i) held.emplace_back(port_, kSmallBuffer).send(get_request("/model"));
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
@@ -297,7 +298,7 @@ TEST_F(ServedPage, ServesWhileMoreResponsesAreNotReadThanItHasRoomFor) {
   wait_for_listeners(1);
 }
 
-TEST_F(ServedPage, RefusesAHeadThatHasNoEnd) {
+TEST_F(PageServerTest, RejectsEndlessHeader) {
   HttpPeer peer(port_);
   peer.send("GET / HTTP/1.1\r\n");
   const std::string header = "X-Filler: " + std::string(1'000, 'x') + "\r\n";
@@ -306,26 +307,26 @@ TEST_F(ServedPage, RefusesAHeadThatHasNoEnd) {
   EXPECT_EQ(status_line(peer.receive_all(kWaitTimeout)), "HTTP/1.1 431 Request Header Fields Too Large");
 }
 
-// Where the server waits only shortly for a request.
-class HurriedPage : public ServedPage {
+class PageServerHeaderTimeout : public PageServerTest {
  protected:
-  HurriedPage() : ServedPage(PageLimits{.header_timeout = 0.1, .write_timeout = kWaitTimeout}) {}
+  PageServerHeaderTimeout()
+      : PageServerTest(PageLimits{.header_timeout = 0.1, .write_timeout = kWaitTimeout}) {}
 };
 
-TEST_F(HurriedPage, DoesNotWaitForAHeadThatNeverComes) {
+TEST_F(PageServerHeaderTimeout, TimesOutOnIncompleteHeader) {
   HttpPeer peer(port_);
   peer.send("GET / HT");
   EXPECT_EQ(status_line(peer.receive_all(kWaitTimeout)), "HTTP/1.1 408 Request Timeout");
 }
 
-TEST_F(ServedPage, ServesOnAfterRequestsThatAreNone) {
+TEST_F(PageServerTest, SurvivesMalformedRequests) {
   MalformedRequests malformed(1);
   for (int i = 0; i < 10'000; ++i) response_to(malformed.next());
   EXPECT_EQ(status_of(get_request("/")), "HTTP/1.1 200 OK");
   EXPECT_TRUE(server_->serving());
 }
 
-TEST_F(ServedPage, SaysThatItsPortIsTaken) {
+TEST_F(PageServerTest, ReportsPortInUse) {
   SnapshotBroadcaster other_broadcaster;
   const auto second = PageServer::start("127.0.0.1", port_, {}, other_broadcaster);
   ASSERT_FALSE(second);
@@ -333,13 +334,13 @@ TEST_F(ServedPage, SaysThatItsPortIsTaken) {
       << second.error().message();
 }
 
-// At a port that the kernel gives nobody who asks for any: once the server has ended, nobody else has it.
-class PageAtAFixedPort : public ServedPage {
+// On a port outside the ephemeral range, which no other process gets after the server has stopped.
+class PageServerFixedPort : public PageServerTest {
  protected:
-  PageAtAFixedPort() : ServedPage(kLimits, "127.0.0.1", 8667) {}
+  PageServerFixedPort() : PageServerTest(kLimits, "127.0.0.1", 8667) {}
 };
 
-TEST_F(PageAtAFixedPort, EndsWithStreamsOpenAndRequestsHalfSent) {
+TEST_F(PageServerFixedPort, StopsWithOpenStreamsAndIncompleteRequests) {
   HttpPeer stream(port_);
   stream.send(get_request("/events"));
   wait_for_listeners(1);
@@ -350,7 +351,7 @@ TEST_F(PageAtAFixedPort, EndsWithStreamsOpenAndRequestsHalfSent) {
   EXPECT_THROW(HttpPeer{port_}, std::runtime_error);
 }
 
-TEST(PageServer, ListensOnAddressesInDigitsOnly) {
+TEST(CheckListenAddress, AcceptsOnlyNumericAddresses) {
   for (const char* address : {"127.0.0.1", "0.0.0.0", "::1", "::", "::ffff:127.0.0.1", "192.168.1.7"}) {
     EXPECT_TRUE(check_listen_address(address)) << address;
   }

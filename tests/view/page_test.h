@@ -1,5 +1,5 @@
-// For tests of pages, as `class TheReport : public PageTest {};`: one browser for all tests of a program, a
-// desktop's screen at the start of each, and what was on the screen of a test that failed.
+// Base class of page test fixtures: one browser for all tests of a program, a desktop screen at the start of
+// each test, and a screenshot if a test fails.
 #pragma once
 
 #include <iostream>
@@ -17,8 +17,7 @@ class PageTest : public testing::Test {
  protected:
   static Browser& browser() { return *browser_; }
 
-  // Not in SetUpTestSuite(): where that fails, GoogleTest says [  SKIPPED ], which CTest takes for a test
-  // that may be.
+  // Not in SetUpTestSuite(): if that fails, GoogleTest reports [  SKIPPED ], which CTest accepts.
   void SetUp() override {
     if (!browser_) {
       browser_ = std::make_unique<Browser>();
@@ -32,10 +31,10 @@ class PageTest : public testing::Test {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     const std::string path =
         std::string(BUOYANCY_PICTURES) + "/" + test.test_suite_name() + "." + test.name() + ".png";
-    // The next test gets a browser of its own: this one may be what failed.
+    // The next test gets a new browser, since this one may be the cause of the failure.
     const std::unique_ptr<Browser> last = std::move(browser_);
     last->screenshot().save(path);
-    std::cout << "What was on the screen: " << path << '\n';
+    std::cout << "Screenshot: " << path << '\n';
   }
 
   static void TearDownTestSuite() { browser_.reset(); }

@@ -1,4 +1,4 @@
-// buoyancy-report as its reader meets it: a run of buoyancy-client, in a browser.
+// The page of buoyancy-report for a run of buoyancy-client, in a real browser.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@
 namespace buoyancy::view {
 namespace {
 
-// A box that floats half deep and is pushed 1 m down at the start.
+// A box that floats half submerged and starts 1 m below its equilibrium.
 const std::string kBobbingBox = kOneBoxScene + R"(outputs = ["wrench", "hydrostatics"]
 [body.client]
 density = 500.0
@@ -34,7 +34,7 @@ FinishedProcess report(const std::vector<std::string>& arguments) {
   return run_to_end(command_of(std::move(command)), kWaitTimeout);
 }
 
-class TheReport : public PageTest {
+class ReportPage : public PageTest {
  protected:
   static void SetUpTestSuite() {
     directory_ = std::make_unique<TempDir>();
@@ -42,7 +42,7 @@ class TheReport : public PageTest {
     const FinishedProcess simulated = run_to_end(
         command_of({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "5", "--csv", csv()}),
         kWaitTimeout);
-    made_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
+    written_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
   }
   static void TearDownTestSuite() {
     PageTest::TearDownTestSuite();
@@ -50,7 +50,7 @@ class TheReport : public PageTest {
   }
 
   void SetUp() override {
-    ASSERT_TRUE(made_) << "buoyancy-client or buoyancy-report failed";
+    ASSERT_TRUE(written_) << "buoyancy-client or buoyancy-report failed";
     PageTest::SetUp();
     open();
   }
@@ -62,7 +62,7 @@ class TheReport : public PageTest {
     browser().wait_until("window.buoyancy_report !== undefined");
   }
 
-  // The column of the CSV, as its own numbers.
+  // The recorded values of a column of the CSV file.
   static std::vector<double> recorded(const std::string& name) {
     std::ifstream file(csv());
     std::string line;
@@ -74,16 +74,16 @@ class TheReport : public PageTest {
       return found;
     };
     const std::vector<std::string> names = cells(line);
-    const auto place = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    const auto position = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
     std::vector<double> column;
-    while (std::getline(file, line)) column.push_back(std::stod(cells(line).at(place)));
+    while (std::getline(file, line)) column.push_back(std::stod(cells(line).at(position)));
     return column;
   }
 
   static void go_to(double time) { browser().run("buoyancy_report.seek(arguments[0])", time); }
   static double time() { return browser().run("return buoyancy_report.state().time").get<double>(); }
 
-  // The pixel of the screenshot where a point of the world is drawn.
+  // The pixel of a screenshot at which a point in W is drawn.
   static std::array<int, 2> pixel_of(double x, double y, double z) {
     const nlohmann::json at = browser().run(
         "const box = document.getElementById('canvas').getBoundingClientRect();"
@@ -94,30 +94,30 @@ class TheReport : public PageTest {
 
  private:
   static inline std::unique_ptr<TempDir> directory_;
-  static inline bool made_ = false;
+  static inline bool written_ = false;
 };
 
-TEST_F(TheReport, OpensWithoutAnErrorAndWithoutAnotherFile) {
+TEST_F(ReportPage, OpensWithoutErrorsOrOtherResources) {
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(browser().run("return performance.getEntriesByType('resource').length"), 0);
   EXPECT_LT(read_file(page()).size(), 5'000'000);
 }
 
-TEST_F(TheReport, DrawsSkyWaterDryHullWettedHullAndTheWaterlineInBetween) {
+TEST_F(ReportPage, DrawsSkyWaterHullAndWaterline) {
   go_to(5.0);
   const double heave = recorded("pz").back();
-  const Image picture = browser().screenshot();
-  const auto at = [&picture](std::array<int, 2> place) { return picture.pixel(place[0], place[1]); };
-  // The face at y = -1.5 looks at the camera.
+  const Image image = browser().screenshot();
+  const auto at = [&image](std::array<int, 2> pixel) { return image.pixel(pixel[0], pixel[1]); };
+  // The face at y = -1.5 is towards the camera.
   const Colour dry = at(pixel_of(0.7, -1.5, 0.7 + heave));
   EXPECT_GT(dry.red, dry.green);
   EXPECT_GT(dry.green, dry.blue + 60) << "orange";
   const Colour wetted = at(pixel_of(0.7, -1.5, -1.2));
   EXPECT_GT(wetted.blue, wetted.red + 60) << "blue";
   const Region canvas = browser().region_of("#canvas");
-  const Colour sky = picture.pixel(canvas.left + 5, canvas.top + 5);
+  const Colour sky = image.pixel(canvas.left + 5, canvas.top + 5);
   EXPECT_TRUE(is_near({234, 243, 250}, 4)(sky));
-  const Colour water = picture.pixel(canvas.left + 8, canvas.top + canvas.height - 8);
+  const Colour water = image.pixel(canvas.left + 8, canvas.top + canvas.height - 8);
   EXPECT_GT(water.blue, water.red + 50);
   EXPECT_LT(wetted.red + wetted.green + wetted.blue, water.red + water.green + water.blue - 60)
       << "hull, not water";
@@ -125,12 +125,12 @@ TEST_F(TheReport, DrawsSkyWaterDryHullWettedHullAndTheWaterlineInBetween) {
   const std::array<int, 2> line = pixel_of(0.7, -1.5, 0.0);
   bool white = false;
   for (int dy = -3; dy <= 3; ++dy)
-    white = white || is_near({255, 255, 255}, 45)(picture.pixel(line[0], line[1] + dy));
-  EXPECT_TRUE(white) << "the waterline at the face's middle";
+    white = white || is_near({255, 255, 255}, 45)(image.pixel(line[0], line[1] + dy));
+  EXPECT_TRUE(white) << "waterline at the face's middle";
   EXPECT_FALSE(is_near({255, 255, 255}, 45)(at({line[0], line[1] - 12})));
 }
 
-TEST_F(TheReport, MovesTheBodyWithTheSlider) {
+TEST_F(ReportPage, MovesBodyWithSlider) {
   const auto height = [] {
     return browser().run("return buoyancy_report.scene.bodies.get(1).group.position.z").get<double>();
   };
@@ -144,7 +144,7 @@ TEST_F(TheReport, MovesTheBodyWithTheSlider) {
   EXPECT_GT(browser().screenshot().share_changed(at_start, canvas), 0.01);
 }
 
-TEST_F(TheReport, PlotsTheNumbersOfTheRun) {
+TEST_F(ReportPage, PlotsValuesOfRun) {
   const auto shown = [](const std::string& plot, int series) {
     return browser()
         .run("return Array.from(buoyancy_report.plots[arguments[0]].series[arguments[1]].values)", plot,
@@ -155,8 +155,7 @@ TEST_F(TheReport, PlotsTheNumbersOfTheRun) {
   EXPECT_EQ(shown("force", 0), recorded("fz"));
   EXPECT_EQ(shown("torque", 1), recorded("tx"));
   EXPECT_EQ(shown("energy", 0), recorded("energy"));
-  // And it is they that are drawn: the path's lowest point is the highest value, at its place between first
-  // and last.
+  // The drawn path has the same values: its topmost point is the maximum, at the right time.
   const nlohmann::json drawn = browser().run(R"(
     const plot = buoyancy_report.plots.heave;
     const points = plot.svg.querySelector('path').getAttribute('d').split(/[ML]/).slice(1).map((p) => p.split(' ').map(Number));
@@ -168,14 +167,14 @@ TEST_F(TheReport, PlotsTheNumbersOfTheRun) {
   EXPECT_NEAR(drawn["time"].get<double>(), 1e-3 * static_cast<double>(highest), 0.05);
 }
 
-TEST_F(TheReport, GoesWhereSomebodyPointsInAPlot) {
+TEST_F(ReportPage, SeeksToClickedTimeInPlot) {
   browser().run("document.querySelector('#plots figure:nth-of-type(2) svg').id = 'angles'");
   browser().click("#angles");
   EXPECT_GT(time(), 1.5);
   EXPECT_LT(time(), 3.5);
 }
 
-TEST_F(TheReport, IsPlayedByTheKeyboard) {
+TEST_F(ReportPage, RespondsToKeys) {
   browser().press("End");
   EXPECT_EQ(time(), 5.0);
   browser().press("Home");
@@ -184,7 +183,7 @@ TEST_F(TheReport, IsPlayedByTheKeyboard) {
   EXPECT_NEAR(time(), 0.05, 1e-9);
   browser().press("+");
   EXPECT_EQ(browser().run("return buoyancy_report.state().speed"), 2);
-  // Slowest, so that the run does not end before anybody has looked: it takes 50 s.
+  // At the lowest speed the run takes 50 s, so it does not end during the test.
   for (int i = 0; i < 4; ++i) browser().press("-");
   EXPECT_EQ(browser().run("return buoyancy_report.state().speed"), 0.1);
   const double before = time();
@@ -198,24 +197,24 @@ TEST_F(TheReport, IsPlayedByTheKeyboard) {
   EXPECT_NE(browser().run("return buoyancy_report.scene.azimuth").get<double>(), azimuth);
 }
 
-TEST_F(TheReport, TurnsItsCameraWhereSomebodyDrags) {
+TEST_F(ReportPage, RotatesCameraOnDrag) {
   const Image before = browser().screenshot();
   browser().drag("#canvas", 120, 20);
   EXPECT_GT(browser().screenshot().share_changed(before, browser().region_of("#canvas")), 0.01);
 }
 
-TEST_F(TheReport, ShowsTheMetacentreOfABodyThatAsksForHydrostatics) {
+TEST_F(ReportPage, ShowsMetacentreWithHydrostaticsOutput) {
   go_to(5.0);
-  // BM = I / V of the softer axis over the middle of what is under water.
+  // BM = I / V about the softer axis, above the centre of the submerged part.
   const double heave = recorded("pz").back();
   const double draft = 2.0 - heave;
   const double expected = -0.5 * draft + 3.0 * 8.0 / 12.0 / (6.0 * draft);
   EXPECT_NEAR(
-      browser().run("return buoyancy_report.scene.bodies.get(1).marks.metacentre.position.z").get<double>(),
+      browser().run("return buoyancy_report.scene.bodies.get(1).markers.metacentre.position.z").get<double>(),
       expected, 1e-3);
 }
 
-TEST_F(TheReport, TellsThoseWhoCannotSeeThePlotsWhatTheyShow) {
+TEST_F(ReportPage, DescribesPlotsForScreenReaders) {
   const auto labels = browser()
                           .run(
                               "return Array.from(document.querySelectorAll('#plots svg')).map((svg) => "
@@ -227,7 +226,7 @@ TEST_F(TheReport, TellsThoseWhoCannotSeeThePlotsWhatTheyShow) {
   EXPECT_NE(labels[5].find("was not recorded"), std::string::npos);
 }
 
-TEST_F(TheReport, KeepsDryAndWettedApartByLightAlone) {
+TEST_F(ReportPage, DistinguishesDryAndWettedByLuminance) {
   const auto luminance = [](const std::string& name) {
     return browser()
         .run(
@@ -246,7 +245,7 @@ TEST_F(TheReport, KeepsDryAndWettedApartByLightAlone) {
   EXPECT_GT(contrast("waterline", "dry"), 1.5);
 }
 
-TEST_F(TheReport, OverwritesNothingThatItReadsAndSaysWhatIsNoThreeJs) {
+TEST_F(ReportPage, RefusesToOverwriteInputAndInvalidThreeJs) {
   const TempDir directory;
   const std::string scene = directory.write("box.toml", kBobbingBox);
   EXPECT_EQ(report({"--scene", scene, csv(), scene}).exit_code, 2);
@@ -258,7 +257,7 @@ TEST_F(TheReport, OverwritesNothingThatItReadsAndSaysWhatIsNoThreeJs) {
   EXPECT_NE(refused.standard_error.find("cannot be read"), std::string::npos) << refused.standard_error;
 }
 
-TEST_F(TheReport, FitsAPhone) {
+TEST_F(ReportPage, FitsPhoneScreen) {
   browser().resize(kPhone);
   open();
   EXPECT_LE(browser().run("return document.documentElement.scrollWidth").get<int>(), kPhone.width);
@@ -266,7 +265,7 @@ TEST_F(TheReport, FitsAPhone) {
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(TheReport, GoesWhereTheAddressSaysAndNowhereWithoutANumber) {
+TEST_F(ReportPage, SeeksToTimeInUrlFragment) {
   for (const std::string hash : {"#t=abc", "#t=", "#t=NaN", "#t=1e999", "#x"}) {
     browser().open("about:blank");
     browser().open("file://" + page() + hash);
@@ -281,22 +280,24 @@ TEST_F(TheReport, GoesWhereTheAddressSaysAndNowhereWithoutANumber) {
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(TheReport, KeepsMarksAsLargeOnTheScreenWhenSomebodyZooms) {
+TEST_F(ReportPage, KeepsMarkerSizeWhenZooming) {
   const auto pixel = [] {
-    return browser().run("return buoyancy_report.scene.bodies.get(1).marks.metacentre.scale.x").get<double>();
+    return browser()
+        .run("return buoyancy_report.scene.bodies.get(1).markers.metacentre.scale.x")
+        .get<double>();
   };
   const double before = pixel();
   browser().run("buoyancy_report.scene.zoom(0.25)");
   EXPECT_NEAR(pixel(), 0.25 * before, 0.05 * before);
 }
 
-// What buoyancy-client --csv writes, but for the velocities.
-const std::string kAnsweredHeader =
+// The columns of buoyancy-client --csv without the velocities.
+const std::string kRunHeader =
     "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,energy\n";
 
-TEST_F(TheReport, LeavesAGapWhereTheAnswerIsNotOkOrThePoseIsNone) {
+TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
   const TempDir directory;
-  const std::string run = kAnsweredHeader +
+  const std::string run = kRunHeader +
                           "0,1,0,0,0.1,1,0,0,0,0,0,0,1e5,0,0,0,1,0,0,0,5\n"
                           "1000000,1,0,0,0.2,1,0,0,0,0,0,0,2e5,0,0,0,1,0,0,0,5\n"
                           "2000000,1,0,0,0.3,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
@@ -325,18 +326,18 @@ TEST_F(TheReport, LeavesAGapWhereTheAnswerIsNotOkOrThePoseIsNone) {
   const nlohmann::json drawn = browser().run(R"(
     const paths = Array.from(buoyancy_report.plots.force.svg.querySelectorAll('path')).slice(0, 2);
     return paths.map((path) => path.getAttribute('d').replace(/[^MLh]/g, ''));)");
-  EXPECT_EQ(drawn, nlohmann::json({"MLM", "Mh"})) << "a line, and a dot where one row is alone";
+  EXPECT_EQ(drawn, nlohmann::json({"MLM", "Mh"})) << "a line, and a dot for an isolated row";
 
   const auto at = [](double when) {
     go_to(when);
     return browser().run(
         "const body = buoyancy_report.scene.bodies.get(1);"
         "return [document.getElementById('status').textContent.split(':')[1].trim(), body.group.visible, "
-        "body.marks.centre_of_mass.visible, body.marks.force.visible];");
+        "body.markers.centre_of_mass.visible, body.markers.force.visible];");
   };
   EXPECT_EQ(at(1.5), nlohmann::json({"OK", true, true, true}));
   EXPECT_EQ(at(2.5), nlohmann::json({"OPEN_EDGE_WET", true, true, false}));
-  EXPECT_EQ(at(3.5), nlohmann::json({"OK", true, true, true})) << "until the pose that is none";
+  EXPECT_EQ(at(3.5), nlohmann::json({"OK", true, true, true})) << "until the invalid pose";
   EXPECT_EQ(at(4.5), nlohmann::json({"NON_FINITE_POSE", false, false, false}));
   EXPECT_EQ(at(5.5), nlohmann::json({"BAD_QUATERNION", false, false, false}));
   EXPECT_EQ(at(6.0), nlohmann::json({"status 9", true, true, false}));
@@ -353,12 +354,12 @@ TEST_F(TheReport, LeavesAGapWhereTheAnswerIsNotOkOrThePoseIsNone) {
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
-TEST_F(TheReport, CountsNoStatusesOfARunThatWasAlwaysAnswered) {
+TEST_F(ReportPage, OmitsStatusTableIfAllRowsAreOk) {
   EXPECT_EQ(browser().run("return document.getElementById('tables').textContent.includes('by the status')"),
             false);
 }
 
-TEST_F(TheReport, LooksAtASmallBodyBesideALargeOneFromNearby) {
+TEST_F(ReportPage, ZoomsToSelectedBodySize) {
   const TempDir directory;
   const std::string scene = directory.write("two.toml", kTestWater + R"([[body]]
 id = 1
@@ -368,14 +369,14 @@ id = 2
 shape = { type = "box", size = [0.5, 0.5, 0.5] }
 )");
   const std::string run =
-      directory.write("run.csv", kAnsweredHeader +
+      directory.write("run.csv", kRunHeader +
                                      "0,1,0,100,0,1,0,0,0,0,0,0,6e8,0,0,0,1,0,0,-5,0\n"
                                      "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,-0.125,0\n");
   const FinishedProcess made = report({"--scene", scene, run, directory.path("run.html")});
   ASSERT_EQ(made.exit_code, 0) << made.standard_error;
   browser().open_file(directory.path("run.html"));
   browser().wait_until("window.buoyancy_report !== undefined");
-  browser().run("buoyancy_report.choose(2)");
+  browser().run("buoyancy_report.select(2)");
   const auto width = [] {
     return browser()
         .run(
@@ -384,21 +385,21 @@ shape = { type = "box", size = [0.5, 0.5, 0.5] }
         .get<double>();
   };
   EXPECT_GT(width(), 60.0) << "pixels";
-  EXPECT_EQ(browser().run("return buoyancy_report.scene.bodies.get(2).marks.force.visible"), true);
+  EXPECT_EQ(browser().run("return buoyancy_report.scene.bodies.get(2).markers.force.visible"), true);
   browser().run("buoyancy_report.scene.zoom(0.5)");
   EXPECT_GT(width(), 120.0);
-  browser().run("buoyancy_report.choose(1)");
+  browser().run("buoyancy_report.select(1)");
   EXPECT_GT(browser().run("return buoyancy_report.scene.distance").get<double>(), 200.0)
-      << "the ship is seen, as near as the small body was";
+      << "the same zoom relative to the ship's size";
 }
 
-TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
+TEST_F(ReportPage, ListsShownBodiesAndSummarizesOthers) {
   const TempDir directory;
   std::string text = kTestWater;
   for (const char* id : {"1", "2", "3", "5", "6"}) {
     text += std::string("[[body]]\nid = ") + id + "\nshape = { type = \"box\", size = [2, 3, 4] }\n";
   }
-  const std::string run = directory.write("run.csv", kAnsweredHeader +
+  const std::string run = directory.write("run.csv", kRunHeader +
                                                          "0,1,0,0,0,1,0,0,0,0,0,0,700,0,0,0,1,0,0,-5,0\n"
                                                          "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,0,0\n"
                                                          "0,3,0,0,0,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
@@ -415,12 +416,12 @@ TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
   EXPECT_EQ(browser().run("return document.getElementById('subtitle').textContent"), "2 of 4 bodies, 0 s");
   const nlohmann::json notices = browser().run(
       "return Array.from(document.querySelectorAll('#notices p')).map((line) => line.textContent)");
-  EXPECT_EQ(notices,
-            nlohmann::json(
-                {"Picture, plots and what was skipped are of 2 bodies: those that --bodies chose. Of 2 more "
-                 "the table \"The bodies\" says rows, statuses and the largest recorded force. To see others "
-                 "write a page with --bodies, such as --bodies 2-3.",
-                 "1 body of the scene has no rows in run.csv."}));
+  EXPECT_EQ(notices, nlohmann::json({"The 3D view, the plots and the evaluations show 2 bodies (selected "
+                                     "with --bodies). For 2 other bodies, the "
+                                     "table \"The bodies\" lists rows, statuses and the largest recorded "
+                                     "force. To show them, write a page with "
+                                     "--bodies, such as --bodies 2-3.",
+                                     "1 body of the scene has no rows in run.csv."}));
   const nlohmann::json table = browser().run(R"(
     const table = Array.from(document.querySelectorAll('#tables table')).find((one) => one.caption.textContent.startsWith('All bodies'));
     return Array.from(table.tBodies[0].rows).map((row) => Array.from(row.cells).map((cell) => cell.textContent).join('|'));)");
@@ -430,7 +431,7 @@ TEST_F(TheReport, SaysWhichBodiesAreShownAndSumsUpTheOthers) {
   EXPECT_EQ(browser().run("return Array.from(buoyancy_report.scene.bodies.keys())"), nlohmann::json({1, 5}));
 }
 
-TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
+TEST(ReportProgram, ExitsWith2OnInvalidArguments) {
   const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =
@@ -444,7 +445,7 @@ TEST(ReportOptions, AreRefusedWithASentenceAndExitCode2) {
   EXPECT_EQ(report({"--scene", scene, directory.path("no.csv"), directory.path("page.html")}).exit_code, 2);
 }
 
-TEST(ReportOutput, ThatCannotBeWrittenIsAnErrorWithExitCode1) {
+TEST(ReportProgram, ExitsWith1IfPageCannotBeWritten) {
   const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =
@@ -458,7 +459,7 @@ TEST(ReportOutput, ThatCannotBeWrittenIsAnErrorWithExitCode1) {
   EXPECT_NE(no_three.standard_error.find("libjs-three"), std::string::npos);
 }
 
-TEST(ReportOfADamagedRun, IsWrittenAndFailsWithWhatWasLeftOut) {
+TEST(ReportProgram, WritesPageOfPartlyInvalidRunAndExitsWith1) {
   const TempDir directory;
   const std::string scene = directory.write("box.toml", kOneBoxScene);
   const std::string run =

@@ -14,7 +14,7 @@ RequestId key(std::int64_t session_id, std::int64_t seq) {
   return {0, session_id, seq};
 }
 
-TEST(RequestTracker, TellsTheTimeBetweenAQuestionAndItsAnswer) {
+TEST(RequestTracker, MeasuresTimeFromRequestToResponse) {
   RequestTracker tracker;
   EXPECT_TRUE(tracker.on_request(key(1, 5), 100 * kMillisecond, 0.1));
   EXPECT_TRUE(tracker.on_request(key(2, 5), 101 * kMillisecond, 0.101));
@@ -25,7 +25,7 @@ TEST(RequestTracker, TellsTheTimeBetweenAQuestionAndItsAnswer) {
   EXPECT_EQ(tracker.counts().sessions, 2);
 }
 
-TEST(RequestTracker, CountsARepeatOnceMoreAndMeasuresFromTheFirst) {
+TEST(RequestTracker, MeasuresFromFirstArrivalOfRepeatedRequest) {
   RequestTracker tracker;
   tracker.on_request(key(1, 0), 0, 0.0);
   EXPECT_FALSE(tracker.on_request(key(1, 0), 100 * kMillisecond, 0.1));
@@ -37,32 +37,32 @@ TEST(RequestTracker, CountsARepeatOnceMoreAndMeasuresFromTheFirst) {
   EXPECT_EQ(tracker.counts().responses_repeated, 1);
 }
 
-TEST(RequestTracker, MissesNoNumbersWhereTheyCountNothing) {
+TEST(RequestTracker, IgnoresGapsOfArbitrarySeq) {
   RequestTracker tracker;
   for (const std::int64_t utime : {5, 1'005, 2'005}) {
-    EXPECT_FALSE(tracker.remembers(key(1, utime)));
+    EXPECT_FALSE(tracker.contains(key(1, utime)));
     EXPECT_TRUE(tracker.on_request(key(1, utime), utime, 0.0, SeqPolicy::kArbitrary));
-    EXPECT_TRUE(tracker.remembers(key(1, utime)));
+    EXPECT_TRUE(tracker.contains(key(1, utime)));
   }
   EXPECT_EQ(tracker.counts().requests_missed, 0);
   EXPECT_EQ(tracker.counts().requests, 3);
 }
 
-TEST(RequestTracker, GivesUpAQuestionThatNobodyAnswersAndCountsALateAnswerAsOneWithoutAQuestion) {
+TEST(RequestTracker, ExpiresUnansweredRequests) {
   RequestTracker tracker;
   tracker.on_request(key(1, 0), 0, 0.0);
   tracker.on_request(key(1, 1), 0, 0.1);
   ASSERT_TRUE(tracker.on_response(key(1, 1), 0));
   tracker.expire(RequestTracker::kTimeout);
-  EXPECT_EQ(tracker.counts().unanswered, 0) << "its time is not over";
+  EXPECT_EQ(tracker.counts().unanswered, 0) << "not expired yet";
   tracker.expire(RequestTracker::kTimeout + 0.2);
   EXPECT_EQ(tracker.counts().unanswered, 1);
-  EXPECT_EQ(tracker.remembered(), 0U);
+  EXPECT_EQ(tracker.size(), 0U);
   EXPECT_EQ(tracker.on_response(key(1, 0), 1), std::nullopt);
   EXPECT_EQ(tracker.counts().responses_without_request, 1);
 }
 
-TEST(RequestTracker, TakesAQuestionThatIsRepeatedAfterItWasGivenUpForARepeatAndPairsItsAnswer) {
+TEST(RequestTracker, MatchesRequestRepeatedAfterExpiry) {
   RequestTracker tracker;
   tracker.on_request(key(1, 7), 0, 0.0);
   tracker.expire(10.0);
@@ -72,7 +72,7 @@ TEST(RequestTracker, TakesAQuestionThatIsRepeatedAfterItWasGivenUpForARepeatAndP
   EXPECT_EQ(tracker.counts().requests_repeated, 1);
 }
 
-TEST(RequestTracker, CountsNumbersLeftOutOfASessionAndNoNewBeginning) {
+TEST(RequestTracker, CountsSeqGapsButNoRestarts) {
   RequestTracker tracker;
   tracker.on_request(key(1, 10), 0, 0.0);
   tracker.on_request(key(1, 14), 0, 0.0);
@@ -84,43 +84,43 @@ TEST(RequestTracker, CountsNumbersLeftOutOfASessionAndNoNewBeginning) {
   EXPECT_EQ(tracker.counts().requests_missed, 3);
 }
 
-TEST(RequestTracker, HoldsThatAClockWhichGoesBackMakesNoNegativeTime) {
+TEST(RequestTracker, ReturnsZeroWhenClockGoesBack) {
   RequestTracker tracker;
   tracker.on_request(key(1, 0), 5 * kMillisecond, 0.0);
   EXPECT_EQ(tracker.on_response(key(1, 0), kMillisecond), 0.0);
 }
 
-TEST(RequestTracker, RemembersNoMoreThanItMayAndCountsWhatItForgetsAsUnanswered) {
+TEST(RequestTracker, DropsOldestBeyondMaxPending) {
   RequestTracker tracker;
-  constexpr std::int64_t kMore = 1'000;
-  for (std::int64_t i = 0; i < static_cast<std::int64_t>(RequestTracker::kMaxPending) + kMore; ++i) {
+  constexpr std::int64_t kExcess = 1'000;
+  for (std::int64_t i = 0; i < static_cast<std::int64_t>(RequestTracker::kMaxPending) + kExcess; ++i) {
     tracker.on_request(key(i, i), 0, 0.0);
   }
-  EXPECT_EQ(tracker.remembered(), RequestTracker::kMaxPending);
-  EXPECT_EQ(tracker.counts().unanswered, kMore);
+  EXPECT_EQ(tracker.size(), RequestTracker::kMaxPending);
+  EXPECT_EQ(tracker.counts().unanswered, kExcess);
 }
 
-RC_GTEST_PROP(RequestTracker, KeepsItsBooksWhateverIsHeard, ()) {
+RC_GTEST_PROP(RequestTracker, KeepsCountsConsistentForAnyTraffic, ()) {
   using Limits = std::numeric_limits<std::int64_t>;
   RequestTracker tracker;
-  std::int64_t heard_requests = 0;
-  std::int64_t heard_responses = 0;
+  std::int64_t sent_requests = 0;
+  std::int64_t sent_responses = 0;
   double now = 0.0;
   const auto steps = *rc::gen::inRange(0, 300);
   for (int i = 0; i < steps; ++i) {
-    const RequestId any =
+    const RequestId id =
         key(*rc::gen::element<std::int64_t>(0, 1, -1, Limits::max(), Limits::min()),
             *rc::gen::element<std::int64_t>(0, 1, 2, 3, 1'000, Limits::max(), Limits::min()));
     switch (*rc::gen::inRange(0, 3)) {
       case 0:
-        tracker.on_request(any, *rc::gen::inRange<std::int64_t>(0, 1'000), now);
-        ++heard_requests;
+        tracker.on_request(id, *rc::gen::inRange<std::int64_t>(0, 1'000), now);
+        ++sent_requests;
         break;
       case 1:
-        if (const auto latency = tracker.on_response(any, *rc::gen::inRange<std::int64_t>(0, 1'000))) {
+        if (const auto latency = tracker.on_response(id, *rc::gen::inRange<std::int64_t>(0, 1'000))) {
           RC_ASSERT(*latency >= 0.0);
         }
-        ++heard_responses;
+        ++sent_responses;
         break;
       default:
         now += 0.5 * *rc::gen::inRange(0, 4);
@@ -129,10 +129,10 @@ RC_GTEST_PROP(RequestTracker, KeepsItsBooksWhateverIsHeard, ()) {
   }
   tracker.expire(now + 2.0 * RequestTracker::kTimeout);
   const RequestTracker::Counts& counts = tracker.counts();
-  RC_ASSERT(tracker.remembered() == 0U);
-  RC_ASSERT(counts.requests + counts.requests_repeated == heard_requests);
+  RC_ASSERT(tracker.size() == 0U);
+  RC_ASSERT(counts.requests + counts.requests_repeated == sent_requests);
   RC_ASSERT(counts.responses + counts.responses_repeated + counts.responses_without_request ==
-            heard_responses);
+            sent_responses);
   RC_ASSERT(counts.unanswered >= counts.requests - counts.responses);
   RC_ASSERT(counts.requests_missed >= 0);
 }

@@ -30,7 +30,7 @@ WrenchRequest request_at(std::int64_t seq, double height, std::int64_t session_i
   return request;
 }
 
-class ARunFile : public testing::Test {
+class RunFileTest : public testing::Test {
  protected:
   Expected<RecordedRun> read(const std::string& path) const {
     return read_run(path, scene_, 1'000, options_);
@@ -39,7 +39,7 @@ class ARunFile : public testing::Test {
     return read(directory_.write("run.csv", text));
   }
 
-  // As lcm-logger would have heard it.
+  // Appends an event as lcm-logger records it.
   void log(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
     std::vector<std::uint8_t> event;
     encode_event(number_++, timestamp, channel, bytes, event);
@@ -59,7 +59,7 @@ class ARunFile : public testing::Test {
     return read(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}));
   }
 
-  // A pose of the one body on channel POSE, which options_ name.
+  // A pose of the body on channel POSE of options_.
   void log_pose(std::int64_t timestamp, const bot_core::pose_t& pose) {
     log(timestamp, "POSE", encoded_by_lcm(pose));
   }
@@ -72,7 +72,7 @@ class ARunFile : public testing::Test {
   std::int64_t number_ = 0;
 };
 
-TEST_F(ARunFile, OfPosesAloneHasItsForcesComputed) {
+TEST_F(RunFileTest, ComputesForcesOfPoses) {
   const RecordedRun run = read_csv(
                               "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
                               "5000000,1,0,0,0,1,0,0,0\n"
@@ -80,17 +80,17 @@ TEST_F(ARunFile, OfPosesAloneHasItsForcesComputed) {
                               .value();
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 2);
-  const RunRow& half_deep = run.bodies[0].rows[0];
-  EXPECT_EQ(half_deep[kTime], 0.0);
-  EXPECT_NEAR(half_deep[kFz], 12.0 * kDensity * kGravity, 1e-6);
-  EXPECT_TRUE(std::isnan(half_deep[kEnergy])) << "nobody said the box's mass";
+  const RunRow& half_submerged = run.bodies[0].rows[0];
+  EXPECT_EQ(half_submerged[kTime], 0.0);
+  EXPECT_NEAR(half_submerged[kFz], 12.0 * kDensity * kGravity, 1e-6);
+  EXPECT_TRUE(std::isnan(half_submerged[kEnergy])) << "the box has no mass";
   const RunRow& higher = run.bodies[0].rows[1];
   EXPECT_DOUBLE_EQ(higher[kTime], 1e-3);
   EXPECT_EQ(higher[kHeave], 1.0);
   EXPECT_NEAR(higher[kForce], 6.0 * kDensity * kGravity, 1e-6);
 }
 
-TEST_F(ARunFile, KeepsWhatWasRecordedAndComputesNothingOfIt) {
+TEST_F(RunFileTest, KeepsRecordedValues) {
   const RecordedRun run =
       read_csv(
           "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,status,fx,fy,fz,tx,ty,tz,volume,"
@@ -103,7 +103,7 @@ TEST_F(ARunFile, KeepsWhatWasRecordedAndComputesNothingOfIt) {
             (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11.25}));
 }
 
-TEST_F(ARunFile, LeavesOutRowsThatAreDamagedAndSaysWhich) {
+TEST_F(RunFileTest, SkipsInvalidRowsWithWarning) {
   const RecordedRun run = read_csv(
                               "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
                               "0,1,0,0,0,1,0,0,0\n"
@@ -112,24 +112,23 @@ TEST_F(ARunFile, LeavesOutRowsThatAreDamagedAndSaysWhich) {
                               "3000,1,0,0,0,1,0,0,0\n")
                               .value();
   EXPECT_EQ(run.bodies[0].recorded, 2);
-  EXPECT_EQ(run.warnings, (std::vector<std::string>{"line 3 is not 9 numbers: left out",
-                                                    "line 4 is not 9 numbers: left out"}));
+  EXPECT_EQ(run.warnings, (std::vector<std::string>{"line 3 skipped: expected 9 numbers",
+                                                    "line 4 skipped: expected 9 numbers"}));
 }
 
-TEST_F(ARunFile, IsRefusedWhereItHasNoPoses) {
-  const auto responses_alone = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
-  ASSERT_FALSE(responses_alone);
-  EXPECT_NE(responses_alone.error().message().find("px, py, pz"), std::string::npos);
-  const auto of_another_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
-  ASSERT_FALSE(of_another_scene);
-  EXPECT_NE(of_another_scene.error().message().find("1 rows, none about a body of test scene"),
-            std::string::npos);
+TEST_F(RunFileTest, RejectsFilesWithoutPoses) {
+  const auto responses_only = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
+  ASSERT_FALSE(responses_only);
+  EXPECT_NE(responses_only.error().message().find("px, py, pz"), std::string::npos);
+  const auto other_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(other_scene);
+  EXPECT_NE(other_scene.error().message().find("1 rows, none about a body of test scene"), std::string::npos);
   EXPECT_FALSE(read(directory_.write("run.txt", ""))) << "neither .csv nor .lcmlog";
   EXPECT_FALSE(read(directory_.path("missing.csv")));
   EXPECT_FALSE(read(directory_.path("missing.lcmlog")));
 }
 
-TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
+TEST_F(RunFileTest, ReadsResponsesAndRoundTripsFromLog) {
   for (std::int64_t seq = 0; seq < 10; ++seq) {
     const WrenchRequest request = request_at(seq, 0.1 * static_cast<double>(seq));
     log_request(1'000'000 + 1'000 * seq, request);
@@ -142,7 +141,7 @@ TEST_F(ARunFile, ThatIsALogTakesTheAnswersAndTheRoundTripsFromIt) {
   EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
 }
 
-TEST_F(ARunFile, ThatIsALogCountsARepeatedQuestionOnceAndComputesAnAnswerThatNeverCame) {
+TEST_F(RunFileTest, CountsRetriesOnceAndComputesMissingResponses) {
   const WrenchRequest lost = request_at(0, 0.5);
   const WrenchRequest repeated = request_at(1, 0.0);
   log_request(0, lost);
@@ -154,13 +153,13 @@ TEST_F(ARunFile, ThatIsALogCountsARepeatedQuestionOnceAndComputesAnAnswerThatNev
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 1);
-  EXPECT_EQ(run.bodies[0].rows[0][kHeave], 0.5) << "in order of time, although it was given up last";
+  EXPECT_EQ(run.bodies[0].rows[0][kHeave], 0.5) << "in order of time, although it was added last";
   EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
   EXPECT_TRUE(std::isnan(run.bodies[0].rows[0][kRoundTrip]));
-  EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first asking";
+  EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first request";
 }
 
-TEST_F(ARunFile, PutsASessionThatStartsItsClockAgainBehindTheOneBefore) {
+TEST_F(RunFileTest, AppendsSessionWithRestartedClock) {
   for (const std::int64_t session : {1, 2}) {
     for (std::int64_t seq = 0; seq < 3; ++seq) {
       const WrenchRequest request = request_at(seq, 0.0, session);
@@ -176,8 +175,8 @@ TEST_F(ARunFile, PutsASessionThatStartsItsClockAgainBehindTheOneBefore) {
   }
 }
 
-TEST_F(ARunFile, KeepsItsOrderWhereAnswersNeverCame) {
-  // Nobody answered the first session; of the second every other request.
+TEST_F(RunFileTest, KeepsTimeOrderWithMissingResponses) {
+  // No responses to the first session, responses to every other request of the second.
   for (std::int64_t seq = 0; seq < 100; ++seq) log_request(1'000 * seq, request_at(seq, 1.0, 11));
   for (std::int64_t seq = 0; seq < 100; ++seq) {
     const WrenchRequest request = request_at(seq, -1.0, 22);
@@ -193,7 +192,7 @@ TEST_F(ARunFile, KeepsItsOrderWhereAnswersNeverCame) {
   }
 }
 
-TEST_F(ARunFile, OfTwoAskersAtOnceOrOfOneThatUsesItsSessionAgainIsAsLongAsTheyAre) {
+TEST_F(RunFileTest, KeepsDurationOfParallelAndReusedSessions) {
   for (std::int64_t i = 0; i < 100; ++i) {
     WrenchRequest one = request_at(i, 0.0, 1);
     WrenchRequest other = request_at(i, 0.0, 2);
@@ -213,7 +212,7 @@ TEST_F(ARunFile, OfTwoAskersAtOnceOrOfOneThatUsesItsSessionAgainIsAsLongAsTheyAr
   EXPECT_NEAR(run.bodies[0].rows.back()[kTime], 5.999, 1e-6);
 }
 
-TEST_F(ARunFile, WithClocksThatHaveNothingInCommonStaysAsLongAsItWas) {
+TEST_F(RunFileTest, KeepsDurationWithUnrelatedClocks) {
   scene_ = box_scene();
   constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kUnixTime = 1'700'000'000'000'000;
@@ -235,7 +234,7 @@ TEST_F(ARunFile, WithClocksThatHaveNothingInCommonStaysAsLongAsItWas) {
   }
 }
 
-TEST_F(ARunFile, OfWindowsIsReadLikeAnyOther) {
+TEST_F(RunFileTest, AcceptsByteOrderMarkAndCrLf) {
   const RecordedRun run = read_csv(
                               "\xef\xbb\xbfutime,body_id,px,py,pz,qw,qx,qy,qz\r\n"
                               "0,1,0,0,0,1,0,0,0\r\n"
@@ -246,24 +245,24 @@ TEST_F(ARunFile, OfWindowsIsReadLikeAnyOther) {
   EXPECT_TRUE(run.warnings.empty());
 }
 
-TEST_F(ARunFile, SaysWhatItsPosesLetTheServiceSkip) {
+TEST_F(RunFileTest, CountsEvaluationsByKind) {
   const RecordedRun run = read_csv(
                               "utime,body_id,px,py,pz,qw,qx,qy,qz\n"
-                              "0,1,0,0,0,1,0,0,0\n"      // crosses the surface
-                              "1000,1,0,0,0,1,0,0,0\n"   // again
+                              "0,1,0,0,0,1,0,0,0\n"      // partially submerged
+                              "1000,1,0,0,0,1,0,0,0\n"   // unchanged
                               "2000,1,0,0,50,1,0,0,0\n"  // dry
-                              "3000,1,0,0,0,0,0,0,0\n"   // no turn at all
+                              "3000,1,0,0,0,0,0,0,0\n"   // zero quaternion
                               "4000,1,0,0,-50,1,0,0,0\n")
                               .value();
-  const EvaluationCounts& skipped = run.bodies[0].skipped;
-  EXPECT_EQ(skipped.unchanged, 1);
-  EXPECT_EQ(skipped.dry, 1);
-  EXPECT_EQ(skipped.refused, 1);
-  EXPECT_EQ(skipped.wet, 0) << "method exact computes what is wholly wet";
-  EXPECT_EQ(skipped.crossing, 2);
+  const EvaluationCounts& evaluations = run.bodies[0].evaluations;
+  EXPECT_EQ(evaluations.unchanged, 1);
+  EXPECT_EQ(evaluations.dry, 1);
+  EXPECT_EQ(evaluations.rejected, 1);
+  EXPECT_EQ(evaluations.wet, 0) << "method exact computes fully submerged poses";
+  EXPECT_EQ(evaluations.crossing, 2);
 }
 
-TEST_F(ARunFile, HasTheEnergyOfALogWhereTheSceneSaysTheMass) {
+TEST_F(RunFileTest, ComputesEnergyOfLogIfMassIsKnown) {
   scene_ = scene_of(kOneBoxScene + "[body.client]\ndensity = 500.0\n");
   WrenchRequest falling = request_at(0, 10.0);
   falling.bodies[0].linear_velocity = {0.0, 0.0, -2.0};
@@ -272,14 +271,14 @@ TEST_F(ARunFile, HasTheEnergyOfALogWhereTheSceneSaysTheMass) {
   EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
 }
 
-TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
+TEST_F(RunFileTest, MatchesPoseResponsesByBodyAndTime) {
   options_.poses = {.channels = {{"POSE", 1, ""}}};
-  PoseRequestAdapter asked(options_.poses, 70);
+  PoseRequestAdapter adapter(options_.poses, 70);
   for (std::int64_t i = 0; i < 10; ++i) {
     const bot_core::pose_t pose = upright_pose(0.1 * static_cast<double>(i), 5'000'000 + 1'000 * i);
     log_pose(1'000 * i, pose);
     const std::vector<std::uint8_t> request = [&] {
-      const auto bytes = asked.make_request(0, encoded_by_lcm(pose));
+      const auto bytes = adapter.make_request(0, encoded_by_lcm(pose));
       return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
     }();
     log(1'000 * i + 250, kWrenchesChannel, handler_.handle(request));
@@ -294,7 +293,7 @@ TEST_F(ARunFile, OfBotCorePosesTakesTheirAnswersByBodyAndTime) {
   EXPECT_NEAR(run.bodies[0].rows[5][kFz], 6.0 * 1.5 * kDensity * kGravity, 1e-6);
 }
 
-TEST_F(ARunFile, OfBotCorePosesComputesWhatNobodyAnsweredAndTheRestOfForcesAndTorques) {
+TEST_F(RunFileTest, ComputesMissingPartsOfPoseResponses) {
   options_.poses = {.channels = {{"POSE", 1, "FORCE"}}};
   log_pose(0, upright_pose(0.5, 0));
   log_pose(1'000, upright_pose(0.0, 1'000));
@@ -306,17 +305,16 @@ TEST_F(ARunFile, OfBotCorePosesComputesWhatNobodyAnsweredAndTheRestOfForcesAndTo
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 1);
   EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
-  const RunRow& answered = run.bodies[0].rows[1];
-  EXPECT_EQ(std::vector(answered.begin() + kFx, answered.begin() + kVolume),
+  const RunRow& recorded = run.bodies[0].rows[1];
+  EXPECT_EQ(std::vector(recorded.begin() + kFx, recorded.begin() + kVolume),
             (std::vector<double>{1, 2, 3, 4, 5, 6}))
       << "as recorded";
-  EXPECT_NEAR(answered[kVolume], 12.0, 1e-9) << "of the scene's box";
-  EXPECT_NEAR(answered[kRoundTrip], 400e-6, 1e-12);
-  EXPECT_EQ(run.warnings,
-            (std::vector<std::string>{"a pose was left out: fingerprint of another type or version"}));
+  EXPECT_NEAR(recorded[kVolume], 12.0, 1e-9) << "of the scene's box";
+  EXPECT_NEAR(recorded[kRoundTrip], 400e-6, 1e-12);
+  EXPECT_EQ(run.warnings, (std::vector<std::string>{"pose skipped: fingerprint of another type or version"}));
 }
 
-TEST_F(ARunFile, OfBotCorePosesHasTheirEnergyOnlyWhereSomebodySaidTheFrameOfTheirVelocities) {
+TEST_F(RunFileTest, ComputesPoseEnergyOnlyWithVelocityFrame) {
   scene_ = scene_of(kOneBoxScene + "[body.client]\ndensity = 500.0\n");
   bot_core::pose_t falling = upright_pose(10.0, 0);
   falling.vel[2] = -2.0;
@@ -328,7 +326,7 @@ TEST_F(ARunFile, OfBotCorePosesHasTheirEnergyOnlyWhereSomebodySaidTheFrameOfThei
   EXPECT_NEAR(read_log().value().bodies[0].rows.at(0)[kEnergy], mass * (0.5 * 4.0 + kGravity * 10.0), 1e-6);
 }
 
-TEST_F(ARunFile, OfBotCorePosesWhoseClockBeganAgainGoesOnBehind) {
+TEST_F(RunFileTest, AppendsPosesWithRestartedClock) {
   options_.poses = {.channels = {{"POSE", 1, ""}}};
   for (const std::int64_t utime : {5'000'000, 5'001'000, 5'000'500, 0, 1'000}) {
     log_pose(utime, upright_pose(0.0, utime));
@@ -337,20 +335,20 @@ TEST_F(ARunFile, OfBotCorePosesWhoseClockBeganAgainGoesOnBehind) {
   std::vector<double> times;
   for (const RunRow& row : run.bodies[0].rows) times.push_back(row[kTime]);
   ASSERT_EQ(times.size(), 5U);
-  EXPECT_NEAR(times[1], 0.5e-3, 1e-9) << "a late one is put in its place";
+  EXPECT_NEAR(times[1], 0.5e-3, 1e-9) << "a late pose is sorted by time";
   EXPECT_GE(times[3], times[2]);
   EXPECT_NEAR(times[4] - times[3], 1e-3, 1e-9);
 }
 
-TEST_F(ARunFile, ThatIsCsvHasNoChannels) {
+TEST_F(RunFileTest, RejectsPoseChannelsForCsv) {
   options_.poses = {.channels = {{"POSE", 1, ""}}};
-  const auto refused = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message().find("CSV has no channels"), std::string::npos);
+  const auto rejected = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(rejected);
+  EXPECT_NE(rejected.error().message().find("CSV has no channels"), std::string::npos);
 }
 
-// Two bodies more than a page shows, with the ids 1 to 1,002.
-class ARunOfManyBodies : public testing::Test {
+// Two more bodies than a page shows, with the ids 1 to 1,002.
+class RunFileManyBodies : public testing::Test {
  protected:
   static constexpr int kBodies = 1'002;
 
@@ -361,7 +359,7 @@ class ARunOfManyBodies : public testing::Test {
     }
     return text;
   }
-  // Of each body one row, the last body first.
+  // One row per body, the last body first.
   static std::string rows(const std::string& header, const std::string& row) {
     std::string text = header;
     for (int id = kBodies; id > 0; --id) text += "0," + std::to_string(id) + row;
@@ -378,21 +376,21 @@ class ARunOfManyBodies : public testing::Test {
   Scene scene_ = scene_of(many_bodies());
 };
 
-TEST_F(ARunOfManyBodies, ShowsThoseThatItNamesFirstAndCountsTheOthers) {
+TEST_F(RunFileManyBodies, ShowsFirstBodiesAndCountsOthers) {
   const RecordedRun run = read(poses()).value();
-  EXPECT_EQ(run.computed, 1'000) << "nothing is computed of a body that is not shown";
+  EXPECT_EQ(run.computed, 1'000) << "nothing is computed for a body that is not shown";
   for (std::size_t i = 0; i < kBodies; ++i) {
     ASSERT_EQ(run.bodies[i].recorded, 1) << i;
     ASSERT_EQ(run.bodies[i].shown, i > 1) << i;
     ASSERT_EQ(run.bodies[i].rows.size(), i > 1 ? 1U : 0U) << i;
   }
   EXPECT_EQ(run.bodies[2].statuses[0], 1);
-  EXPECT_NEAR(run.bodies[2].largest_force, 12.0 * kDensity * kGravity, 1e-6);
-  EXPECT_EQ(run.bodies[1].statuses[0], 0) << "its status is not known";
-  EXPECT_TRUE(std::isnan(run.bodies[1].largest_force));
+  EXPECT_NEAR(run.bodies[2].max_force, 12.0 * kDensity * kGravity, 1e-6);
+  EXPECT_EQ(run.bodies[1].statuses[0], 0) << "unknown status";
+  EXPECT_TRUE(std::isnan(run.bodies[1].max_force));
 }
 
-TEST_F(ARunOfManyBodies, TellsOfEveryBodyWhatWasRecorded) {
+TEST_F(RunFileManyBodies, SummarizesEveryBody) {
   const std::string header = "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz\n";
   const RecordedRun run = read(rows(header, ",0,0,0,1,0,0,0,0,3,0,4,0,0,0,1,0,0,0\n") +
                                "1000,1,0,0,0,1,0,0,0,0,0,0,2,0,0,0,1,0,0,0\n"
@@ -404,11 +402,11 @@ TEST_F(ARunOfManyBodies, TellsOfEveryBodyWhatWasRecorded) {
   EXPECT_FALSE(body.shown);
   EXPECT_EQ(body.recorded, 5);
   EXPECT_EQ(body.statuses, (decltype(body.statuses){3, 0, 0, 0, 0, 0, 1, 0, 1}));
-  EXPECT_EQ(body.largest_force, 5.0) << "of the rows that are OK";
-  EXPECT_EQ(run.bodies.back().largest_force, 5.0);
+  EXPECT_EQ(body.max_force, 5.0) << "of the rows that are OK";
+  EXPECT_EQ(run.bodies.back().max_force, 5.0);
 }
 
-TEST_F(ARunOfManyBodies, ShowsTheBodiesThatAreChosen) {
+TEST_F(RunFileManyBodies, ShowsSelectedBodies) {
   options_.bodies = body_list("1-2,900", scene_).value();
   EXPECT_EQ(options_.bodies, (std::vector<std::size_t>{0, 1, 899}));
   const RecordedRun run = read(poses()).value();
@@ -419,17 +417,17 @@ TEST_F(ARunOfManyBodies, ShowsTheBodiesThatAreChosen) {
   EXPECT_EQ(run.computed, 3);
 }
 
-TEST_F(ARunOfManyBodies, IsRefusedWhereItHasNoRowsOfThoseThatAreChosen) {
+TEST_F(RunFileManyBodies, RejectsRunWithoutSelectedBodies) {
   options_.bodies = body_list("1-10", scene_).value();
-  const auto refused = read("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n0,88,0,0,0,1,0,0,0\n");
-  ASSERT_FALSE(refused);
+  const auto rejected = read("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n0,88,0,0,0,1,0,0,0\n");
+  ASSERT_FALSE(rejected);
   EXPECT_NE(
-      refused.error().message().find("It has rows about 2 bodies of the scene, the first with the id 77"),
+      rejected.error().message().find("The run has rows about 2 bodies of the scene, the first with id 77"),
       std::string::npos)
-      << refused.error().message();
+      << rejected.error().message();
 }
 
-TEST_F(ARunOfManyBodies, IsToldOfInThePagesData) {
+TEST_F(RunFileManyBodies, WritesAllBodiesToPageData) {
   const RecordedRun run = read(poses()).value();
   const auto data = nlohmann::json::parse(report_data(scene_, run, {.file = "run.csv", .version = "1"}));
   ASSERT_EQ(data["bodies"].size(), 1'002U);
@@ -437,17 +435,17 @@ TEST_F(ARunOfManyBodies, IsToldOfInThePagesData) {
   EXPECT_EQ(other["id"], 2);
   EXPECT_EQ(other["shown"], false);
   EXPECT_EQ(other["recorded"], 1);
-  EXPECT_EQ(other["largest_force"], nullptr);
+  EXPECT_EQ(other["max_force"], nullptr);
   EXPECT_FALSE(other.contains("data"));
   EXPECT_EQ(data["bodies"][2]["shown"], true);
   EXPECT_EQ(data["selected"], false);
 }
 
-TEST_F(ARunOfManyBodies, TakesListsOfIdsAndRanges) {
+TEST_F(RunFileManyBodies, ParsesListsOfIdsAndRanges) {
   EXPECT_EQ(body_list("900,3,3-5,1002-2000", scene_).value(),
             (std::vector<std::size_t>{2, 3, 4, 899, 1'001}));
   EXPECT_EQ(body_list("-5-1", scene_).value(), std::vector<std::size_t>{0});
-  for (const auto& [list, told] : std::vector<std::pair<std::string, std::string>>{
+  for (const auto& [list, message] : std::vector<std::pair<std::string, std::string>>{
            {"1, 2", "--bodies 1, 2: ' 2'; expected ids and ranges of ids, such as 1-50,900."},
            {"", "''; expected ids"},
            {"1,", "''; expected ids"},
@@ -457,9 +455,9 @@ TEST_F(ARunOfManyBodies, TakesListsOfIdsAndRanges) {
            {"99999999999", "'99999999999'; expected ids"},
            {"1,2000", "no body has the id 2000; expected ids of test scene"},
            {"1-1002", "1002 bodies; expected at most 1000"}}) {
-    const auto refused = body_list(list, scene_);
-    ASSERT_FALSE(refused) << list;
-    EXPECT_NE(refused.error().message().find(told), std::string::npos) << refused.error().message();
+    const auto rejected = body_list(list, scene_);
+    ASSERT_FALSE(rejected) << list;
+    EXPECT_NE(rejected.error().message().find(message), std::string::npos) << rejected.error().message();
   }
 }
 

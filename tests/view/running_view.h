@@ -1,5 +1,5 @@
-// buoyancy-view as a process of its own, scheduled as any other: on a machine that is never idle the default
-// policy shows nothing.
+// buoyancy-view as a separate process with normal scheduling: on a machine that is never idle, the default
+// policy publishes nothing.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace buoyancy::view {
 
-// Ready when constructed.
+// The constructor returns when the view is ready.
 class RunningView {
  public:
-  // port: 0 for any that is free.
+  // port: 0 selects a free one.
   explicit RunningView(const std::string& scene, std::vector<std::string> options = {},
                        std::uint16_t port = 0)
       : child_(command(directory_.write("scene.toml", scene), std::move(options), port)) {
     if (!child_.wait_for_text("ready: ", kWaitTimeout)) {
-      throw std::runtime_error("buoyancy-view did not get ready: " + child_.standard_error());
+      throw std::runtime_error("buoyancy-view did not become ready: " + child_.standard_error());
     }
     port_ = port_from_ready_line(child_.standard_output());
   }

@@ -1,4 +1,4 @@
-// buoyancy-view as a process of its own, beside the real service and the real client, over UDP.
+// buoyancy-view as a separate process with the real service and the real client, over UDP.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// Body 2's hydrostatics are asked for, so that its metacentres are on the bus.
+// Body 2 has the output "hydrostatics", so that its metacentres are on the bus.
 const std::string kScene = kHydrostaticBoxScene;
 
 ChildCommand client(const std::string& scene, std::vector<std::string> options) {
@@ -28,32 +28,32 @@ ChildCommand client(const std::string& scene, std::vector<std::string> options) 
   return command_of(std::move(options));
 }
 
-// The first snapshot that satisfies `wanted`. Throws: none within kWaitTimeout.
-template <typename Wanted>
-json snapshot_where(EventReader& events, Wanted&& wanted) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+// Returns the first snapshot that satisfies `condition`. Throws if there is none within kWaitTimeout.
+template <typename Condition>
+json wait_for_snapshot(EventReader& events, Condition&& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   json snapshot;
-  while (std::chrono::steady_clock::now() < limit) {
+  while (std::chrono::steady_clock::now() < deadline) {
     const std::optional<std::string> text = events.next(kWaitTimeout);
     if (!text) break;
     snapshot = json::parse(*text);
-    if (wanted(snapshot)) return snapshot;
+    if (condition(snapshot)) return snapshot;
   }
   throw std::runtime_error("no such snapshot; the last one: " + snapshot.dump());
 }
 
-TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
+TEST(ViewProgram, ShowsRunOfRealPrograms) {
   RunningView view(kScene);
   EventReader events(view.port());
   RunningService service({}, kScene);
-  // Body 1 has no [body.client]; the client asks about body 2. The packets of this run, three a step, fit
-  // into the kernel's buffer, so the view loses none however late it reads them.
+  // Body 1 has no [body.client]; the client simulates body 2. The packets of this run, three per step, fit
+  // into the kernel's buffer, so the view loses none even if it reads them late.
   const FinishedProcess run =
       run_to_end(client(service.path("scene.toml"), {"--duration", "0.05"}), kWaitTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   RawLcmSocket socket;
   send_request(socket, one_body(7, 1, 0.0));
-  const json snapshot = snapshot_where(events, [](const json& now) {
+  const json snapshot = wait_for_snapshot(events, [](const json& now) {
     return now["counts"]["responses"].get<int>() > 50 && now["bodies"].size() == 2 &&
            !now["bodies"][0]["f"].is_null();
   });
@@ -66,14 +66,14 @@ TEST(View, ShowsARunOfTheRealProgramsAsItsAskerCountsIt) {
   EXPECT_LE(snapshot["latency"]["p50"].get<double>(), snapshot["latency"]["max"].get<double>());
   const json& upright = snapshot["bodies"][0];
   EXPECT_EQ(upright["p"], json({1.0, 2.0, 0.0}));
-  EXPECT_NEAR(upright["f"][2].get<double>(), 2.0 * 3.0 * 2.0 * 1e4, 1e-2) << "half under water";
+  EXPECT_NEAR(upright["f"][2].get<double>(), 2.0 * 3.0 * 2.0 * 1e4, 1e-2) << "half submerged";
   EXPECT_TRUE(upright["m"].is_null());
   const json& floating = snapshot["bodies"][1];
   EXPECT_EQ(floating["status"], 0);
   EXPECT_TRUE(floating["m"].is_array()) << floating;
 }
 
-TEST(View, SaysThatTheServiceIsSilentAndThatItIsBack) {
+TEST(ViewProgram, ReportsServiceOfflineAndBack) {
   RunningView view(kScene);
   EventReader events(view.port());
   const auto service_is = [](const std::string& state) {
@@ -82,63 +82,63 @@ TEST(View, SaysThatTheServiceIsSilentAndThatItIsBack) {
   std::string first_instance;
   {
     RunningService service({}, kScene);
-    const json snapshot = snapshot_where(events, service_is("waiting"));
+    const json snapshot = wait_for_snapshot(events, service_is("idle"));
     first_instance = snapshot["status"]["instance_id"];
     EXPECT_EQ(snapshot["services"], json({first_instance}));
     service.child().send_signal(SIGKILL);
   }
-  const json silent = snapshot_where(events, service_is("silent"));
-  EXPECT_GT(silent["status_age"].get<double>(), 3.0);
-  EXPECT_EQ(silent["status"]["instance_id"], first_instance) << "the last one is shown still";
+  const json offline = wait_for_snapshot(events, service_is("offline"));
+  EXPECT_GT(offline["status_age"].get<double>(), 3.0);
+  EXPECT_EQ(offline["status"]["instance_id"], first_instance) << "the last status is still shown";
   RunningService again({}, kScene);
-  const json back = snapshot_where(events, service_is("waiting"));
+  const json back = wait_for_snapshot(events, service_is("idle"));
   EXPECT_NE(back["status"]["instance_id"], first_instance);
   EXPECT_EQ(back["counts"]["services_started"], 2);
 }
 
-TEST(View, SaysThatAServiceWhichStandsStillDoesNotAnswer) {
+TEST(ViewProgram, ReportsStoppedServiceAsNotAnswering) {
   RunningView view(kScene);
   EventReader events(view.port());
   RunningService service({}, kScene);
   RawLcmSocket socket;
-  snapshot_where(events, [](const json& now) { return now["service"] == "waiting"; });
+  wait_for_snapshot(events, [](const json& now) { return now["service"] == "idle"; });
   service.stop();
-  auto ask_again = [&socket, seq = 0](const json& now) mutable {
+  auto send_and_check = [&socket, seq = 0](const json& now) mutable {
     send_request(socket, one_body(7, ++seq, 0.0));
     return now["service"] == "not answering";
   };
-  snapshot_where(events, ask_again);
+  wait_for_snapshot(events, send_and_check);
   service.child().send_signal(SIGCONT);
-  snapshot_where(events, [](const json& now) { return now["service"] != "not answering"; });
+  wait_for_snapshot(events, [](const json& now) { return now["service"] != "not answering"; });
 }
 
-TEST(View, SeesTwoServicesOnOneBusAndTheAnswersThatComeTwice) {
+TEST(ViewProgram, DetectsTwoServicesOnOneBus) {
   RunningView view(kScene);
   EventReader events(view.port());
   RunningService one({}, kScene);
   RunningService other({}, kScene);
   RawLcmSocket socket;
   send_request(socket, one_body(7, 1, 0.0));
-  const json snapshot = snapshot_where(events, [](const json& now) {
+  const json snapshot = wait_for_snapshot(events, [](const json& now) {
     return now["services"].size() == 2 && now["counts"]["responses_repeated"].get<int>() > 0;
   });
   EXPECT_EQ(snapshot["counts"]["responses"], 1);
 }
 
-TEST(View, ListensToChannelsByOtherNames) {
+TEST(ViewProgram, UsesConfiguredChannels) {
   RunningView view(kScene, {"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"});
   EventReader events(view.port());
   RunningService service({"--states-channel", "S.*", "--wrenches-channel", "W", "--status-channel", "T"},
                          kScene);
   RawLcmSocket socket;
-  send_request(socket, one_body(7, 1, 0.0));  // on the channel that it does not hear
+  send_request(socket, one_body(7, 1, 0.0));  // on a channel that it does not receive
   socket.send("S.*", encode_states(one_body(8, 1, 0.0)));
   const json snapshot =
-      snapshot_where(events, [](const json& now) { return now["counts"]["responses"] == 1; });
+      wait_for_snapshot(events, [](const json& now) { return now["counts"]["responses"] == 1; });
   EXPECT_EQ(snapshot["counts"]["requests"], 1);
 }
 
-TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
+TEST(ViewProgram, ShowsBotCorePosesAndResponses) {
   const std::vector<std::string> poses{"--pose",         "HULL=1",          "--pose", "HULL_ESTIMATE=2",
                                        "--force-torque", "FORCE_ON_HULL=2", "--pose", "HULL_TRUTH=2"};
   RunningView view(kScene, poses);
@@ -151,7 +151,7 @@ TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
     socket.send("HULL_TRUTH", encoded_by_lcm(upright_pose(1.0, 300 + i)));
   }
   const json snapshot =
-      snapshot_where(events, [](const json& now) { return now["counts"]["responses"] == 30; });
+      wait_for_snapshot(events, [](const json& now) { return now["counts"]["responses"] == 30; });
   EXPECT_EQ(snapshot["counts"]["responses_without_request"], 0);
   EXPECT_EQ(snapshot["counts"]["requests_missed"], 0);
   EXPECT_EQ(snapshot["service"], "answering");
@@ -159,10 +159,10 @@ TEST(View, ShowsPosesOfBotCoreAndTheirAnswers) {
   EXPECT_EQ(snapshot["bodies"][0]["p"], json({0.0, 0.0, 0.0}));
   EXPECT_NEAR(snapshot["bodies"][0]["f"][2].get<double>(), 2.0 * 3.0 * 2.0 * 1e4, 1e-2);
   EXPECT_NEAR(snapshot["bodies"][1]["f"][2].get<double>(), 2.0 * 3.0 * 1.0 * 1e4, 1e-2);
-  EXPECT_TRUE(snapshot["bodies"][1]["status"].is_null()) << "force and torque alone";
+  EXPECT_TRUE(snapshot["bodies"][1]["status"].is_null()) << "force and torque only";
 }
 
-TEST(View, LosesNoConnectionToAPacketThatIsNone) {
+TEST(ViewProgram, SurvivesMalformedPackets) {
   RunningView view(kScene);
   EventReader events(view.port());
   RawLcmSocket socket;
@@ -170,14 +170,14 @@ TEST(View, LosesNoConnectionToAPacketThatIsNone) {
   socket.send_packet({'L', 'C', '0', '2'});
   socket.send("BUOYANCY_STATES", {});
   socket.send("BUOYANCY_STATUS", RawBytes(100, 0xff));
-  const json snapshot = snapshot_where(events, [](const json& now) {
+  const json snapshot = wait_for_snapshot(events, [](const json& now) {
     const json& malformed = now["counts"]["malformed"];
     return malformed["shorter than the fixed fields"].get<int>() == 2;
   });
-  EXPECT_EQ(snapshot["service"], "silent");
+  EXPECT_EQ(snapshot["service"], "offline");
 }
 
-TEST(View, EndsBySignalWhilePagesAreConnected) {
+TEST(ViewProgram, ExitsOnSignalWithConnectedPages) {
   for (const int signal : {SIGINT, SIGTERM}) {
     RunningView view(kScene);
     EventReader events(view.port());
@@ -200,7 +200,7 @@ std::set<int> policies_of(const ChildProcess& process) {
   return policies;
 }
 
-TEST(View, RunsWhereAProcessorWouldBeIdleUnlessToldOtherwise) {
+TEST(ViewProgram, UsesIdleSchedulingByDefault) {
   const TempDir directory;
   ChildProcess view(
       command_of({BUOYANCY_VIEW, "--scene", directory.write("scene.toml", kScene), "--port", "0"}));
@@ -210,10 +210,10 @@ TEST(View, RunsWhereAProcessorWouldBeIdleUnlessToldOtherwise) {
   EXPECT_EQ(policies_of(normal.child()), std::set<int>{SCHED_OTHER});
 }
 
-TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
+TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
   TempDir directory;
   const std::string scene = directory.write("scene.toml", kScene);
-  const auto ended = [&](std::vector<std::string> options) {
+  const auto run_view = [&](std::vector<std::string> options) {
     options.insert(options.begin(), BUOYANCY_VIEW);
     return run_to_end(command_of(std::move(options)), kWaitTimeout);
   };
@@ -228,13 +228,13 @@ TEST(View, SaysWhatIsWrongInOneLineAndByItsExitCode) {
                                                   {"--scene", scene, "--pose", "HULL=77"},
                                                   {"--scene", scene, "--pose", "BUOYANCY_STATUS=1"},
                                                   {"--scene", directory.path("absent.toml")}}) {
-    const FinishedProcess view = ended(options);
+    const FinishedProcess view = run_view(options);
     EXPECT_EQ(view.exit_code, 2) << testing::PrintToString(options);
     EXPECT_TRUE(view.standard_error.starts_with("buoyancy-view: ")) << view.standard_error;
     EXPECT_EQ(view.standard_output, "");
   }
   const RunningView other(kScene);
-  const FinishedProcess taken = ended({"--scene", scene, "--port", std::to_string(other.port())});
+  const FinishedProcess taken = run_view({"--scene", scene, "--port", std::to_string(other.port())});
   EXPECT_EQ(taken.exit_code, 1);
   EXPECT_NE(taken.standard_error.find("Address already in use"), std::string::npos) << taken.standard_error;
 }

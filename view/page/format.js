@@ -1,5 +1,5 @@
 'use strict';
-// Numbers as people read them.
+// Formats durations, body statuses and counts for display.
 
 function seconds_text(seconds) {
   if (!Number.isFinite(seconds)) return '–';
@@ -7,20 +7,9 @@ function seconds_text(seconds) {
   return `${(seconds * factor).toPrecision(3)} ${unit}`;
 }
 
-// BodyStatus by value, as body_wrench_t has it.
-const statuses = [
-  ['OK', ''],
-  ['UNKNOWN_BODY', 'the scene has no body with this id'],
-  ['NON_FINITE_POSE', 'NaN or infinity in position or quaternion'],
-  ['BAD_QUATERNION', 'the quaternion\'s norm is not 1'],
-  ['NON_FINITE_TWIST', 'NaN or infinity in a velocity'],
-  ['BAD_LEAD_TIME', 'the lead time is NaN or infinite'],
-  ['OPEN_EDGE_WET', 'the mesh is open and its boundary is not wholly dry'],
-  ['OUT_OF_RANGE', 'the response is beyond double\'s range'],
-];
-
-function status_text(status) {
-  const [name, meaning] = statuses[status] || [`status ${status}`, 'of a later version'];
+// body_statuses: [name, meaning] by BodyStatus, from the page's data (body_statuses.h).
+function status_text(body_statuses, status) {
+  const [name, meaning] = body_statuses[status] || [`status ${status}`, 'defined by a later version'];
   return meaning ? `${name}: ${meaning}` : name;
 }
 

@@ -1,56 +1,56 @@
 'use strict';
-// Shows what buoyancy-view hears on the bus: each snapshot of /events as picture, strip, plots and tables.
+// Displays the snapshots that buoyancy-view sends as /events: 3D view, summary strip, plots and tables.
 (async () => {
   const element = (id) => document.getElementById(id);
-  const kept_seconds = 60;      // as buoyancy-view keeps
-  const track_interval = 0.1;   // s between two points of a body's plots
-  const text_interval = 200;    // ms
-  const plot_interval = 500;    // ms
-  const stale_after = 2000;     // ms without a snapshot
+  const history_length = 60;    // [s], same as BusMonitor::kSecondsKept
+  const track_interval = 0.1;   // [s] between two points of a body's plots
+  const text_interval = 200;    // [ms]
+  const plot_interval = 500;    // [ms]
+  const stale_timeout = 2000;   // [ms] without a snapshot
 
   const states = {
     answering: ['●', 'The service answers'],
-    waiting: ['○', 'The service waits for requests'],
+    idle: ['○', 'The service is idle'],
     'not answering': ['▲', 'The service does not answer'],
-    silent: ['■', 'The service is silent'],
-    connecting: ['…', 'No connection to buoyancy-view; trying again'],
+    offline: ['■', 'The service is offline'],
+    connecting: ['…', 'No connection to buoyancy-view; reconnecting'],
   };
 
   async function fetch_model() {
     const response = await fetch('model', { cache: 'no-store' });
-    if (!response.ok) throw new Error(`the model: ${response.status}`);
+    if (!response.ok) throw new Error(`cannot fetch the model: HTTP status ${response.status}`);
     return response.text();
   }
 
   const model_text = await fetch_model();
-  const { model, version } = JSON.parse(model_text);
+  const { model, version, body_statuses } = JSON.parse(model_text);
   const up = model.water.up;
   const heave = (p) => p[0] * up[0] + p[1] * up[1] + p[2] * up[2] - model.water.level;
   const along_up = (f) => f[0] * up[0] + f[1] * up[1] + f[2] * up[2];
   const scene = make_water_scene(element('canvas'), model);
   const view = { snapshots: 0, renders: 0, connections: 0, last: null, state: 'connecting', history: [], paused: false,
-                 chosen: model.bodies[0].id, following: false, model };
+                 selected: model.bodies[0].id, following: false, model, body_statuses };
   window.buoyancyView = view;
 
-  // What the plots show: of the bus one entry a second, of every body a point every tenth of one.
+  // Time series of the bodies' plots, with one point per track_interval.
   const tracks = { times: [], bodies: new Map() };
-  let spoken = '';
+  let announced = '';
 
-  function say_state(state) {
+  function set_state(state) {
     view.state = state;
-    const [sign, words] = states[state];
+    const [sign, text] = states[state];
     element('state').dataset.state = state;
     element('state_sign').textContent = sign;
-    if (spoken !== words) element('state_text').textContent = words;  // only news is read aloud
-    spoken = words;
+    if (announced !== text) element('state_text').textContent = text;  // screen readers announce each assignment
+    announced = text;
   }
 
-  function take_second(second) {
+  function add_second(second) {
     const newest = view.history[view.history.length - 1];
     if (!second || (newest && newest.number === second.number)) return;
-    if (newest && second.number < newest.number) view.history = [];  // buoyancy-view began anew
+    if (newest && second.number < newest.number) view.history = [];  // buoyancy-view has restarted
     view.history.push(second);
-    if (view.history.length > kept_seconds) view.history.shift();
+    if (view.history.length > history_length) view.history.shift();
   }
 
   function track(snapshot) {
@@ -67,17 +67,17 @@
       if (!tracks.bodies.has(body.id)) {
         tracks.bodies.set(body.id, { heave: new Array(tracks.times.length - 1).fill(NaN), force: new Array(tracks.times.length - 1).fill(NaN) });
       }
-      const of_body = tracks.bodies.get(body.id);
-      of_body.heave.push(heave(body.p));
-      of_body.force.push(body.f && !body.status ? along_up(body.f) : NaN);  // not OK: zeros that are no force
+      const body_track = tracks.bodies.get(body.id);
+      body_track.heave.push(heave(body.p));
+      body_track.force.push(body.f && !body.status ? along_up(body.f) : NaN);  // a status other than OK carries zeros
     }
-    while (tracks.times.length > 0 && tracks.times[0] < now - kept_seconds) {
+    while (tracks.times.length > 0 && tracks.times[0] < now - history_length) {
       tracks.times.shift();
-      for (const of_body of tracks.bodies.values()) { of_body.heave.shift(); of_body.force.shift(); }
+      for (const body_track of tracks.bodies.values()) { body_track.heave.shift(); body_track.force.shift(); }
     }
   }
 
-  const nothing_yet = 'nothing yet';
+  const no_data = 'no data yet';
   const bus_series = (columns) => () => {
     const newest = view.history.length > 0 ? view.history[view.history.length - 1].number : 0;
     const times = view.history.map((second) => second.number - newest);
@@ -85,17 +85,17 @@
   };
   const body_series = (name, column) => () => {
     const newest = tracks.times[tracks.times.length - 1];
-    const of_body = tracks.bodies.get(view.chosen);
-    return [{ name, times: tracks.times.map((time) => time - newest), values: of_body ? of_body[column] : [] }];
+    const body_track = tracks.bodies.get(view.selected);
+    return [{ name, times: tracks.times.map((time) => time - newest), values: body_track ? body_track[column] : [] }];
   };
   const milliseconds = (value) => (value === null ? NaN : 1e3 * value);
   const plots = [
     { title: 'Request to response', unit: 'ms', missing: 'no responses yet',
       make: bus_series([['median', (second) => milliseconds(second.p50)], ['99 %', (second) => milliseconds(second.p99)]]) },
-    { title: 'Messages', unit: 'a second', missing: nothing_yet,
+    { title: 'Messages', unit: '1/s', missing: no_data,
       make: bus_series([['requests', (second) => second.requests], ['responses', (second) => second.responses], ['unanswered', (second) => second.unanswered]]) },
-    { title: 'Heave of the body', unit: 'm', missing: nothing_yet, make: body_series('origin over the water', 'heave') },
-    { title: 'Buoyant force on the body', unit: 'N', missing: nothing_yet, make: body_series('upwards', 'force') },
+    { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('origin over the water', 'heave') },
+    { title: 'Buoyant force on the body', unit: 'N', missing: no_data, make: body_series('upwards', 'force') },
   ];
   for (const plot of plots) {
     plot.plot = new Plot(element('plots'), { title: plot.title, unit: plot.unit, series: plot.make(), missing: plot.missing });
@@ -116,14 +116,14 @@
     const second = now.second || { requests: 0, responses: 0, p50: null, p99: null, max: null };
     const time = (value) => (value === null ? '–' : seconds_text(value));
     const entries = [
-      ['requests', `${count_text(second.requests)} a second`], ['responses', `${count_text(second.responses)} a second`],
+      ['requests', `${count_text(second.requests)} per second`], ['responses', `${count_text(second.responses)} per second`],
       ['median', time(second.p50)], ['99 %', time(second.p99)], ['slowest', time(second.max)],
       ['unanswered', count_text(now.counts.unanswered)], ['missed by this view', count_text(now.counts.requests_missed)], ['packets dropped', count_text(now.counts.packets_dropped)],
     ];
     if (!status) return entries;
     return entries.concat([
-      ['service', status.version], ['mode', status.mode], ['up for', seconds_text(status.uptime)],
-      ['status', age_text(now.status_age)], ['rejected', count_text(status.rejected)], ['not sent', count_text(status.send_failures)],
+      ['service', status.version], ['mode', status.mode], ['uptime', seconds_text(status.uptime)],
+      ['status', age_text(now.status_age)], ['rejected', count_text(status.rejected)], ['send failures', count_text(status.send_failures)],
     ]);
   }
 
@@ -145,24 +145,24 @@
   function notices(now) {
     const found = [];
     if (now.services.length > 1) {
-      found.push(`${now.services.length} services are on this bus (${now.services.join(', ')}): if they hear the same channels, every ` +
-        'request is answered as often. Stop all but one, or give each its own channels.');
+      found.push(`${now.services.length} services are on this bus (${now.services.join(', ')}). If they use the same channels, each of them ` +
+        'responds to every request: stop all but one, or configure separate channels.');
     }
-    if (now.state === 'silent') {
+    if (now.state === 'offline') {
       found.push(now.status
-        ? `Nothing is heard of the service: its last status came ${age_text(now.status_age)}. What is shown is the last that was heard.`
-        : 'Nothing is heard of the service, and no status of it since this view was started.');
+        ? `No message from the service: its last status arrived ${age_text(now.status_age)}. The page shows the last state received.`
+        : 'No message from the service since this view was started.');
     }
-    if (now.state === 'not answering') found.push(`Requests are on the bus, and the last response came ${age_text(now.response_age)}.`);
+    if (now.state === 'not answering') found.push(`Requests are on the bus; the last response arrived ${age_text(now.response_age)}.`);
     if (now.counts.bodies_not_in_scene > 0) {
-      found.push(`${plural(now.counts.bodies_not_in_scene, 'time', 'times')} a body was asked about that ${model.scene} has not: is the service's scene another one?`);
+      found.push(`${plural(now.counts.bodies_not_in_scene, 'body', 'bodies')} in requests not found in ${model.scene}: the service may use a different scene.`);
     }
     if (now.status && now.status.scene_bodies !== model.bodies.length) {
-      found.push(`The service has ${plural(now.status.scene_bodies, 'body', 'bodies')}, the scene shown here ${model.bodies.length}.`);
+      found.push(`The service's scene has ${plural(now.status.scene_bodies, 'body', 'bodies')}, the scene shown here has ${model.bodies.length}.`);
     }
-    // The service has its path, as it was given; buoyancy-view may run elsewhere.
+    // The status holds a path on the service's machine; only the file name is comparable.
     const scene_of_service = now.status ? now.status.scene.split('/').pop() : model.scene;
-    if (scene_of_service !== model.scene) found.push(`The service's scene is ${scene_of_service}, the one shown here ${model.scene}.`);
+    if (scene_of_service !== model.scene) found.push(`The service's scene is ${scene_of_service}, the scene shown here is ${model.scene}.`);
     return found;
   }
 
@@ -179,58 +179,57 @@
   }
 
   function body_table(now) {
-    const body = now.bodies.find((one) => one.id === view.chosen);
-    const description = model.bodies.find((one) => one.id === view.chosen);
-    if (!body) return table_of(`Body ${description.id} ${description.name}: not asked about yet`, [], []);
+    const body = now.bodies.find((one) => one.id === view.selected);
+    const description = model.bodies.find((one) => one.id === view.selected);
+    if (!body) return table_of(`Body ${description.id} ${description.name}: no request yet`, [], []);
     const vector = (values) => (values ? values.map(format_number).join(', ') : '–');
     const rows = [
-      ['status', body.status === null ? (body.f ? 'not said: force and torque alone' : 'requested, no response yet') : status_text(body.status)],
+      ['status', body.status === null ? (body.f ? 'unknown: force and torque only' : 'requested, no response yet') : status_text(body_statuses, body.status)],
       ['position, m', vector(body.p)], ['quaternion w, x, y, z', vector(body.q)],
       ['force, N', vector(body.f)], ['torque, N m', vector(body.t)],
       ['error bounds, N and N m', body.force_bound !== null ? `${format_number(body.force_bound)}, ${format_number(body.torque_bound)}` : '–'],
       ['submerged volume, m³', body.volume !== null ? format_number(body.volume) : '–'],
     ];
     if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : format_number(height))).join(', ')]);
-    rows.push(['asked about', age_text(body.age)]);
+    rows.push(['latest request', age_text(body.age)]);
     return table_of(`Body ${description.id} ${description.name}`, ['', ''], rows);
   }
 
   function counter_tables(now) {
     const counts = now.counts;
-    const heard = [
+    const observed = [
       ['requests', counts.requests], ['retries', counts.requests_repeated], ['responses', counts.responses],
       ['duplicate responses', counts.responses_repeated], ['responses without a request', counts.responses_without_request],
-      ['unanswered', counts.unanswered], ['numbers missing between requests', counts.requests_missed], ['sessions', counts.sessions],
+      ['unanswered', counts.unanswered], ['requests missed by this view', counts.requests_missed], ['sessions', counts.sessions],
       ...Object.entries(counts.malformed).map(([cause, count]) => [`malformed: ${cause}`, count]),
-      ['packets dropped, before this view could take them', counts.packets_dropped], ['fragments of messages that did not come whole', counts.fragments_dropped], ['services started', counts.services_started],
+      ['packets dropped by the kernel', counts.packets_dropped], ['fragments of incomplete messages', counts.fragments_dropped], ['services started', counts.services_started],
     ];
-    const tables = [table_of('Observed on the bus', ['since this view began', ''], heard)];
+    const tables = [table_of('Observed on the bus', ['since this view was started', ''], observed)];
     if (!now.status) return tables;
     const status = now.status;
-    tables.push(table_of('Reported by the service', ['since it began', ''], [
+    tables.push(table_of('Reported by the service', ['since it was started', ''], [
       ['requests', status.requests], ['computed', status.computed], ['retries', status.retries], ['conflicting retries', status.conflicting_retries],
       ['stale', status.stale], ['superseded', status.superseded], ['rejected', status.rejected], ['send failures', status.send_failures],
       ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
       ['sessions', status.sessions], ['sessions evicted', status.sessions_evicted], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
-    const by_status = status.bodies;
     tables.push(table_of('Bodies evaluated', ['', 'count'], [
-      ['skipped: dry, above the water', status.bodies_dry], ['skipped: wet, below the surface', status.bodies_wet],
-      ['skipped: unchanged', status.bodies_unchanged], ['computed: crossing the surface', status.bodies_crossing],
-      ...Object.entries(by_status).map(([name, count]) => [name, count]),
+      ['skipped: dry', status.bodies_dry], ['skipped: fully submerged', status.bodies_wet],
+      ['skipped: unchanged', status.bodies_unchanged], ['computed: partially submerged', status.bodies_crossing],
+      ...Object.entries(status.bodies),
       ['quaternions normalised', status.quaternions_normalised], ['hydrostatics', status.hydrostatics],
     ]));
-    tables.push(table_of('Its own time', ['from receipt to publication', 'ms'], [
+    tables.push(table_of('Service latency', ['from receipt to publication', 'ms'], [
       ['median', 1e3 * status.latency.p50], ['99 %', 1e3 * status.latency.p99], ['99.9 %', 1e3 * status.latency.p999],
-      ['slowest', 1e3 * status.latency.max], ['longest wait to be read, last second', 1e3 * status.queue_wait],
+      ['slowest', 1e3 * status.latency.max], ['maximum queue wait, last second', 1e3 * status.queue_wait],
     ]));
     return tables;
   }
 
   function show_state(now) {
-    say_state(now.service);
+    set_state(now.service);
     fill_notices(notices({ ...now, state: now.service }));
-    document.body.classList.toggle('silent', now.service === 'silent');
+    document.body.classList.toggle('offline', now.service === 'offline');
   }
 
   function show_text(now) {
@@ -244,48 +243,48 @@
   function show_bodies(now) {
     if (!scene) return;
     scene.show(now.bodies.map((body) => ({ ...body, f: body.f || [0, 0, 0], t: body.t || [0, 0, 0] })));
-    scene.follow(view.following ? view.chosen : null);
+    scene.follow(view.following ? view.selected : null);
     scene.render();
     view.renders += 1;
   }
 
-  let frame_due = false, text_shown = -Infinity, plots_shown = -Infinity, arrived = -Infinity;
-  function show_newest(time) {
-    frame_due = false;
-    const text_due = time >= text_shown + text_interval;
-    if (text_due) text_shown = time;
+  let frame_requested = false, text_time = -Infinity, plots_time = -Infinity, received = -Infinity;
+  function show_latest(time) {
+    frame_requested = false;
+    const text_due = time >= text_time + text_interval;
+    if (text_due) text_time = time;
     if (view.paused) {
-      if (text_due) show_state(view.last);  // the picture waits, the service does not
+      if (text_due) show_state(view.last);  // the state is shown even while the 3D view is paused
       return;
     }
     show_bodies(view.last);
     if (text_due) show_text(view.last);
-    if (time >= plots_shown + plot_interval) { draw_plots(); plots_shown = time; }
+    if (time >= plots_time + plot_interval) { draw_plots(); plots_time = time; }
   }
 
-  function take_snapshot(snapshot) {
+  function on_snapshot(snapshot) {
     view.last = snapshot;
     view.snapshots += 1;
-    arrived = performance.now();
+    received = performance.now();
     element('canvas').classList.remove('stale');
-    take_second(snapshot.second);
+    add_second(snapshot.second);
     track(snapshot);
-    if (!frame_due) { frame_due = true; requestAnimationFrame(show_newest); }
+    if (!frame_requested) { frame_requested = true; requestAnimationFrame(show_latest); }
   }
 
-  function choose(id) {
-    view.chosen = id;
+  function select(id) {
+    view.selected = id;
     element('body').value = String(id);
-    text_shown = plots_shown = -Infinity;
+    text_time = plots_time = -Infinity;
     if (view.last) { draw_plots(); show_text(view.last); show_bodies(view.last); }
   }
-  function choose_next(by) {
-    const at = model.bodies.findIndex((body) => body.id === view.chosen);
-    choose(model.bodies[(at + by + model.bodies.length) % model.bodies.length].id);
+  function select_next(by) {
+    const at = model.bodies.findIndex((body) => body.id === view.selected);
+    select(model.bodies[(at + by + model.bodies.length) % model.bodies.length].id);
   }
   function pause(on) {
     view.paused = on;
-    element('pause').textContent = on ? 'Go on' : 'Pause';
+    element('pause').textContent = on ? 'Resume' : 'Pause';
     element('pause').setAttribute('aria-pressed', String(on));
   }
   function follow(on) {
@@ -293,16 +292,16 @@
     element('follow').checked = on;
     if (view.last) show_bodies(view.last);
   }
-  Object.assign(view, { scene, choose, pause, follow });
+  Object.assign(view, { scene, select, pause, follow });
 
   for (const body of model.bodies) element('body').add(new Option(`${body.id} ${body.name}`, String(body.id)));
-  element('body').addEventListener('change', (event) => choose(Number(event.target.value)));
+  element('body').addEventListener('change', (event) => select(Number(event.target.value)));
   element('pause').addEventListener('click', () => pause(!view.paused));
   element('follow').addEventListener('change', (event) => follow(event.target.checked));
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === 'SELECT') return;
-    if (event.key === ' ' && ['BUTTON', 'INPUT', 'SUMMARY'].includes(event.target.tagName)) return;  // that is pressed by it
-    const moves = { ' ': () => pause(!view.paused), n: () => choose_next(1), p: () => choose_next(-1), f: () => follow(!view.following) };
+    if (event.key === ' ' && ['BUTTON', 'INPUT', 'SUMMARY'].includes(event.target.tagName)) return;  // Space activates these
+    const moves = { ' ': () => pause(!view.paused), n: () => select_next(1), p: () => select_next(-1), f: () => follow(!view.following) };
     const move = moves[event.key.toLowerCase()];
     if (move) move();
     if (move || (scene && scene.key(event))) event.preventDefault();
@@ -310,7 +309,7 @@
 
   element('title').textContent = model.scene;
   document.title = `buoyancy: ${model.scene}, live`;
-  element('footer').textContent = `buoyancy-view ${version}. Drawn with three.js. It listens and sends nothing on the bus.`;
+  element('footer').textContent = `buoyancy-view ${version}. Rendered with three.js. Publishes nothing on the bus.`;
   fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.outputs.includes('hydrostatics')));
 
   function connect() {
@@ -318,26 +317,26 @@
     events.addEventListener('open', async () => {
       view.connections += 1;
       if (view.connections === 1) return;
-      // buoyancy-view may have begun anew, with another scene.
+      // buoyancy-view may have restarted with another scene.
       try {
         if (await fetch_model() !== model_text) location.reload();
       } catch (error) {
-        // It is gone again; the events say so too.
+        // The connection is lost again; the error event of EventSource handles it.
       }
     });
     events.addEventListener('history', (event) => { view.history = JSON.parse(event.data); });
-    events.addEventListener('message', (event) => take_snapshot(JSON.parse(event.data)));
+    events.addEventListener('message', (event) => on_snapshot(JSON.parse(event.data)));
     events.addEventListener('error', () => {
-      say_state('connecting');
-      if (events.readyState !== EventSource.CLOSED) return;  // it tries again by itself
+      set_state('connecting');
+      if (events.readyState !== EventSource.CLOSED) return;  // EventSource reconnects
       events.close();
       setTimeout(connect, 2000);
     });
   }
   setInterval(() => {
-    if (performance.now() < arrived + stale_after) return;
+    if (performance.now() < received + stale_timeout) return;
     element('canvas').classList.add('stale');
-    say_state('connecting');
+    set_state('connecting');
   }, 500);
   connect();
 })();

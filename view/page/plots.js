@@ -1,9 +1,9 @@
 'use strict';
-// Plots over time as SVG. All that is drawn comes from the arrays given, whole.
+// Plots over time as SVG, and tables. Every value of the given arrays is drawn.
 
-// Four or five round numbers that span from low to high.
-function round_ticks(low, high, most) {
-  const rough = (high - low) / most;
+// Multiples of a round step (1, 2 or 5 times a power of ten) from low to high, about max_ticks of them.
+function round_ticks(low, high, max_ticks) {
+  const rough = (high - low) / max_ticks;
   const power = Math.pow(10, Math.floor(Math.log10(rough)));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough);
   const ticks = [];
@@ -13,9 +13,9 @@ function round_ticks(low, high, most) {
 
 function format_number(value) {
   if (!Number.isFinite(value)) return '–';
-  if (value === 0) return '0';  // minus zero too
-  const size = Math.abs(value);
-  if (size < 1e-3 || size >= 1e6) return value.toExponential(3);
+  if (value === 0) return '0';  // also for -0
+  const magnitude = Math.abs(value);
+  if (magnitude < 1e-3 || magnitude >= 1e6) return value.toExponential(3);
   return value.toLocaleString('en', { maximumSignificantDigits: 6 });
 }
 
@@ -27,8 +27,8 @@ function svg_element(name, attributes, parent) {
 }
 
 class Plot {
-  // parent: element to stand in. series: [{name, times, values}], up to four. on_seek(time): somebody pointed there.
-  // missing: said where there is no value at all.
+  // parent: the containing element. series: [{name, times, values}], at most four. on_seek(time): called when the user
+  // points at a time. missing: text shown if there are no values.
   constructor(parent, { title, unit, series, on_seek, missing = 'not recorded' }) {
     this.title = title;
     this.unit = unit;
@@ -91,7 +91,7 @@ class Plot {
       this.readings.forEach((reading, i) => { reading.textContent = i === 0 ? this.missing : ''; });
       return;
     }
-    // A constant is drawn in the middle, not as the noise of its last digit.
+    // A constant series is drawn in the middle instead of magnifying its rounding errors.
     const middle = 0.5 * (range.low + range.high);
     const half = Math.max(0.5 * (range.high - range.low), 1e-9 * Math.abs(middle), 1e-12);
     const low = middle - 1.08 * half, high = middle + 1.08 * half;
@@ -114,9 +114,9 @@ class Plot {
       let path = '', dots = '', pen_up = true;
       for (let n = 0; n < values.length; n += 1) {
         if (!Number.isFinite(values[n])) { pen_up = true; continue; }
-        const place = `${this.x(times[n]).toFixed(1)} ${y(values[n]).toFixed(1)}`;
-        path += `${pen_up ? 'M' : 'L'}${place}`;
-        if (pen_up && !Number.isFinite(values[n + 1])) dots += `M${place}h0`;  // no line begins or ends there
+        const point = `${this.x(times[n]).toFixed(1)} ${y(values[n]).toFixed(1)}`;
+        path += `${pen_up ? 'M' : 'L'}${point}`;
+        if (pen_up && !Number.isFinite(values[n + 1])) dots += `M${point}h0`;  // an isolated value has no line
         pen_up = false;
       }
       svg_element('path', { d: path, fill: 'none', style: `stroke:${Plot.colours[i]}`, 'stroke-width': 1.7,
@@ -127,19 +127,19 @@ class Plot {
     this.show(this.shown_time);
   }
 
-  // What somebody who cannot see the plot is told.
+  // Sets the text alternative for screen readers.
   describe(range) {
     const parts = this.series.map(({ name, values }) => {
       const finite = Array.from(values).filter(Number.isFinite);
       if (finite.length === 0) return `${name} was not recorded`;
-      const least = finite.reduce((a, b) => Math.min(a, b)), most = finite.reduce((a, b) => Math.max(a, b));
-      return `${name} from ${format_number(least)} to ${format_number(most)}, at the end ${format_number(finite[finite.length - 1])}`;
+      const min = finite.reduce((a, b) => Math.min(a, b)), max = finite.reduce((a, b) => Math.max(a, b));
+      return `${name} from ${format_number(min)} to ${format_number(max)}, at the end ${format_number(finite[finite.length - 1])}`;
     });
     const span = range.empty ? '' : ` from ${format_number(range.start)} to ${format_number(range.end)} s`;
     this.svg.setAttribute('aria-label', `${this.title} in ${this.unit} over time${span}: ${parts.join('; ')}`);
   }
 
-  // Marks the time and reads the values there: those of the last row that is not later.
+  // Marks the time and displays the values of the last row that is not later.
   show(time) {
     this.shown_time = time;
     if (time === undefined || !this.now) return;
@@ -157,7 +157,7 @@ class Plot {
   }
 }
 
-// The last row that is not later than time; the first where all are. times: ascending.
+// The last row that is not later than time, or the first if all are later. times: ascending.
 function row_at(times, time) {
   let low = 0, high = times.length;
   while (low < high) {
@@ -168,7 +168,7 @@ function row_at(times, time) {
   return Math.max(0, low - 1);
 }
 
-// rows: of cells; a number is set right, with what units the heading says.
+// A table with a caption, column headings and rows of cells. A column of numbers is right-aligned.
 function table_of(caption, heads, rows) {
   const table = document.createElement('table');
   table.createCaption().textContent = caption;

@@ -1,8 +1,8 @@
 'use strict';
-// The bodies of a scene in the water, drawn with three.js. model: what scene_model.h says.
+// Renders the bodies of a scene in the water with three.js. model: see scene_model.h.
 //
-// Lengths are metres, turned and placed as in the world frame W; all is drawn about an origin on the water, so that a
-// body a thousand kilometres from W's own origin does not tremble in the graphics card's short numbers.
+// Lengths are in metres, axes are those of the world frame W. Everything is drawn relative to an origin on the water near
+// the bodies, because the graphics card's float32 is too coarse a thousand kilometres from W's origin.
 class WaterScene {
   static get colours() {
     return { sky: '#eaf3fa', water: '#56b4e9', dry: '#f0a30a', wet: '#0b4f8a', waterline: '#ffffff', force: '#009e73',
@@ -14,7 +14,7 @@ class WaterScene {
     this.model = model;
     this.up = new THREE.Vector3(...model.water.up);
     this.origin = null;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !drawn_by_the_processor() });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !uses_software_rendering() });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(WaterScene.colours.sky);
@@ -23,53 +23,53 @@ class WaterScene {
     this.target = new THREE.Vector3();
     this.azimuth = -0.9;
     this.elevation = 0.22;
-    // Two level directions, right-handed with up.
-    const slant = Math.abs(this.up.x) < 0.9 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
-    this.level_x = slant.addScaledVector(this.up, -slant.dot(this.up)).normalize();
+    // Two horizontal directions, right-handed with up.
+    const helper = Math.abs(this.up.x) < 0.9 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);
+    this.level_x = helper.addScaledVector(this.up, -helper.dot(this.up)).normalize();
     this.level_y = this.up.clone().cross(this.level_x);
     this.size = Math.max(...model.meshes.map((mesh) => mesh.diagonal));
-    this.subject = this.size;  // of what the camera looks at
+    this.subject = this.size;  // size of what the camera looks at
     this.distance = 2.4 * this.size;
     this.bodies = new Map();
-    this.shapes = model.meshes.map((mesh) => this.shape(mesh));
-    for (const body of model.bodies) this.bodies.set(body.id, this.body(body));
+    this.geometries = model.meshes.map((mesh) => this.make_geometry(mesh));
+    for (const body of model.bodies) this.bodies.set(body.id, this.make_body(body));
     this.add_water();
-    this.listen();
+    this.add_listeners();
     new ResizeObserver(() => this.render()).observe(canvas);
   }
 
-  // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}], as the messages have them.
+  // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}]; see snapshot_json.h.
   show(bodies) {
-    for (const now of bodies) {
-      const body = this.bodies.get(now.id);
+    for (const state of bodies) {
+      const body = this.bodies.get(state.id);
       if (!body) continue;
-      if (!is_pose(now.p, now.q)) {
+      if (!is_valid_pose(state.p, state.q)) {
         this.hide(body);
         continue;
       }
-      if (!this.origin) this.place_origin(now.p);
+      if (!this.origin) this.place_origin(state.p);
       body.group.visible = true;
-      body.group.position.copy(this.local(now.p));
-      body.group.quaternion.set(now.q[1], now.q[2], now.q[3], now.q[0]).normalize();
-      this.place_marks(body, now);
+      body.group.position.copy(this.local(state.p));
+      body.group.quaternion.set(state.q[1], state.q[2], state.q[3], state.q[0]).normalize();
+      this.place_markers(body, state);
     }
   }
 
   hide(body) {
-    for (const part of [body.group, ...Object.values(body.marks)]) part.visible = false;
+    for (const part of [body.group, ...Object.values(body.markers)]) part.visible = false;
   }
 
-  // The camera goes with this body, or with the middle of all: sideways, so that heave can be seen.
+  // Moves the camera horizontally with this body, or with the centre of all if id is null, so that heave stays visible.
   follow(id) {
     const shown = [...this.bodies.values()].filter((body) => body.group.visible && (id === null || body.description.id === id));
     if (shown.length === 0) return;
-    const middle = new THREE.Vector3();
-    for (const body of shown) middle.addScaledVector(body.group.position, 1 / shown.length);
-    this.target.copy(middle.addScaledVector(this.up, -middle.dot(this.up)));
+    const centre = new THREE.Vector3();
+    for (const body of shown) centre.addScaledVector(body.group.position, 1 / shown.length);
+    this.target.copy(centre.addScaledVector(this.up, -centre.dot(this.up)));
     let spread = 0;
-    for (const body of shown) spread = Math.max(spread, body.group.position.distanceTo(middle) + 0.7 * body.size);
+    for (const body of shown) spread = Math.max(spread, body.group.position.distanceTo(centre) + 0.7 * body.size);
     const subject = id === null ? this.size : shown[0].size;
-    // What was zoomed to is a part of the picture, not a distance: beside a ship a buoy would be a dot.
+    // The zoom is relative to the subject's size: at a ship's distance a buoy would be a dot.
     if (this.zoomed) this.distance *= subject / this.subject;
     else this.distance = Math.max(2.4 * spread, 2.5 * subject);
     this.subject = subject;
@@ -91,18 +91,18 @@ class WaterScene {
       .addScaledVector(this.up, Math.sin(this.elevation));
     this.camera.position.copy(this.target).addScaledVector(back, this.distance / Math.min(1, this.camera.aspect));
     this.camera.near = 0.01 * this.distance;
-    // A larger body beside the one looked at is in the water too.
+    // Keeps larger bodies beyond the followed one visible.
     this.camera.far = Math.max(80 * this.distance, 20 * this.size);
     this.fade.value = Math.max(20 * this.distance, 5 * this.size);
     this.camera.lookAt(this.target);
     this.camera.updateProjectionMatrix();
-    this.size_marks(back.negate(), 2 * Math.tan(this.camera.fov * Math.PI / 360) / height);
+    this.size_markers(back.negate(), 2 * Math.tan(this.camera.fov * Math.PI / 360) / height);
     this.renderer.render(this.scene, this.camera);
   }
 
-  turn(right, higher) {
-    this.azimuth += right;
-    this.elevation = Math.min(1.5, Math.max(-1.2, this.elevation + higher));
+  rotate(azimuth, elevation) {
+    this.azimuth += azimuth;
+    this.elevation = Math.min(1.5, Math.max(-1.2, this.elevation + elevation));
     this.render();
   }
 
@@ -112,10 +112,10 @@ class WaterScene {
     this.render();
   }
 
-  // Where a point of W is on the canvas, in CSS pixels from its upper left corner.
+  // Projects a point of W to the canvas, in CSS pixels from its upper left corner.
   project(point) {
-    const at = this.local(point).project(this.camera);
-    return [0.5 * (at.x + 1) * this.canvas.clientWidth, 0.5 * (1 - at.y) * this.canvas.clientHeight];
+    const projected = this.local(point).project(this.camera);
+    return [0.5 * (projected.x + 1) * this.canvas.clientWidth, 0.5 * (1 - projected.y) * this.canvas.clientHeight];
   }
 
   local(point) {
@@ -124,50 +124,50 @@ class WaterScene {
 
   place_origin(point) {
     const up = this.model.water.up;
-    const over = up[0] * point[0] + up[1] * point[1] + up[2] * point[2] - this.model.water.level;
-    this.origin = point.map((coordinate, i) => coordinate - over * up[i]);
+    const height = up[0] * point[0] + up[1] * point[1] + up[2] * point[2] - this.model.water.level;
+    this.origin = point.map((coordinate, i) => coordinate - height * up[i]);
   }
 
-  shape(mesh) {
+  make_geometry(mesh) {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(numbers_of(mesh.positions, Float32Array), 3));
-    geometry.setIndex(new THREE.BufferAttribute(numbers_of(mesh.indices, Uint32Array), 1));
+    geometry.setAttribute('position', new THREE.BufferAttribute(decode_numbers(mesh.positions, Float32Array), 3));
+    geometry.setIndex(new THREE.BufferAttribute(decode_numbers(mesh.indices, Uint32Array), 1));
     geometry.computeBoundingSphere();
     return geometry;
   }
 
-  body(description) {
+  make_body(description) {
     const colour = (name) => ({ value: new THREE.Color(WaterScene.colours[name]) });
     const mesh = this.model.meshes[description.mesh];
     const material = new THREE.ShaderMaterial({
       extensions: { derivatives: true },
       side: THREE.DoubleSide,
       uniforms: { up: { value: this.up }, dry: colour('dry'), wet: colour('wet'), waterline: colour('waterline'),
-                  thinnest: { value: 0.002 * mesh.diagonal } },
+                  min_line_width: { value: 0.002 * mesh.diagonal } },
       vertexShader: `
-        varying vec3 at_W, at_view;
+        varying vec3 position_W, position_view;
         void main() {
           vec4 world = modelMatrix * vec4(position, 1.0);
           vec4 view = viewMatrix * world;
-          at_W = world.xyz;
-          at_view = view.xyz;
+          position_W = world.xyz;
+          position_view = view.xyz;
           gl_Position = projectionMatrix * view;
         }`,
-      // Faces are flat, as the solver sees them. The waterline is as wide as two pixels, whatever the slope.
+      // Flat shading, since the solver uses flat faces. The waterline is about two pixels wide at any slope.
       fragmentShader: `
         uniform vec3 up, dry, wet, waterline;
-        uniform float thinnest;
-        varying vec3 at_W, at_view;
+        uniform float min_line_width;
+        varying vec3 position_W, position_view;
         void main() {
-          vec3 normal = normalize(cross(dFdx(at_view), dFdy(at_view)));
+          vec3 normal = normalize(cross(dFdx(position_view), dFdy(position_view)));
           float light = 0.58 + 0.42 * max(0.0, dot(normal, normalize(vec3(-0.4, 0.8, 0.5))));
-          float height = dot(at_W, up);
-          float line = max(1.6 * fwidth(height), thinnest);
+          float height = dot(position_W, up);
+          float line = max(1.6 * fwidth(height), min_line_width);
           vec3 colour = (height > 0.0 ? dry : wet) * light;
           gl_FragColor = vec4(abs(height) < line ? waterline : colour, 1.0);
         }`,
     });
-    const drawn = new THREE.Mesh(this.shapes[description.mesh], material);
+    const drawn = new THREE.Mesh(this.geometries[description.mesh], material);
     drawn.position.set(...mesh.center);
     const group = new THREE.Group();
     group.add(drawn);
@@ -175,34 +175,34 @@ class WaterScene {
     this.scene.add(group);
     const size = mesh.diagonal;
     const water = this.model.water;
-    const marks = {
+    const markers = {
       force: this.arrow('force'),
       weight: this.arrow('weight'),
       centre_of_buoyancy: this.point('centre_of_buoyancy', new THREE.SphereGeometry(5, 20, 14)),
       centre_of_mass: this.point('centre_of_mass', new THREE.SphereGeometry(5, 20, 14)),
-      // A ring, so that both are seen where it lies in the centre of mass.
+      // A ring, so that both are visible if it coincides with the centre of mass.
       metacentre: this.point('metacentre', new THREE.RingGeometry(5, 8, 28)),
     };
-    return { description, group, size, marks, whole_weight: water.density * water.gravity * Math.abs(mesh.volume) };
+    return { description, group, size, markers, displacement_weight: water.density * water.gravity * Math.abs(mesh.volume) };
   }
 
-  // Marks are seen through the hull.
-  mark_material(name) {
+  // Markers are visible through the hull.
+  marker_material(name) {
     return new THREE.MeshBasicMaterial({ color: WaterScene.colours[name], depthTest: false, transparent: true });
   }
 
-  // geometry: in pixels, as those of the arrows but for their length; size_marks() makes metres of them.
+  // geometry: in pixels, same as the arrows except for their length; size_markers() scales it to metres.
   point(name, geometry) {
-    const point = new THREE.Mesh(geometry, this.mark_material(name));
+    const point = new THREE.Mesh(geometry, this.marker_material(name));
     point.renderOrder = name === 'metacentre' ? 4 : 3;
     point.visible = false;
     this.scene.add(point);
     return point;
   }
 
-  // Of length 1 along +y, scaled when it is shown.
+  // An arrow of length 1 along +y; place_arrow() scales it.
   arrow(name) {
-    const material = this.mark_material(name);
+    const material = this.marker_material(name);
     const shaft = new THREE.Mesh(new THREE.CylinderGeometry(1.9, 1.9, 1, 12), material);
     shaft.position.y = 0.5;
     const head = new THREE.Mesh(new THREE.ConeGeometry(6, 16, 16), material);
@@ -217,25 +217,25 @@ class WaterScene {
     return arrow;
   }
 
-  // Marks stay as large on the screen however near the camera is, so that zooming parts what lies close together, but
-  // never larger than a part of their body. ahead: where the camera looks; slope: of one pixel.
-  size_marks(ahead, slope) {
-    for (const { marks, size } of this.bodies.values()) {
-      for (const mark of Object.values(marks)) {
-        if (!mark.visible) continue;
-        const pixel = Math.min(0.01 * size, slope * Math.max(this.camera.near, mark.position.clone().sub(this.camera.position).dot(ahead)));
-        if (mark.head) {
-          mark.head.scale.setScalar(pixel);
-          mark.shaft.scale.x = mark.shaft.scale.z = pixel;
+  // Keeps the size of markers on the screen independent of the zoom, so that zooming in separates adjacent ones, and
+  // limits it relative to their body. ahead: the viewing direction; slope: the extent of a pixel at distance 1.
+  size_markers(ahead, slope) {
+    for (const { markers, size } of this.bodies.values()) {
+      for (const marker of Object.values(markers)) {
+        if (!marker.visible) continue;
+        const pixel = Math.min(0.01 * size, slope * Math.max(this.camera.near, marker.position.clone().sub(this.camera.position).dot(ahead)));
+        if (marker.head) {
+          marker.head.scale.setScalar(pixel);
+          marker.shaft.scale.x = marker.shaft.scale.z = pixel;
         } else {
-          mark.scale.setScalar(pixel);
-          mark.quaternion.copy(this.camera.quaternion);
+          marker.scale.setScalar(pixel);
+          marker.quaternion.copy(this.camera.quaternion);
         }
       }
     }
   }
 
-  // length: m
+  // length: [m]
   place_arrow(arrow, from, direction, length, size) {
     arrow.visible = length > 1e-3 * size;
     if (!arrow.visible) return;
@@ -246,30 +246,30 @@ class WaterScene {
     arrow.head.position.y = length;
   }
 
-  place_marks(body, now) {
-    const at = body.group.position;
-    const offset = (vector) => new THREE.Vector3(...vector).add(at);
-    const place = (ball, point) => {
-      ball.visible = point !== null && point.every(Number.isFinite);
-      if (ball.visible) ball.position.copy(offset(point));
+  place_markers(body, state) {
+    const position = body.group.position;
+    const offset = (vector) => new THREE.Vector3(...vector).add(position);
+    const place = (marker, point) => {
+      marker.visible = point !== null && point.every(Number.isFinite);
+      if (marker.visible) marker.position.copy(offset(point));
     };
-    // A wrench without its centre of buoyancy acts at the body's origin.
-    const wet = (now.status === 0 || now.status === null) && now.f.some((part) => part !== 0);
-    place(body.marks.centre_of_buoyancy, wet ? now.b : null);
-    const force = new THREE.Vector3(...now.f);
-    const scale = 0.9 * body.size / body.whole_weight;
-    if (wet) this.place_arrow(body.marks.force, offset(now.b || [0, 0, 0]), force, scale * force.length(), body.size);
-    else body.marks.force.visible = false;
-    place(body.marks.metacentre, now.m ? now.m[0] : null);
+    // A force without a centre of buoyancy is drawn at the body's origin.
+    const is_wet = (state.status === 0 || state.status === null) && state.f.some((component) => component !== 0);
+    place(body.markers.centre_of_buoyancy, is_wet ? state.b : null);
+    const force = new THREE.Vector3(...state.f);
+    const scale = 0.9 * body.size / body.displacement_weight;
+    if (is_wet) this.place_arrow(body.markers.force, offset(state.b || [0, 0, 0]), force, scale * force.length(), body.size);
+    else body.markers.force.visible = false;
+    place(body.markers.metacentre, state.m ? state.m[0] : null);
     const centre = body.description.center_of_mass;
-    body.marks.centre_of_mass.visible = centre !== null;
+    body.markers.centre_of_mass.visible = centre !== null;
     if (centre === null) return;
-    body.marks.centre_of_mass.position.set(...centre).applyQuaternion(body.group.quaternion).add(at);
+    body.markers.centre_of_mass.position.set(...centre).applyQuaternion(body.group.quaternion).add(position);
     const weight = (body.description.mass || 0) * this.model.water.gravity;
-    this.place_arrow(body.marks.weight, body.marks.centre_of_mass.position, this.up.clone().negate(), scale * weight, body.size);
+    this.place_arrow(body.markers.weight, body.markers.centre_of_mass.position, this.up.clone().negate(), scale * weight, body.size);
   }
 
-  // A plane with a grid of metres, or of ten or a tenth, that fades into the sky before it ends.
+  // A plane with a grid whose cells are a power of ten of metres; it fades into the sky before its edge.
   add_water() {
     this.grid_cell = { value: 1 };
     this.fade = { value: 1 };
@@ -281,25 +281,25 @@ class WaterScene {
       uniforms: { colour: { value: new THREE.Color(WaterScene.colours.water) }, cell: this.grid_cell, fade: this.fade },
       vertexShader: `
         uniform float fade;
-        varying vec2 at;
-        varying float away;
+        varying vec2 point;
+        varying float camera_distance;
         void main() {
-          at = position.xy * fade * 4.0;
-          vec4 view = modelViewMatrix * vec4(at, 0.0, 1.0);
-          away = length(view.xyz);
+          point = position.xy * fade * 4.0;
+          vec4 view = modelViewMatrix * vec4(point, 0.0, 1.0);
+          camera_distance = length(view.xyz);
           gl_Position = projectionMatrix * view;
         }`,
       fragmentShader: `
         uniform vec3 colour;
         uniform float cell, fade;
-        varying vec2 at;
-        varying float away;
+        varying vec2 point;
+        varying float camera_distance;
         void main() {
-          vec2 cells = at / cell;
+          vec2 cells = point / cell;
           vec2 width = fwidth(cells);
           vec2 lines = 1.0 - min(abs(fract(cells - 0.5) - 0.5) / max(width, 1e-6), 1.0);
           float line = max(lines.x, lines.y) * (1.0 - smoothstep(0.1, 0.5, max(width.x, width.y)));
-          float clear = 1.0 - smoothstep(0.3 * fade, fade, away);
+          float clear = 1.0 - smoothstep(0.3 * fade, fade, camera_distance);
           gl_FragColor = vec4(mix(colour, 0.45 * colour, 0.5 * line), clear * (0.45 + 0.25 * line));
         }`,
     });
@@ -310,8 +310,8 @@ class WaterScene {
     this.scene.add(this.water);
   }
 
-  // Drag turns, the wheel or two fingers zoom.
-  listen() {
+  // Dragging rotates the camera; the wheel and two fingers zoom.
+  add_listeners() {
     const fingers = new Map();
     const spread = () => {
       const [a, b] = [...fingers.values()];
@@ -329,7 +329,7 @@ class WaterScene {
       finger.x = event.clientX;
       finger.y = event.clientY;
       if (fingers.size === 2) this.zoom(before / Math.max(1, spread()));
-      else this.turn(-0.008 * dx, 0.008 * dy);
+      else this.rotate(-0.008 * dx, 0.008 * dy);
     });
     for (const end of ['pointerup', 'pointercancel']) {
       this.canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
@@ -340,10 +340,10 @@ class WaterScene {
     }, { passive: false });
   }
 
-  // For a page's keydown: true, it was one of the camera's keys.
+  // Handles a keydown event of the page; returns true if it was a key of the camera.
   key(event) {
-    const moves = { a: () => this.turn(-0.1, 0), d: () => this.turn(0.1, 0), w: () => this.turn(0, 0.08),
-                    s: () => this.turn(0, -0.08), q: () => this.zoom(1 / 1.15), e: () => this.zoom(1.15) };
+    const moves = { a: () => this.rotate(-0.1, 0), d: () => this.rotate(0.1, 0), w: () => this.rotate(0, 0.08),
+                    s: () => this.rotate(0, -0.08), q: () => this.zoom(1 / 1.15), e: () => this.zoom(1.15) };
     const move = moves[event.key.toLowerCase()];
     if (!move || event.ctrlKey || event.metaKey || event.altKey) return false;
     move();
@@ -351,45 +351,45 @@ class WaterScene {
   }
 }
 
-// p, q: [w, x, y, z]; as recorded.
-function is_pose(p, q) {
-  return p.every(Number.isFinite) && q.every(Number.isFinite) && q.some((part) => part !== 0);
+// p: position; q: quaternion [w, x, y, z].
+function is_valid_pose(p, q) {
+  return p.every(Number.isFinite) && q.every(Number.isFinite) && q.some((component) => component !== 0);
 }
 
-// Smooth edges cost a processor that draws by itself a third of its frames.
-function drawn_by_the_processor() {
+// Antialiasing costs software rendering a third of its frame rate.
+function uses_software_rendering() {
   const probe = document.createElement('canvas').getContext('webgl');
   const information = probe && probe.getExtension('WEBGL_debug_renderer_info');
   const name = information ? probe.getParameter(information.UNMASKED_RENDERER_WEBGL) : '';
-  const unneeded = probe && probe.getExtension('WEBGL_lose_context');
-  if (unneeded) unneeded.loseContext();
+  const lose_context = probe && probe.getExtension('WEBGL_lose_context');
+  if (lose_context) lose_context.loseContext();
   return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
 }
 
-// base64 of little-endian numbers, as base64.h writes them.
-function numbers_of(text, Type) {
+// Decodes base64 of little-endian numbers (base64.h).
+function decode_numbers(text, Type) {
   const bytes = atob(text);
   const buffer = new Uint8Array(bytes.length);
   for (let i = 0; i < bytes.length; i += 1) buffer[i] = bytes.charCodeAt(i);
   return new Type(buffer.buffer);
 }
 
-// The scene on the canvas, or where the browser has no WebGL null and a sentence in its place.
+// Returns the scene on the canvas; without WebGL, null, and shows a message in its place.
 function make_water_scene(canvas, model) {
   try {
     return new WaterScene(canvas, model);
   } catch (error) {
-    const sentence = document.createElement('p');
-    sentence.className = 'no-picture';
-    sentence.textContent = 'This browser offers no WebGL, so the bodies are not drawn; plots and tables are all there.';
-    canvas.parentElement.append(sentence);
+    const message = document.createElement('p');
+    message.className = 'no-picture';
+    message.textContent = 'This browser does not support WebGL, so the bodies are not drawn. Plots and tables are complete.';
+    canvas.parentElement.append(message);
     return null;
   }
 }
 
-// What the colours mean, as list items.
+// Adds the meaning of the colours as list items.
 function fill_legend(list, with_mass, with_metacentre) {
-  const entries = [['dry', 'hull, dry', ''], ['wet', 'hull, wetted', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', ''],
+  const entries = [['dry', 'dry hull', ''], ['wet', 'wetted hull', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', ''],
                    ['force', 'buoyant force, at the centre of buoyancy', 'round']];
   if (with_mass) entries.push(['weight', 'weight', 'bar'], ['centre_of_mass', 'centre of mass', 'round']);
   if (with_metacentre) entries.push(['metacentre', 'metacentre (of the softer axis)', 'ring']);
