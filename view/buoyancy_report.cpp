@@ -129,7 +129,8 @@ int report_main(int argc, char** argv) {
   if (!run) return fail(run.error(), kUsageError);
   for (const std::string& warning : run->warnings) print_error(app, arguments.run.string() + ": " + warning);
   if (run->suppressed_warnings > 0) {
-    print_error(app, pluralize(run->suppressed_warnings, "more warning", "more warnings") + " not shown");
+    print_error(app,
+                pluralize(run->suppressed_warnings, "more input error", "more input errors") + " not shown");
   }
   const char* const stopped_by = signals.consume();
   if (stopped_by != nullptr) {
