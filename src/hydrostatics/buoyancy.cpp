@@ -73,7 +73,7 @@ Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, co
 }
 
 // The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
-void result_wholly_wet(const FullySubmerged& wet, const Pose& pose, const Water& water,
+void set_submerged_result(const FullySubmerged& wet, const Pose& pose, const Water& water,
                        BuoyancyResult& result) {
   const Eigen::Quaterniond& q = pose.q_WB;
   const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
@@ -96,7 +96,7 @@ void result_wholly_wet(const FullySubmerged& wet, const Pose& pose, const Water&
 }
 
 // What the body displaces, as forces in the world.
-void result_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
+void set_result_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
                               const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const HydrostaticMesh& mesh = solver.mesh();
   const Displacement displaced = solver.displacement(plane);
@@ -129,7 +129,7 @@ void result_from_displacement(const Solver& solver, const WaterPlane& plane, con
   }
 }
 
-BuoyancyResult not_answered(BuoyancyStatus status, Immersion where) {
+BuoyancyResult failed_result(BuoyancyStatus status, Immersion where) {
   BuoyancyResult result;
   result.status = status;
   result.immersion = where;
@@ -137,21 +137,21 @@ BuoyancyResult not_answered(BuoyancyStatus status, Immersion where) {
 }
 
 // True where immersion says enough for a result: a dry body, or a wholly wet one with `hierarchical`.
-bool is_answered_by_bounds(const Solver& solver, Immersion immersion) {
+bool is_decided_by_bounds(const Solver& solver, Immersion immersion) {
   return immersion == Immersion::kDry ||
          (immersion == Immersion::kSubmerged && solver.method() == Method::kHierarchical);
 }
 
 // Of such a body.
-void result_by_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose, const Water& water,
+void set_result_from_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose, const Water& water,
                       BuoyancyResult& result) {
   if (immersion == Immersion::kDry) {  // nothing to sum: every method says zero, exactly
     result = {};
     result.immersion = immersion;
     return;
   }
-  result_wholly_wet(wet, pose, water, result);
-  if (!finite(result)) result = not_answered(BuoyancyStatus::kOutOfRange, immersion);
+  set_submerged_result(wet, pose, water, result);
+  if (!finite(result)) result = failed_result(BuoyancyStatus::kOutOfRange, immersion);
 }
 
 }  // namespace
@@ -173,8 +173,8 @@ FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, 
 bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
                               const Water& water, BuoyancyResult& result) {
   const Immersion glance = quick_immersion(solver.mesh(), pose, water);
-  if (!is_answered_by_bounds(solver, glance)) return false;
-  result_by_bounds(wet, glance, pose, water, result);
+  if (!is_decided_by_bounds(solver, glance)) return false;
+  set_result_from_bounds(wet, glance, pose, water, result);
   return true;
 }
 
@@ -182,23 +182,23 @@ BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& wat
   const HydrostaticMesh& mesh = solver.mesh();
   BuoyancyResult result;
   const auto by_bounds = [&](Immersion immersion) {
-    result_by_bounds(fully_submerged(mesh, water, reference_B), immersion, pose, water, result);
+    set_result_from_bounds(fully_submerged(mesh, water, reference_B), immersion, pose, water, result);
     return result;
   };
   const Immersion glance = quick_immersion(mesh, pose, water);
-  if (is_answered_by_bounds(solver, glance)) return by_bounds(glance);
+  if (is_decided_by_bounds(solver, glance)) return by_bounds(glance);
   const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
-    return not_answered(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
+    return failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
   const Immersion where = immersion(mesh, plane);
   if (where != Immersion::kDry && mesh.is_open() && !boundary_is_dry(mesh, plane)) {
-    return not_answered(BuoyancyStatus::kOpenEdgeWet, where);
+    return failed_result(BuoyancyStatus::kOpenEdgeWet, where);
   }
-  if (is_answered_by_bounds(solver, where)) return by_bounds(where);
+  if (is_decided_by_bounds(solver, where)) return by_bounds(where);
   result.immersion = where;
-  result_from_displacement(solver, plane, pose, water, reference_B, result);
-  if (!finite(result)) return not_answered(BuoyancyStatus::kOutOfRange, where);
+  set_result_from_displacement(solver, plane, pose, water, reference_B, result);
+  if (!finite(result)) return failed_result(BuoyancyStatus::kOutOfRange, where);
   return result;
 }
 

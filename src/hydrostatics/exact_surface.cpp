@@ -1,4 +1,4 @@
-#include "hydrostatics/exact_surface.h"
+#include "hydrostatics/paper_methods.h"
 
 #include "hydrostatics/pressure_elements.h"
 #include "hydrostatics/wetted_surface.h"
@@ -7,7 +7,7 @@ namespace buoyancy {
 
 Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const auto k = Point<double>::from(plane.up_B);
-  const auto sum = sum_over_whole_wet_surface<PressureElements>(
+  const auto sum = sum_over_wetted_surface<PressureElements>(
       mesh, plane,
       [k](PressureElements& block, const auto& a, const auto& b, const auto& c) { block.add(a, b, c, k); });
   Displacement result = sum.displacement(plane);

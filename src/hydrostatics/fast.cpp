@@ -1,4 +1,4 @@
-#include "hydrostatics/fast.h"
+#include "hydrostatics/paper_methods.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "hydrostatics/fast_surface.h"
+#include "hydrostatics/paper_methods.h"
 
 #include <algorithm>
 
@@ -23,7 +23,7 @@ struct PressureSum {
 
 Displacement fast_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const auto k = Point<double>::from(plane.up_B);
-  const auto sum = sum_over_wet_surface<PressureSum>(
+  const auto sum = sum_over_wet_triangles<PressureSum>(
       mesh, plane,
       [k](PressureSum& block, const auto& a, const auto& b, const auto& c) { block.wet.add(a, b, c, k); },
       [](PressureSum& block, const auto& a, const auto& b, const auto& c) {

@@ -79,7 +79,7 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
 
   Displacement result;
   if (query.budget > 0.0) {
-    const UndecidedSum& rest = sum.undecided;
+    const PrunedSum& rest = sum.undecided;
     const Vec3 offset_N(rest.offsets.N[0], rest.offsets.N[1], rest.offsets.N[2]);
     wet.volume += rest.offsets.S + rest.volume;
     wet.moment += offset_N + rest.moment;
@@ -104,7 +104,7 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
 // held in float32: sizes beyond its range are answered exactly.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
-  return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.largest_rounding_bound(), 0.0) : 0.0;
+  return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.max_rounding_bound(), 0.0) : 0.0;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
   const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // m^3
   if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
   query.half_diagonal = 0.5 * mesh.diagonal;
-  Displacement result = displacement_moments(sum_wet_tree(tree, query), query, plane, mesh);
+  Displacement result = displacement_moments(sum_wetted_tree(tree, query), query, plane, mesh);
   result.left_out += from_plane;
   return result;
 }

@@ -24,7 +24,7 @@
 namespace buoyancy {
 
 // mesh: with its tree. tolerance: 0 (exact) or more, relative to the whole displacement; below the mesh's
-// largest_rounding_bound() / V_T it is as 0.
+// max_rounding_bound() / V_T it is as 0.
 Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, double tolerance = 0.0);
 
 // m: how far the plane's heights over the body may be off (WaterPlane::error) so that this costs a hundredth

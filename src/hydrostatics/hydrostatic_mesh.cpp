@@ -36,7 +36,7 @@ struct Totals {
 };
 
 // The same triangle, beginning opposite its longest edge; of edges of one length the first counts.
-Triangle beginning_opposite_the_longest_edge(const Triangle& triangle, const TriangleMesh& mesh) {
+Triangle starting_opposite_longest_edge(const Triangle& triangle, const TriangleMesh& mesh) {
   const Vec3 a = mesh.vertex(triangle[0]);
   const Vec3 b = mesh.vertex(triangle[1]);
   const Vec3 c = mesh.vertex(triangle[2]);
@@ -68,7 +68,7 @@ double HydrostaticMesh::rounding_bound() const {
   return 2.0 * rounding(volume, diagonal, rounding_area);
 }
 
-double HydrostaticMesh::largest_rounding_bound() const {
+double HydrostaticMesh::max_rounding_bound() const {
   return rounding_bound() + (meets_volume_tolerance() ? 0.0 : kEpsilon * tree->rounding);
 }
 
@@ -99,7 +99,7 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
 
   mesh.surface.triangles.reserve(source.triangles.size());
   for (const Triangle& triangle : source.triangles)
-    mesh.surface.triangles.push_back(beginning_opposite_the_longest_edge(triangle, mesh.surface));
+    mesh.surface.triangles.push_back(starting_opposite_longest_edge(triangle, mesh.surface));
 
   PairwiseSum<Totals> sum;
   for (const Triangle& triangle : mesh.surface.triangles) {

@@ -53,7 +53,7 @@ struct HydrostaticMesh {
   double rounding_bound() const;
   // The most that `hierarchical` publishes where it leaves nothing out, m^3: with all leaves cut. Needs the
   // tree.
-  double largest_rounding_bound() const;
+  double max_rounding_bound() const;
   // Largest distance from a reference point to a corner of the bounding box, m: L_r. Torque is held to G_V
   // L_r.
   double max_lever_arm(const Vec3& reference_B) const;

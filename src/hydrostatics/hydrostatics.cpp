@@ -29,7 +29,7 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
       part.wetted_area = mesh.area;
       break;
     case Immersion::kPiercing: {
-      const WetMoments wet = wet_moments(*mesh.tree, plane);
+      const WettedMoments wet = wetted_moments(*mesh.tree, plane);
       part.moments = displacement_moments(wet.moments, wet.height, plane.up_B);
       part.point = wet.point;
       part.wetted_area = wet.area;

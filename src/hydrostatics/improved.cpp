@@ -1,4 +1,4 @@
-#include "hydrostatics/improved.h"
+#include "hydrostatics/paper_methods.h"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ struct ElementSum {
 Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const Vec3 apex = apex_on_water(mesh, plane);
   const auto o = Point<double>::from(apex);
-  const auto sum = sum_over_wet_surface<ElementSum>(
+  const auto sum = sum_over_wet_triangles<ElementSum>(
       mesh, plane,
       [o](ElementSum& block, const auto& a, const auto& b, const auto& c) {
         block.wet.add(a.y, b.y, c.y, o);

@@ -148,8 +148,8 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
   return child_masks(node, wet, dry);
 }
 
-// What is known of a node's children while they are undecided, as in UndecidedNodes.
-struct alignas(32) UndecidedChildren {
+// What is known of a node's children while they are undecided, as in PrunableNodes.
+struct alignas(32) PrunableChildren {
   std::array<float, kTreeWidth> below, above, error, curved;
 };
 
@@ -191,7 +191,7 @@ HWY_INLINE hn::Vec<D> radius(D d, const TreeNode& node, std::size_t first) {
 }
 
 HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query, std::size_t a,
-                                    UndecidedChildren& children) {
+                                    PrunableChildren& children) {
   const Bounds d;
   const auto scale = hn::Set(d, 1.00001F * query.per_k_a);  // for what float32 rounds
   std::uint32_t wet = 0;
@@ -213,8 +213,8 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
   return child_masks(node, wet, dry);
 }
 
-HWY_INLINE void append_undecided(const TreeNode& node, std::uint32_t mask, const UndecidedChildren& children,
-                                 UndecidedNodes& nodes) {
+HWY_INLINE void append_prunable(const TreeNode& node, std::uint32_t mask, const PrunableChildren& children,
+                                 PrunableNodes& nodes) {
   const std::size_t at = nodes.size;
   append(node.child.data(), mask, nodes.child.data() + at);
   append(children.below.data(), mask, nodes.below.data() + at);
@@ -229,7 +229,7 @@ HWY_INLINE void append_undecided(const TreeNode& node, std::uint32_t mask, const
 
 // Keeps those of eight nodes, from `from` on, whose bit in the mask is set: writes them from nodes.size on,
 // which is no farther.
-HWY_INLINE void keep_undecided(UndecidedNodes& nodes, std::size_t from, std::uint32_t mask) {
+HWY_INLINE void keep_prunable(PrunableNodes& nodes, std::size_t from, std::uint32_t mask) {
   const std::size_t at = nodes.size;
   for (auto* const list : nodes.numbers()) append(list->data() + from, mask, list->data() + at);
   for (auto* const list : nodes.indices()) append(list->data() + from, mask, list->data() + at);
@@ -247,7 +247,7 @@ struct ErrorSurvey {
   std::size_t leaves = 0;                       // how many of the nodes are
 };
 
-HWY_INLINE ErrorSurvey survey_errors(UndecidedNodes& nodes, double left) {
+HWY_INLINE ErrorSurvey survey_errors(PrunableNodes& nodes, double left) {
   const Reals d;
   const hn::Rebind<float, Reals> narrow;
   std::fill_n(nodes.error.data() + nodes.size, kTreeWidth, 0.0F);
@@ -384,9 +384,9 @@ class AxisSums {
 };
 
 // What nodes contribute that stay undecided.
-class UndecidedSums {
+class PrunedSums {
  public:
-  HWY_INLINE explicit UndecidedSums(const TreeQuery& query)
+  HWY_INLINE explicit PrunedSums(const TreeQuery& query)
       : vectors_(query.axes[0]),
         z_c_(-(query.h_high + query.h_low)),
         offsets_(query.axes[0]),
@@ -404,7 +404,7 @@ class UndecidedSums {
   }
 
   // slopes: takes their slopes times their moments.
-  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
                       AxisSums& slopes) {
     prefetch(moments, nodes, 0, 2 * kBlock);
     for (std::size_t first = 0; first < nodes.size; first += kBlock) {
@@ -413,7 +413,7 @@ class UndecidedSums {
     }
   }
 
-  HWY_INLINE void finish(UndecidedSum& sum) const {
+  HWY_INLINE void finish(PrunedSum& sum) const {
     const Reals d;
     offsets_.finish(sum.offsets);
     sum.volume = hn::GetLane(hn::SumOfLanes(d, volume_));
@@ -421,7 +421,7 @@ class UndecidedSums {
   }
 
  private:
-  static constexpr std::size_t kBlock = UndecidedNodes::kMore;
+  static constexpr std::size_t kBlock = PrunableNodes::kMore;
   // Of AxisVectors, those that hold S and N.
   static constexpr std::size_t kOffsetVectors = (4 + AxisVectors::kLanes - 1) / AxisVectors::kLanes;
 
@@ -432,14 +432,14 @@ class UndecidedSums {
     std::array<std::array<double, kBlock>, 3> middle;
   };
 
-  HWY_INLINE void prefetch(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+  HWY_INLINE void prefetch(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
                            std::size_t first, std::size_t end) const {
     for (std::size_t i = first; i < std::min(end, nodes.size); ++i)
       vectors_.prefetch(moments[nodes.moments[i]]);
   }
 
   // Of kBlock nodes, whatever lies behind the last.
-  HWY_INLINE void fit(const UndecidedNodes& nodes, std::size_t first, Fits& fits) const {
+  HWY_INLINE void fit(const PrunableNodes& nodes, std::size_t first, Fits& fits) const {
     const Reals d;
     const hn::Rebind<float, Reals> narrow;
     const auto half = hn::Set(d, 0.5);
@@ -472,7 +472,7 @@ class UndecidedSums {
     }
   }
 
-  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const UndecidedNodes& nodes,
+  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
                             std::size_t first, std::size_t count, AxisSums& slope_sums) {
     const Reals d;
     Fits fits;

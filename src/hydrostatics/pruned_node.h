@@ -31,7 +31,7 @@ namespace buoyancy {
 
 // Nodes that the water may cross, side by side. Whole vectors are read and written: there is room for some
 // more than there are.
-struct UndecidedNodes {
+struct PrunableNodes {
   static constexpr std::size_t kMore = 16;
 
   std::size_t size = 0;
@@ -57,7 +57,7 @@ struct UndecidedNodes {
 // What a descent within a budget writes down, kept by each thread: a level holds every node at most once.
 struct BudgetLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to look into
-  UndecidedNodes open;                           // their children that the water may cross
+  PrunableNodes open;                           // their children that the water may cross
 
   // Each on its own: of two trees one may have more nodes and the other more inner ones.
   void make_room(const MomentTree& tree) {

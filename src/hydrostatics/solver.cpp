@@ -1,10 +1,7 @@
 #include "hydrostatics/solver.h"
 
-#include "hydrostatics/exact.h"
-#include "hydrostatics/exact_surface.h"
-#include "hydrostatics/fast_surface.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hierarchical.h"
-#include "hydrostatics/improved.h"
 
 namespace buoyancy {
 

@@ -22,7 +22,7 @@
 #include <string_view>
 
 #include "hydrostatics/displacement.h"
-#include "hydrostatics/fast.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/water_plane.h"
 

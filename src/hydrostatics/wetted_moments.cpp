@@ -24,17 +24,17 @@ struct Patch {
   }
 };
 
-class WetSurfaceWalk {
+class WettedSurfaceWalk {
  public:
-  WetSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
+  WettedSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
     constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
     margin_ = 16.0 * kEpsilon * (3.0 * static_cast<double>(tree.reach) + std::abs(plane.h_c));
     visit(tree.nodes[0]);
   }
 
-  WetMoments result() const {
+  WettedMoments result() const {
     const Patch nodes = wet_nodes_.total();
-    WetMoments wet{nodes.moments, Vec3::Zero(), -plane_.h_c, nodes.area};
+    WettedMoments wet{nodes.moments, Vec3::Zero(), -plane_.h_c, nodes.area};
     if (point_) {
       const Patch patch = clipped_.total();
       wet.moments = nodes.moments.moved(*point_);
@@ -133,8 +133,8 @@ class WetSurfaceWalk {
 
 }  // namespace
 
-WetMoments wet_moments(const MomentTree& tree, const WaterPlane& plane) {
-  return WetSurfaceWalk(tree, plane).result();
+WettedMoments wetted_moments(const MomentTree& tree, const WaterPlane& plane) {
+  return WettedSurfaceWalk(tree, plane).result();
 }
 
 }  // namespace buoyancy

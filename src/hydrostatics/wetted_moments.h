@@ -13,7 +13,7 @@
 
 namespace buoyancy {
 
-struct WetMoments {
+struct WettedMoments {
   SurfaceMoments<double> moments;  // B axes, about `point`
   Vec3 point = Vec3::Zero();       // m, B axes, from the mesh's centre c
   double height = 0.0;             // m: of `point` over the water
@@ -23,6 +23,6 @@ struct WetMoments {
 // Errors, with A_w the wet surface's area, R the distance from `point` to its farthest part, each times a few
 // eps: area and S within A_w, N within A_w L, P within A_w L^2; where no whole node is wet, R in the place of
 // L. O(triangles that the water cuts + log n); no heap.
-WetMoments wet_moments(const MomentTree& tree, const WaterPlane& plane);
+WettedMoments wetted_moments(const MomentTree& tree, const WaterPlane& plane);
 
 }  // namespace buoyancy

@@ -67,7 +67,7 @@ Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, c
 // add_wet(sum, a, b, c) adds one wet triangle with corners ClipVertex<double>, add_cut(sum, a, b, c) what the
 // method makes of one that the water cuts. O(vertices + triangles).
 template <typename Sum, typename AddWet, typename AddCut>
-Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const AddWet& add_wet,
+Sum sum_over_wet_triangles(const HydrostaticMesh& mesh, const WaterPlane& plane, const AddWet& add_wet,
                          const AddCut& add_cut) {
   const double* const x = mesh.surface.x.data();
   const double* const y = mesh.surface.y.data();
@@ -90,8 +90,8 @@ Sum sum_over_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, c
 
 // The whole wet surface: add(sum, a, b, c) gets the wet triangles and the wet parts of those that are cut.
 template <typename Sum, typename Add>
-Sum sum_over_whole_wet_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Add& add) {
-  return sum_over_wet_surface<Sum>(
+Sum sum_over_wetted_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Add& add) {
+  return sum_over_wet_triangles<Sum>(
       mesh, plane, add, [&](Sum& sum, const auto& a, const auto& b, const auto& c) {
         for_each_wet_triangle(a, b, c,
                               [&](const auto& p, const auto& q, const auto& r) { add(sum, p, q, r); });

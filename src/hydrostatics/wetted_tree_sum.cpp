@@ -62,11 +62,11 @@ class Descent {
   }
 
   // Appends the children that the water may cross to `open`.
-  HWY_INLINE void look_into(const TreeNode& node, UndecidedNodes& open) {
-    UndecidedChildren children;
+  HWY_INLINE void look_into(const TreeNode& node, PrunableNodes& open) {
+    PrunableChildren children;
     const ChildMasks masks = test_children(node, bounds_, query_.axes[0], children);
     add_wet(node, masks.wet);
-    append_undecided(node, masks.crossing, children, open);
+    append_prunable(node, masks.crossing, children, open);
     visited();
   }
 
@@ -98,10 +98,10 @@ class Descent {
   }
 
   // error: m^3, of all of them.
-  HWY_INLINE void add_undecided(const UndecidedNodes& nodes, double error, UndecidedSums& sums) {
+  HWY_INLINE void add_pruned(const PrunableNodes& nodes, double error, PrunedSums& sums) {
     sums.add(tree_.moments, nodes, node_sums_);
     sum_.undecided.error += error;
-    sum_.nodes_undecided += static_cast<std::int64_t>(nodes.size);
+    sum_.nodes_pruned += static_cast<std::int64_t>(nodes.size);
   }
 
   HWY_INLINE void finish() {
@@ -186,7 +186,7 @@ void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& 
 
 // Keeps the open nodes whose error is within the limit: the leaves among the others are queued, the rest is
 // appended to `inner`. What is kept, m^3.
-HWY_INLINE double keep_within(float limit, UndecidedNodes& open, std::uint32_t* inner, std::size_t& inners,
+HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* inner, std::size_t& inners,
                               Descent& descent) {
   const Reals d;
   const hn::Rebind<float, Reals> narrow;
@@ -204,7 +204,7 @@ HWY_INLINE double keep_within(float limit, UndecidedNodes& open, std::uint32_t* 
     const std::uint32_t present = first_bits(nodes - first);
     inners += descent.add_crossing(open.child.data() + first, present & ~within, inner + inners);
     descent.make_room();
-    keep_undecided(open, first, present & within);
+    keep_prunable(open, first, present & within);
   }
   return hn::GetLane(hn::SumOfLanes(d, kept));
 }
@@ -217,7 +217,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
   constexpr double kFall = 8.0;
   constexpr double kHopeless = 6.0;  // times what is left: too few would stay undecided
   Descent descent(tree, query, sum);
-  UndecidedNodes& open = lists.open;
+  PrunableNodes& open = lists.open;
   std::uint32_t* inner = lists.inner.data();
   std::uint32_t* next_inner = lists.next_inner.data();
   std::size_t to_look_into = 0;
@@ -235,7 +235,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
     return;
   }
 
-  UndecidedSums undecided(query);
+  PrunedSums undecided(query);
   double error = 0.0;  // m^3: of all that did not stay undecided, or what may be expected
   for (;;) {
     double kept = survey.all;
@@ -245,7 +245,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
       error += survey.all - kept;
     }
     left -= kept;
-    descent.add_undecided(open, kept, undecided);
+    descent.add_pruned(open, kept, undecided);
     if (to_look_into == 0) break;
 
     std::swap(inner, next_inner);
@@ -278,7 +278,7 @@ namespace buoyancy {
 HWY_EXPORT(sum_exactly);
 HWY_EXPORT(sum_within_budget);
 
-WettedTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query) {
+WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query) {
   WettedTreeSum sum;
   if (query.budget > 0.0) {
     thread_local BudgetLists lists;

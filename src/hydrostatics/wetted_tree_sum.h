@@ -31,7 +31,7 @@ struct TreeQuery {
 
 // What undecided nodes (pruned_node.h) add besides their slopes times their moments, which are among
 // WettedTreeSum::nodes.
-struct UndecidedSum {
+struct PrunedSum {
   AxisMoments offsets;         // m times moments: offset times S and N; the rest is unused
   double volume = 0.0;         // m^3: int (p2 - p1) n_a dA
   Vec3 moment = Vec3::Zero();  // m^4: the same times y_m
@@ -48,16 +48,16 @@ struct WettedTreeSum {
   double moment_c24 = 0.0;  // m^4: 24 int z y_c n_a dA
   double height24 = 0.0;    // m^4: 12 int z^2 n_a dA
 
-  UndecidedSum undecided;  // zero where the budget is
+  PrunedSum undecided;  // zero where the budget is
 
   double rounding = 0.0;  // m^3: of the leaves clipped (TreeLeaf)
 
-  std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_undecided = 0;
+  std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_pruned = 0;
 };
 
 // Descends from the root. undecided.error <= budget. With budget 0 nothing is left undecided, and there is no
 // heap; else none once the thread has seen a tree as large.
-WettedTreeSum sum_wet_tree(const MomentTree& tree, const TreeQuery& query);
+WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query);
 
 std::vector<std::string>
 simd_targets();             // that this processor can run, the best first; "SCALAR" is always among them

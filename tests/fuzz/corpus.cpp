@@ -10,8 +10,8 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kLongestInput = 8192;
-constexpr std::size_t kLongestRepeat = 64;
+constexpr std::size_t kMaxInputSize = 8192;
+constexpr std::size_t kMaxRepeat = 64;
 
 std::optional<std::uint8_t> hexadecimal_digit(char c) {
   if (c >= '0' && c <= '9') return static_cast<std::uint8_t>(c - '0');
@@ -64,9 +64,9 @@ FuzzInput::difference_type offset(std::size_t place) {
 }
 
 void mutate_once(FuzzInput& input, const FuzzInput& other, Random& random) {
-  constexpr std::array<std::uint8_t, 8> kTelling{0x00, 0x01, 0x7f, 0x80, 0xff, ' ', '0', '\n'};
+  constexpr std::array<std::uint8_t, 8> kBoundaryBytes{0x00, 0x01, 0x7f, 0x80, 0xff, ' ', '0', '\n'};
   const std::size_t place = random.below(input.size());
-  const std::size_t length = 1 + random.below(std::min(kLongestRepeat, input.size() - place));
+  const std::size_t length = 1 + random.below(std::min(kMaxRepeat, input.size() - place));
   switch (random.below(7)) {
     case 0:
       if (!input.empty()) input[place] ^= static_cast<std::uint8_t>(1U << random.below(8));
@@ -75,10 +75,10 @@ void mutate_once(FuzzInput& input, const FuzzInput& other, Random& random) {
       if (!input.empty()) input[place] = static_cast<std::uint8_t>(random.next());
       break;
     case 2:
-      if (!input.empty()) input[place] = kTelling[random.below(kTelling.size())];
+      if (!input.empty()) input[place] = kBoundaryBytes[random.below(kBoundaryBytes.size())];
       break;
     case 3:
-      input.insert(input.begin() + offset(place), kTelling[random.below(kTelling.size())]);
+      input.insert(input.begin() + offset(place), kBoundaryBytes[random.below(kBoundaryBytes.size())]);
       break;
     case 4:
       if (!input.empty()) input.erase(input.begin() + offset(place), input.begin() + offset(place + length));
@@ -116,7 +116,7 @@ FuzzInput mutated(const FuzzInput& input, const FuzzInput& other, std::uint64_t 
   Random random(seed);
   FuzzInput mutant = input;
   for (std::size_t times = 1 + random.below(8); times > 0; --times) mutate_once(mutant, other, random);
-  if (mutant.size() > kLongestInput) mutant.resize(kLongestInput);
+  if (mutant.size() > kMaxInputSize) mutant.resize(kMaxInputSize);
   return mutant;
 }
 

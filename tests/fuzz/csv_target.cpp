@@ -26,13 +26,13 @@ std::string path_of_file_with(std::string_view text) {
   static const int kFile = ::memfd_create("fuzz.csv", MFD_CLOEXEC);
   const auto size = static_cast<ssize_t>(text.size());
   if (kFile < 0 || ::ftruncate(kFile, 0) != 0 || ::pwrite(kFile, text.data(), text.size(), 0) != size) {
-    broken_law("the target can write its own file");
+    fail_requirement("the target can write its own file");
   }
   return "/proc/self/fd/" + std::to_string(kFile);
 }
 
 // Lines behind the header that are not blank; the last one counts without its newline too.
-std::vector<std::string_view> telling_lines(std::string_view text) {
+std::vector<std::string_view> data_lines(std::string_view text) {
   std::vector<std::string_view> lines;
   bool is_header = true;
   while (!text.empty()) {
@@ -143,12 +143,12 @@ void check(std::string_view text) {
     law(reader.error().message().find('\n') == std::string::npos, "an error is one line");
     return;
   }
-  const std::vector<WrenchRequest> requests = read_all(*reader, telling_lines(text));
+  const std::vector<WrenchRequest> requests = read_all(*reader, data_lines(text));
 
   const std::string again = written_again(requests);
   Expected<StateCsvReader> second = StateCsvReader::open(path_of_file_with(again));
   law(second.has_value(), "what we write has our header");
-  check_same_rows(requests, read_all(*second, telling_lines(again)));
+  check_same_rows(requests, read_all(*second, data_lines(again)));
 }
 
 }  // namespace

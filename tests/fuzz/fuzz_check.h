@@ -8,13 +8,13 @@
 
 namespace buoyancy {
 
-[[noreturn]] inline void broken_law(const char* law, const std::string& found = {}) {
+[[noreturn]] inline void fail_requirement(const char* law, const std::string& found = {}) {
   std::fprintf(stderr, "broken law: %s%s%s\n", law, found.empty() ? "" : ": ", found.c_str());
   std::abort();
 }
 
 inline void law(bool holds, const char* law) {
-  if (!holds) broken_law(law);
+  if (!holds) fail_requirement(law);
 }
 
 }  // namespace buoyancy

@@ -54,9 +54,9 @@ outputs = ["wrench", "hydrostatics"]
 const Scene& small_scene() {
   static const Scene kPrepared = [] {
     const Expected<SceneDescription> description = parse_scene(kScene, "fuzz.toml", "/nowhere");
-    if (!description) broken_law("the target's own scene is one", description.error().message());
+    if (!description) fail_requirement("the target's own scene is one", description.error().message());
     Expected<Scene> scene = Scene::prepare(*description);
-    if (!scene) broken_law("the target's own scene is prepared", scene.error().message());
+    if (!scene) fail_requirement("the target's own scene is prepared", scene.error().message());
     return *std::move(scene);
   }();
   return kPrepared;

@@ -147,7 +147,7 @@ class CaseReader {
 };
 
 // What buoyancy() asks of its callers.
-bool may_be_asked(const Case& asked) {
+bool is_valid_input(const Case& asked) {
   return asked.pose.p_WB.allFinite() && asked.pose.q_WB.coeffs().allFinite() &&
          !asked.pose.q_WB.coeffs().isZero(0.0) && std::isfinite(asked.water.level) &&
          std::isfinite(asked.water.density) && std::isfinite(asked.water.gravity) &&
@@ -176,7 +176,7 @@ void check_within(const char* what, Method method, double error, double bound) {
   std::array<char, 120> figures{};
   std::snprintf(figures.data(), figures.size(), "%s of %s off by %.4g, bound %.4g", what,
                 std::string(to_string(method)).c_str(), error, bound);
-  broken_law("the published bound holds", figures.data());
+  fail_requirement("the published bound holds", figures.data());
 }
 
 void check_result(const BuoyancyResult& result) {
@@ -209,7 +209,7 @@ void check_hydrostatics(const Case& asked, const Subject& subject, const TrueWre
       "hydrostatics are numbers");
   if (truth == nullptr) return;
   check_within("volume", Method::kHierarchical, truth->volume_error(found->volume),
-               subject.mesh.largest_rounding_bound());
+               subject.mesh.max_rounding_bound());
 }
 
 void check(FuzzBytes bytes) {
@@ -223,7 +223,7 @@ void check(FuzzBytes bytes) {
     if (!written) return;
   }
   const Subject& subject = written ? *written : subjects()[asked.mesh % subjects().size()];
-  if (!may_be_asked(asked)) return;
+  if (!is_valid_input(asked)) return;
   reader.aim(subject.source, asked);
   if (!std::isfinite(asked.water.level)) return;
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hydrostatics/exact.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hierarchical.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"

@@ -26,7 +26,7 @@ Pose at_height(double z) {
   return {Vec3(0, 0, z), Eigen::Quaterniond::Identity()};
 }
 
-TEST(Immersion, AtAGlanceOrOfARoughPlaneIsCertainHoweverCloseTheBodyGrazes) {
+TEST(Immersion, IsConservativeForGrazingBodies) {
   const TriangleMesh source = make_shape(BoxShape{.size = {1.0, 0.7, 0.4}});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
   const Solver within(mesh, Method::kHierarchical, 1e-2);
@@ -76,7 +76,7 @@ TEST(Immersion, AtAGlanceOrOfARoughPlaneIsCertainHoweverCloseTheBodyGrazes) {
   EXPECT_GT(rough, 1000);
 }
 
-TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
+TEST(Buoyancy, IsZeroWithZeroBoundForDryBody) {
   for (const Method method : kAllMethods) {
     const BuoyancyResult result = buoyancy(Solver(unit_box(), method), at_height(0.6), {}, Vec3::Zero());
     EXPECT_EQ(result.status, BuoyancyStatus::kOk);
@@ -87,7 +87,7 @@ TEST(Buoyancy, OfADryBodyIsExactlyZeroWithAZeroBound) {
   }
 }
 
-TEST(Buoyancy, CallsAFaceOnTheWaterDry) {
+TEST(Buoyancy, TreatsFaceOnWaterAsDry) {
   // The box stands on the water, and just sunk below it.
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     EXPECT_EQ(buoyancy(Solver(unit_box(), method), at_height(0.5), {}, Vec3::Zero()).volume, 0.0);
@@ -95,13 +95,13 @@ TEST(Buoyancy, CallsAFaceOnTheWaterDry) {
   }
 }
 
-TEST(Buoyancy, SaysNothingOfACentreThatTheVolumeDoesNotDetermine) {
+TEST(Buoyancy, OmitsCentreWhenVolumeIsWithinItsErrorBound) {
   const BuoyancyResult result =
       buoyancy(Solver(unit_box(), Method::kExact), at_height(0.5 - 1e-16), {}, Vec3::Zero());
   EXPECT_EQ(result.center_of_buoyancy_W, Vec3::Zero());
 }
 
-TEST(Buoyancy, HasABoundOfRoundingAloneForExactMethodsAndForWhollyWetBodies) {
+TEST(Buoyancy, HasRoundingBoundForExactMethodsAndSubmergedBodies) {
   const Water water;
   const double whole = water.density * water.gravity;
   for (const Method method : kAllMethods) {
@@ -114,7 +114,7 @@ TEST(Buoyancy, HasABoundOfRoundingAloneForExactMethodsAndForWhollyWetBodies) {
   }
 }
 
-TEST(Buoyancy, RefusesWhatIsBeyondDoublesRangeInsteadOfAnsweringInfinity) {
+TEST(Buoyancy, ReportsOutOfRangeInsteadOfInfinity) {
   const Solver solver(unit_box(), Method::kExact);
   for (const double z : {1e308, -1e308}) {
     Pose pose = at_height(z);
@@ -148,7 +148,7 @@ HydrostaticMesh open_box() {
   return make_hydrostatic_mesh(validated);
 }
 
-TEST(Buoyancy, OfAnOpenMeshIsExactWhileItsBoundaryIsDryAndRefusedOtherwise) {
+TEST(Buoyancy, AcceptsOpenMeshOnlyWhileBoundaryIsDry) {
   const HydrostaticMesh mesh = open_box();
   ASSERT_TRUE(mesh.is_open());
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
@@ -186,7 +186,7 @@ TEST(Buoyancy, StaysFiniteWithDenormalPosesAndMeshes) {
   }
 }
 
-TEST(Buoyancy, OfAMeshScaledByAPowerOfTwoHasTheSameBits) {
+TEST(Buoyancy, IsBitIdenticalForMeshScaledByPowerOfTwo) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 6});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   const HydrostaticMesh scaled = make_hydrostatic_mesh({moved_and_scaled(rock, Vec3::Zero(), 0x1p-20), {}});
@@ -202,7 +202,7 @@ TEST(Buoyancy, OfAMeshScaledByAPowerOfTwoHasTheSameBits) {
   }
 }
 
-TEST(Buoyancy, TakesNothingFromTheHeapAfterWarmUpWhateverTheMethodAndTolerance) {
+TEST(Buoyancy, DoesNotAllocateAfterWarmUp) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 12});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   RandomPoses random(17);

@@ -24,11 +24,11 @@ INSTANTIATE_TEST_SUITE_P(Methods, ExactMethods,
                          [](const auto& method) { return std::string(to_string(method.param)); });
 
 // Volume, force and torque of one pose against the oracle, as multiples of the gates.
-struct ErrorOverGate {
+struct ErrorOverTolerance {
   double volume, force, torque;
 };
 
-ErrorOverGate compare(const Solver& solver, const TriangleMesh& mesh, const Pose& pose, const Water& water,
+ErrorOverTolerance compare(const Solver& solver, const TriangleMesh& mesh, const Pose& pose, const Water& water,
                       const Vec3& reference_B) {
   const BuoyancyResult result = buoyancy(solver, pose, water, reference_B);
   const auto oracle = exact_displacement<Rational>(mesh, pose, water);
@@ -42,19 +42,19 @@ ErrorOverGate compare(const Solver& solver, const TriangleMesh& mesh, const Pose
           (result.torque_W - torque_W).norm() / (gate * solver.mesh().max_lever_arm(reference_B))};
 }
 
-TEST_P(ExactMethods, StayWithinTheGatesOfRationalArithmeticOnEveryMeshAndPose) {
+TEST_P(ExactMethods, MatchesRationalArithmeticWithinTolerance) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const Solver solver(mesh, GetParam());
     const BoundingBox box = bounding_box(named.mesh);
     RandomPoses random(11);
-    ErrorOverGate worst{};
+    ErrorOverTolerance worst{};
     for (int i = 0; i < 24; ++i) {
       Water water = kUnitWater;
       if (i % 4 == 3) water.up_W = random.direction();
       const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(named.mesh, water);
       const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.direction();
-      const ErrorOverGate error = compare(solver, named.mesh, pose, water, reference_B);
+      const ErrorOverTolerance error = compare(solver, named.mesh, pose, water, reference_B);
       worst = {std::max(worst.volume, error.volume), std::max(worst.force, error.force),
                std::max(worst.torque, error.torque)};
     }
@@ -64,7 +64,7 @@ TEST_P(ExactMethods, StayWithinTheGatesOfRationalArithmeticOnEveryMeshAndPose) {
   }
 }
 
-TEST_P(ExactMethods, WetAndDryPartsAddUpToTheWhole) {
+TEST_P(ExactMethods, SumsWetAndDryVolumesToTotal) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const Solver solver(mesh, GetParam());
@@ -81,7 +81,7 @@ TEST_P(ExactMethods, WetAndDryPartsAddUpToTheWhole) {
   }
 }
 
-TEST_P(ExactMethods, MoveTheTorqueWithTheReferencePoint) {
+TEST_P(ExactMethods, ShiftsTorqueWithReferencePoint) {
   const NamedMesh named = closed_test_meshes()[9];
   const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
   const Solver solver(mesh, GetParam());
@@ -99,7 +99,7 @@ TEST_P(ExactMethods, MoveTheTorqueWithTheReferencePoint) {
 }
 
 // Found by the random search: the centre's grid was wider than such a mesh.
-TEST(HydrostaticMesh, IsCentredHoweverFarItLiesFromItsOrigin) {
+TEST(HydrostaticMesh, CentresMeshesFarFromTheirOrigin) {
   const TriangleMesh box = make_shape(BoxShape{.size = {8, 4, 2}});
   for (const double far : {0.0, 1e3, 1e6, 1e9, 1e12}) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({moved_and_scaled(box, {far, -0.7 * far, 0.1}), {}});
@@ -109,7 +109,7 @@ TEST(HydrostaticMesh, IsCentredHoweverFarItLiesFromItsOrigin) {
   }
 }
 
-TEST_P(ExactMethods, PublishABoundFarBelowTheWholeOnMeshesOfAnySize) {
+TEST_P(ExactMethods, PublishesTightBoundForMeshesOfAnySize) {
   for (const int frequency : {16, 39, 122, 224}) {
     const TriangleMesh rock = make_shape(RockShape{.frequency = frequency});
     const auto with_tree = GetParam() == Method::kHierarchical ? WithTree::kYes : WithTree::kNo;
@@ -126,7 +126,7 @@ TEST_P(ExactMethods, PublishABoundFarBelowTheWholeOnMeshesOfAnySize) {
   }
 }
 
-TEST_P(ExactMethods, ActAtTheCentreOfBuoyancy) {
+TEST_P(ExactMethods, AppliesForceAtCentreOfBuoyancy) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const Solver solver(mesh, GetParam());
@@ -151,7 +151,7 @@ TEST_P(ExactMethods, ActAtTheCentreOfBuoyancy) {
   }
 }
 
-TEST_P(ExactMethods, ScaleWithDensityAndGravityAndNothingElse) {
+TEST_P(ExactMethods, ScalesOnlyWithDensityAndGravity) {
   const TriangleMesh box = make_shape(BoxShape{.segments = {4, 4, 4}});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({box, {}});
   const Solver solver(mesh, GetParam());
@@ -166,7 +166,7 @@ TEST_P(ExactMethods, ScaleWithDensityAndGravityAndNothingElse) {
   EXPECT_NEAR(result.center_of_buoyancy_W.z(), -0.25, 1e-15);
 }
 
-TEST_P(ExactMethods, PublishAnUprightForceAndATorqueWithoutAComponentAlongUp) {
+TEST_P(ExactMethods, PublishesForceAlongUpAndTorqueNormalToUp) {
   RandomPoses random(15);
   const NamedMesh named = closed_test_meshes()[7];
   const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
@@ -184,7 +184,7 @@ TEST_P(ExactMethods, PublishAnUprightForceAndATorqueWithoutAComponentAlongUp) {
   }
 }
 
-TEST_P(ExactMethods, SumAMillionTrianglesWithoutLosingDigits) {
+TEST_P(ExactMethods, SumsMillionTrianglesWithoutLosingDigits) {
   // Of equal terms a running sum rounds one after the other to the same side: it is off by tens of gates
   // here.
   const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 2}, .segments = {290, 290, 290}});
@@ -202,7 +202,7 @@ TEST_P(ExactMethods, SumAMillionTrianglesWithoutLosingDigits) {
   }
 }
 
-TEST_P(ExactMethods, HoldTheirBoundsAtDepth) {
+TEST_P(ExactMethods, HoldsBoundsAtDepth) {
   const NamedMesh named = closed_test_meshes()[9];
   const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
   const Solver solver(mesh, GetParam());

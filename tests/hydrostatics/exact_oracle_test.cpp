@@ -46,7 +46,7 @@ TriangleMesh tetrahedron() {
   return mesh;
 }
 
-TEST(ExactOracle, TurnsVectorsByRationalQuaternionsWithoutAnyError) {
+TEST(ExactOracle, RotatesVectorsExactly) {
   const Pose pose = turned(1, 2, -3, 0.5);
   const RationalVec v = Vec3(0.1, -7, 1e-3).cast<Rational>();
   const RationalVec turned_v = exactly_in_world<Rational>(pose, v);
@@ -55,7 +55,7 @@ TEST(ExactOracle, TurnsVectorsByRationalQuaternionsWithoutAnyError) {
   EXPECT_EQ(exactly_in_world<Rational>(pose, back), v);
 }
 
-TEST(ExactOracle, KnowsTheVolumeAndTheCentreOfAnUprightBox) {
+TEST(ExactOracle, MatchesClosedFormForUprightBoxExactly) {
   const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 4}, .segments = {2, 3, 1}});
   const auto found = exactly(box, turned(1, 0, 0, 0, {5, -6, 1.25}), kUpright);
   const Rational draft(0.75);
@@ -66,7 +66,7 @@ TEST(ExactOracle, KnowsTheVolumeAndTheCentreOfAnUprightBox) {
   EXPECT_EQ(torque, RationalVec(found.volume, found.volume / Rational(2), 0));
 }
 
-TEST(ExactOracle, KnowsTheTipOfATiltedTetrahedronThatAPlaneCutsOff) {
+TEST(ExactOracle, MatchesClosedFormForTetrahedronTip) {
   const TriangleMesh mesh = tetrahedron();
   const Pose pose = turned(3, -1, 2, 0.7, {0.1, 0.2, 0.3});
   const ExactPlane<Rational> dry = exact_plane<Rational>(pose, kUpright);
@@ -100,14 +100,14 @@ TEST(ExactOracle, KnowsTheTipOfATiltedTetrahedronThatAPlaneCutsOff) {
   EXPECT_EQ(found.moment, RationalVec((tip + centre) * found.volume));
 }
 
-TEST(ExactOracle, HalvesABoxByAnyPlaneThroughItsCentre) {
+TEST(ExactOracle, HalvesBoxByPlaneThroughCentre) {
   const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
   for (const Pose& pose : {turned(1, 0, 0, 0), turned(1, 2, 3, 4), turned(0.1, -0.7, 1e-9, 0.3)}) {
     EXPECT_EQ(exactly(box, pose, kUpright).volume, Rational(3));
   }
 }
 
-TEST(ExactOracle, AddsUpWetAndDryPartsAndPartsOfABodyWithoutAnyError) {
+TEST(ExactOracle, AddsPartsWithoutError) {
   const TriangleMesh left = moved_and_scaled(make_shape(BoxShape{}), {-0.5, 0, 0});
   const TriangleMesh right = moved_and_scaled(make_shape(BoxShape{}), {0.5, 0, 0});
   const TriangleMesh whole = make_shape(BoxShape{.size = {2, 1, 1}});
@@ -125,7 +125,7 @@ TEST(ExactOracle, AddsUpWetAndDryPartsAndPartsOfABodyWithoutAnyError) {
   }
 }
 
-TEST(ExactOracle, DoesNotDependOnTheOrderOfFacesNorOnTheQuaternionsLength) {
+TEST(ExactOracle, IgnoresFaceOrderAndQuaternionNorm) {
   TriangleMesh mesh = make_shape(TorusKnotShape{.tubular = 20, .radial = 4});
   RandomPoses random(4);
   const Pose pose = random.crossing(bounding_box(mesh), kWater);
@@ -138,7 +138,7 @@ TEST(ExactOracle, DoesNotDependOnTheOrderOfFacesNorOnTheQuaternionsLength) {
   EXPECT_TRUE(again.moment == found.moment);
 }
 
-TEST(Ball, HoldsWhatRationalArithmeticFinds) {
+TEST(Ball, ContainsRationalResult) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     RandomPoses random(5);
@@ -159,14 +159,14 @@ TEST(Ball, HoldsWhatRationalArithmeticFinds) {
   }
 }
 
-TEST(Ball, DoesNotHoldWhatIsNextToIt) {
+TEST(Ball, ExcludesNeighbouringNumbers) {
   const Ball third = Ball(1) / Ball(3);
   EXPECT_TRUE(third.holds(Rational(1) / Rational(3)));
   EXPECT_FALSE(third.holds(Rational(1) / Rational(3) + Rational(0x1p-60)));
   EXPECT_FALSE(Ball(2.0).holds(Rational(std::nextafter(2.0, 3.0))));
 }
 
-TEST(Ball, ShowsThatPublishedBoundsHoldOnMeshesTooLargeForRationalArithmetic) {
+TEST(Ball, ConfirmsPublishedBoundsOnLargeMesh) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 40, .roughness = 0.4});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
-#include "hydrostatics/exact.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/agreement.h"
@@ -36,7 +36,7 @@ class ForcedTarget {
   ~ForcedTarget() { force_simd_target(""); }
 };
 
-TEST(SimdTargets, AreForcedByNameAndIncludeTheScalarTwin) {
+TEST(SimdTargets, IncludesScalarAndCanBeForcedByName) {
   const std::vector<std::string> targets = simd_targets();
   EXPECT_NE(std::find(targets.begin(), targets.end(), "SCALAR"), targets.end());
   EXPECT_EQ(simd_target(), targets.front()) << "the best one is used unless another is forced";
@@ -48,7 +48,7 @@ TEST(SimdTargets, AreForcedByNameAndIncludeTheScalarTwin) {
   EXPECT_EQ(simd_target(), targets.front());
 }
 
-TEST(Hierarchical, EqualsBruteForceOnEveryMeshPoseAndInstructionSet) {
+TEST(Hierarchical, MatchesExactOnEveryInstructionSet) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     for (const Agreement& found : agreement_with_exact(named.mesh, mesh, kAgreementPoses, 21)) {
@@ -59,7 +59,7 @@ TEST(Hierarchical, EqualsBruteForceOnEveryMeshPoseAndInstructionSet) {
   }
 }
 
-TEST(Hierarchical, KeepsNineDigitsOfACapOfAMillionthOfTheVolumeAtAnyTilt) {
+TEST(Hierarchical, KeepsDigitsOfMillionthVolumeCap) {
   const TriangleMesh sphere = make_shape(RockShape{.frequency = 8, .roughness = 0.0});
   ASSERT_EQ(sphere.triangles.size(), 1280U);
   const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
@@ -84,7 +84,7 @@ TEST(Hierarchical, KeepsNineDigitsOfACapOfAMillionthOfTheVolumeAtAnyTilt) {
   }
 }
 
-TEST(Hierarchical, StaysWithinFourEpsilonOfTheWaterplaneWhenItGrazes) {
+TEST(Hierarchical, BoundsGrazingErrorByWaterplaneArea) {
   const TriangleMesh sphere = make_shape(RockShape{.frequency = 8, .roughness = 0.0});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
   RandomPoses random(23);
@@ -104,7 +104,7 @@ TEST(Hierarchical, StaysWithinFourEpsilonOfTheWaterplaneWhenItGrazes) {
   }
 }
 
-TEST(Hierarchical, AnswersWhollyWetBodiesWithTheSameBitsAtEveryDepth) {
+TEST(Hierarchical, IsBitIdenticalAtEveryDepthWhenSubmerged) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 8}), {}});
   RandomPoses random(24);
   const Eigen::Quaterniond rotation = random.rotation();
@@ -119,19 +119,19 @@ TEST(Hierarchical, AnswersWhollyWetBodiesWithTheSameBitsAtEveryDepth) {
   }
 }
 
-TEST(Hierarchical, VisitsAWaterlineAndNotTheMesh) {
+TEST(Hierarchical, VisitsOnlyNodesNearWaterline) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 122});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   TreeQuery query{};
   query.k = query.k_high = {0, 0, 1};
   query.axes = {2, 0, 1};
-  const WettedTreeSum sum = sum_wet_tree(*mesh.tree, query);
+  const WettedTreeSum sum = sum_wetted_tree(*mesh.tree, query);
   EXPECT_GT(sum.leaves_clipped, 100);
   EXPECT_LT(sum.leaves_clipped, 900) << "of " << mesh.tree->leaves.size();
   EXPECT_LT(sum.nodes_visited, 900) << "of " << mesh.tree->nodes.size();
 }
 
-TEST(Hierarchical, AnswersEightThreadsAtOnceAsItAnswersOne) {
+TEST(Hierarchical, GivesSameResultsOnEightThreads) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 16});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   std::vector<Pose> poses;
@@ -195,7 +195,7 @@ TriangleMesh bulged_box() {
   return mesh;
 }
 
-TEST(Hierarchical, HasTheSameBitsFromEveryCompilerAndBuildTypePerInstructionSet) {
+TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {
   const TriangleMesh source = bulged_box();
   const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
   const std::map<std::string, std::uint64_t> golden{{"AVX3", 0x9ac4bb5c8af8a576},

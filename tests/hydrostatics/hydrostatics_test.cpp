@@ -45,7 +45,7 @@ void expect_undefined(const Vec3& v) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isnan(v[i])) << v.transpose();
 }
 
-TEST(Hydrostatics, OfAnUprightBoxAreTheClosedForm) {
+TEST(Hydrostatics, MatchesClosedFormForUprightBox) {
   const double length = 5.0;
   const double beam = 2.0;
   const double draft = 0.75;
@@ -83,7 +83,7 @@ TEST(Hydrostatics, OfAnUprightBoxAreTheClosedForm) {
   EXPECT_LE((found.stiffness - stiffness).norm(), 1e-12 * stiffness.norm()) << found.stiffness;
 }
 
-TEST(Hydrostatics, OfAHeeledBoxAreThoseOfItsSlantedWaterplane) {
+TEST(Hydrostatics, MatchesClosedFormForHeeledBox) {
   const double length = 5.0;
   const double beam = 2.0;
   const HydrostaticMesh mesh = prepared(BoxShape{.size = {length, beam, 3.0}, .segments = {7, 5, 6}});
@@ -105,7 +105,7 @@ TEST(Hydrostatics, OfAHeeledBoxAreThoseOfItsSlantedWaterplane) {
   }
 }
 
-TEST(Hydrostatics, OfAnUprightCylinderAreTheRegularPolygons) {
+TEST(Hydrostatics, MatchesClosedFormForUprightCylinder) {
   for (const int sides : {3, 8, 64}) {
     const double radius = 0.5;
     const double draft = 1.25;
@@ -155,7 +155,7 @@ HullWaterplane polygon_waterplane(const WigleyShape& hull, double zeta) {
   return plane;
 }
 
-TEST(Hydrostatics, OfTheWigleyHullAreThoseOfItsPolygonalWaterplane) {
+TEST(Hydrostatics, MatchesPolygonalWaterplaneOfWigleyHull) {
   const WigleyShape hull{.segments = 24, .levels = 8};
   const HydrostaticMesh mesh = prepared(hull);
   for (const int level : {0, 2, 5}) {  // down from the design waterplane
@@ -177,7 +177,7 @@ TEST(Hydrostatics, OfTheWigleyHullAreThoseOfItsPolygonalWaterplane) {
   }
 }
 
-TEST(Hydrostatics, OfTheWigleyHullConvergeToItsClosedFormWithTheSquareOfTheRefinement) {
+TEST(Hydrostatics, WigleyHullConvergesQuadratically) {
   double last = std::numeric_limits<double>::infinity();
   for (const int refinement : {1, 2, 4, 8}) {
     const WigleyShape hull{.segments = 16 * refinement, .levels = 4 * refinement};
@@ -199,7 +199,7 @@ TEST(Hydrostatics, OfTheWigleyHullConvergeToItsClosedFormWithTheSquareOfTheRefin
   EXPECT_LT(last, 1e-3);
 }
 
-TEST(Hydrostatics, OfADryBodyAreZerosAndUndefinedPoints) {
+TEST(Hydrostatics, IsZeroOrNanForDryBody) {
   const HydrostaticMesh mesh = prepared(RockShape{.frequency = 4});
   const Hydrostatics found = of(mesh, at_height(10.0), Vec3::Zero(), Vec3::Zero());
   EXPECT_EQ(found.volume, 0.0);
@@ -217,7 +217,7 @@ TEST(Hydrostatics, OfADryBodyAreZerosAndUndefinedPoints) {
   }
 }
 
-TEST(Hydrostatics, OfAWhollySubmergedBodyAreItsConstantsWithoutAWaterplane) {
+TEST(Hydrostatics, IsConstantWithoutWaterplaneForSubmergedBody) {
   const HydrostaticMesh mesh = prepared(RockShape{.frequency = 4});
   RandomPoses random(41);
   const Vec3 center_of_mass_B(0.1, -0.05, -0.2);
@@ -248,7 +248,7 @@ TEST(Hydrostatics, OfAWhollySubmergedBodyAreItsConstantsWithoutAWaterplane) {
   }
 }
 
-TEST(Hydrostatics, AgreeWithTheWrenchOnVolumeAndCentre) {
+TEST(Hydrostatics, AgreesWithWrenchOnVolumeAndCentre) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const Solver solver(mesh, Method::kHierarchical);
@@ -270,7 +270,7 @@ TEST(Hydrostatics, AgreeWithTheWrenchOnVolumeAndCentre) {
   }
 }
 
-TEST(Hydrostatics, OfTwoPartsWithTheSurfaceBetweenThemHaveNoWaterplane) {
+TEST(Hydrostatics, HasNoWaterplaneBetweenSeparateParts) {
   const TriangleMesh boxes =
       joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 2}));
   const HydrostaticMesh mesh = make_hydrostatic_mesh({boxes, {}});
@@ -283,7 +283,7 @@ TEST(Hydrostatics, OfTwoPartsWithTheSurfaceBetweenThemHaveNoWaterplane) {
   EXPECT_EQ(found.stiffness(2, 2), 0.0);
 }
 
-TEST(Hydrostatics, OfAnOpenHullWithADryRimAreThoseOfTheClosedOne) {
+TEST(Hydrostatics, MatchesClosedHullForOpenHullWithDryRim) {
   TriangleMesh open = make_shape(BoxShape{.size = {3, 2, 1}, .segments = {3, 2, 2}});
   const HydrostaticMesh closed = make_hydrostatic_mesh({open, {}});
   std::vector<std::int32_t> rim;
@@ -303,7 +303,7 @@ TEST(Hydrostatics, OfAnOpenHullWithADryRimAreThoseOfTheClosedOne) {
   expect_near(found.metacenters_W[1], expected.metacenters_W[1], 10 * kRelative);
 }
 
-TEST(Hydrostatics, GMIsTheRightingMomentsStiffnessAboutTheCentreOfMass) {
+TEST(Hydrostatics, DerivesGmConsistentWithRightingStiffness) {
   const HydrostaticMesh mesh = prepared(RockShape{.frequency = 8, .roughness = 0.5, .seed = 3});
   const BoundingBox box = bounding_box(mesh.surface);
   RandomPoses random(43);
@@ -328,7 +328,7 @@ TEST(Hydrostatics, GMIsTheRightingMomentsStiffnessAboutTheCentreOfMass) {
   EXPECT_GT(crossing, 40);
 }
 
-TEST(Hydrostatics, LeaveGMOutWithoutACentreOfMassAndNothingElse) {
+TEST(Hydrostatics, OmitsOnlyGmWithoutCentreOfMass) {
   const HydrostaticMesh mesh = prepared(BoxShape{});
   const Hydrostatics with = of(mesh, at_height(0.1), Vec3::Zero(), Vec3::Zero());
   const Hydrostatics without = of(mesh, at_height(0.1));
@@ -340,7 +340,7 @@ TEST(Hydrostatics, LeaveGMOutWithoutACentreOfMassAndNothingElse) {
   EXPECT_EQ(with.stiffness, without.stiffness);
 }
 
-TEST(Hydrostatics, HaveNoResultBeyondDoublesRange) {
+TEST(Hydrostatics, ReturnsNulloptBeyondDoubleRange) {
   const HydrostaticMesh mesh = prepared(BoxShape{});
   EXPECT_FALSE(hydrostatics(mesh, at_height(0.1), kWater, Vec3(1e200, 0, 0), std::nullopt));
 }

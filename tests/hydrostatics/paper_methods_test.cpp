@@ -44,14 +44,14 @@ const TriangleMesh& cube(int segments) {
   return segments == 10 ? coarse : fine;
 }
 
-TEST(PaperMethods, ExactOnesGiveTheCubesForceToRounding) {
+TEST(PaperMethods, MatchesCubeForceToRoundingWhenExact) {
   for (const int segments : {10, 100}) {
     EXPECT_LE(largest_error(cube(segments), Method::kExact, 0.5, cube_force), 1e-13);
     EXPECT_LE(largest_error(cube(segments), Method::kExactSurface, 0.5, cube_force), 1e-13);
   }
 }
 
-TEST(PaperMethods, RefiningShrinksTheErrorOfImprovedAndFastSurfaceButNotThatOfFast) {
+TEST(PaperMethods, ConvergesExceptForFastWhenMeshIsRefined) {
   const double fast = largest_error(cube(10), Method::kFast, 0.5, cube_force);
   const double fast_fine = largest_error(cube(100), Method::kFast, 0.5, cube_force);
   EXPECT_GT(fast, 0.05);
@@ -64,7 +64,7 @@ TEST(PaperMethods, RefiningShrinksTheErrorOfImprovedAndFastSurfaceButNotThatOfFa
             0.2 * largest_error(coarse, Method::kFastSurface, 1.0, sphere_force));
 }
 
-TEST(PaperMethods, OnSpheresTheExactOnesErrByTheMeshAlone) {
+TEST(PaperMethods, ErrsOnlyByDiscretizationOnSpheresWhenExact) {
   const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
   const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
@@ -75,7 +75,7 @@ TEST(PaperMethods, OnSpheresTheExactOnesErrByTheMeshAlone) {
   }
 }
 
-TEST(PaperMethods, NeverLeaveOutACutTriangleOfTheExactOnesWhereverTheWaterIs) {
+TEST(PaperMethods, CountsCutTrianglesAtEveryLevelWhenExact) {
   // The authors' published code compares heights with 0 where the water's level belongs; ours must not.
   const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
   for (const double level : {-3.0, 0.0, 5.0, 1234.5}) {
@@ -91,7 +91,7 @@ TEST(PaperMethods, NeverLeaveOutACutTriangleOfTheExactOnesWhereverTheWaterIs) {
   }
 }
 
-TEST(PaperMethods, DoNotTreatSmallVolumesAsZero) {
+TEST(PaperMethods, KeepsSmallVolumes) {
   // The authors' published code takes any volume below 1e-5 for none.
   const TriangleMesh tiny = moved_and_scaled(cube(10), Vec3::Zero(), 1e-3);
   const HydrostaticMesh mesh = make_hydrostatic_mesh({tiny, {}});
@@ -101,7 +101,7 @@ TEST(PaperMethods, DoNotTreatSmallVolumesAsZero) {
   }
 }
 
-TEST(PaperMethods, SurfaceMethodsKeepTheSignOfTheRestoringTorqueOnACoarseTiltedBox) {
+TEST(PaperMethods, KeepsSignOfRestoringTorqueOnCoarseBox) {
   // A flat box heeled by 0.2 rad: centroid times force per triangle would turn this torque's sign.
   const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(BoxShape{.size = {2, 2, 0.5}}), {}});
   const Eigen::Quaterniond heeled(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
@@ -113,7 +113,7 @@ TEST(PaperMethods, SurfaceMethodsKeepTheSignOfTheRestoringTorqueOnACoarseTiltedB
   EXPECT_LE((exact - surface).norm(), 1e-14);
 }
 
-TEST(PaperMethods, FastUsesBodysOwnOriginAndImprovedDoesNotDependOnIt) {
+TEST(PaperMethods, DependsOnBodyOriginOnlyForFast) {
   // The same cube, its mesh's origin at a corner: fast changes, improved does not.
   const TriangleMesh cornered = moved_and_scaled(cube(10), Vec3(0.5, 0.5, 0.5));
   const HydrostaticMesh centred_mesh = make_hydrostatic_mesh({cube(10), {}});
@@ -129,7 +129,7 @@ TEST(PaperMethods, FastUsesBodysOwnOriginAndImprovedDoesNotDependOnIt) {
   EXPECT_NEAR(volume(Method::kExact, true), volume(Method::kExact, false), 1e-12);
 }
 
-TEST(PaperMethods, AllGiveTheWholeVolumeWhenWhollySubmerged) {
+TEST(PaperMethods, GivesTotalVolumeWhenSubmerged) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
   const Pose pose{Vec3(0, 0, -2), Eigen::Quaterniond::Identity()};
   for (const Method method : kAllMethods) {
@@ -140,18 +140,18 @@ TEST(PaperMethods, AllGiveTheWholeVolumeWhenWhollySubmerged) {
   }
 }
 
-TEST(PaperMethods, AreFoundByTheirNamesAndByNoOther) {
+TEST(PaperMethods, IsFoundByExactName) {
   for (const Method method : kAllMethods) EXPECT_EQ(method_from_name(to_string(method)), method);
   EXPECT_EQ(method_from_name("exactly"), std::nullopt);
   EXPECT_EQ(method_from_name(""), std::nullopt);
 }
 
-class Approximations : public testing::TestWithParam<Method> {};
-INSTANTIATE_TEST_SUITE_P(PaperMethods, Approximations,
+class ApproximateMethods : public testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(PaperMethods, ApproximateMethods,
                          testing::Values(Method::kFast, Method::kImproved, Method::kFastSurface),
                          [](const auto& method) { return std::string(to_string(method.param)); });
 
-TEST_P(Approximations, StayWithinTheirBoundsOnEveryMeshAndPose) {
+TEST_P(ApproximateMethods, StaysWithinPublishedBounds) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const Solver solver(mesh, GetParam());
@@ -178,7 +178,7 @@ TEST_P(Approximations, StayWithinTheirBoundsOnEveryMeshAndPose) {
   }
 }
 
-TEST(Approximations, OfTheWaterlineTellByTheirBoundThatRefiningHelps) {
+TEST(ApproximateMethods, ShrinksBoundWhenMeshIsRefined) {
   const Pose tilted{Vec3(0, 0, 0.1), Eigen::Quaterniond(1.0, 0.3, -0.2, 0.1)};
   for (const Method method : {Method::kImproved, Method::kFastSurface}) {
     double bound = 1.0;

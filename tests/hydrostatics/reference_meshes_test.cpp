@@ -49,7 +49,7 @@ class ReferenceMeshes : public testing::Test {
   }
 };
 
-TEST_F(ReferenceMeshes, GiveTheReferenceVolumesAndCentresBelowEveryPlane) {
+TEST_F(ReferenceMeshes, MatchesReferenceVolumesAndCentres) {
   const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
   int planes = 0;
   for (const auto& [file, oracle] : oracles.items()) {
@@ -79,7 +79,7 @@ TEST_F(ReferenceMeshes, GiveTheReferenceVolumesAndCentresBelowEveryPlane) {
   EXPECT_GE(planes, 40);
 }
 
-TEST_F(ReferenceMeshes, DtcHullDisplacesItsPublishedVolumeAtItsWaterline) {
+TEST_F(ReferenceMeshes, MatchesPublishedDisplacementOfDtcHull) {
   const MeshValidation validation = load("hull_dtc_116062.stl");
   ASSERT_TRUE(validation.mesh);
   const HydrostaticMesh mesh = make_hydrostatic_mesh(*validation.mesh);
@@ -88,7 +88,7 @@ TEST_F(ReferenceMeshes, DtcHullDisplacesItsPublishedVolumeAtItsWaterline) {
   }
 }
 
-TEST_F(ReferenceMeshes, OpenBunnyIsRefusedOrAnsweredWhereverItsHolesAreDry) {
+TEST_F(ReferenceMeshes, AcceptsOpenBunnyOnlyWhileHolesAreDry) {
   EXPECT_TRUE(load("bunny_69451_open.ply").refusal);
   const MeshValidation open = load("bunny_69451_open.ply", OpenPolicy::kDryBoundary);
   const MeshValidation closed = load("bunny_69664_closed.ply");
@@ -119,7 +119,7 @@ TEST_F(ReferenceMeshes, OpenBunnyIsRefusedOrAnsweredWhereverItsHolesAreDry) {
   EXPECT_GT(refused, 30);
 }
 
-TEST_F(ReferenceMeshes, DirtyWamVIsRefusedWithWhatIsWrongWithIt) {
+TEST_F(ReferenceMeshes, RefusesDirtyWamVWithReasons) {
   for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
     const MeshValidation validation = load("wamv_dirty.dae", policy);
     ASSERT_TRUE(validation.refusal);
@@ -131,7 +131,7 @@ TEST_F(ReferenceMeshes, DirtyWamVIsRefusedWithWhatIsWrongWithIt) {
   }
 }
 
-TEST_F(ReferenceMeshes, GiveTheSameByHierarchicalAndByExactAtTwoThousandPosesEach) {
+TEST_F(ReferenceMeshes, MatchesExactWithHierarchical) {
   const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;

@@ -33,12 +33,12 @@ DualPlane dual_water_plane(const HydrostaticMesh& mesh, const Pose& pose, const 
   return dual;
 }
 
-Mat6 stiffness_by_dual_numbers(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+Mat6 stiffness_autodiff(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
                                const Vec3& reference_B) {
   using DualVec = Vec3T<Dual>;
   const DualPlane plane = dual_water_plane(mesh, pose, water, reference_B);
   const auto floating = displacement_moments<Dual>(
-      wet_moments_by_hand<Dual>(mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
+      wetted_moments_reference<Dual>(mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
   const DualVec force_B = floating.volume * plane.up_B;
   const DualVec torque_B = floating.moment.cross(plane.up_B) + plane.c_from_r.cross(force_B);
   const Dual weight(water.density * water.gravity);

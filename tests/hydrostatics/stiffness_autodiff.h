@@ -22,7 +22,7 @@ DualPlane dual_water_plane(const HydrostaticMesh& mesh, const Pose& pose, const 
                            const Vec3& reference_B);
 
 // -d(F, tau)/d(p, theta).
-Mat6 stiffness_by_dual_numbers(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+Mat6 stiffness_autodiff(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
                                const Vec3& reference_B);
 
 // The largest difference of a 3 x 3 block (they have different units), relative to the block. Without a

@@ -12,7 +12,7 @@
 namespace buoyancy {
 namespace {
 
-TEST(Stiffness, AgreesWithDualNumbersThroughClipMomentsAndReadOut) {
+TEST(Stiffness, MatchesAutomaticDifferentiation) {
   for (const NamedMesh& named : closed_test_meshes()) {
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     const BoundingBox box = bounding_box(named.mesh);
@@ -25,7 +25,7 @@ TEST(Stiffness, AgreesWithDualNumbersThroughClipMomentsAndReadOut) {
       const Vec3 reference_B = box.center() + box.diagonal() * random.uniform(0, 1) * random.direction();
       const auto found = hydrostatics(mesh, pose, water, reference_B, std::nullopt);
       ASSERT_TRUE(found);
-      const Mat6 expected = stiffness_by_dual_numbers(mesh, pose, water, reference_B);
+      const Mat6 expected = stiffness_autodiff(mesh, pose, water, reference_B);
       const double area = found->waterplane_area;
       EXPECT_LE(largest_difference(found->stiffness, expected, area > 0.0), stiffness_tolerance(mesh, area))
           << named.name << ", pose " << i;
@@ -35,7 +35,7 @@ TEST(Stiffness, AgreesWithDualNumbersThroughClipMomentsAndReadOut) {
   }
 }
 
-TEST(Stiffness, IsAboutTheReferencePointHoweverFarItLies) {
+TEST(Stiffness, HoldsAboutDistantReferencePoint) {
   const TriangleMesh rock = moved_and_scaled(make_shape(RockShape{.frequency = 8}), {6e5, -8e5, 1e5});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   RandomPoses random(32);
@@ -45,7 +45,7 @@ TEST(Stiffness, IsAboutTheReferencePointHoweverFarItLies) {
     const Pose pose = random.crossing(bounding_box(rock), {});
     const auto found = hydrostatics(mesh, pose, {}, Vec3::Zero(), std::nullopt);
     ASSERT_TRUE(found);
-    const Mat6 expected = stiffness_by_dual_numbers(mesh, pose, {}, Vec3::Zero());
+    const Mat6 expected = stiffness_autodiff(mesh, pose, {}, Vec3::Zero());
     const double area = found->waterplane_area;
     // Without one, what the other side's sums leave of it counts with the square of the distance.
     if (!(area > 0.0)) continue;
@@ -66,7 +66,7 @@ Pose displaced(const Pose& pose, const Vec3& reference_B, const Vec3& p, const V
   return moved;
 }
 
-TEST(Stiffness, IsWhatForceAndTorqueOfBuoyancyChangeBy) {
+TEST(Stiffness, MatchesFiniteDifferencesOfBuoyancy) {
   const Water water{.level = -0.5, .density = 1000.0, .gravity = 10.0};
   for (const NamedMesh& named : closed_test_meshes()) {
     if (named.name != "cylinder" && named.name != "rock" && named.name != "Wigley hull") continue;

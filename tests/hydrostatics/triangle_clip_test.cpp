@@ -36,7 +36,7 @@ ClipVertex<Rational> random_corner(RandomPoses& random) {
   return corner;
 }
 
-TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
+TEST(TriangleClip, SplitsTrianglesExactly) {
   RandomPoses random(5);
   int cut_triangles = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -66,7 +66,7 @@ TEST(TriangleClip, SplitsEveryTriangleIntoAWetAndADryPartThatAddUpExactly) {
   EXPECT_GT(cut_triangles, 1000);
 }
 
-TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
+TEST(TriangleClip, FindsSameCutPointFromBothTriangles) {
   RandomPoses random(6);
   for (int i = 0; i < 1000; ++i) {
     const ClipVertex<double> wet{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
@@ -79,7 +79,7 @@ TEST(TriangleClip, FindsTheSameCutPointFromBothTrianglesOfAnEdge) {
   }
 }
 
-TEST(TriangleClip, TakesACornerOnTheWaterForDry) {
+TEST(TriangleClip, TreatsCornerOnWaterAsDry) {
   const ClipVertex<double> on{{0, 0, 0}, 0.0};
   const ClipVertex<double> below{{1, 0, -1}, -1.0};
   const ClipVertex<double> also_below{{0, 1, -1}, -1.0};

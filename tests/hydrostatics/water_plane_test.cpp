@@ -22,8 +22,8 @@ struct FarRequest {
   ExactPlane<Rational> exact;  // about c
 
   FarRequest(RandomPoses& random, double quaternion_norm) {
-    const auto somewhere = [&](double largest_exponent) {
-      return Vec3(random.direction() * std::pow(10.0, random.uniform(-3, largest_exponent)));
+    const auto somewhere = [&](double max_exponent) {
+      return Vec3(random.direction() * std::pow(10.0, random.uniform(-3, max_exponent)));
     };
     water.up_W = random.direction();
     water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
@@ -35,7 +35,7 @@ struct FarRequest {
   }
 };
 
-TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
+TEST(WaterPlane, RoundsExactPlaneOnce) {
   RandomPoses random(1);
   for (int i = 0; i < 2000; ++i) {
     const FarRequest asked(random, random.uniform(0.999, 1.001));
@@ -50,7 +50,7 @@ TEST(WaterPlane, IsTheExactPlaneRoundedOnceForAnyPoseWaterAndCentre) {
   }
 }
 
-TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
+TEST(WaterPlane, StaysWithinStatedErrorInPlainDouble) {
   RandomPoses random(5);
   for (int i = 0; i < 2000; ++i) {
     const FarRequest asked(random, std::pow(10.0, random.uniform(-20, 20)));
@@ -66,7 +66,7 @@ TEST(WaterPlane, InPlainDoubleIsOffByNoMoreThanItSays) {
   }
 }
 
-TEST(WaterPlane, HasTheSameBitsForQAndMinusQ) {
+TEST(WaterPlane, IsBitIdenticalForNegatedQuaternion) {
   RandomPoses random(2);
   for (int i = 0; i < 1000; ++i) {
     Pose pose{random.direction(), random.rotation()};
@@ -79,7 +79,7 @@ TEST(WaterPlane, HasTheSameBitsForQAndMinusQ) {
   }
 }
 
-TEST(WaterPlane, ForgetsHorizontalDistanceWhereUpIsAnAxis) {
+TEST(WaterPlane, IgnoresHorizontalDistanceWhenUpIsAxis) {
   RandomPoses random(3);
   for (int i = 0; i < 1000; ++i) {
     Pose here{Vec3(0, 0, random.uniform(-1, 1)), random.rotation()};
@@ -91,7 +91,7 @@ TEST(WaterPlane, ForgetsHorizontalDistanceWhereUpIsAnAxis) {
   }
 }
 
-TEST(WaterPlane, TakesQuaternionsOfAnyNorm) {
+TEST(WaterPlane, AcceptsQuaternionsOfAnyNorm) {
   RandomPoses random(4);
   for (const double norm : {1e-300, 1e-160, 0.5, 2.0, 1e160, 1e300}) {
     const Pose unit{Vec3(0.1, 0.2, 0.3), random.rotation()};

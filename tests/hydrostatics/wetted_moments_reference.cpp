@@ -5,7 +5,7 @@
 namespace buoyancy {
 
 template <typename T>
-SurfaceMoments<T> wet_moments_by_hand(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h) {
+SurfaceMoments<T> wetted_moments_reference(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h) {
   SurfaceMoments<T> moments;
   const auto corner = [&](std::int32_t i) {
     const Vec3T<T> y = mesh.vertex(i).template cast<T>();
@@ -28,9 +28,9 @@ SurfaceMoments<T> wet_moments_by_hand(const TriangleMesh& mesh, const Vec3T<T>& 
   return moments;
 }
 
-template SurfaceMoments<Rational> wet_moments_by_hand<Rational>(const TriangleMesh&, const Vec3T<Rational>&,
+template SurfaceMoments<Rational> wetted_moments_reference<Rational>(const TriangleMesh&, const Vec3T<Rational>&,
                                                                 const Rational&);
-template SurfaceMoments<Dual> wet_moments_by_hand<Dual>(const TriangleMesh&, const Vec3T<Dual>&, const Dual&);
+template SurfaceMoments<Dual> wetted_moments_reference<Dual>(const TriangleMesh&, const Vec3T<Dual>&, const Dual&);
 
 template struct DisplacementMoments<Rational>;
 template DisplacementMoments<Rational> displacement_moments<Rational>(const SurfaceMoments<Rational>&,

@@ -14,7 +14,7 @@ namespace buoyancy {
 
 // up: k; h: height of the surface over the origin that the mesh's vertices are measured from, along k.
 template <typename T>
-SurfaceMoments<T> wet_moments_by_hand(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h);
+SurfaceMoments<T> wetted_moments_reference(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h);
 
 extern template struct DisplacementMoments<Rational>;
 extern template DisplacementMoments<Rational> displacement_moments<Rational>(const SurfaceMoments<Rational>&,

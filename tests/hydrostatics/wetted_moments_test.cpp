@@ -44,7 +44,7 @@ double difference(const Matrix& exact, const Eigen::MatrixXd& found) {
 
 // Of the product and in rationals, both about the product's point.
 struct BothReadOuts {
-  WetMoments wet;
+  WettedMoments wet;
   DisplacementMoments<double> found;
   DisplacementMoments<Rational> exact;
 };
@@ -52,18 +52,18 @@ struct BothReadOuts {
 BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
   const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
   BothReadOuts both;
-  both.wet = wet_moments(*mesh.tree, plane);
+  both.wet = wetted_moments(*mesh.tree, plane);
   both.found = displacement_moments(both.wet.moments, both.wet.height, plane.up_B);
   const Vec3T<Rational> k = exact_plane<Rational>(pose, kWater).up_B;
   const Rational h_c = Rational(kWater.level) - kWater.up_W.cast<Rational>().dot(pose.p_WB.cast<Rational>()) -
                        k.dot(mesh.center_B.cast<Rational>());
   const auto about_c =
-      displacement_moments<Rational>(wet_moments_by_hand<Rational>(mesh.surface, k, h_c), -h_c, k);
+      displacement_moments<Rational>(wetted_moments_reference<Rational>(mesh.surface, k, h_c), -h_c, k);
   both.exact = about_c.moved(both.wet.point.cast<Rational>());
   return both;
 }
 
-TEST(WetMoments, LeadToReadOutsThatAreExactToRounding) {
+TEST(WettedMoments, MatchesRationalArithmeticToRounding) {
   for (const NamedMesh& named : closed_test_meshes()) {
     if (named.mesh.triangles.size() > 800) continue;  // rationals take their time
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
@@ -95,7 +95,7 @@ TEST(WetMoments, LeadToReadOutsThatAreExactToRounding) {
   }
 }
 
-TEST(WetMoments, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
+TEST(WettedMoments, KeepsDigitsOfMillionthVolumeCap) {
   const HydrostaticMesh mesh =
       make_hydrostatic_mesh({make_shape(RockShape{.frequency = 8, .roughness = 0.0}), {}});
   RandomPoses random(45);
@@ -106,7 +106,7 @@ TEST(WetMoments, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
     for (int step = 0; step < 60; ++step) {
       pose.p_WB.z() = 0.5 * (dry + wet);
       const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
-      const WetMoments moments = wet_moments(*mesh.tree, plane);
+      const WettedMoments moments = wetted_moments(*mesh.tree, plane);
       const double volume = displacement_moments(moments.moments, moments.height, plane.up_B).volume;
       (volume < 1e-6 * mesh.volume ? dry : wet) = pose.p_WB.z();
     }
@@ -121,7 +121,7 @@ TEST(WetMoments, KeepTheirDigitsInACapOfAMillionthOfTheVolume) {
   }
 }
 
-TEST(WetMoments, TakeHeightsFromWhereTheWaterIsAndNotFromTheBodysMiddle) {
+TEST(WettedMoments, TakesHeightsFromLeafCentres) {
   const TriangleMesh sphere = make_shape(RockShape{.frequency = 40, .roughness = 0.0});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
   constexpr double kLeaf = 0.1;  // m, the size of 16 triangles

@@ -83,7 +83,7 @@ class Judge {
         truth_(source, asked),
         weight_(asked.water.density * asked.water.gravity) {}
 
-  void judge(const GivenResult& given, Judgement& judgement) {
+  void judge(const GivenResult& given, CheckReport& judgement) {
     Figures figures;
     const BuoyancyResult& result = given.result;
     auto& violations = judgement.violations;
@@ -106,7 +106,7 @@ class Judge {
       const Gates gate = gates(method, mesh_, asked_);
       if (given.answerer == Evaluator::kTolerance) {
         const double least =
-            mesh_.meets_volume_tolerance() ? 4.0 * mesh_.volume_tolerance() : mesh_.largest_rounding_bound();
+            mesh_.meets_volume_tolerance() ? 4.0 * mesh_.volume_tolerance() : mesh_.max_rounding_bound();
         const double most = std::max(asked_.tolerance * mesh_.volume, least) * weight_;
         if (!(result.force_error_bound <= most * (1.0 + 1e-12)))
           violations.push_back(line(given, "the bound of force", result.force_error_bound, "at most", most));
@@ -154,9 +154,9 @@ Gates gates(Method method, const HydrostaticMesh& mesh, const SearchPose& asked)
   return {volume, volume * mesh.max_lever_arm(asked.reference_B)};
 }
 
-Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
+CheckReport judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
                 const std::vector<GivenResult>& results) {
-  Judgement judgement;
+  CheckReport judgement;
   judgement.figures.reserve(results.size());
   Judge with_truth(source, mesh, asked);
   for (const GivenResult& given : results) with_truth.judge(given, judgement);

@@ -16,7 +16,7 @@ namespace buoyancy {
 
 // Who answers: the six methods, and `hierarchical` within the request's tolerance.
 enum class Evaluator { kExact, kExactSurface, kHierarchical, kTolerance, kImproved, kFastSurface, kFast };
-inline constexpr std::array kAnswerers{
+inline constexpr std::array kEvaluators{
     Evaluator::kExact,    Evaluator::kExactSurface, Evaluator::kHierarchical, Evaluator::kTolerance,
     Evaluator::kImproved, Evaluator::kFastSurface,  Evaluator::kFast};
 const char* to_string(Evaluator answerer);
@@ -40,13 +40,13 @@ struct Figures {
   }
 };
 
-struct Judgement {
+struct CheckReport {
   std::vector<Figures> figures;         // of each result
   std::vector<std::string> violations;  // one line each; empty: all is well
 };
 
 // source: the mesh as validated, in B; mesh: made of it.
-Judgement judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
+CheckReport judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
                 const std::vector<GivenResult>& results);
 
 // The gates of the exact methods in volume and in torque/(rho g): G_V and G_V L_r, of the paper's methods

@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
 
-  Expected<SearchStats> tally = load_tally(record, seed);
+  Expected<SearchStats> tally = load_stats(record, seed);
   if (!tally) return refuse(tally.error());
   ProgressBar progress("cases");
   const std::int64_t before = tally->cases;
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
     const std::int64_t whole_meshes = (left + kRequestsPerMesh - 1) / kRequestsPerMesh * kRequestsPerMesh;
     const SearchStats block = search(seed, tally->cases, tally->cases + std::min(kBlock, whole_meshes), jobs);
     *tally += block;
-    if (const Expected<void> saved = save_tally(record, seed, *tally); !saved) return refuse(saved.error());
+    if (const Expected<void> saved = save_stats(record, seed, *tally); !saved) return refuse(saved.error());
     if (!block.failures.empty()) progress.clear();
     for (const FailedCase& failure : block.failures) print_failure(seed, failure);
     progress.update(tally->cases - before, cases - before, tally->cases - before);

@@ -58,18 +58,18 @@ void add_hierarchical(MeshCases& cases, const std::string& target) {
 
 void add_others(MeshCases& cases) {
   for (std::size_t i = 0; i < cases.asked.size(); ++i) {
-    for (const Evaluator answerer : kAnswerers) {
+    for (const Evaluator answerer : kEvaluators) {
       if (method_of(answerer) != Method::kHierarchical)
         cases.results[i].push_back({answerer, "", result_of(answerer, cases.mesh, cases.asked[i])});
     }
   }
 }
 
-SearchStats tally_of(const MeshCases& cases) {
+SearchStats stats_of(const MeshCases& cases) {
   SearchStats tally;
   for (std::size_t i = 0; i < cases.asked.size(); ++i) {
     const std::int64_t number = cases.first + static_cast<std::int64_t>(i);
-    const Judgement judgement = judge(cases.source, cases.mesh, cases.asked[i], cases.results[i]);
+    const CheckReport judgement = judge(cases.source, cases.mesh, cases.asked[i], cases.results[i]);
     ++tally.cases;
     tally.results += static_cast<std::int64_t>(cases.results[i].size());
     for (std::size_t n = 0; n < judgement.figures.size(); ++n) {
@@ -117,7 +117,7 @@ SearchStats& SearchStats::operator+=(const SearchStats& other) {
 
 std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked) {
   std::vector<GivenResult> results;
-  for (const Evaluator answerer : kAnswerers) {
+  for (const Evaluator answerer : kEvaluators) {
     const bool dispatched = method_of(answerer) == Method::kHierarchical;
     results.push_back({answerer, dispatched ? simd_target() : "", result_of(answerer, mesh, asked)});
   }
@@ -137,19 +137,19 @@ SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, uns
   }
   force_simd_target("");
   std::vector<SearchStats> tallies(meshes.size());
-  in_parallel(meshes.size(), threads, [&](std::size_t i) { tallies[i] = tally_of(meshes[i]); });
+  in_parallel(meshes.size(), threads, [&](std::size_t i) { tallies[i] = stats_of(meshes[i]); });
   SearchStats total;
   for (const SearchStats& tally : tallies) total += tally;
   return total;
 }
 
-SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering) {
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& answering) {
   SearchStats total;
   for (std::int64_t mesh = begin / kRequestsPerMesh; mesh < end / kRequestsPerMesh; ++mesh) {
     MeshCases cases = make_cases(seed, mesh);
     for (std::size_t i = 0; i < cases.asked.size(); ++i)
       cases.results[i] = answering(cases.mesh, cases.asked[i]);
-    total += tally_of(cases);
+    total += stats_of(cases);
   }
   return total;
 }

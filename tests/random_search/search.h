@@ -30,23 +30,23 @@ struct SearchStats {
   std::int64_t cases = 0;
   std::int64_t results = 0;
   std::int64_t failed_cases = 0;
-  std::array<std::array<Largest, Figures::kNames.size()>, kAnswerers.size()> largest{};
+  std::array<std::array<Largest, Figures::kNames.size()>, kEvaluators.size()> largest{};
   std::vector<FailedCase> failures;  // the first hundred
 
   SearchStats& operator+=(const SearchStats& other);
 };
 
 // What is asked for a result: the product, or in tests something broken.
-using Answering = std::function<std::vector<GivenResult>(const HydrostaticMesh&, const SearchPose&)>;
+using EvaluateAll = std::function<std::vector<GivenResult>(const HydrostaticMesh&, const SearchPose&)>;
 
 // The results of every method, of `hierarchical` on the instruction set in use.
 std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked);
 
-// Cases begin <= number < end; both multiples of kQuestionsPerMesh. `hierarchical` is asked on every
+// Cases begin <= number < end; both multiples of kRequestsPerMesh. `hierarchical` is asked on every
 // instruction set in turn (force_simd_target: nobody else may ask meanwhile).
 SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads);
 // The same of others' answers, on one thread.
-SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const Answering& answering);
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& answering);
 
 // A case by itself.
 struct SearchCase {

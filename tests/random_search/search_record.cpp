@@ -18,10 +18,10 @@ std::filesystem::path file_of(const std::filesystem::path& directory, std::uint6
 
 Json to_json(const SearchStats& tally) {
   Json json{{"cases", tally.cases}, {"results", tally.results}, {"failed_cases", tally.failed_cases}};
-  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
+  for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
       const Largest& largest = tally.largest[row][column];
-      json["largest"][to_string(kAnswerers[row])][Figures::kNames[column]] = {{"value", largest.value},
+      json["largest"][to_string(kEvaluators[row])][Figures::kNames[column]] = {{"value", largest.value},
                                                                               {"case", largest.at}};
     }
   }
@@ -37,9 +37,9 @@ SearchStats from_json(const Json& json) {
   tally.cases = json.at("cases");
   tally.results = json.at("results");
   tally.failed_cases = json.at("failed_cases");
-  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
+  for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
-      const Json& largest = json.at("largest").at(to_string(kAnswerers[row])).at(Figures::kNames[column]);
+      const Json& largest = json.at("largest").at(to_string(kEvaluators[row])).at(Figures::kNames[column]);
       tally.largest[row][column] = {largest.at("value"), largest.at("case")};
     }
   }
@@ -61,13 +61,13 @@ Expected<SearchStats> load(const std::filesystem::path& path) {
 
 }  // namespace
 
-Expected<SearchStats> load_tally(const std::filesystem::path& directory, std::uint64_t seed) {
+Expected<SearchStats> load_stats(const std::filesystem::path& directory, std::uint64_t seed) {
   const std::filesystem::path path = file_of(directory, seed);
   if (!std::filesystem::exists(path)) return SearchStats{};
   return load(path);
 }
 
-Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed,
+Expected<void> save_stats(const std::filesystem::path& directory, std::uint64_t seed,
                           const SearchStats& tally) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
@@ -101,8 +101,8 @@ std::string markdown(const SearchStats& tally) {
   std::string text = "| |";
   for (const char* column : Figures::kNames) text += std::string(" ") + column + " |";
   text += "\n|---|---|---|---|---|\n";
-  for (std::size_t row = 0; row < kAnswerers.size(); ++row) {
-    text += std::string("| `") + to_string(kAnswerers[row]) + "` |";
+  for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
+    text += std::string("| `") + to_string(kEvaluators[row]) + "` |";
     for (const Largest& largest : tally.largest[row]) {
       std::array<char, 32> number;
       std::snprintf(number.data(), number.size(), " %.2g |", largest.value);

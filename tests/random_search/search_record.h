@@ -11,9 +11,9 @@
 namespace buoyancy {
 
 // Zeros where there is no such file. Errors: a file that is not one of ours.
-Expected<SearchStats> load_tally(const std::filesystem::path& directory, std::uint64_t seed);
+Expected<SearchStats> load_stats(const std::filesystem::path& directory, std::uint64_t seed);
 // Replaces the file at once or not at all. Errors: a directory that cannot be written.
-Expected<void> save_tally(const std::filesystem::path& directory, std::uint64_t seed,
+Expected<void> save_stats(const std::filesystem::path& directory, std::uint64_t seed,
                           const SearchStats& tally);
 // Of all seeds of the directory.
 Expected<SearchStats> load_all(const std::filesystem::path& directory);

@@ -17,7 +17,7 @@ constexpr std::int64_t kCases = 10 * kRequestsPerMesh;
 constexpr std::int64_t kCases = 625 * kRequestsPerMesh;  // 20,000
 #endif
 
-TEST(RandomSearch, FindsNothingInTwentyThousandCases) {
+TEST(RandomSearch, FindsNoViolationIn20000Cases) {
   const SearchStats tally = search(1, 0, kCases, std::max(1U, std::thread::hardware_concurrency()));
   EXPECT_EQ(tally.cases, kCases);
   EXPECT_GE(tally.results, 7 * kCases);
@@ -35,7 +35,7 @@ std::vector<GivenResult> broken_results(const HydrostaticMesh& mesh, const Searc
   return {{Evaluator::kExact, "", result}};
 }
 
-TEST(RandomSearch, FindsAnAnswerThatIsOffByFourGatesAndMakesTheCaseSmall) {
+TEST(RandomSearch, FindsAndShrinksInaccurateResult) {
   const SearchStats tally = search(2, 0, 8 * kRequestsPerMesh, broken_results);
   ASSERT_GT(tally.failed_cases, 0);
   ASSERT_FALSE(tally.failures.empty());
@@ -53,7 +53,7 @@ TEST(RandomSearch, FindsAnAnswerThatIsOffByFourGatesAndMakesTheCaseSmall) {
   EXPECT_NE(text.find("TEST(FoundBySearch, Seed2Case" + std::to_string(number)), std::string::npos) << text;
 }
 
-TEST(RandomSearch, FindsAnAnswerThatIsNotANumber) {
+TEST(RandomSearch, FindsNanResult) {
   const SearchStats tally = search(3, 0, kRequestsPerMesh, [](const HydrostaticMesh&, const SearchPose&) {
     BuoyancyResult result;
     result.torque_W.x() = std::numeric_limits<double>::quiet_NaN();
@@ -62,7 +62,7 @@ TEST(RandomSearch, FindsAnAnswerThatIsNotANumber) {
   EXPECT_EQ(tally.failed_cases, kRequestsPerMesh);
 }
 
-TEST(RandomSearch, DrawsTheSameCasesWhereverARunBeginsAndOnAnyNumberOfThreads) {
+TEST(RandomSearch, IsReproducibleAcrossRunsAndThreads) {
   SearchStats parts = search(4, 0, 2 * kRequestsPerMesh, 1);
   parts += search(4, 2 * kRequestsPerMesh, 5 * kRequestsPerMesh, 3);
   const SearchStats whole = search(4, 0, 5 * kRequestsPerMesh, 2);
@@ -75,16 +75,16 @@ TEST(RandomSearch, DrawsTheSameCasesWhereverARunBeginsAndOnAnyNumberOfThreads) {
   }
 }
 
-TEST(RandomSearch, KeepsItsRecordAndAddsUpSeeds) {
+TEST(RandomSearch, SavesRecordsAndAddsSeeds) {
   const std::filesystem::path directory =
       std::filesystem::temp_directory_path() /
       ("buoyancy_search_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
   std::filesystem::remove_all(directory);
-  EXPECT_EQ(load_tally(directory, 5)->cases, 0);
+  EXPECT_EQ(load_stats(directory, 5)->cases, 0);
   const SearchStats found = search(5, 0, 2 * kRequestsPerMesh, broken_results);
-  ASSERT_TRUE(save_tally(directory, 5, found));
-  ASSERT_TRUE(save_tally(directory, 6, found));
-  const Expected<SearchStats> again = load_tally(directory, 5);
+  ASSERT_TRUE(save_stats(directory, 5, found));
+  ASSERT_TRUE(save_stats(directory, 6, found));
+  const Expected<SearchStats> again = load_stats(directory, 5);
   ASSERT_TRUE(again);
   EXPECT_EQ(summary(*again), summary(found));
   EXPECT_EQ(markdown(*again), markdown(found));

@@ -101,7 +101,7 @@ std::string numbers(const Vec3& v) {
 
 }  // namespace
 
-bool fails(const TriangleMesh& mesh, const SearchPose& asked, const Answering& answering) {
+bool fails(const TriangleMesh& mesh, const SearchPose& asked, const EvaluateAll& answering) {
   ImportedMesh imported;
   imported.mesh = mesh;
   const MeshValidation validation = validate_mesh(imported, "case");
@@ -144,7 +144,7 @@ std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t 
   text += "  asked.water.level = " + number(asked.water.level) + ";\n";
   text += "  asked.reference_B = {" + numbers(asked.reference_B) + "};\n";
   text += "  asked.tolerance = " + number(asked.tolerance) + ";\n";
-  text += "  EXPECT_FALSE(fails(mesh, asked, product_answers));\n}\n";
+  text += "  EXPECT_FALSE(fails(mesh, asked, product_results));\n}\n";
   return text;
 }
 

@@ -12,7 +12,7 @@ namespace buoyancy {
 using StillFails = std::function<bool(const TriangleMesh&, const SearchPose&)>;
 
 // The case as validation accepts it and a result that `answering` gives breaks a law.
-bool fails(const TriangleMesh& mesh, const SearchPose& asked, const Answering& answering);
+bool fails(const TriangleMesh& mesh, const SearchPose& asked, const EvaluateAll& answering);
 
 SearchCase shrunk(SearchCase failing, const StillFails& still_fails);
 

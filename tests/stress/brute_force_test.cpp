@@ -43,7 +43,7 @@ std::vector<StressedBody> bodies_of_every_leaf_size() {
   return bodies;
 }
 
-TEST(StressInvariants, HierarchicalIsBruteForceOnEveryInstructionSetAndLeafSize) {
+TEST(StressInvariants, HierarchicalMatchesBruteForce) {
   StressCase stress("hierarchical = brute force, every instruction set, every leaf size",
                     "every triangle, no tree", "bound of each");
   std::set<int> leaf_sizes;

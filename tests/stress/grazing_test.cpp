@@ -45,7 +45,7 @@ std::vector<Eigen::Quaterniond> axis_rotations() {
   return found;
 }
 
-TEST(StressGrazing, VerticesEdgesAndFacesOnThePlaneAreDry) {
+TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
   StressCase stress("vertex, edge, whole face on the plane (dry by convention)", "rational arithmetic",
                     "G_V, G_V L_r; standing on the water: 0");
   const StressedBody diamond("octahedron", octahedron());
@@ -117,7 +117,7 @@ double shifted_by_ulps(double value, int ulps) {
   return value;
 }
 
-TEST(StressGrazing, ABigFlatFaceWithinAFewUlpOfThePlane) {
+TEST(StressGrazing, IsExactForFlatFaceWithinUlpsOfPlane) {
   StressCase stress("all of a big flat face within k ulp of the plane, k = -8 .. 8", "rational arithmetic",
                     "G_V, G_V L_r");
   const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 1}, .segments = {4, 4, 1}});
@@ -191,7 +191,7 @@ double grazing_gate(Method method, const TrueWaterplane& plane, double diagonal)
   return gate * plane.area;
 }
 
-TEST(StressGrazing, AWetTipOfABillionthOfTheVolumeKeepsAnAbsoluteError) {
+TEST(StressGrazing, BoundsErrorOfTinyWetTips) {
   StressCase stress("grazing: wet volume 1e-9 V_T and less; no c_B below the bound", "rational arithmetic",
                     "4 eps L A_wp; more along edges (hierarchical), of the waterline (exact)");
   RandomPoses random(304);
@@ -221,7 +221,7 @@ TEST(StressGrazing, AWetTipOfABillionthOfTheVolumeKeepsAnAbsoluteError) {
   }
 }
 
-TEST(StressGrazing, ABodyNearlySubmergedLacksNoMoreThanItsTip) {
+TEST(StressGrazing, IsExactWhenNearlySubmerged) {
   StressCase stress("nearly submerged", "complement: V_T less the dry tip, rational", "G_V, G_V L_r");
   RandomPoses random(305);
   for (const Grazing& grazing : grazing_bodies(random)) {
@@ -236,7 +236,7 @@ TEST(StressGrazing, ABodyNearlySubmergedLacksNoMoreThanItsTip) {
   }
 }
 
-TEST(StressGrazing, ASubmergedBodyIsItsConstantsAtEveryDepth) {
+TEST(StressGrazing, IsConstantAtEveryDepthWhenSubmerged) {
   StressCase stress("submerged, depth to 1e4 m", "the constants",
                     "same bits; exact and exact_surface: G_V (1 + 8 depth/L)");
   for (const StressedBody& body : stressed_bodies()) {
@@ -269,7 +269,7 @@ TEST(StressGrazing, ASubmergedBodyIsItsConstantsAtEveryDepth) {
   }
 }
 
-TEST(StressGrazing, ADryBodyIsZero) {
+TEST(StressGrazing, IsZeroWhenDry) {
   StressCase stress("dry", "zero, all six methods", "same bits");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(307);

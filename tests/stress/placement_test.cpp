@@ -29,18 +29,18 @@ void check_moved(StressCase& stress, const StressedBody& body, const Pose& near,
   const double area =
       std::max(waterplane_area(body, near, near_water), waterplane_area(body, far, far_water));
   const double volume_tolerance = area * kEpsilon * distance + body.volume_tolerance();
-  const double torque_gate = volume_tolerance * body.mesh.max_lever_arm(body.mesh.center_B);
+  const double torque_tolerance = volume_tolerance * body.mesh.max_lever_arm(body.mesh.center_B);
   visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
     const BuoyancyResult one = buoyancy(solver, near, near_water, body.mesh.center_B);
     const BuoyancyResult other = buoyancy(solver, far, far_water, body.mesh.center_B);
     const double factor = depth_factor(solver, near, near_water);
     const std::string where = body.name + ", " + method;
     stress.check(std::abs(other.volume - one.volume), factor * volume_tolerance, "volume, " + where);
-    stress.check((other.torque_W - one.torque_W).norm(), factor * torque_gate, "torque, " + where);
+    stress.check((other.torque_W - one.torque_W).norm(), factor * torque_tolerance, "torque, " + where);
   });
 }
 
-TEST(StressPlacement, ABodyFarAwayHorizontallyHasTheSameBitsWhereUpIsAnAxis) {
+TEST(StressPlacement, IsBitIdenticalFarAwayWhenUpIsAxis) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up an axis", "the same body near", "same bits");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(201);
@@ -67,7 +67,7 @@ TEST(StressPlacement, ABodyFarAwayHorizontallyHasTheSameBitsWhereUpIsAnAxis) {
   }
 }
 
-TEST(StressPlacement, ABodyFarAwayHorizontallyIsAsExactAsItsPoseWhereUpIsTilted) {
+TEST(StressPlacement, IsAsExactAsPoseFarAwayWhenUpIsTilted) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted", "the same body near",
                     "A_wp dh, dh = eps |p| (beside G_V)");
   for (const StressedBody& body : stressed_bodies()) {
@@ -86,7 +86,7 @@ TEST(StressPlacement, ABodyFarAwayHorizontallyIsAsExactAsItsPoseWhereUpIsTilted)
   }
 }
 
-TEST(StressPlacement, ABodyFarAwayIsAnsweredExactlyForThePoseThatWasAsked) {
+TEST(StressPlacement, IsExactForDistantPose) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted",
                     "rational arithmetic at the pose as asked", "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
@@ -105,7 +105,7 @@ TEST(StressPlacement, ABodyFarAwayIsAnsweredExactlyForThePoseThatWasAsked) {
   }
 }
 
-TEST(StressPlacement, AVerticalOffsetOfLevelAndPositionChangesNoMoreThanItsLastDigit) {
+TEST(StressPlacement, IsAsExactAsPoseForVerticalOffset) {
   StressCase stress("vertical offset 1e6 m (level and position)", "without the offset",
                     "A_wp dh, dh = eps |p_z| (beside G_V)");
   for (const StressedBody& body : stressed_bodies()) {
@@ -124,7 +124,7 @@ TEST(StressPlacement, AVerticalOffsetOfLevelAndPositionChangesNoMoreThanItsLastD
   }
 }
 
-TEST(StressPlacement, AVerticalOffsetIsAnsweredExactlyForThePoseThatWasAsked) {
+TEST(StressPlacement, IsExactForVerticalOffset) {
   StressCase stress("vertical offset 1e6 m (level and position)", "rational arithmetic at the pose as asked",
                     "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
@@ -140,7 +140,7 @@ TEST(StressPlacement, AVerticalOffsetIsAnsweredExactlyForThePoseThatWasAsked) {
   }
 }
 
-TEST(StressPlacement, AMeshFarFromItsOwnOriginIsAnsweredExactly) {
+TEST(StressPlacement, IsExactForMeshFarFromItsOrigin) {
   StressCase stress("mesh 1e3 m, 1e6 m from its own body origin", "rational arithmetic", "G_V, G_V L_r");
   const TriangleMesh rock = make_shape(RockShape{.frequency = 4, .roughness = 0.4, .seed = 7});
   const TriangleMesh box = make_shape(BoxShape{.size = {1, 2, 3}, .segments = {2, 2, 2}});
@@ -160,7 +160,7 @@ TEST(StressPlacement, AMeshFarFromItsOwnOriginIsAnsweredExactly) {
   }
 }
 
-TEST(StressPlacement, ABodyScaledByAPowerOfTwoHasTheSameBits) {
+TEST(StressPlacement, IsBitIdenticalWhenScaledByPowerOfTwo) {
   StressCase stress("body of 1e-6 m, of 1e6 m (scaled by 2^-20, 2^20)", "the body of 1 m, all six methods",
                     "same bits");
   for (const StressedBody& body : stressed_bodies()) {

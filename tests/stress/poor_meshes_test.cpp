@@ -37,7 +37,7 @@ TriangleMesh with_sliver(TriangleMesh mesh, std::size_t face, double along, doub
   return mesh;
 }
 
-TEST(StressPoorMeshes, SliversNeedlesAndCollinearTrianglesAreAnsweredExactly) {
+TEST(StressPoorMeshes, IsExactForSliversAndNeedles) {
   StressCase stress("slivers, needles (aspect 1e8), collinear triangles",
                     "rational arithmetic; the mesh without them",
                     "G_V, G_V L_r; of needles' bodies: the rounding area for A_s");
@@ -96,7 +96,7 @@ TEST(StressPoorMeshes, SliversNeedlesAndCollinearTrianglesAreAnsweredExactly) {
   }
 }
 
-TEST(StressPoorMeshes, FacesThatRepeatAnIndexAreDroppedAndReported) {
+TEST(StressPoorMeshes, DropsAndReportsFacesThatRepeatAnIndex) {
   StressCase stress("faces that repeat an index", "dropped at load, reported", "same bits");
   const TriangleMesh clean = make_shape(RockShape{.frequency = 6});
   TriangleMesh poor = clean;
@@ -128,7 +128,7 @@ TEST(StressPoorMeshes, FacesThatRepeatAnIndexAreDroppedAndReported) {
   }
 }
 
-TEST(StressPoorMeshes, AThinPlateIsAnsweredExactly) {
+TEST(StressPoorMeshes, IsExactForThinPlate) {
   StressCase stress("thin plate, thickness 1e-8", "rational arithmetic", "G_V, G_V L_r");
   for (const int segments : {1, 4}) {
     const StressedBody plate("plate of " + std::to_string(segments),
@@ -155,7 +155,7 @@ bool is_finite(const BuoyancyResult& result) {
          std::isfinite(result.dropped_torque);
 }
 
-TEST(StressPoorMeshes, DenormalsNeverMakeANaN) {
+TEST(StressPoorMeshes, StaysFiniteWithDenormals) {
   StressCase stress("denormals in the pose or the mesh", "finite, never 0/0; all six methods", "finite");
   constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
   std::vector<StressedBody> bodies;
@@ -216,7 +216,7 @@ TriangleMesh in_single_precision(TriangleMesh mesh) {
   return mesh;
 }
 
-TEST(StressPoorMeshes, AnUnweldedStlIsTheSameMeshWelded) {
+TEST(StressPoorMeshes, MatchesWeldedMeshForUnweldedStl) {
   StressCase stress("unwelded STL against the same mesh welded", "rational arithmetic; the welded mesh",
                     "G_V, G_V L_r");
   const TempDir directory;

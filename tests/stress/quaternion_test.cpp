@@ -27,7 +27,7 @@ Eigen::Quaterniond scaled(const Eigen::Quaterniond& q, double factor) {
   return Eigen::Quaterniond(factor * q.w(), factor * q.x(), factor * q.y(), factor * q.z());
 }
 
-TEST(StressQuaternions, QAndMinusQAreTheSamePose) {
+TEST(StressQuaternions, IsBitIdenticalForNegatedQuaternion) {
   StressCase stress("q and -q", "each other, all six methods", "same bits");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(601);
@@ -67,7 +67,7 @@ WrenchResponse result_of(RequestHandler& handler, const std::vector<BodyState>& 
   return result;
 }
 
-TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
+TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
   StressCase stress("| |q| - 1 | <= 1e-3", "rational arithmetic at q/|q|", "G_V, G_V L_r");
   const std::vector<double> norms{1.0 - 9.99e-4, 1.0 - 1e-4, 1.0 - 1e-6,
                                   1.0 + 1e-9,    1.0 + 1e-5, 1.0 + 9.99e-4};
@@ -98,7 +98,7 @@ TEST(StressQuaternions, NormsWithinAThousandthOfOneAreNormalised) {
                    "volume, " + where);
       stress.check(distance(to_vec3(wrench.force) / kWeight, truth.force_W), box.volume_tolerance(),
                    "force, " + where);
-      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_gate(Vec3::Zero()),
+      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_tolerance(Vec3::Zero()),
                    "torque, " + where);
     }
     const bool noteworthy = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
@@ -153,7 +153,7 @@ std::vector<Refused> refused_states() {
   return found;
 }
 
-TEST(StressQuaternions, WhatIsNoPoseIsRefusedCountedAndLeavesTheOthersAlone) {
+TEST(StressQuaternions, RejectsInvalidPosesAndKeepsOtherBodies) {
   StressCase stress("q further off, NaN, Inf, overflow to Inf",
                     "its status, counted; zeros for it, the others' wrenches unchanged", "status");
   const Scene scene = box_scene();

@@ -26,7 +26,7 @@ struct StressedBody {
   StressedBody(std::string called, TriangleMesh from);
 
   double volume_tolerance() const { return mesh.volume_tolerance(); }  // G_V
-  double torque_gate(const Vec3& reference_B) const {                  // G_tau
+  double torque_tolerance(const Vec3& reference_B) const {                  // G_tau
     return mesh.volume_tolerance() * mesh.max_lever_arm(reference_B);
   }
 };
