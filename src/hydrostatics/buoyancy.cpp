@@ -13,12 +13,12 @@ bool boundary_is_dry(const HydrostaticMesh& mesh, const WaterPlane& plane) {
                       [&](std::int32_t i) { return plane.height(mesh.vertex(i)) < 0.0; });
 }
 
-// Without a branch for each number: infinity less itself is no number.
+// Branch-free finiteness test: x - x is 0 for finite x, and NaN for infinities and NaN.
 bool finite(const BuoyancyResult& result) {
-  const auto none = [](double value) { return value - value; };
-  const auto nothing = [none](const Vec3& v) { return none(v.x()) + none(v.y()) + none(v.z()); };
-  return nothing(result.force_W) + nothing(result.torque_W) + nothing(result.center_of_buoyancy_W) +
-             none(result.volume) + none(result.force_error_bound) + none(result.torque_error_bound) ==
+  const auto zero = [](double value) { return value - value; };
+  const auto zero3 = [zero](const Vec3& v) { return zero(v.x()) + zero(v.y()) + zero(v.z()); };
+  return zero3(result.force_W) + zero3(result.torque_W) + zero3(result.center_of_buoyancy_W) +
+             zero(result.volume) + zero(result.force_error_bound) + zero(result.torque_error_bound) ==
          0.0;
 }
 
@@ -27,9 +27,10 @@ struct ErrorBounds {
   double force, torque;
 };
 
-// m: how far from c numbers reach beyond the body's size. The paper's methods lose digits where the pressure
-// is much larger than over the body, or their apex is far from it: with depth; where overlapping parts put
-// the centroid far outside; `fast`, where B's origin is.
+// [m], distance from c, beyond the body's size, that a method's intermediate values reach. The paper's
+// methods lose digits where the pressure is much larger than its variation over the body or the apex is far
+// from the body: at depth; where overlapping parts put the centroid far outside; for `fast`, where B's origin
+// is.
 double far_reach(const Solver& solver, const WaterPlane& plane) {
   const HydrostaticMesh& mesh = solver.mesh();
   switch (solver.method()) {
@@ -50,9 +51,9 @@ double far_reach(const Solver& solver, const WaterPlane& plane) {
 ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Displacement& displaced,
                          const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();
-  constexpr double kGrowth = 3.0;  // plates of many faces were found to need two
+  constexpr double kGrowth = 3.0;  // measured: plates of many faces need 2
   const double near = mesh.rounding_bound();
-  // Of bodies of less than 1e-162 m the diagonal underflows, and all else with it.
+  // The diagonal of bodies smaller than 1e-162 m underflows, and so does everything else.
   const double per_metre = mesh.diagonal > 0.0 ? near / mesh.diagonal : 0.0;
   const double rounding = near + kGrowth * far_reach(solver, plane) * per_metre + displaced.rounding;
   double lever = mesh.max_lever_arm(reference_B);
@@ -63,8 +64,8 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Di
   return {force, force * lever};
 }
 
-// q v q* / |q|^2: no square root for a quaternion of any norm. In named scalars, since a scene of many bodies
-// waits for Eigen's arrays to be stored and read again.
+// q v q* / |q|^2, which takes a quaternion of any norm and no square root. Named scalars stay in registers;
+// Eigen's arrays are stored and read again, which a scene of many bodies waits for.
 Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, const Vec3& v) {
   const Point<double> u{q.x(), q.y(), q.z()};
   const Point<double> p = Point<double>::from(v);
@@ -72,9 +73,10 @@ Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, co
   return p + two_by_norm_squared * (q.w() * across + cross(u, across));
 }
 
-// The centre of buoyancy is the volume's centroid and the torque its lever's: nothing depends on the depth.
+// The centre of buoyancy is the volume's centroid, and the torque follows from its lever: neither depends on
+// the depth.
 void set_submerged_result(const FullySubmerged& wet, const Pose& pose, const Water& water,
-                       BuoyancyResult& result) {
+                          BuoyancyResult& result) {
   const Eigen::Quaterniond& q = pose.q_WB;
   const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   const auto up = Point<double>::from(water.up_W);
@@ -82,7 +84,7 @@ void set_submerged_result(const FullySubmerged& wet, const Pose& pose, const Wat
   const Point<double> center_W =
       wet.lever_B == wet.centroid_B ? lever_W : rotate(q, two_by_norm_squared, wet.centroid_B);
   const Point<double> torque_W = wet.lift * cross(lever_W, up);
-  // Every field, so that none is left from what stood there before.
+  // Every field is set, so that no old value remains.
   result = {.status = BuoyancyStatus::kOk,
             .immersion = Immersion::kSubmerged,
             .force_W = wet.force_W,
@@ -95,15 +97,15 @@ void set_submerged_result(const FullySubmerged& wet, const Pose& pose, const Wat
             .dropped_torque = 0.0};
 }
 
-// What the body displaces, as forces in the world.
+// Converts the displaced volume to forces in the world.
 void set_result_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
-                              const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
+                                  const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const HydrostaticMesh& mesh = solver.mesh();
   const Displacement displaced = solver.displacement(plane);
-  const double weight = water.density * water.gravity;  // N/m^3
+  const double weight = water.density * water.gravity;  // [N/m^3]
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
   const Vec3& k = plane.up_B;
-  const Vec3 lever = mesh.center_B - reference_B;  // m, B
+  const Vec3 lever = mesh.center_B - reference_B;  // [m], B
 
   result.volume = displaced.volume;
   if (is_exact(solver.method())) {
@@ -123,8 +125,8 @@ void set_result_from_displacement(const Solver& solver, const WaterPlane& plane,
   const ErrorBounds bounds = error_bounds(solver, plane, displaced, reference_B);
   result.force_error_bound = weight * bounds.force;
   result.torque_error_bound = weight * bounds.torque;
-  const double smallest_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_tolerance();
-  if (std::abs(displaced.volume) > smallest_volume) {
+  const double min_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_tolerance();
+  if (std::abs(displaced.volume) > min_volume) {
     result.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
   }
 }
@@ -136,16 +138,17 @@ BuoyancyResult failed_result(BuoyancyStatus status, Immersion where) {
   return result;
 }
 
-// True where immersion says enough for a result: a dry body, or a wholly wet one with `hierarchical`.
+// True if the immersion suffices for a result: for a dry body, and for a fully submerged one with
+// `hierarchical`.
 bool is_decided_by_bounds(const Solver& solver, Immersion immersion) {
   return immersion == Immersion::kDry ||
          (immersion == Immersion::kSubmerged && solver.method() == Method::kHierarchical);
 }
 
-// Of such a body.
-void set_result_from_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose, const Water& water,
-                      BuoyancyResult& result) {
-  if (immersion == Immersion::kDry) {  // nothing to sum: every method says zero, exactly
+// Requires is_decided_by_bounds().
+void set_result_from_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose,
+                            const Water& water, BuoyancyResult& result) {
+  if (immersion == Immersion::kDry) {  // every method gives exactly zero
     result = {};
     result.immersion = immersion;
     return;
@@ -157,13 +160,13 @@ void set_result_from_bounds(const FullySubmerged& wet, Immersion immersion, cons
 }  // namespace
 
 FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
-  const double weight = water.density * water.gravity;  // N/m^3
+  const double weight = water.density * water.gravity;  // [N/m^3]
   const double force_error_bound = weight * mesh.rounding_bound();
   const double lift = weight * mesh.volume;
   return {.volume = mesh.volume,
           .lift = lift,
           .force_W = lift * water.up_W,
-          // In this order: a reference point near the body, both far from B's origin, loses nothing.
+          // This order loses no digits for a reference point near the body, both far from B's origin.
           .lever_B = (mesh.center_B - reference_B) + mesh.centroid,
           .centroid_B = mesh.center_B + mesh.centroid,
           .force_error_bound = force_error_bound,
@@ -172,9 +175,9 @@ FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, 
 
 bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
                               const Water& water, BuoyancyResult& result) {
-  const Immersion glance = quick_immersion(solver.mesh(), pose, water);
-  if (!is_decided_by_bounds(solver, glance)) return false;
-  set_result_from_bounds(wet, glance, pose, water, result);
+  const Immersion quick = quick_immersion(solver.mesh(), pose, water);
+  if (!is_decided_by_bounds(solver, quick)) return false;
+  set_result_from_bounds(wet, quick, pose, water, result);
   return true;
 }
 
@@ -185,8 +188,8 @@ BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& wat
     set_result_from_bounds(fully_submerged(mesh, water, reference_B), immersion, pose, water, result);
     return result;
   };
-  const Immersion glance = quick_immersion(mesh, pose, water);
-  if (is_decided_by_bounds(solver, glance)) return by_bounds(glance);
+  const Immersion quick = quick_immersion(mesh, pose, water);
+  if (is_decided_by_bounds(solver, quick)) return by_bounds(quick);
   const WaterPlane plane = solver.plane_in_body(pose, water);
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
     return failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);

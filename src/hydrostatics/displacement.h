@@ -1,5 +1,5 @@
-// What a solver hands to the read-out: the displaced volume and its moments in the body frame, about the
-// mesh's centre c, before density, gravity and the world frame come in.
+// A solver's output: the displaced volume and its moments in the body frame, about the mesh's centre c,
+// before density, gravity and the world frame are applied.
 #pragma once
 
 #include "base/vec3.h"
@@ -7,16 +7,16 @@
 namespace buoyancy {
 
 struct Displacement {
-  double volume = 0.0;         // m^3
-  Vec3 moment = Vec3::Zero();  // m^4, B axes: integral of (x - c) over the displaced volume
-  Vec3 force = Vec3::Zero();   // m^3, B axes: F/(rho g), as computed
-  Vec3 torque = Vec3::Zero();  // m^4, B axes: torque about c/(rho g), as computed
-  double rounding = 0.0;       // m^3: what this pose adds to the mesh's rounding_bound()
-  // m^3: what the method did not count, or took from a rough plane, cannot change |volume| or |force| by
-  // more, nor |torque| by more than this times the largest distance at which it may act; 0 where all was
-  // counted.
+  double volume = 0.0;         // [m^3]
+  Vec3 moment = Vec3::Zero();  // [m^4], B axes: integral of (x - c) over the displaced volume
+  Vec3 force = Vec3::Zero();   // [m^3], B axes: F/(rho g), as computed
+  Vec3 torque = Vec3::Zero();  // [m^4], B axes: torque about c/(rho g), as computed
+  double rounding = 0.0;       // [m^3], what this pose adds to the mesh's rounding_bound()
+  // [m^3], bound on the change of |volume| or |force| by what the method did not count or took from a rough
+  // plane; the change of |torque| is at most this times the largest distance at which it may act. 0 where
+  // everything was counted.
   double left_out = 0.0;
-  // m: beyond the body, what was left out may act as far from c as this.
+  // [m], distance from c, beyond the body, at which what was left out may act.
   double left_out_reach = 0.0;
 };
 

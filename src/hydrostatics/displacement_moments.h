@@ -1,12 +1,13 @@
-// The read-out: from the surface moments of the wet surface to the integrals over the displaced volume and
-// over the waterplane, and from these to the hydrostatic stiffness. For any number type: double where we run,
+// Converts the surface moments of the wetted surface to the integrals over the displaced volume and over the
+// waterplane, and these to the hydrostatic stiffness. Templated on the number type: double in the product,
 // dual numbers and rationals in the tests.
 //
 // With S, N, P the moments about a point o at height z_o over the water, k up, y = x - o, and the sums
 // (Nk)_j = N_jk k_k (docs/mathematics.md, "Read-out"):
 //   V = k . Nk + z_o k . S,   U_j = k_i k_k P_ijk + z_o (Nk)_j,   H = 1/2 (k_i k_j k_k P_ijk + 2 z_o k . Nk +
 //   z_o^2 k . S), M = U - k H,   A = -k . S,   a = V k - Nk,   J = k M^T + M k^T - P_ijk k_k.
-// No cap is needed: wet surface and waterplane close, so what the cap would add follows from what is there.
+// No cap is needed: wetted surface and waterplane are closed together, so the cap's contribution follows from
+// the wetted surface.
 #pragma once
 
 #include "base/vec3.h"
@@ -14,16 +15,16 @@
 
 namespace buoyancy {
 
-// About a point o, in any frame's axes; y = x - o.
+// Moments about a point o, in any frame's axes; y = x - o.
 template <typename T>
 struct DisplacementMoments {
-  T volume = T(0);                                        // m^3: V
-  Vec3T<T> moment = Vec3T<T>::Constant(T(0));             // m^4: M, integral of y over the displaced volume
-  T waterplane_area = T(0);                               // m^2: A
-  Vec3T<T> waterplane_moment = Vec3T<T>::Constant(T(0));  // m^3: a, integral of y over the waterplane
-  Mat3T<T> waterplane_second_moments = Mat3T<T>::Constant(T(0));  // m^4: J, integral of y y^T likewise
+  T volume = T(0);                                        // [m^3] V
+  Vec3T<T> moment = Vec3T<T>::Constant(T(0));             // [m^4] M, integral of y over the displaced volume
+  T waterplane_area = T(0);                               // [m^2] A
+  Vec3T<T> waterplane_moment = Vec3T<T>::Constant(T(0));  // [m^3] a, integral of y over the waterplane
+  Mat3T<T> waterplane_second_moments = Mat3T<T>::Constant(T(0));  // [m^4] J, same integral of y y^T
 
-  // About o + t.
+  // The same moments about o + t.
   DisplacementMoments moved(const Vec3T<T>& t) const {
     DisplacementMoments result = *this;
     result.moment -= volume * t;
@@ -33,14 +34,14 @@ struct DisplacementMoments {
     return result;
   }
 
-  // In the axes that R leads to.
+  // The same moments in the axes that R maps to.
   DisplacementMoments rotated(const Mat3T<T>& R) const {
     return {volume, R * moment, waterplane_area, R * waterplane_moment,
             R * waterplane_second_moments * R.transpose()};
   }
 };
 
-// wet: of the wet surface, about o; height: of o over the water; up: unit.
+// wet: moments of the wetted surface about o. height: [m], of o over the water. up: unit vector.
 template <typename T>
 DisplacementMoments<T> displacement_moments(const SurfaceMoments<T>& wet, const T& height,
                                             const Vec3T<T>& up) {
@@ -67,17 +68,18 @@ DisplacementMoments<T> displacement_moments(const SurfaceMoments<T>& wet, const 
 }
 
 template <typename T>
-Mat3T<T> cross_matrix(const Vec3T<T>& v) {  // times x: v x x
+Mat3T<T> cross_matrix(const Vec3T<T>& v) {  // [v], so that [v] x = v x x
   Mat3T<T> matrix;
   matrix << T(0), -v(2), v(1), v(2), T(0), -v(0), -v(1), v(0), T(0);
   return matrix;
 }
 
-// -d(F, tau)/d(p, theta) / (rho g) of buoyancy alone, rows (F, tau), columns (p, theta): p moves the body,
-// theta turns it about o and the frame's axes, tau is about o, and o goes with the body. With b = a x k
+// -d(F, tau)/d(p, theta) / (rho g) of buoyancy alone, rows (F, tau), columns (p, theta): p translates the
+// body, theta rotates it about o and the frame's axes, tau is about o, and o moves with the body. With
+// b = a x k this is
 //   [[A k k^T, k b^T], [b k^T, [k] J [k]^T - [k] [M]]].
-// Not symmetric where the centre of buoyancy does not lie over or under o, since turning about k then turns
-// tau along.
+// It is not symmetric where the centre of buoyancy does not lie above or below o, since a rotation about k
+// then rotates tau as well.
 template <typename T>
 Eigen::Matrix<T, 6, 6> stiffness(const DisplacementMoments<T>& about_o, const Vec3T<T>& up) {
   const Vec3T<T> b = about_o.waterplane_moment.cross(up);

@@ -2,9 +2,9 @@
 // digits.
 //
 // Used once per query to move the water plane into the body frame, where up . p_WB and k . c may cancel
-// almost wholly. Source: T. J. Dekker, "A floating-point technique for extending the available precision",
-// Numerische Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as nothing over-
-// or underflows.
+// almost completely. Source: T. J. Dekker, "A floating-point technique for extending the available
+// precision", Numerische Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as
+// nothing over- or underflows.
 #pragma once
 
 namespace buoyancy {
@@ -14,20 +14,20 @@ struct DoubleDouble {
   double lo = 0.0;
 };
 
-// a + b exactly.
+// Returns a + b exactly.
 inline DoubleDouble two_sum(double a, double b) {
   const double sum = a + b;
   const double b_part = sum - a;
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-// a + b exactly where |a| >= |b| or a is 0.
+// Returns a + b exactly if |a| >= |b| or a is 0.
 inline DoubleDouble quick_two_sum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-// a * b exactly, where |a|, |b| < 2^996 and the product does not underflow.
+// Returns a * b exactly if |a|, |b| < 2^996 and the product does not underflow.
 inline DoubleDouble two_product(double a, double b) {
   constexpr double kSplit = 134217729.0;  // 2^27 + 1
   const double product = a * b;

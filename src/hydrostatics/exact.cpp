@@ -1,5 +1,4 @@
 #include "hydrostatics/paper_methods.h"
-
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wetted_surface.h"
 

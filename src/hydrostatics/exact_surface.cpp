@@ -1,5 +1,4 @@
 #include "hydrostatics/paper_methods.h"
-
 #include "hydrostatics/pressure_elements.h"
 #include "hydrostatics/wetted_surface.h"
 

@@ -1,7 +1,6 @@
-#include "hydrostatics/paper_methods.h"
-
 #include <cmath>
 
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wetted_surface.h"
 
@@ -11,7 +10,7 @@ namespace {
 struct ElementSum {
   double volume = 0.0;
   Vec3 moment = Vec3::Zero();
-  double left_out = 0.0;  // m^3: sum |V_i| of the cut triangles
+  double left_out = 0.0;  // [m^3], sum |V_i| of the cut triangles
   std::size_t wet_triangles = 0;
 
   ElementSum& operator+=(const ElementSum& other) {
@@ -27,7 +26,7 @@ struct ElementSum {
 
 FastTable::FastTable(const HydrostaticMesh& mesh) {
   elements_.reserve(mesh.surface.triangles.size());
-  const Vec3 origin = -mesh.center_B;  // B's origin, about c
+  const Vec3 origin = -mesh.center_B;  // [m], B's origin about c
   for (const Triangle& triangle : mesh.surface.triangles) {
     VolumeElements element;
     element.add(mesh.point(triangle[0]), mesh.point(triangle[1]), mesh.point(triangle[2]),
@@ -51,7 +50,8 @@ Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPla
   Displacement result = displacement_of_volume(total.volume, total.moment, plane);
   result.left_out = total.left_out;
   if (total.wet_triangles < mesh.surface.triangles.size()) {
-    // The cone over the waterplane, whose area is at most that of the wet surface and that of the dry one.
+    // The cone over the waterplane is missing; the waterplane's area is at most that of the wetted surface
+    // and at most that of the dry surface.
     const double waterplane_area = mesh.is_open() ? mesh.area : 0.5 * mesh.area;
     result.left_out += std::abs(plane.height(-mesh.center_B)) * waterplane_area / 3.0;
   }

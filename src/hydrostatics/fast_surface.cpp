@@ -1,7 +1,6 @@
-#include "hydrostatics/paper_methods.h"
-
 #include <algorithm>
 
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/pressure_elements.h"
 #include "hydrostatics/wetted_surface.h"
 
@@ -10,7 +9,8 @@ namespace {
 
 struct PressureSum {
   PressureElements wet;
-  double left_out6 = 0.0;  // m^3: twice the area of the cut triangles times the sum of their corners' depths
+  // [m^3], sum over the cut triangles of twice the area times the sum of the corners' depths
+  double left_out6 = 0.0;
 
   PressureSum& operator+=(const PressureSum& other) {
     wet += other.wet;
@@ -27,8 +27,8 @@ Displacement fast_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) 
       mesh, plane,
       [k](PressureSum& block, const auto& a, const auto& b, const auto& c) { block.wet.add(a, b, c, k); },
       [](PressureSum& block, const auto& a, const auto& b, const auto& c) {
-        // A convex function's integral is at most that of the plane through its corners: int |min(z, 0)| dA
-        // <= A/3 sum |min(z_i, 0)|.
+        // The integral of a convex function is at most that of the plane through its corner values:
+        // int |min(z, 0)| dA <= A/3 sum |min(z_i, 0)|.
         const double depths = std::max(-a.z, 0.0) + std::max(-b.z, 0.0) + std::max(-c.z, 0.0);
         block.left_out6 += depths * cross(b.y - a.y, c.y - a.y).vec3().norm();
       });

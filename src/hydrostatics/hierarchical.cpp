@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// The part of x that is a whole multiple of unit (a power of two).
+// x rounded to a whole multiple of unit, a power of two.
 double whole_multiples(double x, double unit) {
   return std::nearbyint(x / unit) * unit;
 }
@@ -36,14 +36,14 @@ TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   return query;
 }
 
-// Integrals with n_a dA over wet surface.
+// Integrals with n_a dA over the wetted surface.
 struct AxisIntegrals {
-  double volume = 0.0;         // m^3: int z n_a dA
-  Vec3 moment = Vec3::Zero();  // m^4: int z y n_a dA
-  double height = 0.0;         // m^4: int z^2 n_a dA
+  double volume = 0.0;         // [m^3] int z n_a dA
+  Vec3 moment = Vec3::Zero();  // [m^4] int z y n_a dA
+  double height = 0.0;         // [m^4] int z^2 n_a dA
 };
 
-// Of nodes, of which z is k . y + z_c.
+// Integrals over nodes, with z = k . y + z_c.
 AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
   const Vec3 N(moments.N[0], moments.N[1], moments.N[2]);
   Vec3 k_P = Vec3::Zero();
@@ -57,9 +57,9 @@ AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
   return {k_N + z_c * moments.S, k_P + z_c * N, k.dot(k_P) + z_c * (2.0 * k_N + z_c * moments.S)};
 }
 
-// m^2: where heights are off by d, volume and torque/(rho g L_r) are by at most this times d. No section of a
-// body is larger than half its surface, and k, off by d / L, turns the lever of V_T; the other half is for
-// overlapping parts, of which more is turned.
+// [m^2], error of volume and of torque/(rho g L_r) per height error: heights that are off by d change both by
+// at most this times d. No section of a body is larger than half its surface, and k, off by d / L, rotates
+// the lever of V_T; the other half covers overlapping parts, of which more is rotated.
 double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }
@@ -79,7 +79,7 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
 
   Displacement result;
   if (query.budget > 0.0) {
-    const PrunedSum& rest = sum.undecided;
+    const PrunedSum& rest = sum.pruned;
     const Vec3 offset_N(rest.offsets.N[0], rest.offsets.N[1], rest.offsets.N[2]);
     wet.volume += rest.offsets.S + rest.volume;
     wet.moment += offset_N + rest.moment;
@@ -100,8 +100,8 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
   return result;
 }
 
-// m^3: what may be left out so that with the rounding all stays within the tolerance. Bounds are
-// held in float32: sizes beyond its range are answered exactly.
+// [m^3], the largest error by pruning that keeps the total with rounding within the tolerance. Bounds are
+// held in float32; for sizes beyond its range the result is exact.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
   return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.max_rounding_bound(), 0.0) : 0.0;
@@ -111,7 +111,7 @@ double budget(const HydrostaticMesh& mesh, double tolerance) {
 
 double allowed_plane_error(const HydrostaticMesh& mesh, double tolerance) {
   constexpr double kShare = 0.01;
-  // Whether an open edge is wet is asked of the plane itself.
+  // The test for a wet open edge uses the plane itself, which must be exact.
   if (!(tolerance > 0.0) || mesh.is_open()) return 0.0;
   return kShare * budget(mesh, tolerance) / sensitivity(mesh);
 }
@@ -127,7 +127,7 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
       break;
   }
   TreeQuery query = make_tree_query(tree, plane);
-  const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // m^3
+  const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // [m^3]
   if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
   query.half_diagonal = 0.5 * mesh.diagonal;
   Displacement result = displacement_moments(sum_wetted_tree(tree, query), query, plane, mesh);

@@ -10,13 +10,13 @@
 namespace buoyancy {
 namespace {
 
-// The value nearest to a point on a grid of 2^-22 of the largest coordinate's power of two. float32
-// coordinates and such a centre are multiples of a common unit with few enough bits between them that their
-// difference is exact in double. Of a mesh farther from its origin than 2^16 times its size the grid is 1/64
-// of its size: there coordinates and centre are so near to each other that their difference is exact anyway.
-Vec3 round_to_coarse_grid(const Vec3& point, double largest, double size) {
-  if (!(largest > 0.0) || !(size > 0.0)) return point;
-  const int unit = std::min(std::ilogb(largest) - 21, std::ilogb(size) - 6);
+// Rounds a point to a grid of 2^-22 of the largest coordinate's power of two. float32 coordinates and such a
+// centre are multiples of a common unit with few enough bits between them that their difference is exact in
+// double. For a mesh farther from its origin than 2^16 times its size the grid is 1/64 of its size: there
+// coordinates and centre are so near to each other that their difference is exact anyway.
+Vec3 round_to_coarse_grid(const Vec3& point, double max_coordinate, double size) {
+  if (!(max_coordinate > 0.0) || !(size > 0.0)) return point;
+  const int unit = std::min(std::ilogb(max_coordinate) - 21, std::ilogb(size) - 6);
   Vec3 rounded;
   for (int i = 0; i < 3; ++i) rounded[i] = std::ldexp(std::nearbyint(std::ldexp(point[i], -unit)), unit);
   return rounded;
@@ -35,7 +35,8 @@ struct Totals {
   }
 };
 
-// The same triangle, beginning opposite its longest edge; of edges of one length the first counts.
+// The same triangle, rotated to start with the corner opposite its longest edge; among edges of equal length
+// the first counts.
 Triangle starting_opposite_longest_edge(const Triangle& triangle, const TriangleMesh& mesh) {
   const Vec3 a = mesh.vertex(triangle[0]);
   const Vec3 b = mesh.vertex(triangle[1]);

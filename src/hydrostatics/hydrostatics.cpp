@@ -14,8 +14,8 @@ namespace {
 // The displaced volume and the waterplane about a point of the body, B axes.
 struct Immersed {
   DisplacementMoments<double> moments;
-  Vec3 point = Vec3::Zero();  // m, from c
-  double wetted_area = 0.0;   // m^2
+  Vec3 point = Vec3::Zero();  // [m], from c
+  double wetted_area = 0.0;   // [m^2]
 };
 
 Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
@@ -29,12 +29,12 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
       part.wetted_area = mesh.area;
       break;
     case Immersion::kPiercing: {
-      const WettedMoments wet = wetted_moments(*mesh.tree, plane);
-      part.moments = displacement_moments(wet.moments, wet.height, plane.up_B);
-      part.point = wet.point;
-      part.wetted_area = wet.area;
-      const double area_gate = 64.0 * std::numeric_limits<double>::epsilon() * mesh.area;
-      if (!(part.moments.waterplane_area > area_gate)) {
+      const WettedMoments wetted = wetted_moments(*mesh.tree, plane);
+      part.moments = displacement_moments(wetted.moments, wetted.height, plane.up_B);
+      part.point = wetted.point;
+      part.wetted_area = wetted.area;
+      const double area_tolerance = 64.0 * std::numeric_limits<double>::epsilon() * mesh.area;
+      if (!(part.moments.waterplane_area > area_tolerance)) {
         part.moments.waterplane_area = 0.0;
         part.moments.waterplane_moment.setZero();
         part.moments.waterplane_second_moments.setZero();
@@ -45,7 +45,7 @@ Immersed immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   return part;
 }
 
-// second_moments_W: about the centroid; only what is horizontal counts.
+// second_moments_W: about the centroid; only its horizontal part counts.
 void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydrostatics& result) {
   const Vec3 u = up_W.unitOrthogonal();
   const Vec3 v = up_W.cross(u);
@@ -55,7 +55,7 @@ void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydro
   const double half_difference = 0.5 * (uu - vv);
   const double radius = std::sqrt(half_difference * half_difference + uv * uv);
   const double mean = 0.5 * (uu + vv);
-  // The direction in which the waterplane reaches farthest: the moment about it is the smaller one.
+  // The axis in the waterplane's longest direction has the smaller second moment.
   Vec3 longest = half_difference >= 0.0 ? Vec3((half_difference + radius) * u + uv * v)
                                         : Vec3(uv * u + (radius - half_difference) * v);
   const double length = longest.norm();
@@ -64,7 +64,7 @@ void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydro
   result.waterplane_axes_W = {longest, up_W.cross(longest)};
 }
 
-// moments_W: about a point, point_W from p_WB.
+// moments_W: about point_W, which is relative to p_WB.
 void add_waterplane(const DisplacementMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
                     Hydrostatics& result) {
   result.waterplane_area = moments_W.waterplane_area;
@@ -74,7 +74,8 @@ void add_waterplane(const DisplacementMoments<double>& moments_W, const Vec3& po
   add_principal_moments(moments_W.moved(to_centroid_W).waterplane_second_moments, up_W, result);
 }
 
-// The same; mass_to_point_W: from the centre of mass, if it is known. To be called after add_waterplane.
+// moments_W, point_W: as above. mass_to_point_W: from the centre of mass to point_W, if the former is known.
+// Requires a preceding call of add_waterplane().
 void add_metacenters(const DisplacementMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
                      const std::optional<Vec3>& mass_to_point_W, Hydrostatics& result) {
   const Vec3 to_buoyancy_W = moments_W.moment / moments_W.volume;

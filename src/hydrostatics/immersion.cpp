@@ -22,7 +22,7 @@ Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane) {
 
 Immersion quick_immersion(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
   const RoughWaterPlane plane = rough_water_plane_in_body(pose, water, mesh.center_B, mesh.diagonal);
-  // Where the squares overflow no comparison holds; where they underflow their error would not be one.
+  // If the squares overflow, no comparison below holds; if they underflow, plane.error is not a bound.
   if (!(plane.norm_squared > 1e-100)) return Immersion::kPiercing;
   const auto box_min = Point<double>::from(mesh.box_min);
   const auto box_max = Point<double>::from(mesh.box_max);

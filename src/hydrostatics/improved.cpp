@@ -1,7 +1,6 @@
-#include "hydrostatics/paper_methods.h"
-
 #include <cmath>
 
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wetted_surface.h"
 
@@ -10,7 +9,7 @@ namespace {
 
 struct ElementSum {
   VolumeElements wet;
-  double left_out6 = 0.0;  // m^3: 6 sum |V_i(o)| of the cut triangles
+  double left_out6 = 0.0;  // [m^3], 6 sum |V_i(o)| of the cut triangles
 
   ElementSum& operator+=(const ElementSum& other) {
     wet += other.wet;

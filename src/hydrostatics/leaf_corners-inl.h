@@ -1,6 +1,6 @@
-// Which of a leaf's triangles the water cuts, which count whole, and their corners: one implementation for
-// each kind of instruction set, since no two have the same way of choosing bytes. Included once per
-// instruction set (wetted_tree_sum.cpp), after highway.h.
+// Finds which of a leaf's triangles the water cuts, which count whole, and their corners: one implementation
+// for each kind of instruction set, since each has its own byte shuffles. Included once per instruction set
+// (wetted_tree_sum.cpp), after highway.h.
 #if defined(BUOYANCY_LEAF_CORNERS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_LEAF_CORNERS_INL_H
 #undef BUOYANCY_LEAF_CORNERS_INL_H
@@ -24,24 +24,24 @@ using RealVector = hn::Vec<Reals>;
 // 16 numbers of a leaf's vertices, 64 B aligned, looked up by index.
 using VertexTable = std::array<double, kLeafVertices>;
 
-// A triangle of a leaf as one word: the indices of its corners p, q, r in its lowest three digits, of four
-// bits each where vectors hold eight numbers and else of eight. Of a cut triangle p is the corner that lies
-// alone on its side of the water.
+// A triangle of a leaf as one word: the indices of its corners p, q, r in its lowest three digits, which have
+// four bits each if vectors hold eight numbers and eight bits otherwise. In a cut triangle p is the corner
+// that lies alone on its side of the water.
 using Corners = std::uint32_t;
 
-// What there is to compute of a leaf that the water crosses. Of a triangle with two wet corners the whole
-// counts less its dry corner, of one with one wet corner that corner alone. Where most of the leaf is wet,
-// the leaf's moments are added and what is not wet is taken off.
+// The triangles to evaluate in a leaf that the water crosses. A triangle with two wet corners counts whole,
+// less its dry corner's part; of one with one wet corner only that corner's part counts. Where most of the
+// leaf is wet, the leaf's moments are added and the dry parts are subtracted.
 struct LeafWork {
-  static constexpr std::size_t kRoom = std::size_t{kLeafTriangles} + 8;  // whole vectors are written and read
-  HWY_ALIGN std::array<Corners, kRoom> whole, cut;
-  std::size_t wholes, cuts;  // wholes: not where a vector of eight holds them all
-  bool less_than_leaf;       // the whole triangles are those to take off
+  static constexpr std::size_t kCapacity = std::size_t{kLeafTriangles} + 8;  // padded to whole vectors
+  HWY_ALIGN std::array<Corners, kCapacity> whole, cut;
+  std::size_t num_whole, num_cut;  // num_whole is not set where a vector of eight holds them all
+  bool subtract_from_leaf;         // true if the whole triangles are to be subtracted from the leaf's moments
 };
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Corners of triangle t, p first.
+// The corners of triangle t, with p first.
 HWY_INLINE Corners rotated_corners(const TreeLeaf& leaf, std::size_t t, std::size_t p) {
   const std::array<Corners, 5> around{leaf.a[t], leaf.b[t], leaf.c[t], leaf.a[t], leaf.b[t]};
   return around[p] | around[p + 1] << 8U | around[p + 2] << 16U;
@@ -49,7 +49,7 @@ HWY_INLINE Corners rotated_corners(const TreeLeaf& leaf, std::size_t t, std::siz
 
 // wet: one bit per vertex.
 HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& work) {
-  // By which of p, q and r are wet, in the lowest three bits.
+  // Index: the lowest three bits tell which of a, b and c are wet.
   constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
   constexpr std::array<std::uint8_t, 8> kMostlyWet{0, 0, 0, 1, 0, 1, 1, 1};
   constexpr std::array<std::uint8_t, 8> kCut{0, 1, 1, 1, 1, 1, 1, 0};
@@ -59,29 +59,29 @@ HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& wor
   std::array<std::uint8_t, kLeafTriangles> cut;
   std::array<std::uint8_t, kLeafTriangles> cases;
   std::array<std::size_t, 2> count{};
-  work.cuts = 0;
+  work.num_cut = 0;
   for (std::size_t t = 0; t < leaf.triangles; ++t) {
     const std::size_t which = is_wet[leaf.a[t]] + 2U * is_wet[leaf.b[t]] + 4U * is_wet[leaf.c[t]];
     cases[t] = static_cast<std::uint8_t>(which);
-    cut[work.cuts] = static_cast<std::uint8_t>(t);
-    work.cuts += kCut[which];
+    cut[work.num_cut] = static_cast<std::uint8_t>(t);
+    work.num_cut += kCut[which];
     by_side[0][count[0]] = static_cast<std::uint8_t>(t);
     by_side[1][count[1]] = static_cast<std::uint8_t>(t);
     count[0] += 1U - kMostlyWet[which];
     count[1] += kMostlyWet[which];
   }
-  for (std::size_t i = 0; i < work.cuts; ++i) {
+  for (std::size_t i = 0; i < work.num_cut; ++i) {
     work.cut[i] = rotated_corners(leaf, cut[i], kOddOneOut[cases[cut[i]]]);
   }
-  work.less_than_leaf = count[1] > count[0];
-  const std::size_t side = work.less_than_leaf ? 0 : 1;
-  work.wholes = count[side];
-  for (std::size_t i = 0; i < work.wholes; ++i) work.whole[i] = rotated_corners(leaf, by_side[side][i], 0);
+  work.subtract_from_leaf = count[1] > count[0];
+  const std::size_t side = work.subtract_from_leaf ? 0 : 1;
+  work.num_whole = count[side];
+  for (std::size_t i = 0; i < work.num_whole; ++i) work.whole[i] = rotated_corners(leaf, by_side[side][i], 0);
 }
 
 #elif HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
-// The chosen ones in order, and zeros behind them: a triangle of one corner.
+// Writes the chosen corners in order, followed by zeros, which are a triangle of one corner.
 HWY_INLINE void compress(__m512i corners, std::uint32_t chosen, Corners* to) {
   _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(chosen), corners));
 }
@@ -100,32 +100,33 @@ HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& wor
   const std::uint32_t present = (1U << leaf.triangles) - 1U;
   const std::uint32_t cut = (a | b | c) & ~(a & b & c) & present;
   const std::uint32_t mostly_wet = ((a & b) | (c & (a | b))) & present;
-  // Corners a, b, c, a, b, c, of which p is one of the first three.
+  // Corners a, b, c, a, b, c; p is one of the first three.
   const __m512i once =
       _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(leaf.corners.data())));
   const __m512i twice = _mm512_or_si512(once, _mm512_slli_epi32(once, 12));
   const __m512i from_b = _mm512_mask_srli_epi32(twice, static_cast<__mmask16>((a ^ b) & (b ^ c)), twice, 4);
   const __m512i from_p = _mm512_mask_srli_epi32(from_b, static_cast<__mmask16>((a ^ c) & (b ^ c)), twice, 8);
 
-  work.less_than_leaf = 2 * __builtin_popcount(mostly_wet) > leaf.triangles;
-  // Not by a branch, which nobody could predict.
-  const std::uint32_t whole = mostly_wet ^ (present & (0U - static_cast<std::uint32_t>(work.less_than_leaf)));
-  work.cuts = static_cast<std::size_t>(__builtin_popcount(cut));
+  work.subtract_from_leaf = 2 * __builtin_popcount(mostly_wet) > leaf.triangles;
+  // Branch-free, since the condition cannot be predicted.
+  const std::uint32_t whole =
+      mostly_wet ^ (present & (0U - static_cast<std::uint32_t>(work.subtract_from_leaf)));
+  work.num_cut = static_cast<std::size_t>(__builtin_popcount(cut));
   compress(twice, whole, work.whole.data());
   compress(from_p, cut, work.cut.data());
 }
 
 #else
 
-// Sixteen triangles' corners, four words each, in registers: what is stored in parts and loaded whole waits
-// for the stores.
+// The corners of sixteen triangles, four words per vector, in registers: loading as a whole what was stored
+// in parts would wait for the stores.
 using Words = hn::FixedTag<Corners, 4>;
 struct LeafCorners {
   hn::Vec<Words> part[4];
 };
 
-// Where the bytes of the chosen words of four come from, by which are chosen. Highway's own Compress has such
-// a table too, which GCC 12 copies to the stack at every use.
+// Source indices of the bytes of the chosen words of four, indexed by the bit mask of the choice. Highway's
+// own Compress has such a table too, but GCC 12 copies it to the stack at every use.
 struct alignas(16) WordShuffle {
   std::array<std::uint8_t, 16> bytes;
 };
@@ -144,8 +145,8 @@ constexpr std::array<WordShuffle, 16> make_word_shuffles() {
 }
 inline constexpr std::array<WordShuffle, 16> kWordShuffles = make_word_shuffles();
 
-// Writes the chosen ones to `to`, in order, and zeros behind them to fill a vector of Reals: a triangle of
-// one corner.
+// Writes the chosen corners to `to`, in order, followed by zeros to fill a vector of Reals; zeros are a
+// triangle of one corner.
 HWY_INLINE std::size_t compress(const LeafCorners& corners, std::uint32_t chosen, Corners* to) {
   const Words d;
   const hn::FixedTag<std::uint8_t, 16> bytes;
@@ -171,7 +172,7 @@ HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& wor
                                                                  1, 2, 4, 8, 16, 32, 64, 128};
   const auto bits = hn::BitCast(d, hn::Set(d16, static_cast<std::uint16_t>(wet)));
   const auto bit = hn::Load(d, kBit.data());
-  // 0xFF for a wet vertex.
+  // 0xFF for a wet vertex, 0 for a dry one.
   const auto is_wet =
       hn::VecFromMask(d, hn::Eq(hn::And(hn::TableLookupBytes(bits, hn::Load(d, kByte.data())), bit), bit));
   const auto a = hn::Load(d, leaf.a.data());
@@ -206,15 +207,15 @@ HWY_INLINE void find_work(const TreeLeaf& leaf, std::uint32_t wet, LeafWork& wor
   };
   const std::uint32_t present = (1U << leaf.triangles) - 1U;
   const std::uint32_t mostly_wet = bits_of(mostly) & present;
-  work.less_than_leaf = 2 * __builtin_popcount(mostly_wet) > leaf.triangles;
-  work.wholes =
-      compress(corners, work.less_than_leaf ? present & ~mostly_wet : mostly_wet, work.whole.data());
-  work.cuts = compress(corners, bits_of(cut) & present, work.cut.data());
+  work.subtract_from_leaf = 2 * __builtin_popcount(mostly_wet) > leaf.triangles;
+  work.num_whole =
+      compress(corners, work.subtract_from_leaf ? present & ~mostly_wet : mostly_wet, work.whole.data());
+  work.num_cut = compress(corners, bits_of(cut) & present, work.cut.data());
 }
 
 #endif
 
-// The indices of corners p, q, r of as many triangles as there are lanes, for look_up.
+// The indices of corners p, q, r of one triangle per lane, for look_up.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
 struct CornerIndices {
@@ -225,11 +226,11 @@ HWY_INLINE CornerIndices corner_indices(const Corners* from) {
   const hn::RebindToSigned<Reals> d;
   const hn::Rebind<std::int32_t, Reals> words;
   const auto corners = hn::PromoteTo(d, hn::Load(words, reinterpret_cast<const std::int32_t*>(from)));
-  // Only the lowest four bits of an index are looked at.
+  // look_up reads only the lowest four bits of an index.
   return {corners, hn::ShiftRight<4>(corners), hn::ShiftRight<8>(corners)};
 }
 
-// Both halves in registers: one instruction per eight look-ups.
+// Both halves of the table are in registers: one instruction does eight look-ups.
 HWY_INLINE RealVector look_up(const VertexTable& table, hn::Vec<hn::RebindToSigned<Reals>> index) {
   const Reals d;
   const auto low = hn::Load(d, table.data());
@@ -239,8 +240,8 @@ HWY_INLINE RealVector look_up(const VertexTable& table, hn::Vec<hn::RebindToSign
 
 #else
 
-// One by one: on these processors that is no slower than their own gathering. Bytes are counted from the
-// lowest.
+// Looks corners up one by one: on these processors that is no slower than their gather instructions. Byte 0
+// is the lowest.
 template <std::size_t kByte>
 struct CornerIndex {
   const Corners* from;

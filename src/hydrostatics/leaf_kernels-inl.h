@@ -1,5 +1,5 @@
-// The SIMD kernels for the leaves of the moment tree: the wet part of their triangles, many at a time.
-// Included once per instruction set (wetted_tree_sum.cpp), after highway.h.
+// The SIMD kernels for the leaves of the moment tree: they sum the wet parts of the triangles, many at a
+// time. Included once per instruction set (wetted_tree_sum.cpp), after highway.h.
 #if defined(BUOYANCY_LEAF_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_LEAF_KERNELS_INL_H
 #undef BUOYANCY_LEAF_KERNELS_INL_H
@@ -16,12 +16,13 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Some leaves whose bounds the water crosses: which it cuts, the heights of their vertices and what there is
-// to compute. Each of these is found for all before the next, and not leaf by leaf: whether a leaf is cut is
-// a guess that costs much when it is wrong, and a processor looks ahead a hundred instructions or two.
+// A batch of leaves whose bounds cross the water: which of them it cuts, the heights of their vertices and
+// the triangles to evaluate. Each step is done for all leaves before the next step: whether a leaf is cut
+// cannot be predicted, a wrong prediction is expensive, and a processor looks ahead by only 100 to 200
+// instructions.
 class LeafBatch {
  public:
-  static constexpr std::size_t kRoom = 32;
+  static constexpr std::size_t kCapacity = 32;
 
   HWY_INLINE std::size_t cut_leaves() const { return size_; }
   HWY_INLINE const TreeLeaf& leaf(std::size_t i) const { return *leaf_[i]; }
@@ -30,10 +31,10 @@ class LeafBatch {
 
   HWY_INLINE void clear() { size_ = 0; }
 
-  // At most kRoom between clearings. True: wholly wet.
+  // At most kCapacity leaves between calls of clear(). Returns true if the leaf is fully submerged.
   HWY_INLINE bool add(const TreeLeaf& leaf, const TreeQuery& query) {
     const auto& c = leaf.center;
-    // Exact: whole multiples of grid 2^-26 below 2^51 of them (TreeQuery).
+    // Exact: the terms are whole multiples of grid 2^-26, fewer than 2^51 of them (TreeQuery).
     const double z_high =
         query.k_high[0] * c[0] + query.k_high[1] * c[1] + query.k_high[2] * c[2] - query.h_high;
     const double z_low = query.k_low[0] * c[0] + query.k_low[1] * c[1] + query.k_low[2] * c[2] - query.h_low;
@@ -46,16 +47,16 @@ class LeafBatch {
     return fully_submerged;
   }
 
-  // True: what there is to compute makes the wet part together with the leaf's moments, which the caller
-  // adds.
+  // Returns true if the wet part is the sum of the leaf's moments, which the caller adds, and of the
+  // triangles to evaluate.
   HWY_INLINE bool find_work(std::size_t i) {
     HWY_NAMESPACE::find_work(*leaf_[i], wet_[i], work_[i]);
-    return work_[i].less_than_leaf;
+    return work_[i].subtract_from_leaf;
   }
 
  private:
-  // start + k . y of the leaf's vertices. Returns a bit for each below the water; those of unused vertices
-  // mean nothing.
+  // Computes start + k . y of the leaf's vertices. Returns a bit for each vertex below the water; bits of
+  // unused vertices are undefined.
   HWY_INLINE static std::uint32_t find_heights(const TreeLeaf& leaf, const std::array<double, 3>& k,
                                                double start, VertexTable& heights) {
     const Reals d;
@@ -65,7 +66,7 @@ class LeafBatch {
     const auto from = hn::Set(d, start);
     std::uint32_t wet = 0;
     for (std::size_t i = 0; i < kLeafVertices; i += hn::Lanes(d)) {
-      // Of narrow vectors there are many, and some leaves fill few of them.
+      // With narrow vectors, some leaves fill only a few of them.
       if (hn::Lanes(d) < 8 && i >= leaf.vertices) break;
       const auto value = hn::MulAdd(x, hn::Load(d, leaf.y[0].data() + i),
                                     hn::MulAdd(y, hn::Load(d, leaf.y[1].data() + i),
@@ -81,17 +82,17 @@ class LeafBatch {
   struct alignas(64) Heights {
     VertexTable values;
   };
-  // One more than is kept: what is not cut is overwritten.
-  std::array<Heights, kRoom + 1> heights_;
-  std::array<const TreeLeaf*, kRoom + 1> leaf_;
-  std::array<std::uint32_t, kRoom + 1> wet_;  // one bit per vertex
-  std::array<LeafWork, kRoom> work_;
+  // One element more than is kept: the next leaf overwrites one that is not cut.
+  std::array<Heights, kCapacity + 1> heights_;
+  std::array<const TreeLeaf*, kCapacity + 1> leaf_;
+  std::array<std::uint32_t, kCapacity + 1> wet_;  // one bit per vertex
+  std::array<LeafWork, kCapacity> work_;
   std::size_t size_ = 0;
 };
 
 class LeafSums {
  public:
-  // Written out: an implicit constructor would be compiled without the target's instructions.
+  // Explicit, because an implicit constructor would be compiled without the target's instructions.
   HWY_INLINE LeafSums()
       : volume6_(hn::Zero(Reals())),
         moment_b24_(hn::Zero(Reals())),
@@ -99,7 +100,8 @@ class LeafSums {
         whole_height48_(hn::Zero(Reals())),
         cut_height24_(hn::Zero(Reals())) {}
 
-  // Adds the wet part of the cut leaves' triangles, or what makes it together with the leaf's moments.
+  // Adds the wet part of the cut leaves' triangles, less the leaf's moments where
+  // LeafWork::subtract_from_leaf.
   HWY_INLINE void add(const LeafBatch& batch, const std::array<std::size_t, 3>& axes) {
     LeafSums whole;
     for (std::size_t i = 0; i < batch.cut_leaves(); ++i) {
@@ -129,8 +131,8 @@ class LeafSums {
 
  private:
   // Coordinates of a leaf's vertices along b and c, about its centre, and their heights. Areas projected
-  // along a are products of differences of the former, as exact as the mesh; moments are moved to the mesh's
-  // centre.
+  // along a are products of differences of these coordinates, as exact as the mesh; moments are moved to the
+  // mesh's centre.
   struct LeafFrame {
     HWY_INLINE LeafFrame(const LeafBatch& batch, std::size_t i, const std::array<std::size_t, 3>& axes)
         : b(batch.leaf(i).y[axes[1]]),
@@ -142,10 +144,10 @@ class LeafSums {
     const VertexTable& b;
     const VertexTable& c;
     const VertexTable& z;
-    RealVector center_b4, center_c4;  // m: four times the leaf's centre
+    RealVector center_b4, center_c4;  // [m], four times the leaf's centre
   };
 
-  // x y - z w, the first product not rounded.
+  // x y - z w, with the first product not rounded.
   HWY_INLINE static RealVector difference_of_products(RealVector x, RealVector y, RealVector z,
                                                       RealVector w) {
     return hn::MulSub(x, y, hn::Mul(z, w));
@@ -153,10 +155,10 @@ class LeafSums {
 
   HWY_INLINE void add_whole(const LeafWork& work, const LeafFrame& leaf) {
     const Reals d;
-    const auto sign = hn::Set(d, work.less_than_leaf ? -1.0 : 1.0);
-    // Half of a leaf at most: with vectors of eight always one, and nothing to guess.
-    const std::size_t wholes = hn::Lanes(d) == 8 ? 1 : work.wholes;
-    for (std::size_t i = 0; i < wholes; i += hn::Lanes(d)) {
+    const auto sign = hn::Set(d, work.subtract_from_leaf ? -1.0 : 1.0);
+    // At most half of a leaf: with vectors of eight always exactly one, which needs no branch prediction.
+    const std::size_t num_whole = hn::Lanes(d) == 8 ? 1 : work.num_whole;
+    for (std::size_t i = 0; i < num_whole; i += hn::Lanes(d)) {
       const CornerIndices at = corner_indices(work.whole.data() + i);
       const auto bp = look_up(leaf.b, at.p);
       const auto bq = look_up(leaf.b, at.q);
@@ -167,7 +169,7 @@ class LeafSums {
       const auto zp = look_up(leaf.z, at.p);
       const auto zq = look_up(leaf.z, at.q);
       const auto zr = look_up(leaf.z, at.r);
-      // Twice n_a dA, from corner p, which is the leaf's a, opposite the longest edge; 0 in unused lanes.
+      // 2 n_a dA from corner p, which is the leaf's a, opposite the longest edge; 0 in unused lanes.
       const auto w = hn::Mul(
           sign, difference_of_products(hn::Sub(bq, bp), hn::Sub(cr, cp), hn::Sub(br, bp), hn::Sub(cq, cp)));
       const auto z_sum = hn::Add(hn::Add(zp, zq), zr);
@@ -181,7 +183,7 @@ class LeafSums {
       volume6_ = hn::MulAdd(w, z_sum, volume6_);
       moment_b24_ = hn::MulAdd(w, moment(bp, bq, br, leaf.center_b4), moment_b24_);
       moment_c24_ = hn::MulAdd(w, moment(cp, cq, cr, leaf.center_c4), moment_c24_);
-      // (sum z)^2 + sum z^2: twice the sum of squares and products.
+      // (sum z)^2 + sum z^2 = twice the sum of squares and products.
       const auto squares = hn::MulAdd(zp, weight_p, hn::MulAdd(zq, weight_q, hn::Mul(zr, weight_r)));
       whole_height48_ = hn::MulAdd(w, squares, whole_height48_);
     }
@@ -190,9 +192,9 @@ class LeafSums {
   HWY_INLINE void add_cut(const LeafWork& work, const LeafFrame& leaf) {
     const Reals d;
     const auto four = hn::Set(d, 4.0);
-    // Nearly always one vector of eight, rarely two, none where a leaf's triangles do not hang together.
-    const std::size_t cuts = hn::Lanes(d) == 8 ? std::max<std::size_t>(work.cuts, 1) : work.cuts;
-    for (std::size_t i = 0; i < cuts; i += hn::Lanes(d)) {
+    // Nearly always one vector of eight, rarely two; none where a leaf's triangles are not connected.
+    const std::size_t num_cut = hn::Lanes(d) == 8 ? std::max<std::size_t>(work.num_cut, 1) : work.num_cut;
+    for (std::size_t i = 0; i < num_cut; i += hn::Lanes(d)) {
       const CornerIndices at = corner_indices(work.cut.data() + i);
       const auto bp = look_up(leaf.b, at.p);
       const auto cp = look_up(leaf.c, at.p);
@@ -201,17 +203,18 @@ class LeafSums {
       const auto b_pr = hn::Sub(look_up(leaf.b, at.r), bp);
       const auto c_pq = hn::Sub(look_up(leaf.c, at.q), cp);
       const auto c_pr = hn::Sub(look_up(leaf.c, at.r), cp);
-      // Shares of the edges p-q and p-r that belong to p's corner.
+      // Height differences along the edges p-q and p-r, from which the parts of the edges on p's side follow.
       const auto z_pq = hn::Sub(zp, look_up(leaf.z, at.q));
       const auto z_pr = hn::Sub(zp, look_up(leaf.z, at.r));
-      // One division instead of two. The product is 0 in unused lanes, all of one corner, and where heights
-      // of less than 1e-154 m underflow in it: there is nothing to add, and nothing to divide by.
+      // One division instead of two. The product is 0 in unused lanes, whose corners are all the same, and
+      // where heights of less than 1e-154 m underflow in it: such lanes add nothing and are not divided.
       const auto both = hn::Mul(z_pq, z_pr);
       const auto scale = hn::IfThenElseZero(hn::Ne(both, hn::Zero(d)), hn::Div(zp, both));
       const auto to_q = hn::Mul(scale, z_pr);
       const auto to_r = hn::Mul(scale, z_pq);
       const auto w = difference_of_products(b_pq, c_pr, b_pr, c_pq);
-      // A wet corner counts, with z_p < 0, and a dry one is taken off, with z_p > 0: this is minus either.
+      // A wet corner's part is added (z_p < 0) and a dry one's is subtracted (z_p > 0): this is the negative
+      // of either contribution.
       const auto weighted = hn::Mul(hn::Mul(w, hn::Abs(zp)), hn::Mul(to_q, to_r));
       const auto moment = [&](RealVector p, RealVector pq, RealVector pr, RealVector center4) {
         return hn::MulAdd(to_q, pq, hn::MulAdd(to_r, pr, hn::MulAdd(four, p, center4)));

@@ -1,6 +1,6 @@
-// The SIMD kernels for the inner nodes of the moment tree: children tested eight at once, node moments
-// summed, and what stays undecided chosen and summed. Included once per instruction set
-// (wetted_tree_sum.cpp), after highway.h.
+// The SIMD kernels for the inner nodes of the moment tree: they test eight children at once, sum node
+// moments, and select and sum the nodes to prune. Included once per instruction set (wetted_tree_sum.cpp),
+// after highway.h.
 #if defined(BUOYANCY_NODE_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_NODE_KERNELS_INL_H
 #undef BUOYANCY_NODE_KERNELS_INL_H
@@ -25,7 +25,7 @@ using RealVector = hn::Vec<Reals>;
 
 struct BoundsQuery {
   float kx, ky, kz, h, margin;
-  float per_half_diagonal;  // 1/m: 2 / L
+  float per_half_diagonal;  // [1/m], 2 / L
   float per_k_a;            // 1 / |k_a|
 };
 
@@ -35,14 +35,14 @@ HWY_INLINE BoundsQuery make_bounds_query(const MomentTree& tree, const TreeQuery
   bounds.ky = static_cast<float>(query.k[1]);
   bounds.kz = static_cast<float>(query.k[2]);
   bounds.h = static_cast<float>(query.h_high + query.h_low);
-  // float32 rounds k, h, each product and sum: at most 12 half-ulps of 3 reach + |h| together.
+  // float32 rounds k, h and each product and sum: together at most 12 half-ulps of 3 reach + |h|.
   bounds.margin = 1e-6F * (3.0F * tree.reach + std::abs(bounds.h));
   bounds.per_half_diagonal = static_cast<float>(1.0 / query.half_diagonal);
   bounds.per_k_a = static_cast<float>(1.0 / std::abs(query.k[query.axes[0]]));
   return bounds;
 }
 
-// Heights between which some children of a node lie, m, rounded outward.
+// [m], bounds on the heights of some children of a node, rounded outward.
 template <class D>
 struct HeightBounds {
   hn::Vec<D> low, high;
@@ -65,12 +65,12 @@ HWY_INLINE HeightBounds<D> height_bounds(D d, const TreeNode& node, std::size_t 
   return {hn::Sub(center, reach), hn::Add(center, reach)};
 }
 
-// Which children of a node lie wholly below the water, and which are cut by it or too close to tell.
+// Bit masks of a node's children: fully submerged, and crossing the water or too close to it to decide.
 struct ChildMasks {
   std::uint32_t wet, crossing;
 };
 
-// A bit for each of the first `count` of eight.
+// A bit mask of the first `count` of eight.
 HWY_INLINE std::uint32_t first_bits(std::size_t count) {
   return (1U << std::min(count, std::size_t{kTreeWidth})) - 1U;
 }
@@ -87,9 +87,10 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return bits[0];
 }
 
-// append writes those of eight items whose bit in the mask is set, in order, append_places first + i for
-// every bit i; behind them anything, room for kTreeWidth in all. They return how many. leaf_bits: a bit for
-// each of eight children that is a leaf.
+// append() writes those of eight items whose bit in the mask is set, in order; append_places() writes first +
+// i for every set bit i. Both may write up to kTreeWidth elements in all, with undefined values after the
+// last item, and return the number of items. leaf_bits() returns a bit for each of eight children that is a
+// leaf.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
 template <class T>
@@ -148,7 +149,7 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
   return child_masks(node, wet, dry);
 }
 
-// What is known of a node's children while they are undecided, as in PrunableNodes.
+// The values of PrunableNodes for a node's eight children.
 struct alignas(32) PrunableChildren {
   std::array<float, kTreeWidth> below, above, error, curved;
 };
@@ -162,7 +163,7 @@ HWY_INLINE hn::Vec<D> load_upper_halves(D d, const std::array<std::uint16_t, kTr
                      hn::ShiftLeft<16>(hn::PromoteTo(words, hn::LoadU(half_words, halves.data() + first))));
 }
 
-// The line's error and the parabola's, m: pruned_node.h. radius: m.
+// [m], the errors of the line and of the parabola (pruned_node.h). radius: [m].
 template <class D>
 struct FitErrors {
   hn::Vec<D> line, curved;
@@ -193,7 +194,7 @@ HWY_INLINE hn::Vec<D> radius(D d, const TreeNode& node, std::size_t first) {
 HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query, std::size_t a,
                                     PrunableChildren& children) {
   const Bounds d;
-  const auto scale = hn::Set(d, 1.00001F * query.per_k_a);  // for what float32 rounds
+  const auto scale = hn::Set(d, 1.00001F * query.per_k_a);  // covers the rounding of float32
   std::uint32_t wet = 0;
   std::uint32_t dry = 0;
   for (std::size_t i = 0; i < kTreeWidth; i += hn::Lanes(d)) {
@@ -214,7 +215,7 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
 }
 
 HWY_INLINE void append_prunable(const TreeNode& node, std::uint32_t mask, const PrunableChildren& children,
-                                 PrunableNodes& nodes) {
+                                PrunableNodes& nodes) {
   const std::size_t at = nodes.size;
   append(node.child.data(), mask, nodes.child.data() + at);
   append(children.below.data(), mask, nodes.below.data() + at);
@@ -227,8 +228,8 @@ HWY_INLINE void append_prunable(const TreeNode& node, std::uint32_t mask, const 
   nodes.size += append_places(mask, node.first_moments, nodes.moments.data() + at);
 }
 
-// Keeps those of eight nodes, from `from` on, whose bit in the mask is set: writes them from nodes.size on,
-// which is no farther.
+// Keeps those of the eight nodes from `from` on whose bit in the mask is set: moves them to nodes.size, which
+// is at most `from`.
 HWY_INLINE void keep_prunable(PrunableNodes& nodes, std::size_t from, std::uint32_t mask) {
   const std::size_t at = nodes.size;
   for (auto* const list : nodes.numbers()) append(list->data() + from, mask, list->data() + at);
@@ -236,15 +237,15 @@ HWY_INLINE void keep_prunable(PrunableNodes& nodes, std::size_t from, std::uint3
   nodes.size += static_cast<std::size_t>(__builtin_popcount(mask));
 }
 
-// What has to be known of nodes to decide which of them stay undecided. m^3, but for `leaves`.
+// Statistics of the nodes' errors that decide which nodes are pruned; [m^3], except `leaves`.
 struct ErrorSurvey {
-  // Limits to one node's error, in equal shares of what is left of the budget.
+  // Candidates for the limit on one node's error, in equal shares of the remaining budget.
   static constexpr std::array<float, 5> kLimits{1.5F, 2.0F, 3.0F, 4.5F, 7.0F};
 
   float share = 0.0F;
-  double all = 0.0;                             // errors together
-  std::array<double, kLimits.size()> within{};  // those within a limit, together
-  std::size_t leaves = 0;                       // how many of the nodes are
+  double all = 0.0;                             // total of all errors
+  std::array<double, kLimits.size()> within{};  // total of the errors within each limit
+  std::size_t leaves = 0;                       // number of leaves among the nodes
 };
 
 HWY_INLINE ErrorSurvey survey_errors(PrunableNodes& nodes, double left) {
@@ -261,8 +262,8 @@ HWY_INLINE ErrorSurvey survey_errors(PrunableNodes& nodes, double left) {
       const auto error = hn::PromoteTo(d, hn::LoadU(narrow, nodes.error.data() + i));
       all = hn::Add(all, error);
       for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
-        const float most = ErrorSurvey::kLimits[limit] * survey.share;
-        const auto fits = hn::Le(error, hn::Set(d, static_cast<double>(most)));
+        const float max_error = ErrorSurvey::kLimits[limit] * survey.share;
+        const auto fits = hn::Le(error, hn::Set(d, static_cast<double>(max_error)));
         within[limit] = hn::Add(within[limit], hn::IfThenElseZero(fits, error));
       }
     }
@@ -276,9 +277,9 @@ HWY_INLINE ErrorSurvey survey_errors(PrunableNodes& nodes, double left) {
   return survey;
 }
 
-// m^3: to the error of one node that stays undecided, so that all fit into what is left. Where most are
-// leaves, behind which there is nothing to save for, as many as the limits allow; else those that need no
-// more than their share.
+// [m^3], the limit on the error of one pruned node such that all of them fit into the remaining budget. If
+// most nodes are leaves, below which the budget cannot be used, the limit prunes as many nodes as kLimits
+// allow; otherwise it prunes those that need no more than their share.
 HWY_INLINE float limit_to_errors(const ErrorSurvey& survey, std::size_t nodes, double left) {
   float limit = 0.999999F * survey.share;
   if (2 * survey.leaves > nodes) {
@@ -289,8 +290,8 @@ HWY_INLINE float limit_to_errors(const ErrorSurvey& survey, std::size_t nodes, d
   return limit;
 }
 
-// How the ten moments of axis a are held in vectors: those of its line, then two of the last line. Vectors of
-// eight hold all of the last line, whatever belongs to the others.
+// The layout of the ten moments of axis a in vectors: those of its cache line, then two of the last line.
+// Vectors of eight hold the whole last line, including the moments of the other axes.
 class AxisVectors {
  public:
   static constexpr std::size_t kLanes = hn::MaxLanes(Reals());
@@ -316,26 +317,26 @@ class AxisVectors {
   struct alignas(64) Values {
     std::array<double, kVectors * kLanes> values{};
   };
-  // Where moment n of AxisMoments lies among Values.
+  // Index into Values of moment n of AxisMoments.
   HWY_INLINE std::size_t slot(std::size_t n) const { return n < NodeMoments::kInLine ? n : n + skipped_; }
 
  private:
   std::size_t line_, rest_, skipped_;
 };
 
-// Sums of axis a's moments of nodes: plain within a block of 16, compensated from block to block.
+// Sums the nodes' moments of axis a: plainly within a block of 16, compensated from block to block.
 class AxisSums {
  public:
   HWY_INLINE explicit AxisSums(std::size_t a) : vectors_(a) {}
 
   HWY_INLINE void prefetch(const NodeMoments& moments) const { vectors_.prefetch(moments); }
 
-  // Those of moments that are listed.
+  // Adds the listed elements of `moments`.
   HWY_INLINE void add(const std::vector<NodeMoments>& moments, const std::uint32_t* list, std::size_t count) {
     for (std::size_t n = 0; n < count; n += kBlock) add_block(moments, list + n, std::min(kBlock, count - n));
   }
 
-  // The sums of a block.
+  // Adds the sums of a block.
   HWY_INLINE void add(const RealVector (&block)[AxisVectors::kVectors]) {
     for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) add_compensated(v, block[v]);
   }
@@ -383,7 +384,7 @@ class AxisSums {
   AxisVectors::Values total_, rest_;
 };
 
-// What nodes contribute that stay undecided.
+// Sums the contributions of the pruned nodes.
 class PrunedSums {
  public:
   HWY_INLINE explicit PrunedSums(const TreeQuery& query)
@@ -403,9 +404,8 @@ class PrunedSums {
     }
   }
 
-  // slopes: takes their slopes times their moments.
-  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
-                      AxisSums& slopes) {
+  // slopes: receives the nodes' slopes times their moments.
+  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes, AxisSums& slopes) {
     prefetch(moments, nodes, 0, 2 * kBlock);
     for (std::size_t first = 0; first < nodes.size; first += kBlock) {
       prefetch(moments, nodes, first + 2 * kBlock, first + 3 * kBlock);
@@ -421,12 +421,12 @@ class PrunedSums {
   }
 
  private:
-  static constexpr std::size_t kBlock = PrunableNodes::kMore;
-  // Of AxisVectors, those that hold S and N.
+  static constexpr std::size_t kBlock = PrunableNodes::kPadding;
+  // The number of AxisVectors that hold S and N.
   static constexpr std::size_t kOffsetVectors = (4 + AxisVectors::kLanes - 1) / AxisVectors::kLanes;
 
-  // Of each node p1 = slope z + offset, and p2 - p1, zero where the line serves both, as a polynomial of the
-  // height over the mesh's centre; m about c: its middle.
+  // For each node p1 = slope z + offset, and p2 - p1 as a polynomial of the height over the mesh's centre,
+  // which is zero if p1 replaces p2; middle: [m], the node's centre about c.
   struct alignas(64) Fits {
     std::array<double, kBlock> slope, offset, constant, linear, quadratic;
     std::array<std::array<double, kBlock>, 3> middle;
@@ -438,7 +438,7 @@ class PrunedSums {
       vectors_.prefetch(moments[nodes.moments[i]]);
   }
 
-  // Of kBlock nodes, whatever lies behind the last.
+  // Computes the fits of kBlock nodes, including the padding after the last.
   HWY_INLINE void fit(const PrunableNodes& nodes, std::size_t first, Fits& fits) const {
     const Reals d;
     const hn::Rebind<float, Reals> narrow;
@@ -459,7 +459,7 @@ class PrunedSums {
       const auto quadratic = hn::Neg(hn::Mul(curved, hn::Mul(half, hn::Mul(range, inverse))));
       const auto linear = hn::Mul(curved, hn::Sub(half, slope));
       const auto constant = hn::Neg(hn::Mul(curved, hn::MulAdd(farthest, hn::Set(d, 1.0 / 16.0), offset)));
-      // From heights over the water to those over the mesh's centre.
+      // Converts from heights over the water to heights over the mesh's centre.
       const auto moved = hn::Mul(quadratic, z_c);
       hn::Store(slope, d, fits.slope.data() + i);
       hn::Store(offset, d, fits.offset.data() + i);
@@ -519,7 +519,7 @@ class PrunedSums {
   AxisSums offsets_;
   RealVector volume_;
   RealVector moment_[3];
-  // Weights with which moments of axis a give int n_a dA, int (k . y) n_a dA and int (k . y)^2 n_a dA.
+  // Weights by which the moments of axis a give int n_a dA, int (k . y) n_a dA and int (k . y)^2 n_a dA.
   AxisVectors::Values one_, height_, height_squared_;
 };
 

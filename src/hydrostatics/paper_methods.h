@@ -1,14 +1,11 @@
-// The five methods of "Approximate and exact buoyancy calculation for real-time floating simulation of meshes",
-// section 4, as published: the baselines that `hierarchical` (hierarchical.h) is compared with. One source
-// file each.
+// The five methods of "Approximate and exact buoyancy calculation for real-time floating simulation of
+// meshes", section 4, as published: the baselines that `hierarchical` (hierarchical.h) is compared with. One
+// source file each.
 //
-// Contract of all five: mesh coordinates are about the mesh's centre c, the water plane is the one about c
-// (water_plane_in_body()), and a triangle is fully submerged if its three vertices have z < 0. Complexity:
-// O(vertices + triangles) per query. No heap once the thread has seen a mesh as large (wetted_surface.h);
-// `fast` uses the heap at construction only.
-//
-// Depths are plain dot products. A result's Displacement::left_out and rounding bound its error
-// (docs/mathematics.md, "Error bounds").
+// Contract of all five: mesh coordinates and water plane are about the mesh's centre c
+// (water_plane_in_body()); a triangle is fully submerged if its three vertices have z < 0. Heights are plain
+// dot products. Complexity: O(vertices + triangles) per query; no heap once the thread has seen a mesh as
+// large (wetted_surface.h). Error bounds: docs/mathematics.md, "Error bounds".
 #pragma once
 
 #include <vector>
@@ -30,7 +27,7 @@ class FastTable {
  public:
   explicit FastTable(const HydrostaticMesh& mesh);
 
-  // mesh: the one that the table was made from. No heap on any call.
+  // mesh: the one that the table was made from.
   Displacement displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const;
 
  private:
@@ -41,11 +38,11 @@ class FastTable {
   std::vector<Element> elements_;  // one per triangle
 };
 
-// `improved` (section 4.2): volume elements of the fully submerged triangles about an apex on the water plane,
-// the projection of the volume's centroid.
+// `improved` (section 4.2): volume elements of the fully submerged triangles about an apex on the water
+// plane, the projection of the volume's centroid.
 //
-// The surface that closes the submerged part then contributes nothing, and only the cut triangles are missing.
-// Published error: that of the cut triangles' wet parts; it shrinks as the mesh is refined.
+// The surface that closes the submerged part then contributes nothing, and only the cut triangles are
+// missing. Published error: that of the cut triangles' wet parts; it shrinks as the mesh is refined.
 Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 // `exact` (section 4.3): `improved`, and the wet parts of the triangles that the water cuts.

@@ -1,12 +1,12 @@
-// Pressure on the wet surface, exact per triangle: the paper's surface-based methods (section 4.4).
+// Pressure on the wetted surface, exact per triangle: the paper's surface-based methods (section 4.4).
 //
 // With z the signed height, linear over a triangle of oriented area A n,
 //   F/(rho g)   = int z n dA       = A n (z_a + z_b + z_c) / 3
 //   tau/(rho g) = int z y x n dA   = (sum z sum y + sum z_i y_i) A/12 x n
-//   H           = int z dV         = 1/2 int z^2 k . n dA over the wet surface (z = 0 on the water closes
-//   it).
+//   H           = int z dV         = 1/2 int z^2 k . n dA   over the wetted surface
+// (the water surface, which closes it, contributes 0 since z = 0 there).
 // The paper takes centroid times force for the torque; pressure varies over the triangle, and on coarse
-// meshes that turns the restoring moment's sign, so the integral is taken instead.
+// meshes that reverses the sign of the restoring moment, so the integral is taken instead.
 #pragma once
 
 #include "hydrostatics/displacement.h"
@@ -16,9 +16,9 @@
 namespace buoyancy {
 
 struct PressureElements {
-  Point<double> force6{0, 0, 0};    // m^3: 6 F/(rho g)
-  Point<double> torque24{0, 0, 0};  // m^4: 24 tau_c/(rho g)
-  double height24 = 0.0;            // m^4: 24 H
+  Point<double> force6{0, 0, 0};    // [m^3], 6 F/(rho g)
+  Point<double> torque24{0, 0, 0};  // [m^4], 24 tau_c/(rho g)
+  double height24 = 0.0;            // [m^4], 24 H
 
   PressureElements& operator+=(const PressureElements& other) {
     force6 += other.force6;
@@ -34,15 +34,15 @@ struct PressureElements {
     const Point<double> force = z_sum * twice_area;
     // sum z sum y + sum z_i y_i
     const Point<double> zy = (z_sum + a.z) * a.y + (z_sum + b.z) * b.y + (z_sum + c.z) * c.y;
-    // half of (sum z)^2 + sum z_i^2: the sum of squares and products
+    // 1/2 ((sum z)^2 + sum z_i^2) = sum of squares and products
     const double zz = a.z * a.z + b.z * b.z + c.z * c.z + a.z * b.z + b.z * c.z + c.z * a.z;
     force6 += force;
     torque24 += cross(zy, twice_area);
     height24 += zz * dot(up_B, twice_area);
   }
 
-  // Volume and centre of buoyancy as the pressure implies them: V = k . F, horizontal part of V (c_B - c)
-  // from the torque, vertical part from H.
+  // Volume and centre of buoyancy follow from the pressure: V = k . F, the horizontal part of V (c_B - c)
+  // from the torque, its vertical part from H.
   Displacement displacement(const WaterPlane& plane) const {
     Displacement result;
     result.force = force6.vec3() / 6.0;

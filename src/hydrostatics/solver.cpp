@@ -1,7 +1,7 @@
 #include "hydrostatics/solver.h"
 
-#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hierarchical.h"
+#include "hydrostatics/paper_methods.h"
 
 namespace buoyancy {
 

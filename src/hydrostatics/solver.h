@@ -1,20 +1,21 @@
-// One door to all methods: a mesh and a method in, the displacement of any water plane out.
+// Common interface to all buoyancy methods: computes the displacement of one mesh by one method for any water
+// plane.
 //
 // The five methods of "Approximate and exact buoyancy calculation for real-time floating simulation of
-// meshes", section 4, kept as published as baselines, one file each:
-//   fast           4.1  precomputed volume elements about B's origin of wholly wet triangles
-//   improved       4.2  volume elements of wholly wet triangles about an apex on the water
+// meshes", section 4, kept as published as baselines (paper_methods.h):
+//   fast           4.1  precomputed volume elements about B's origin of fully submerged triangles
+//   improved       4.2  volume elements of fully submerged triangles about an apex on the water
 //   exact          4.3  the same, and the wet parts of the triangles that the water cuts
-//   fast_surface   4.4  pressure on wholly wet triangles
-//   exact_surface  4.4  pressure on the whole wet surface
+//   fast_surface   4.4  pressure on fully submerged triangles
+//   exact_surface  4.4  pressure on the whole wetted surface
 // and beyond the paper
-//   hierarchical        a descent of the mesh's moment tree: exact, at the cost of the waterline
-//   (hierarchical.h)
-// A triangle is wholly wet if its three vertices are below the water (z < 0).
+//   hierarchical        a descent of the mesh's moment tree: exact, with a cost that follows the waterline
+//                       (hierarchical.h)
+// A triangle is fully submerged if its three vertices are below the water (z < 0).
 //
-// A Solver is immutable after construction: any number of threads may ask it at once. A query allocates
-// nothing, but for the first within a tolerance on a tree larger than the thread has seen. Complexity of
-// each: O(vertices + triangles) per query.
+// A Solver is immutable after construction: any number of threads may use it at once. A query allocates
+// nothing, except a thread's first on a mesh (paper's methods) or, within a tolerance, on a tree
+// (`hierarchical`) larger than the thread has seen. Complexity: O(vertices + triangles) per query.
 #pragma once
 
 #include <array>
@@ -22,8 +23,8 @@
 #include <string_view>
 
 #include "hydrostatics/displacement.h"
-#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hydrostatic_mesh.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/water_plane.h"
 
 namespace buoyancy {
@@ -34,19 +35,19 @@ inline constexpr std::array kAllMethods{Method::kFast,        Method::kImproved,
                                         Method::kFastSurface, Method::kExactSurface, Method::kHierarchical};
 
 std::string_view to_string(Method method);                      // "exact_surface"
-std::optional<Method> method_from_name(std::string_view name);  // nullopt: no such method
-bool is_exact(Method method);  // exact to rounding in volume, force and torque
+std::optional<Method> method_from_name(std::string_view name);  // nullopt if there is no such method
+bool is_exact(Method method);  // true if exact to rounding in volume, force and torque
 
 class Solver {
  public:
-  // mesh must outlive the solver. Precomputes what the method needs and nothing else. tolerance: 0 (exact) or
-  // more, relative to the whole displacement; only `hierarchical` makes use of it.
+  // mesh must outlive the solver. Precomputes only what the method needs. tolerance: 0 (exact) or more,
+  // relative to the whole displacement; only `hierarchical` uses it.
   Solver(const HydrostaticMesh& mesh, Method method, double tolerance = 0.0);
 
   Displacement displacement(const WaterPlane& plane) const;
 
-  // The water as the method needs it: exact, or where a tolerance allows it in plain double, which spares a
-  // tenth of a query.
+  // The water plane as the method needs it: exact or, where a tolerance allows it, in plain double, which
+  // saves a tenth of a query.
   WaterPlane plane_in_body(const Pose& pose, const Water& water) const;
 
   const HydrostaticMesh& mesh() const { return *mesh_; }
@@ -57,7 +58,7 @@ class Solver {
   const HydrostaticMesh* mesh_;
   Method method_;
   double tolerance_;
-  double plane_error_ = 0.0;  // m: as much as is allowed
+  double plane_error_ = 0.0;  // [m], the largest allowed
   std::optional<FastTable> fast_;
 };
 

@@ -1,9 +1,9 @@
-// The wet part of a triangle: the law of what is wet, in one place, for any number type.
+// Clips a triangle to its wet part: the single definition of what is wet, for any number type.
 //
-// A vertex is wet where its signed height z < 0; a vertex on the plane is dry. A cut point has height exactly
-// 0 and is interpolated from the wet vertex to the dry one, so that the two triangles of an edge find the
-// same point, bit for bit. The wet part keeps the triangle's orientation: a triangle (one vertex wet; paper,
-// figure 3) or a quadrilateral (two), split into two triangles.
+// Rules: a vertex is wet where its signed height z < 0; a vertex on the plane is dry. A cut point has height
+// exactly 0 and is interpolated from the wet vertex to the dry one, so that the two triangles of an edge find
+// the same point, bit for bit. The wet part keeps the triangle's orientation: it is a triangle (one vertex
+// wet; paper, figure 3) or a quadrilateral (two vertices wet), split into two triangles.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ namespace buoyancy {
 // A point of the surface about the mesh's centre, and its signed height over the water.
 template <typename T>
 struct ClipVertex {
-  Point<T> y;  // m
-  T z;         // m
+  Point<T> y;  // [m]
+  T z;         // [m]
 
   bool wet() const { return z < T(0); }
 };
 
-// Where the edge from a wet to a dry corner meets the water.
+// The point where the edge from a wet to a dry corner meets the water.
 template <typename T>
-ClipVertex<T> cut(const ClipVertex<T>& wet, const ClipVertex<T>& dry) {
+ClipVertex<T> intersect_edge(const ClipVertex<T>& wet, const ClipVertex<T>& dry) {
   const T share = wet.z / (wet.z - dry.z);
   return {wet.y + share * (dry.y - wet.y), T(0)};
 }
@@ -34,7 +34,7 @@ ClipVertex<T> cut(const ClipVertex<T>& wet, const ClipVertex<T>& dry) {
 template <typename T, typename Visit>
 void for_each_wet_triangle(const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c,
                            Visit&& visit) {
-  // Rotate so that p is the corner that differs from the two others: looked up, since which one it is cannot
+  // Rotates the corners so that p differs from the two others. A table is faster than a branch, which cannot
   // be predicted.
   constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
   const auto mask = static_cast<unsigned>(a.wet()) + 2 * static_cast<unsigned>(b.wet()) +
@@ -45,10 +45,10 @@ void for_each_wet_triangle(const ClipVertex<T>& a, const ClipVertex<T>& b, const
   const ClipVertex<T>& q = *corners[first + 1];
   const ClipVertex<T>& r = *corners[first + 2];
   if (p.wet()) {
-    visit(p, cut(p, q), cut(p, r));
+    visit(p, intersect_edge(p, q), intersect_edge(p, r));
   } else {
-    const ClipVertex<T> on_pq = cut(q, p);
-    const ClipVertex<T> on_rp = cut(r, p);
+    const ClipVertex<T> on_pq = intersect_edge(q, p);
+    const ClipVertex<T> on_rp = intersect_edge(r, p);
     visit(on_pq, q, r);
     visit(on_pq, r, on_rp);
   }

@@ -1,7 +1,7 @@
 // Signed volume elements of the paper, section 3: a triangle and an apex o span a tetrahedron of volume
 //   V_i(o) = (a - o) . ((b - a) x (c - a)) / 6   and centroid   C_i(o) = (a + b + c + o) / 4.
 //
-// The edges, not the corners, are multiplied: the same number as the paper's triple product, but its rounding
+// The edges, not the corners, are multiplied: the value equals the paper's triple product, but its rounding
 // error is of the order eps L dA instead of eps L^3 per triangle.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-// 6 V_i(o), m^3.
+// 6 V_i(o), [m^3].
 inline double six_volumes(const Point<double>& a, const Point<double>& b, const Point<double>& c,
                           const Point<double>& apex) {
   return dot(a - apex, cross(b - a, c - a));
@@ -20,8 +20,8 @@ inline double six_volumes(const Point<double>& a, const Point<double>& b, const 
 
 // Sums over triangles, for one apex o.
 struct VolumeElements {
-  double volume6 = 0.0;            // m^3: 6 sum V_i(o)
-  Point<double> moment6{0, 0, 0};  // m^4: 6 sum V_i(o) (a + b + c)
+  double volume6 = 0.0;            // [m^3], 6 sum V_i(o)
+  Point<double> moment6{0, 0, 0};  // [m^4], 6 sum V_i(o) (a + b + c)
 
   VolumeElements& operator+=(const VolumeElements& other) {
     volume6 += other.volume6;
@@ -41,10 +41,10 @@ struct VolumeElements {
   Vec3 moment(const Vec3& apex) const { return (moment6.vec3() + volume6 * apex) / 24.0; }
 };
 
-// The apex of `improved` and `exact`: the volume's centroid projected onto the water, so that the water's
-// surface, which closes the wet part, contributes nothing (section 4.2). About c, m. Where overlapping parts
-// of opposite signs put the centroid outside of the mesh's box, the box's middle stands in for it: any point
-// of the water serves, and digits of the torque go with the square of its distance.
+// [m], the apex of `improved` and `exact` about c: the volume's centroid projected onto the water, so that
+// the water surface, which closes the submerged part, contributes nothing (section 4.2). Where overlapping
+// parts of opposite signs put the centroid outside of the mesh's box, the box's centre replaces it: any point
+// of the water plane is valid, and the torque's rounding error grows with the square of its distance.
 inline Vec3 apex_on_water(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   const bool inside = (mesh.centroid.array() >= mesh.box_min.array()).all() &&
                       (mesh.centroid.array() <= mesh.box_max.array()).all();
@@ -52,7 +52,8 @@ inline Vec3 apex_on_water(const HydrostaticMesh& mesh, const WaterPlane& plane) 
   return from - plane.height(from) * plane.up_B;
 }
 
-// Displacement of a volume V with first moment M about c; the wrench is Archimedes': F = V k at the centroid.
+// Displacement of a volume V with first moment M about c; the wrench follows from Archimedes' principle: F =
+// V k at the centroid.
 inline Displacement displacement_of_volume(double volume, const Vec3& moment, const WaterPlane& plane) {
   return {
       .volume = volume, .moment = moment, .force = volume * plane.up_B, .torque = moment.cross(plane.up_B)};

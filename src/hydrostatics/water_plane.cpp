@@ -18,8 +18,8 @@ DoubleDouble dot(const Vec3& a, const Vec3& b) {
 // R_WB^T up = ((w^2 - |u|^2) up + 2 (u . up) u - 2 w (u x up)) / |q|^2 for q = (w, u) of any norm: every term
 // holds two components of q, so q and -q give the same bits.
 DoubleDouble3 rotate_into_body(const Eigen::Quaterniond& q_WB, const Vec3& up_W) {
-  // A power of two brings the largest component near 1, without rounding, so that no square over- or
-  // underflows.
+  // Scaling by a power of two brings the largest component near 1 without rounding, so that no square over-
+  // or underflows.
   int exponent = 0;
   std::frexp(q_WB.coeffs().cwiseAbs().maxCoeff(), &exponent);
   const double w = std::ldexp(q_WB.w(), -exponent);

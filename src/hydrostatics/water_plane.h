@@ -1,9 +1,8 @@
-// The water's surface as seen from the body: the plane is moved into the body frame, never the vertices into
-// the world. Then a far-away body costs no accuracy, and all that is precomputed in B stays valid for every
-// pose.
+// The water plane in the body frame: the plane is moved into the body frame, never the vertices into the
+// world. A far-away body then costs no accuracy, and everything precomputed in B stays valid for every pose.
 //
-//   k = R_WB^T up,  h_c = level - up . p_WB - k . c,  signed height of a vertex y = x_B - c:  z(y) = k . y -
-//   h_c,
+//   k = R_WB^T up,   h_c = level - up . p_WB - k . c,
+//   signed height of a vertex y = x_B - c:   z(y) = k . y - h_c,
 //
 // wet where z < 0; a vertex on the plane (z = 0) is dry. c is the mesh's own centre (HydrostaticMesh). k and
 // h_c are computed in double-double and rounded once: |error of k| <= eps, |error of h_c| <= eps |h_c| +
@@ -20,29 +19,29 @@
 
 namespace buoyancy {
 
-inline constexpr double kStandardGravity = 9.80665;  // m/s^2
-inline constexpr double kSeawaterDensity = 1025.0;   // kg/m^3
+inline constexpr double kStandardGravity = 9.80665;  // [m/s^2]
+inline constexpr double kSeawaterDensity = 1025.0;   // [kg/m^3]
 
 struct Water {
   Vec3 up_W = Vec3::UnitZ();          // unit
-  double level = 0.0;                 // m: the surface is where up . x_W = level
-  double density = kSeawaterDensity;  // kg/m^3, >= 0
-  double gravity = kStandardGravity;  // m/s^2, >= 0
+  double level = 0.0;                 // [m], the surface is where up . x_W = level
+  double density = kSeawaterDensity;  // [kg/m^3], >= 0
+  double gravity = kStandardGravity;  // [m/s^2], >= 0
 };
 
 struct Pose {
-  Vec3 p_WB = Vec3::Zero();                                  // m
+  Vec3 p_WB = Vec3::Zero();                                  // [m]
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
 };
 
 struct WaterPlane {
   Vec3 up_B = Vec3::UnitZ();  // k
-  double h_c = 0.0;           // m
-  // What rounding took from them: k = up_B + up_B_rest and h_c + h_c_rest to double-double. Only
-  // `hierarchical` asks.
+  double h_c = 0.0;           // [m]
+  // The rounding errors of both: up_B + up_B_rest and h_c + h_c_rest are k and h_c in double-double. Only
+  // `hierarchical` uses them.
   Vec3 up_B_rest = Vec3::Zero();
-  double h_c_rest = 0.0;  // m
-  // m: no height over the body is farther off than this and its own rounding.
+  double h_c_rest = 0.0;  // [m]
+  // [m], bound on the error of every height over the body, besides its own rounding.
   double error = 0.0;
 
   double height(const Vec3& y) const { return up_B.dot(y) - h_c; }
@@ -50,14 +49,15 @@ struct WaterPlane {
 
 WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B);
 
-// The plane in plain double, at a tenth of the cost, for whoever can do with an error that grows with the
-// distances of the pose and of c. All times |q|^2, which spares divisions. Where norm_squared is above 1e-100
-// it is within its error, unless the squares or their products with the distances overflow.
+// The plane in plain double, at a tenth of the cost, for callers that accept an error that grows with the
+// distances of the pose and of c. All values are multiplied by |q|^2, which saves divisions. Where
+// norm_squared is above 1e-100 the plane is within its error, unless the squares or their products with the
+// distances overflow.
 struct RoughWaterPlane {
   Point<double> up_B;   // |q|^2 k
-  double h_c;           // m |q|^2
+  double h_c;           // [m |q|^2]
   double norm_squared;  // |q|^2
-  double error;         // m |q|^2: no height over a point within `reach` of c is farther off
+  double error;         // [m |q|^2], bound on the error of heights of points within `reach` of c
 };
 
 inline RoughWaterPlane rough_water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B,
@@ -72,7 +72,7 @@ inline RoughWaterPlane rough_water_plane_in_body(const Pose& pose, const Water& 
   plane.up_B = (w_squared - u_squared) * up + 2.0 * (dot(u, up) * u - q.w() * cross(u, up));
   plane.h_c = plane.norm_squared * (water.level - dot(up, Point<double>::from(pose.p_WB))) -
               dot(plane.up_B, Point<double>::from(c_B));
-  // k is off by at most 16 epsilon, every product and sum by half of one of its terms' sum.
+  // k is off by at most 16 epsilon, every product and sum by half an epsilon of the sum of its terms.
   plane.error = 32.0 * std::numeric_limits<double>::epsilon() * plane.norm_squared *
                 (pose.p_WB.lpNorm<1>() + std::abs(water.level) + c_B.lpNorm<1>() + reach);
   return plane;

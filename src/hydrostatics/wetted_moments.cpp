@@ -65,7 +65,7 @@ class WettedSurfaceWalk {
     }
   }
 
-  // Of a leaf's centre, rounded once.
+  // Height of a leaf's centre, rounded once.
   double exact_height(const Vec3& center) const {
     DoubleDouble sum{-plane_.h_c, -plane_.h_c_rest};
     for (int i = 0; i < 3; ++i) sum = sum + DoubleDouble{plane_.up_B[i], plane_.up_B_rest[i]} * center[i];
@@ -102,10 +102,9 @@ class WettedSurfaceWalk {
       const ClipVertex<double> a = corner(leaf.a[t]);
       const ClipVertex<double> b = corner(leaf.b[t]);
       const ClipVertex<double> c = corner(leaf.c[t]);
-      const int wet_corners =
-          static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
-      if (wet_corners == 3) add(a, b, c);
-      if (wet_corners == 1 || wet_corners == 2) {
+      const int num_wet = static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
+      if (num_wet == 3) add(a, b, c);
+      if (num_wet == 1 || num_wet == 2) {
         for_each_wet_triangle(a, b, c, [this](const auto& p, const auto& q, const auto& r) { add(p, q, r); });
       }
     }
@@ -124,11 +123,11 @@ class WettedSurfaceWalk {
 
   const MomentTree& tree_;
   const WaterPlane& plane_;
-  double margin_ = 0.0;           // m: more than what rounding can move a bound's height
+  double margin_ = 0.0;           // [m], exceeds the rounding error of a bound's height
   PairwiseSum<Patch> wet_nodes_;  // about c
   PairwiseSum<Patch> clipped_;    // about point_
-  std::optional<Vec3> point_;     // the first wet vertex of a leaf that is not wholly wet; from c
-  double height_ = 0.0;           // of point_
+  std::optional<Vec3> point_;     // [m], from c: the first wet vertex of a leaf that the water cuts
+  double height_ = 0.0;           // [m], of point_
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ VertexHeights vertex_heights(const TriangleMesh& surface, const WaterPlane& plan
 
 double rounding_of_cut_faces(const HydrostaticMesh& mesh, const WaterPlane& plane) {
   if (mesh.meets_volume_tolerance()) return 0.0;
-  // The longest edge of HydrostaticMesh's triangles lies opposite their first corner.
+  // In HydrostaticMesh the longest edge of a triangle lies opposite its first corner.
   const auto edges_squared = sum_over_wet_triangles<double>(
       mesh, plane, [](double&, const auto&, const auto&, const auto&) {},
       [](double& sum, const auto&, const auto& b, const auto& c) { sum += dot(c.y - b.y, c.y - b.y); });

@@ -1,8 +1,8 @@
-// The loop that all of the paper's methods share: every triangle of a mesh, sorted into dry, wholly wet and
-// cut, its contributions summed in blocks.
+// The loop that all of the paper's methods share: it sorts every triangle of a mesh into dry, fully submerged
+// and cut, and sums the contributions in blocks.
 //
-// Heights are plain dot products here (docs/mathematics.md, "Depth"): the paper's methods are the honest
-// baseline.
+// Heights are plain dot products (docs/mathematics.md, "Depth"), so that the paper's methods remain a
+// baseline without improvements of this project.
 #pragma once
 
 #include <algorithm>
@@ -18,24 +18,24 @@
 
 namespace buoyancy {
 
-// Of every vertex, computed once per vertex and not once per corner.
+// The heights of all vertices, computed once per vertex and not once per corner.
 struct VertexHeights {
-  const double* height;     // m, over the water
+  const double* height;     // [m], over the water
   const std::uint8_t* wet;  // 1 where height < 0, else 0
 };
 
-// Valid until the same thread's next call: the tables are the thread's own and grow to the largest mesh that
-// it has seen.
+// The result is valid until the same thread's next call: the tables are thread-local and grow to the largest
+// mesh that the thread has seen.
 VertexHeights vertex_heights(const TriangleMesh& surface, const WaterPlane& plane);
 
 // Indices of triangles, in ascending order.
 using TriangleList = std::span<const std::uint32_t>;
 
-// Sum: zero by default, with operator+=. add_block(sum, wet, cut) adds those of a block's triangles that have
-// three wet corners, and those that have one or two. O(triangles).
+// Sum: zero by default, with operator+=. add_block(sum, wet, cut) adds a block's triangles: `wet` have three
+// wet corners, `cut` one or two. Complexity: O(triangles).
 //
-// A block is sorted before anything is computed: no branch then depends on the order in which the mesh
-// happens to store its triangles.
+// A block is sorted before anything is computed, so that no branch depends on the order of the mesh's
+// triangles.
 template <typename Sum, typename AddBlock>
 Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, const AddBlock& add_block) {
   constexpr std::size_t kBlock = 256;
@@ -47,28 +47,28 @@ Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, c
   const std::size_t count = surface.triangles.size();
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, count);
-    std::size_t wets = 0;
-    std::size_t cuts = 0;
+    std::size_t num_wet = 0;
+    std::size_t num_cut = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& triangle = surface.triangles[i];
       const unsigned corners = 0U + is_wet[triangle[0]] + is_wet[triangle[1]] + is_wet[triangle[2]];
-      wet[wets] = static_cast<std::uint32_t>(i);
-      cut[cuts] = static_cast<std::uint32_t>(i);
-      wets += static_cast<std::size_t>(corners == 3);
-      cuts += static_cast<std::size_t>(corners - 1 < 2);
+      wet[num_wet] = static_cast<std::uint32_t>(i);
+      cut[num_cut] = static_cast<std::uint32_t>(i);
+      num_wet += static_cast<std::size_t>(corners == 3);
+      num_cut += static_cast<std::size_t>(corners - 1 < 2);
     }
     Sum block{};
-    add_block(block, TriangleList(wet.data(), wets), TriangleList(cut.data(), cuts));
+    add_block(block, TriangleList(wet.data(), num_wet), TriangleList(cut.data(), num_cut));
     total.add_block(block);
   }
   return total.total();
 }
 
-// add_wet(sum, a, b, c) adds one wet triangle with corners ClipVertex<double>, add_cut(sum, a, b, c) what the
-// method makes of one that the water cuts. O(vertices + triangles).
+// add_wet(sum, a, b, c) adds one fully submerged triangle with corners ClipVertex<double>, add_cut(sum, a, b,
+// c) the method's contribution of one that the water cuts. Complexity: O(vertices + triangles).
 template <typename Sum, typename AddWet, typename AddCut>
 Sum sum_over_wet_triangles(const HydrostaticMesh& mesh, const WaterPlane& plane, const AddWet& add_wet,
-                         const AddCut& add_cut) {
+                           const AddCut& add_cut) {
   const double* const x = mesh.surface.x.data();
   const double* const y = mesh.surface.y.data();
   const double* const z = mesh.surface.z.data();
@@ -88,7 +88,8 @@ Sum sum_over_wet_triangles(const HydrostaticMesh& mesh, const WaterPlane& plane,
   });
 }
 
-// The whole wet surface: add(sum, a, b, c) gets the wet triangles and the wet parts of those that are cut.
+// Sums over the whole wetted surface: add(sum, a, b, c) receives the fully submerged triangles and the wet
+// parts of those that are cut.
 template <typename Sum, typename Add>
 Sum sum_over_wetted_surface(const HydrostaticMesh& mesh, const WaterPlane& plane, const Add& add) {
   return sum_over_wet_triangles<Sum>(
@@ -98,11 +99,11 @@ Sum sum_over_wetted_surface(const HydrostaticMesh& mesh, const WaterPlane& plane
       });
 }
 
-// What `exact` and `exact_surface` publish beside the mesh's rounding_bound(), m^3: 0 where the gate is
-// promised, else eps L sum (longest edge)^2 of the triangles that are cut. The area of what is left of one
-// may be a product of two such edges, with an error of 1.5 eps of it; a sixth of that, for each of two
-// triangles, times a distance from the apex of at most 2 L. O(vertices + triangles), of slender bodies and
-// thin faces alone.
+// [m^3], what `exact` and `exact_surface` publish in addition to the mesh's rounding_bound(): 0 where
+// meets_volume_tolerance(), else eps L sum (longest edge)^2 over the triangles that are cut. The area of what
+// is left of one may be a product of two such edges, with an error of 1.5 eps of it; the bound takes a sixth
+// of that, for each of two triangles, times a distance from the apex of at most 2 L. Complexity: O(vertices +
+// triangles), for slender bodies and thin faces only.
 double rounding_of_cut_faces(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 }  // namespace buoyancy

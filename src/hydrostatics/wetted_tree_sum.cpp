@@ -9,8 +9,8 @@
 
 #include "hydrostatics/pruned_node.h"
 
-// The twin without SIMD is Highway's scalar target with every compiler, and not, with some, its emulation of
-// two lanes.
+// The reference without SIMD is Highway's scalar target with every compiler; by default some compilers use
+// its emulation of two lanes instead.
 #define HWY_BROKEN_EMU128 1
 
 // This file is compiled once per instruction set; the name is how it includes itself.
@@ -26,14 +26,14 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// As far as a descent reads it.
+// Prefetches the first `bytes` of a node, the part that a descent reads.
 HWY_INLINE void prefetch_node(const TreeNode& node, std::size_t bytes) {
   const auto* const line = reinterpret_cast<const unsigned char*>(&node);
   for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(line + byte);
 }
 
-// What both descents share. Found nodes and leaves are queued and used when a queue is full: memory is then
-// fetched for many at once.
+// Common part of both descents. Nodes and leaves are queued and evaluated when a queue is full, so that
+// memory is fetched for many at once.
 class Descent {
  public:
   HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum)
@@ -43,17 +43,17 @@ class Descent {
         bounds_(make_bounds_query(tree, query)),
         node_sums_(query.axes[0]) {}
 
-  // Of up to eight children the water crosses those in the mask: queues the leaves, writes the others to
-  // `inner` and returns how many those are.
+  // The mask names the crossing ones of up to eight children: queues the leaves among them, writes the others
+  // to `inner` and returns the number of the latter.
   HWY_INLINE std::size_t add_crossing(const std::uint32_t* children, std::uint32_t mask,
                                       std::uint32_t* inner) {
     const std::uint32_t leaves = mask & leaf_bits(children);
-    leaves_ += append(children, leaves, leaf_queue_.data() + leaves_);
+    num_leaves_ += append(children, leaves, leaf_queue_.data() + num_leaves_);
     return append(children, mask & ~leaves, inner);
   }
 
-  // Looks into a node exactly.
-  HWY_INLINE std::size_t look_into(const TreeNode& node, std::uint32_t* inner) {
+  // Expands a node exactly. Returns the number of children written to `inner`.
+  HWY_INLINE std::size_t expand(const TreeNode& node, std::uint32_t* inner) {
     const ChildMasks masks = test_children(node, bounds_);
     add_wet(node, masks.wet);
     const std::size_t count = add_crossing(node.child.data(), masks.crossing, inner);
@@ -61,8 +61,8 @@ class Descent {
     return count;
   }
 
-  // Appends the children that the water may cross to `open`.
-  HWY_INLINE void look_into(const TreeNode& node, PrunableNodes& open) {
+  // Expands a node and appends the children that the water may cross to `open`.
+  HWY_INLINE void expand(const TreeNode& node, PrunableNodes& open) {
     PrunableChildren children;
     const ChildMasks masks = test_children(node, bounds_, query_.axes[0], children);
     add_wet(node, masks.wet);
@@ -70,37 +70,37 @@ class Descent {
     visited();
   }
 
-  // After every eight children that were added.
-  HWY_INLINE void make_room() {
-    if (leaves_ >= kQueue || wets_ >= kQueue) drain();
+  // Must be called after every eight children added.
+  HWY_INLINE void drain_if_full() {
+    if (num_leaves_ >= kQueue || num_wet_ >= kQueue) drain();
   }
 
-  // Not inlined: once per query for all but the largest waterlines.
+  // Not inlined: it runs once per query for all but the longest waterlines.
   HWY_NOINLINE void drain() {
-    sum_.leaves_clipped += static_cast<std::int64_t>(leaves_);
-    sum_.nodes_added += static_cast<std::int64_t>(wets_);
-    for (std::size_t i = 0; i < wets_; ++i) node_sums_.prefetch(tree_.moments[wet_queue_[i]]);
-    for (std::size_t i = 0; i < std::min(kAhead, leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
-    for (std::size_t first = 0; first < leaves_; first += LeafBatch::kRoom) {
-      const std::size_t end = std::min(leaves_, first + LeafBatch::kRoom);
+    sum_.leaves_clipped += static_cast<std::int64_t>(num_leaves_);
+    sum_.nodes_added += static_cast<std::int64_t>(num_wet_);
+    for (std::size_t i = 0; i < num_wet_; ++i) node_sums_.prefetch(tree_.moments[wet_queue_[i]]);
+    for (std::size_t i = 0; i < std::min(kAhead, num_leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
+    for (std::size_t first = 0; first < num_leaves_; first += LeafBatch::kCapacity) {
+      const std::size_t end = std::min(num_leaves_, first + LeafBatch::kCapacity);
       batch_.clear();
       for (std::size_t i = first; i < end; ++i) {
-        if (i + kAhead < leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
+        if (i + kAhead < num_leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
         const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
         queue_wet(leaf, batch_.add(leaf, query_));
       }
       for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
       leaf_sums_.add(batch_, query_.axes);
-      if (wets_ >= kQueue) add_queued();
+      if (num_wet_ >= kQueue) add_queued();
     }
     add_queued();
-    leaves_ = 0;
+    num_leaves_ = 0;
   }
 
-  // error: m^3, of all of them.
+  // error: [m^3], total of all of these nodes.
   HWY_INLINE void add_pruned(const PrunableNodes& nodes, double error, PrunedSums& sums) {
     sums.add(tree_.moments, nodes, node_sums_);
-    sum_.undecided.error += error;
+    sum_.pruned.error += error;
     sum_.nodes_pruned += static_cast<std::int64_t>(nodes.size);
   }
 
@@ -115,12 +115,12 @@ class Descent {
   static constexpr std::size_t kAhead = 8;  // leaves
 
   HWY_INLINE void add_wet(const TreeNode& node, std::uint32_t mask) {
-    wets_ += append_places(mask, node.first_moments, wet_queue_.data() + wets_);
+    num_wet_ += append_places(mask, node.first_moments, wet_queue_.data() + num_wet_);
   }
 
   HWY_INLINE void visited() {
     sum_.nodes_visited += 1;
-    make_room();
+    drain_if_full();
   }
 
   HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
@@ -130,13 +130,13 @@ class Descent {
   }
 
   HWY_INLINE void queue_wet(const TreeLeaf& leaf, bool wet) {
-    wet_queue_[wets_] = leaf.moments;
-    wets_ += static_cast<std::size_t>(wet);
+    wet_queue_[num_wet_] = leaf.moments;
+    num_wet_ += static_cast<std::size_t>(wet);
   }
 
   HWY_INLINE void add_queued() {
-    node_sums_.add(tree_.moments, wet_queue_.data(), wets_);
-    wets_ = 0;
+    node_sums_.add(tree_.moments, wet_queue_.data(), num_wet_);
+    num_wet_ = 0;
   }
 
   const MomentTree& tree_;
@@ -146,17 +146,17 @@ class Descent {
   LeafBatch batch_;
   LeafSums leaf_sums_;
   AxisSums node_sums_;
-  std::size_t leaves_ = 0, wets_ = 0;
+  std::size_t num_leaves_ = 0, num_wet_ = 0;
   std::array<std::uint32_t, kQueue + kTreeWidth> leaf_queue_;
-  std::array<std::uint32_t, kQueue + 2 * LeafBatch::kRoom + kTreeWidth> wet_queue_;
+  std::array<std::uint32_t, kQueue + 2 * LeafBatch::kCapacity + kTreeWidth> wet_queue_;
 };
 
-// Every node that the water crosses is looked into, the deepest first, some at a time: none of them waits for
-// what the others lead to. Begins with kTreeWidth nodes at most.
+// Expands every node that the water crosses, depth first, several at a time so that none waits for the memory
+// of another. Starts with at most kTreeWidth nodes.
 HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nodes, std::size_t count,
                                 Descent& descent) {
   constexpr std::size_t kTogether = 8;
-  // Nodes of a level are only found when none deeper are left: a level holds kTogether kTreeWidth at most.
+  // Nodes of a level are added only when no deeper ones remain: a level holds at most kTogether kTreeWidth.
   constexpr std::size_t kLevels = 16;
   constexpr std::size_t kRead = offsetof(TreeNode, projected_area);
   std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
@@ -171,7 +171,7 @@ HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nod
       prefetch_node(tree.nodes[together[n]], kRead);
     }
     for (std::size_t n = 0; n < count; ++n) {
-      depth += descent.look_into(tree.nodes[together[n]], stack.data() + depth);
+      depth += descent.expand(tree.nodes[together[n]], stack.data() + depth);
       assert(depth + kTreeWidth <= stack.size());
     }
   }
@@ -184,8 +184,8 @@ void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& 
   descent.finish();
 }
 
-// Keeps the open nodes whose error is within the limit: the leaves among the others are queued, the rest is
-// appended to `inner`. What is kept, m^3.
+// Keeps the open nodes whose error is within the limit, queues the leaves among the others and appends the
+// rest to `inner`. Returns the total error of the nodes kept, [m^3].
 HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* inner, std::size_t& inners,
                               Descent& descent) {
   const Reals d;
@@ -203,68 +203,69 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
     }
     const std::uint32_t present = first_bits(nodes - first);
     inners += descent.add_crossing(open.child.data() + first, present & ~within, inner + inners);
-    descent.make_room();
+    descent.drain_if_full();
     keep_prunable(open, first, present & within);
   }
   return hn::GetLane(hn::SumOfLanes(d, kept));
 }
 
-// Level by level: as soon as all that is undecided fits into what is left of the budget, it stays so. Until
-// then some nodes do (limit_to_errors), and the others are looked into. What can stay undecided is only asked
-// where there is hope: from a level to the next all errors together fall about eightfold.
+// Descends level by level: as soon as the total error of the open nodes fits into the remaining budget, all
+// of them are pruned. Until then some are pruned (limit_to_errors) and the others are expanded. A level is
+// examined for nodes to prune only if that may succeed: from a level to the next the total error falls about
+// eightfold.
 void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists,
                        WettedTreeSum& sum) {
-  constexpr double kFall = 8.0;
-  constexpr double kHopeless = 6.0;  // times what is left: too few would stay undecided
+  constexpr double kErrorDecay = 8.0;     // total error of a level over that of the next
+  constexpr double kMaxErrorRatio = 6.0;  // total error over remaining budget; above, too few would be pruned
   Descent descent(tree, query, sum);
   PrunableNodes& open = lists.open;
   std::uint32_t* inner = lists.inner.data();
   std::uint32_t* next_inner = lists.next_inner.data();
-  std::size_t to_look_into = 0;
+  std::size_t to_expand = 0;
   const TreeNode& root = tree.nodes[0];
   open.size = 0;
-  descent.look_into(root, open);
+  descent.expand(root, open);
   double left = query.budget;
   ErrorSurvey survey = survey_errors(open, left);
-  // Errors go with the square of the size of the nodes, and so with one over their number.
+  // Errors are proportional to the square of the size of the nodes, hence to one over their number.
   const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.leaves.size());
-  if (survey.all * per_leaf > kHopeless * left) {
-    to_look_into = descent.add_crossing(open.child.data(), first_bits(open.size), inner);
-    descend_exactly(tree, inner, to_look_into, descent);
+  if (survey.all * per_leaf > kMaxErrorRatio * left) {
+    to_expand = descent.add_crossing(open.child.data(), first_bits(open.size), inner);
+    descend_exactly(tree, inner, to_expand, descent);
     descent.finish();
     return;
   }
 
-  PrunedSums undecided(query);
-  double error = 0.0;  // m^3: of all that did not stay undecided, or what may be expected
+  PrunedSums pruned(query);
+  double error = 0.0;  // [m^3], total of the nodes that were not pruned, or its estimate
   for (;;) {
     double kept = survey.all;
     if (kept > left) {
       const float limit = limit_to_errors(survey, open.size, left);
-      kept = keep_within(limit, open, next_inner, to_look_into, descent);
+      kept = keep_within(limit, open, next_inner, to_expand, descent);
       error += survey.all - kept;
     }
     left -= kept;
-    descent.add_pruned(open, kept, undecided);
-    if (to_look_into == 0) break;
+    descent.add_pruned(open, kept, pruned);
+    if (to_expand == 0) break;
 
     std::swap(inner, next_inner);
-    const std::size_t count = std::exchange(to_look_into, 0);
-    const bool may_fit = error <= kFall * kHopeless * left;
-    error = may_fit ? 0.0 : error / kFall;
+    const std::size_t count = std::exchange(to_expand, 0);
+    const bool may_fit = error <= kErrorDecay * kMaxErrorRatio * left;
+    error = may_fit ? 0.0 : error / kErrorDecay;
     open.size = 0;
     for (std::size_t i = 0; i < count; ++i) prefetch_node(tree.nodes[inner[i]], sizeof(TreeNode));
     for (std::size_t i = 0; i < count; ++i) {
       const TreeNode& node = tree.nodes[inner[i]];
       if (may_fit) {
-        descent.look_into(node, open);
+        descent.expand(node, open);
       } else {
-        to_look_into += descent.look_into(node, next_inner + to_look_into);
+        to_expand += descent.expand(node, next_inner + to_expand);
       }
     }
     survey = survey_errors(open, left);
   }
-  undecided.finish(sum.undecided);
+  pruned.finish(sum.pruned);
   descent.finish();
 }
 
@@ -282,7 +283,7 @@ WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query) {
   WettedTreeSum sum;
   if (query.budget > 0.0) {
     thread_local BudgetLists lists;
-    lists.make_room(tree);
+    lists.reserve(tree);
     HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, lists, sum);
   } else {
     HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, sum);

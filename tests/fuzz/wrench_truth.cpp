@@ -27,7 +27,7 @@ struct TrueWrench::Numbers {
 TrueWrench::TrueWrench(const TriangleMesh& mesh, const Pose& pose, const Water& water,
                        const Vec3& reference_B) {
   const auto displaced = exact_displacement<Wide>(mesh, pose, water);
-  const Wide weight = Wide(water.density) * Wide(water.gravity);  // N/m^3
+  const Wide weight = Wide(water.density) * Wide(water.gravity);  // [N/m^3]
   auto numbers = std::make_unique<Numbers>();
   numbers->volume = displaced.volume;
   numbers->force_W = water.up_W.cast<Wide>() * Wide(weight * displaced.volume);

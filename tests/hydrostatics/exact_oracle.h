@@ -18,11 +18,11 @@ namespace buoyancy {
 
 template <typename T>
 struct ExactDisplacement {
-  T volume;           // m^3
-  Vec3T<T> moment;    // m^4, B: integral of x_B over the displaced volume
+  T volume;           // [m^3]
+  Vec3T<T> moment;    // [m^4], B: integral of x_B over the displaced volume
   Vec3T<T> up_B;      // k
-  Vec3 o_B;           // m: a point of the mesh
-  Vec3T<T> moment_o;  // m^4: the moment about it, for number types in which a far origin costs digits
+  Vec3 o_B;           // [m] a point of the mesh
+  Vec3T<T> moment_o;  // [m^4] the moment about it, for number types in which a far origin costs digits
 
   // torque/(rho g) about a point of B, in B: (moment_o + V (o - r)) x k
   Vec3T<T> torque(const Vec3& reference_B) const;

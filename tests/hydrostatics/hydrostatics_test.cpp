@@ -19,7 +19,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRelative = 1e-13;
 const Water kWater{.level = 0.0, .density = 1000.0, .gravity = 10.0};
-constexpr double kWeight = 1e4;  // N/m^3, of kWater
+constexpr double kWeight = 1e4;  // [N/m^3], of kWater
 
 HydrostaticMesh prepared(const Shape& shape) {
   return make_hydrostatic_mesh({make_shape(shape), {}});

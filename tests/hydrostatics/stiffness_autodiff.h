@@ -14,8 +14,8 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 struct DualPlane {
   Mat3T<Dual> R_WB;
   Vec3T<Dual> up_B;      // k
-  Dual h_c;              // m
-  Vec3T<Dual> c_from_r;  // m, B
+  Dual h_c;              // [m]
+  Vec3T<Dual> c_from_r;  // [m], B
 };
 
 DualPlane dual_water_plane(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,

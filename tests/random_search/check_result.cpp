@@ -128,7 +128,7 @@ class Judge {
   const HydrostaticMesh& mesh_;
   const SearchPose& asked_;
   Truth truth_;
-  double weight_;  // N/m^3
+  double weight_;  // [N/m^3]
 };
 
 }  // namespace

@@ -14,9 +14,9 @@ namespace buoyancy {
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct Truth {
-  Rational volume;           // m^3
-  Vec3T<Rational> force_W;   // m^3
-  Vec3T<Rational> torque_W;  // m^4, about the reference point
+  Rational volume;           // [m^3]
+  Vec3T<Rational> force_W;   // [m^3]
+  Vec3T<Rational> torque_W;  // [m^4], about the reference point
 };
 
 Truth true_result(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B);
@@ -35,9 +35,9 @@ void check_exactly(StressCase& stress, const StressedBody& body, const Pose& pos
 
 // What the water's surface, at a level raised by `raised`, has in common with the body.
 struct TrueWaterplane {
-  double area = 0.0;       // m^2: A_wp
-  double perimeter = 0.0;  // m: of the waterline
-  double cut_area = 0.0;   // m^2: of the cut triangles that have two corners in the water, projected on it
+  double area = 0.0;       // [m^2] A_wp
+  double perimeter = 0.0;  // [m] of the waterline
+  double cut_area = 0.0;   // [m^2] of the cut triangles that have two corners in the water, projected on it
 };
 
 TrueWaterplane true_waterplane(const TriangleMesh& mesh, const Pose& pose, const Water& water, double raised);
