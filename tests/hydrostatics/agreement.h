@@ -1,4 +1,5 @@
-// How far `hierarchical` is from `exact`, over many poses and on every instruction set of this processor.
+// Measures the difference between `hierarchical` and `exact` over many poses, on every instruction set of
+// this processor.
 #pragma once
 
 #include <algorithm>
@@ -7,31 +8,32 @@
 
 #include <gtest/gtest.h>
 
-#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/hierarchical.h"
+#include "hydrostatics/paper_methods.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
 
 namespace buoyancy {
 
-// Per mesh. ThreadSanitizer is some thirty times slower and has nothing to find on one thread.
+// Poses per mesh. ThreadSanitizer is some thirty times slower and cannot find anything on one thread.
 #ifdef __SANITIZE_THREAD__
 inline constexpr int kAgreementPoses = 50;
 #else
 inline constexpr int kAgreementPoses = 2000;
 #endif
 
-// Largest differences, as multiples of G_V and G_V L_r.
+// The largest differences, as multiples of G_V and G_V L_r.
 struct Agreement {
-  std::string target;
+  std::string target;  // instruction set
   double volume = 0.0, torque = 0.0, moment = 0.0;
 };
 
-// Half of the poses are random, half aimed at trouble; a quarter have another up than z. source: of `mesh`.
+// Half of the poses are random and half adversarial; a quarter have an up direction other than z. source: the
+// mesh that `mesh` was made from.
 inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, const HydrostaticMesh& mesh,
                                                    int poses, std::uint64_t seed) {
   const BoundingBox box = bounding_box(source);
-  const double gate = mesh.volume_tolerance();
+  const double tolerance = mesh.volume_tolerance();
   const double lever = mesh.max_lever_arm(mesh.center_B);
   std::vector<Agreement> found;
   for (const std::string& target : simd_targets()) found.push_back({.target = target});
@@ -41,19 +43,18 @@ inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, c
     if (i % 4 == 3) water.up_W = random.direction();
     const Pose pose = i % 2 == 0 ? random.crossing(box, water) : random.adversarial(source, water);
     const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-    // A body deeper than its size is answered from its constants; `exact` then loses digits of its own.
+    // `hierarchical` evaluates a submerged body from its constants; `exact` loses digits with depth.
     const double depth = std::max(1.0, std::abs(plane.h_c) / mesh.diagonal);
     const Displacement brute = exact(mesh, plane);
     for (Agreement& agreement : found) {
       EXPECT_TRUE(force_simd_target(agreement.target));
       const Displacement fast = hierarchical(mesh, plane);
-      const auto worse = [](double& largest, double value) {
-        // A NaN is worse than anything.
-        if (!(value <= largest)) largest = value;
+      const auto update_max = [](double& max, double value) {
+        if (!(value <= max)) max = value;  // also true for NaN
       };
-      worse(agreement.volume, std::abs(fast.volume - brute.volume) / (gate * depth));
-      worse(agreement.torque, (fast.torque - brute.torque).norm() / (gate * lever * depth));
-      worse(agreement.moment, (fast.moment - brute.moment).norm() / (gate * lever * depth));
+      update_max(agreement.volume, std::abs(fast.volume - brute.volume) / (tolerance * depth));
+      update_max(agreement.torque, (fast.torque - brute.torque).norm() / (tolerance * lever * depth));
+      update_max(agreement.moment, (fast.moment - brute.moment).norm() / (tolerance * lever * depth));
     }
   }
   force_simd_target("");

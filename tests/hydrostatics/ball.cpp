@@ -15,7 +15,7 @@ Ball Ball::around(const Rational& number) {
   return ball;
 }
 
-bool Ball::holds(const Rational& number) const {
+bool Ball::contains(const Rational& number) const {
   const Rational distance = number - Rational(static_cast<double>(mid)) -
                             Rational(static_cast<double>(mid - static_cast<double>(mid)));
   return abs(distance) <= Rational(static_cast<double>(rad)) * Rational(1.0 + 0x1p-40);
@@ -28,8 +28,8 @@ ExactPlane<Ball> exact_plane<Ball>(const Pose& pose, const Water& water, const V
           Ball::around(plane.h)};
 }
 
-// Heights of which a ball does not tell the sign and twelve digits are taken from rational arithmetic: they
-// decide what is wet, and where an edge is cut.
+// Takes a height from rational arithmetic if its ball does not determine the sign and twelve digits: heights
+// decide what is wet and where an edge is cut.
 template <>
 class SettledHeights<Ball> {
  public:

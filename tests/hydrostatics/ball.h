@@ -1,10 +1,10 @@
 // Ball arithmetic: intervals as a midpoint and a radius, in extended precision. Every operation's radius
-// covers what it inherits and what it rounds itself, so that the true value of whatever a templated kernel
-// computes lies within the ball for certain. Thousands of times faster than rational arithmetic, and with 64
-// bits of mantissa narrow enough to judge doubles by.
+// covers the radii of its operands and its own rounding, so that the true value of whatever a templated
+// kernel computes certainly lies within the ball. It is thousands of times faster than rational arithmetic,
+// and its 64 bits of mantissa keep balls narrow enough to check doubles.
 //
-// Not Boost.Interval: it changes the processor's rounding mode, which GCC moves operations across unless all
-// of the program is compiled for it.
+// Boost.Interval is not an alternative: it changes the processor's rounding mode, and GCC moves operations
+// across such a change unless the whole program is compiled for it.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Ball {
   explicit Ball(int number) : mid(number) {}
 
   static Ball around(const Rational& number);
-  bool holds(const Rational& number) const;
+  bool contains(const Rational& number) const;
 
   friend Ball operator-(Ball a) {
     a.mid = -a.mid;
@@ -37,23 +37,23 @@ struct Ball {
   friend Ball operator*(const Ball& a, const Ball& b) {
     return rounded(a.mid * b.mid, std::abs(a.mid) * b.rad + std::abs(b.mid) * a.rad + a.rad * b.rad);
   }
-  // b without 0; else the whole line.
+  // Returns the whole line if b contains 0.
   friend Ball operator/(const Ball& a, const Ball& b) {
-    const long double least = std::abs(b.mid) - b.rad;
+    const long double min_divisor = std::abs(b.mid) - b.rad;
     const long double quotient = a.mid / b.mid;
-    if (!(least > 0.0L)) return rounded(0.0L, std::numeric_limits<long double>::infinity());
-    return rounded(quotient, (a.rad + std::abs(quotient) * (b.rad + std::abs(b.mid) * kUnit)) / least);
+    if (!(min_divisor > 0.0L)) return rounded(0.0L, std::numeric_limits<long double>::infinity());
+    return rounded(quotient, (a.rad + std::abs(quotient) * (b.rad + std::abs(b.mid) * kUnit)) / min_divisor);
   }
   Ball& operator+=(const Ball& b) { return *this = *this + b; }
   Ball& operator-=(const Ball& b) { return *this = *this - b; }
   Ball& operator*=(const Ball& b) { return *this = *this * b; }
   Ball& operator/=(const Ball& b) { return *this = *this / b; }
 
-  // By the midpoint: heights are settled (below) before they are compared.
+  // Compares midpoints: heights are settled (SettledHeights<Ball>) before they are compared.
   friend bool operator<(const Ball& a, const Ball& b) { return a.mid < b.mid; }
   friend bool operator==(const Ball& a, const Ball& b) { return a.mid == b.mid && a.rad == b.rad; }
 
-  // No farther from `number` than this.
+  // Upper bound on the distance of any point of the ball from `number`.
   long double distance(double number) const { return std::abs(mid - number) + rad; }
 
  private:
@@ -94,7 +94,7 @@ struct Eigen::internal::cast_impl<double, buoyancy::Ball> {
 
 namespace buoyancy {
 
-// From rational arithmetic: level, position and the mesh's place in B may cancel almost completely.
+// Computed in rational arithmetic: level, position and the mesh's offset in B may cancel almost completely.
 template <>
 ExactPlane<Ball> exact_plane<Ball>(const Pose& pose, const Water& water, const Vec3& o_B);
 

@@ -55,20 +55,20 @@ TEST(Immersion, IsConservativeForGrazingBodies) {
       const Vec3T<Rational> y = source.vertex(static_cast<std::int32_t>(v)).cast<Rational>();
       below += static_cast<int>(exact.up_B.dot(y) < exact.h);
     }
-    const auto expect_certain = [&](Immersion immersion) {
+    const auto expect_conservative = [&](Immersion immersion) {
       if (immersion == Immersion::kDry) {
         EXPECT_EQ(below, 0) << i;
       } else if (immersion == Immersion::kSubmerged) {
         EXPECT_EQ(below, static_cast<int>(source.vertex_count())) << i;
       }
     };
-    const Immersion glance = quick_immersion(mesh, pose, water);
-    expect_certain(glance);
+    const Immersion quick = quick_immersion(mesh, pose, water);
+    expect_conservative(quick);
     const WaterPlane plane = within.plane_in_body(pose, water);
-    expect_certain(immersion(mesh, plane));
-    expect_certain(immersion(mesh, water_plane_in_body(pose, water, mesh.center_B)));
-    dry += static_cast<int>(glance == Immersion::kDry);
-    wet += static_cast<int>(glance == Immersion::kSubmerged);
+    expect_conservative(immersion(mesh, plane));
+    expect_conservative(immersion(mesh, water_plane_in_body(pose, water, mesh.center_B)));
+    dry += static_cast<int>(quick == Immersion::kDry);
+    wet += static_cast<int>(quick == Immersion::kSubmerged);
     rough += static_cast<int>(plane.error > 0.0);
   }
   EXPECT_GT(dry, 300);
@@ -88,7 +88,7 @@ TEST(Buoyancy, IsZeroWithZeroBoundForDryBody) {
 }
 
 TEST(Buoyancy, TreatsFaceOnWaterAsDry) {
-  // The box stands on the water, and just sunk below it.
+  // The box stands on the water, then is just fully submerged.
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
     EXPECT_EQ(buoyancy(Solver(unit_box(), method), at_height(0.5), {}, Vec3::Zero()).volume, 0.0);
     EXPECT_NEAR(buoyancy(Solver(unit_box(), method), at_height(-0.5), {}, Vec3::Zero()).volume, 1.0, 1e-15);
@@ -103,14 +103,14 @@ TEST(Buoyancy, OmitsCentreWhenVolumeIsWithinItsErrorBound) {
 
 TEST(Buoyancy, HasRoundingBoundForExactMethodsAndSubmergedBodies) {
   const Water water;
-  const double whole = water.density * water.gravity;
+  const double total = water.density * water.gravity;
   for (const Method method : kAllMethods) {
     const Solver solver(unit_box(), method);
     const BuoyancyResult cut = buoyancy(solver, at_height(0.1), water, Vec3::Zero());
-    EXPECT_EQ(cut.force_error_bound < 1e-12 * whole, is_exact(method)) << to_string(method);
-    EXPECT_EQ(cut.torque_error_bound < 1e-12 * whole, is_exact(method)) << to_string(method);
-    const BuoyancyResult wet = buoyancy(solver, at_height(-1.0), water, Vec3::Zero());
-    EXPECT_LT(wet.force_error_bound, 1e-12 * whole) << to_string(method);
+    EXPECT_EQ(cut.force_error_bound < 1e-12 * total, is_exact(method)) << to_string(method);
+    EXPECT_EQ(cut.torque_error_bound < 1e-12 * total, is_exact(method)) << to_string(method);
+    const BuoyancyResult submerged = buoyancy(solver, at_height(-1.0), water, Vec3::Zero());
+    EXPECT_LT(submerged.force_error_bound, 1e-12 * total) << to_string(method);
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Buoyancy, ReportsOutOfRangeInsteadOfInfinity) {
   EXPECT_EQ(result.volume, 0.0);
 }
 
-// A box without its lid: boundary at z = 0.5.
+// A box without its top face, whose boundary lies at z = 0.5.
 HydrostaticMesh open_box() {
   TriangleMesh mesh = make_shape(BoxShape{.segments = {4, 4, 4}});
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -212,7 +212,7 @@ TEST(Buoyancy, DoesNotAllocateAfterWarmUp) {
   for (const Method method : kAllMethods) {
     for (const double tolerance : {0.0, 1e-4, 1e-2}) {
       const Solver solver(mesh, method, tolerance);
-      buoyancy(solver, at_height(0.0), {}, Vec3::Zero());  // afloat: a dry body would warm nothing up
+      buoyancy(solver, at_height(0.0), {}, Vec3::Zero());  // afloat, since a dry body allocates no tables
       const AllocationCount allocations;
       for (const Pose& pose : poses) buoyancy(solver, pose, {}, Vec3::Zero());
       EXPECT_EQ(allocations.count(), 0) << to_string(method) << ", tolerance " << tolerance;

@@ -1,6 +1,5 @@
-// Dual numbers: a value and its derivatives with respect to six parameters, carried through every operation
-// by the rules of differentiation (forward mode). What a templated kernel computes with them is
-// differentiated exactly.
+// Dual numbers: a value and its derivatives with respect to six parameters, propagated through every
+// operation by the rules of differentiation (forward mode). They differentiate a templated kernel exactly.
 #pragma once
 
 #include <array>

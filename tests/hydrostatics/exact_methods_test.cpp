@@ -1,4 +1,4 @@
-// The two exact methods against exact rational arithmetic, and the laws that every exact method obeys.
+// The exact methods against exact rational arithmetic, and the invariants that every exact method obeys.
 #include <cmath>
 #include <limits>
 
@@ -23,13 +23,13 @@ INSTANTIATE_TEST_SUITE_P(Methods, ExactMethods,
                          testing::Values(Method::kExact, Method::kExactSurface, Method::kHierarchical),
                          [](const auto& method) { return std::string(to_string(method.param)); });
 
-// Volume, force and torque of one pose against the oracle, as multiples of the gates.
+// Errors of volume, force and torque against the oracle at one pose, as multiples of G_V, G_V and G_V L_r.
 struct ErrorOverTolerance {
   double volume, force, torque;
 };
 
-ErrorOverTolerance compare(const Solver& solver, const TriangleMesh& mesh, const Pose& pose, const Water& water,
-                      const Vec3& reference_B) {
+ErrorOverTolerance compare(const Solver& solver, const TriangleMesh& mesh, const Pose& pose,
+                           const Water& water, const Vec3& reference_B) {
   const BuoyancyResult result = buoyancy(solver, pose, water, reference_B);
   const auto oracle = exact_displacement<Rational>(mesh, pose, water);
   const Vec3T<Rational> torque_B = oracle.torque(reference_B);
@@ -37,9 +37,10 @@ ErrorOverTolerance compare(const Solver& solver, const TriangleMesh& mesh, const
       pose.q_WB.normalized() * Vec3(torque_B.x().convert_to<double>(), torque_B.y().convert_to<double>(),
                                     torque_B.z().convert_to<double>());
   const double volume = oracle.volume.convert_to<double>();
-  const double gate = solver.mesh().volume_tolerance();
-  return {std::abs(result.volume - volume) / gate, (result.force_W - volume * water.up_W).norm() / gate,
-          (result.torque_W - torque_W).norm() / (gate * solver.mesh().max_lever_arm(reference_B))};
+  const double tolerance = solver.mesh().volume_tolerance();
+  return {std::abs(result.volume - volume) / tolerance,
+          (result.force_W - volume * water.up_W).norm() / tolerance,
+          (result.torque_W - torque_W).norm() / (tolerance * solver.mesh().max_lever_arm(reference_B))};
 }
 
 TEST_P(ExactMethods, MatchesRationalArithmeticWithinTolerance) {
@@ -71,7 +72,7 @@ TEST_P(ExactMethods, SumsWetAndDryVolumesToTotal) {
     RandomPoses random(12);
     for (int i = 0; i < 50; ++i) {
       const Pose pose = random.crossing(bounding_box(named.mesh), kUnitWater);
-      Water from_above = kUnitWater;  // the same surface with the water on its other side
+      Water from_above = kUnitWater;  // the same plane with the water on its other side
       from_above.up_W = -kUnitWater.up_W;
       from_above.level = -kUnitWater.level;
       const double wet = buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume;
@@ -98,7 +99,7 @@ TEST_P(ExactMethods, ShiftsTorqueWithReferencePoint) {
   }
 }
 
-// Found by the random search: the centre's grid was wider than such a mesh.
+// Regression, found by the random search: the centre's grid was wider than such a mesh.
 TEST(HydrostaticMesh, CentresMeshesFarFromTheirOrigin) {
   const TriangleMesh box = make_shape(BoxShape{.size = {8, 4, 2}});
   for (const double far : {0.0, 1e3, 1e6, 1e9, 1e12}) {
@@ -185,15 +186,14 @@ TEST_P(ExactMethods, PublishesForceAlongUpAndTorqueNormalToUp) {
 }
 
 TEST_P(ExactMethods, SumsMillionTrianglesWithoutLosingDigits) {
-  // Of equal terms a running sum rounds one after the other to the same side: it is off by tens of gates
-  // here.
+  // A running sum of equal terms rounds all of them to the same side: here its error is tens of G_V.
   const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 2}, .segments = {290, 290, 290}});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({box, {}});
   const Solver solver(mesh, GetParam());
   RandomPoses random(16);
   const Pose level{Vec3(0, 0, 0.1), Eigen::Quaterniond::Identity()};
   for (const Pose& pose : {level, random.crossing(bounding_box(box), kUnitWater)}) {
-    // Extended precision is oracle enough here: rationals of a million triangles take minutes.
+    // Extended precision suffices as the oracle: rationals of a million triangles take minutes.
     const auto oracle = exact_displacement<long double>(box, pose, kUnitWater);
     const double error = std::abs(buoyancy(solver, pose, kUnitWater, Vec3::Zero()).volume -
                                   static_cast<double>(oracle.volume));

@@ -1,5 +1,5 @@
-// The exact oracle's functions (exact_oracle.h), for sources that instantiate them with a number type of
-// their own.
+// Definitions of the exact oracle's functions (exact_oracle.h), for sources that instantiate them with their
+// own number type.
 #pragma once
 
 #include <vector>
@@ -37,7 +37,7 @@ ExactPlane<T> exact_plane(const Pose& pose, const Water& water, const Vec3& o_B)
   return {k, T(water.level) - up.dot(pose.p_WB.template cast<T>()) - k.dot(o_B.template cast<T>())};
 }
 
-// For number types that may not know a height's sign.
+// Customization point for number types that may not determine a height's sign.
 template <typename T>
 class SettledHeights {
  public:
@@ -77,7 +77,7 @@ ExactDisplacement<T> exact_displacement(const TriangleMesh& mesh, const Pose& po
     const Point<T> p = a.y - apex;
     const Point<T> q = b.y - apex;
     const Point<T> r = c.y - apex;
-    // Of edges, so that what is rounded is relative to the triangle.
+    // A product of edges, so that rounding errors are relative to the triangle.
     const T v6 = dot(p, cross(b.y - a.y, c.y - a.y));
     sum.add({v6, v6 * (p + q + r)});
   };

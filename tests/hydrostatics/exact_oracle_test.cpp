@@ -1,4 +1,5 @@
-// The oracle's own check: what holds in exact arithmetic holds in it without any error, and balls enclose it.
+// Tests of the oracle itself: identities of exact arithmetic hold in it without any error, and balls enclose
+// its results.
 #include "tests/hydrostatics/exact_oracle.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ ExactDisplacement<Rational> exactly(const TriangleMesh& mesh, const Pose& pose, 
   return exact_displacement<Rational>(mesh, pose, water);
 }
 
-// The same surface with the water on its other side.
+// The same plane with the water on its other side.
 Water from_above(Water water) {
   water.up_W = -water.up_W;
   water.level = -water.level;
@@ -77,7 +78,7 @@ TEST(ExactOracle, MatchesClosedFormForTetrahedronTip) {
       static_cast<std::size_t>(std::min_element(height.begin(), height.end()) - height.begin());
   std::array<Rational, 4> sorted = height;
   std::sort(sorted.begin(), sorted.end());
-  Water water = kUpright;  // between the lowest vertex and the next
+  Water water = kUpright;  // its level lies between the lowest vertex and the next
   water.level = Rational((sorted[0] + sorted[1]) / Rational(2)).convert_to<double>();
   Rational share(1);
   RationalVec centre = RationalVec::Constant(Rational(0));
@@ -94,7 +95,7 @@ TEST(ExactOracle, MatchesClosedFormForTetrahedronTip) {
   const Rational whole = exactly(mesh, pose, above).volume;
   const Vec3 a = mesh.vertex(1);
   EXPECT_EQ(whole, Rational(a.dot(mesh.vertex(2).cross(mesh.vertex(3)))) / Rational(6))
-      << "of short binary numbers";
+      << "the coordinates are short binary numbers";
   const auto found = exactly(mesh, pose, water);
   EXPECT_EQ(found.volume, whole * share);
   EXPECT_EQ(found.moment, RationalVec((tip + centre) * found.volume));
@@ -147,23 +148,24 @@ TEST(Ball, ContainsRationalResult) {
                                    : random.adversarial(named.mesh, kWater);
       const auto exact = exactly(named.mesh, pose, kWater);
       const auto balls = exact_displacement<Ball>(named.mesh, pose, kWater);
-      EXPECT_TRUE(balls.volume.holds(exact.volume)) << named.name;
+      EXPECT_TRUE(balls.volume.contains(exact.volume)) << named.name;
       const RationalVec torque_W = exactly_in_world<Rational>(pose, exact.torque(Vec3(1, 2, 3)));
       const Vec3T<Ball> torque_W_balls = exactly_in_world<Ball>(pose, balls.torque(Vec3(1, 2, 3)));
       for (int j = 0; j < 3; ++j) {
-        EXPECT_TRUE(balls.moment[j].holds(exact.moment[j])) << named.name;
-        EXPECT_TRUE(torque_W_balls[j].holds(torque_W[j])) << named.name;
+        EXPECT_TRUE(balls.moment[j].contains(exact.moment[j])) << named.name;
+        EXPECT_TRUE(torque_W_balls[j].contains(torque_W[j])) << named.name;
       }
-      EXPECT_LT(balls.volume.rad, 0.05L * mesh.volume_tolerance()) << named.name << ": too wide to judge by";
+      EXPECT_LT(balls.volume.rad, 0.05L * mesh.volume_tolerance())
+          << named.name << ": too wide for a comparison";
     }
   }
 }
 
 TEST(Ball, ExcludesNeighbouringNumbers) {
   const Ball third = Ball(1) / Ball(3);
-  EXPECT_TRUE(third.holds(Rational(1) / Rational(3)));
-  EXPECT_FALSE(third.holds(Rational(1) / Rational(3) + Rational(0x1p-60)));
-  EXPECT_FALSE(Ball(2.0).holds(Rational(std::nextafter(2.0, 3.0))));
+  EXPECT_TRUE(third.contains(Rational(1) / Rational(3)));
+  EXPECT_FALSE(third.contains(Rational(1) / Rational(3) + Rational(0x1p-60)));
+  EXPECT_FALSE(Ball(2.0).contains(Rational(std::nextafter(2.0, 3.0))));
 }
 
 TEST(Ball, ConfirmsPublishedBoundsOnLargeMesh) {

@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Forces a target for one scope.
+// Forces an instruction set for one scope.
 class ForcedTarget {
  public:
   explicit ForcedTarget(const std::string& name) { EXPECT_TRUE(force_simd_target(name)) << name; }
@@ -68,7 +68,7 @@ TEST(Hierarchical, KeepsDigitsOfMillionthVolumeCap) {
     RandomPoses random(22);
     for (int i = 0; i < 60; ++i) {
       Pose pose{Vec3::Zero(), random.rotation()};
-      // Lower the body by bisection until a millionth of it is wet.
+      // Bisection lowers the body until a millionth of its volume is submerged.
       double dry = 1.01;
       double wet = 0.9;
       for (int step = 0; step < 60; ++step) {
@@ -98,7 +98,7 @@ TEST(Hierarchical, BoundsGrazingErrorByWaterplaneArea) {
     pose.p_WB.z() = -lowest - draft;
     const auto oracle = exact_displacement<Rational>(sphere, pose, {});
     const double truth = oracle.volume.convert_to<double>();
-    const double waterplane = 3.0 * truth / draft;  // a cone's; more than any wet cap of the same draft has
+    const double waterplane = 3.0 * truth / draft;  // that of a cone, larger than any wet cap's of this draft
     const double volume = hierarchical(mesh, water_plane_in_body(pose, {}, mesh.center_B)).volume;
     EXPECT_LE(std::abs(volume - truth), 4 * kEpsilon * mesh.diagonal * waterplane) << draft;
   }
@@ -163,7 +163,7 @@ TEST(Hierarchical, GivesSameResultsOnEightThreads) {
   }
 }
 
-// Bits of a result, gathered by FNV-1a.
+// FNV-1a hash of the bits of results.
 class BitHash {
  public:
   void add(double value) {
@@ -179,8 +179,8 @@ class BitHash {
   std::uint64_t hash_ = 0xCBF29CE484222325U;
 };
 
-// A box, bulged and twisted by sums, products and a quotient alone: the same bits from every mathematical
-// library.
+// A box, bulged and twisted by sums, products and a quotient only, so that its bits do not depend on the
+// mathematical library.
 TriangleMesh bulged_box() {
   TriangleMesh mesh = make_shape(BoxShape{.size = {2, 2, 2}, .segments = {14, 14, 14}});
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
@@ -205,7 +205,7 @@ TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {
                                                     {"SCALAR", 0xe4fd7375561454d8}};
   for (const std::string& target : simd_targets()) {
     const auto known = golden.find(target);
-    if (known == golden.end()) continue;  // an instruction set that we have never run on
+    if (known == golden.end()) continue;  // no golden value has been recorded for this instruction set
     const ForcedTarget forced(target);
     BitHash hash;
     for (int i = 0; i < 64; ++i) {
@@ -222,8 +222,7 @@ TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {
       }
     }
     EXPECT_EQ(hash.value(), known->second)
-        << target << ": if the change of bits is meant, this is the new value: 0x" << std::hex
-        << hash.value();
+        << target << ": if the change of bits is intended, the new value is 0x" << std::hex << hash.value();
   }
 }
 

@@ -1,4 +1,4 @@
-// Hydrostatics against closed forms, the wrench and each other.
+// Hydrostatics against closed forms, against the wrench and against each other.
 #include "hydrostatics/hydrostatics.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr double kRelative = 1e-13;
 const Water kWater{.level = 0.0, .density = 1000.0, .gravity = 10.0};
 constexpr double kWeight = 1e4;  // [N/m^3], of kWater
 
-HydrostaticMesh prepared(const Shape& shape) {
+HydrostaticMesh mesh_of(const Shape& shape) {
   return make_hydrostatic_mesh({make_shape(shape), {}});
 }
 
@@ -29,8 +29,9 @@ Pose at_height(double height) {
   return {Vec3(3.0, -2.0, height), Eigen::Quaterniond::Identity()};
 }
 
-Hydrostatics of(const HydrostaticMesh& mesh, const Pose& pose, const Vec3& reference_B = Vec3::Zero(),
-                const std::optional<Vec3>& center_of_mass_B = std::nullopt) {
+Hydrostatics hydrostatics_of(const HydrostaticMesh& mesh, const Pose& pose,
+                             const Vec3& reference_B = Vec3::Zero(),
+                             const std::optional<Vec3>& center_of_mass_B = std::nullopt) {
   const auto found = hydrostatics(mesh, pose, kWater, reference_B, center_of_mass_B);
   EXPECT_TRUE(found.has_value());
   return found.value_or(Hydrostatics{});
@@ -38,7 +39,7 @@ Hydrostatics of(const HydrostaticMesh& mesh, const Pose& pose, const Vec3& refer
 
 void expect_near(const Vec3& found, const Vec3& expected, double tolerance) {
   EXPECT_LE((found - expected).norm(), tolerance)
-      << found.transpose() << " instead of " << expected.transpose();
+      << found.transpose() << ", expected " << expected.transpose();
 }
 
 void expect_undefined(const Vec3& v) {
@@ -49,9 +50,9 @@ TEST(Hydrostatics, MatchesClosedFormForUprightBox) {
   const double length = 5.0;
   const double beam = 2.0;
   const double draft = 0.75;
-  const HydrostaticMesh mesh = prepared(BoxShape{.size = {length, beam, 3.0}, .segments = {7, 5, 6}});
+  const HydrostaticMesh mesh = mesh_of(BoxShape{.size = {length, beam, 3.0}, .segments = {7, 5, 6}});
   const Vec3 center_of_mass_B(0.0, 0.0, 0.25);
-  const Hydrostatics found = of(mesh, at_height(1.5 - draft), Vec3::Zero(), center_of_mass_B);
+  const Hydrostatics found = hydrostatics_of(mesh, at_height(1.5 - draft), Vec3::Zero(), center_of_mass_B);
 
   const double volume = length * beam * draft;
   const double area = length * beam;
@@ -86,12 +87,12 @@ TEST(Hydrostatics, MatchesClosedFormForUprightBox) {
 TEST(Hydrostatics, MatchesClosedFormForHeeledBox) {
   const double length = 5.0;
   const double beam = 2.0;
-  const HydrostaticMesh mesh = prepared(BoxShape{.size = {length, beam, 3.0}, .segments = {7, 5, 6}});
+  const HydrostaticMesh mesh = mesh_of(BoxShape{.size = {length, beam, 3.0}, .segments = {7, 5, 6}});
   for (const double heel : {0.1, -0.4, 0.9}) {
     for (const double yaw : {0.0, 0.7, 2.0}) {
       const Eigen::Quaterniond q(Eigen::AngleAxisd(yaw, Vec3::UnitZ()) *
                                  Eigen::AngleAxisd(heel, Vec3::UnitX()));
-      const Hydrostatics found = of(mesh, {Vec3(1, 2, 0), q});
+      const Hydrostatics found = hydrostatics_of(mesh, {Vec3(1, 2, 0), q});
       const double width = beam / std::cos(heel);
       EXPECT_NEAR(found.waterplane_area, length * width, 1e-12);
       EXPECT_NEAR(found.volume, 15.0, 1e-12);
@@ -110,8 +111,8 @@ TEST(Hydrostatics, MatchesClosedFormForUprightCylinder) {
     const double radius = 0.5;
     const double draft = 1.25;
     const HydrostaticMesh mesh =
-        prepared(CylinderShape{.radius = radius, .height = 2.0, .segments = sides, .stacks = 3});
-    const Hydrostatics found = of(mesh, at_height(1.0 - draft));
+        mesh_of(CylinderShape{.radius = radius, .height = 2.0, .segments = sides, .stacks = 3});
+    const Hydrostatics found = hydrostatics_of(mesh, at_height(1.0 - draft));
     const double side = 2.0 * radius * std::sin(std::numbers::pi / sides);
     const double area = 0.5 * sides * radius * radius * std::sin(2.0 * std::numbers::pi / sides);
     const double second = area / 24.0 * (6.0 * radius * radius - side * side);
@@ -134,7 +135,7 @@ struct HullWaterplane {
   double area, about_length, about_beam;
 };
 
-// Of the mesh's own waterplane at a level of its grid: the half-breadth is linear from station to station.
+// The waterplane of the mesh at a level of its grid: the half-breadth is linear from station to station.
 HullWaterplane polygon_waterplane(const WigleyShape& hull, double zeta) {
   HullWaterplane plane{};
   const auto breadth = [&](int station) {
@@ -157,10 +158,10 @@ HullWaterplane polygon_waterplane(const WigleyShape& hull, double zeta) {
 
 TEST(Hydrostatics, MatchesPolygonalWaterplaneOfWigleyHull) {
   const WigleyShape hull{.segments = 24, .levels = 8};
-  const HydrostaticMesh mesh = prepared(hull);
+  const HydrostaticMesh mesh = mesh_of(hull);
   for (const int level : {0, 2, 5}) {  // down from the design waterplane
     const double zeta = -static_cast<double>(level) / hull.levels;
-    const Hydrostatics found = of(mesh, at_height(-hull.draft * zeta));
+    const Hydrostatics found = hydrostatics_of(mesh, at_height(-hull.draft * zeta));
     const HullWaterplane expected = polygon_waterplane(hull, zeta);
     EXPECT_NEAR(found.waterplane_area, expected.area, 1e-12 * expected.area) << level;
     EXPECT_NEAR(found.waterplane_second_moments[0], expected.about_length, 1e-12 * expected.about_beam)
@@ -181,7 +182,7 @@ TEST(Hydrostatics, WigleyHullConvergesQuadratically) {
   double last = std::numeric_limits<double>::infinity();
   for (const int refinement : {1, 2, 4, 8}) {
     const WigleyShape hull{.segments = 16 * refinement, .levels = 4 * refinement};
-    const Hydrostatics found = of(prepared(hull), at_height(0.0));
+    const Hydrostatics found = hydrostatics_of(mesh_of(hull), at_height(0.0));
     const double volume = 4.0 / 9.0 * hull.length * hull.beam * hull.draft;
     const double area = 2.0 / 3.0 * hull.length * hull.beam;
     const double about_length = 4.0 / 105.0 * hull.length * std::pow(hull.beam, 3);
@@ -200,8 +201,8 @@ TEST(Hydrostatics, WigleyHullConvergesQuadratically) {
 }
 
 TEST(Hydrostatics, IsZeroOrNanForDryBody) {
-  const HydrostaticMesh mesh = prepared(RockShape{.frequency = 4});
-  const Hydrostatics found = of(mesh, at_height(10.0), Vec3::Zero(), Vec3::Zero());
+  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 4});
+  const Hydrostatics found = hydrostatics_of(mesh, at_height(10.0), Vec3::Zero(), Vec3::Zero());
   EXPECT_EQ(found.volume, 0.0);
   EXPECT_EQ(found.wetted_area, 0.0);
   EXPECT_EQ(found.waterplane_area, 0.0);
@@ -218,13 +219,13 @@ TEST(Hydrostatics, IsZeroOrNanForDryBody) {
 }
 
 TEST(Hydrostatics, IsConstantWithoutWaterplaneForSubmergedBody) {
-  const HydrostaticMesh mesh = prepared(RockShape{.frequency = 4});
+  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 4});
   RandomPoses random(41);
   const Vec3 center_of_mass_B(0.1, -0.05, -0.2);
   const Vec3 reference_B(0.3, 0.2, 0.1);
   for (const double depth : {-3.0, -1e6}) {
     const Pose pose{Vec3(1, 2, depth), random.rotation()};
-    const Hydrostatics found = of(mesh, pose, reference_B, center_of_mass_B);
+    const Hydrostatics found = hydrostatics_of(mesh, pose, reference_B, center_of_mass_B);
     EXPECT_EQ(found.volume, mesh.volume);
     EXPECT_EQ(found.wetted_area, mesh.area);
     EXPECT_EQ(found.waterplane_area, 0.0);
@@ -238,7 +239,7 @@ TEST(Hydrostatics, IsConstantWithoutWaterplaneForSubmergedBody) {
       expect_near(found.metacenters_W[i], center_W, 1e-15);
       EXPECT_NEAR(found.metacentric_heights[i], (center_W - pose.q_WB * center_of_mass_B).z(), 1e-15);
     }
-    // Turning about a horizontal axis e: -d tau/d theta = rho g V e (height of the centre over the reference
+    // Rotation about a horizontal axis e: -d tau/d theta = rho g V e (height of the centre over the reference
     // point).
     const double lever = (center_W - pose.q_WB * reference_B).z();
     EXPECT_TRUE(found.stiffness.topRows(3).isZero(0.0));
@@ -257,7 +258,7 @@ TEST(Hydrostatics, AgreesWithWrenchOnVolumeAndCentre) {
       const Pose pose = i % 2 == 0 ? random.crossing(bounding_box(named.mesh), kWater)
                                    : random.adversarial(named.mesh, kWater);
       const BuoyancyResult wrench = buoyancy(solver, pose, kWater, mesh.center_B);
-      const Hydrostatics found = of(mesh, pose, mesh.center_B);
+      const Hydrostatics found = hydrostatics_of(mesh, pose, mesh.center_B);
       EXPECT_LE(std::abs(found.volume - wrench.volume), 2 * mesh.volume_tolerance())
           << named.name << ", pose " << i;
       if (wrench.volume > 1e-3 * mesh.volume) {
@@ -274,7 +275,7 @@ TEST(Hydrostatics, HasNoWaterplaneBetweenSeparateParts) {
   const TriangleMesh boxes =
       joined(make_shape(BoxShape{}), moved_and_scaled(make_shape(BoxShape{}), {3, 0, 2}));
   const HydrostaticMesh mesh = make_hydrostatic_mesh({boxes, {}});
-  const Hydrostatics found = of(mesh, at_height(-1.0));
+  const Hydrostatics found = hydrostatics_of(mesh, at_height(-1.0));
   EXPECT_NEAR(found.volume, 1.0, kRelative);
   EXPECT_NEAR(found.wetted_area, 6.0, kRelative);
   EXPECT_EQ(found.waterplane_area, 0.0);
@@ -295,8 +296,8 @@ TEST(Hydrostatics, MatchesClosedHullForOpenHullWithDryRim) {
                 [&](const Triangle& t) { return on_deck(t[0]) && on_deck(t[1]) && on_deck(t[2]); });
   const HydrostaticMesh hull = make_hydrostatic_mesh({open, rim});
   const Pose pose{Vec3(0, 0, 0.1), Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Vec3(1, 2, 0).normalized()))};
-  const Hydrostatics expected = of(closed, pose);
-  const Hydrostatics found = of(hull, pose);
+  const Hydrostatics expected = hydrostatics_of(closed, pose);
+  const Hydrostatics found = hydrostatics_of(hull, pose);
   EXPECT_NEAR(found.volume, expected.volume, kRelative);
   EXPECT_NEAR(found.waterplane_area, expected.waterplane_area, 10 * kRelative);
   EXPECT_LE((found.stiffness - expected.stiffness).norm(), kRelative * 10 * expected.stiffness.norm());
@@ -304,24 +305,25 @@ TEST(Hydrostatics, MatchesClosedHullForOpenHullWithDryRim) {
 }
 
 TEST(Hydrostatics, DerivesGmConsistentWithRightingStiffness) {
-  const HydrostaticMesh mesh = prepared(RockShape{.frequency = 8, .roughness = 0.5, .seed = 3});
+  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 8, .roughness = 0.5, .seed = 3});
   const BoundingBox box = bounding_box(mesh.surface);
   RandomPoses random(43);
   int crossing = 0;
   for (int i = 0; i < 100; ++i) {
     const Pose pose = random.crossing(box, kWater);
     const Vec3 center_of_mass_B = 0.3 * random.direction();
-    const Hydrostatics found = of(mesh, pose, center_of_mass_B, center_of_mass_B);
+    const Hydrostatics found = hydrostatics_of(mesh, pose, center_of_mass_B, center_of_mass_B);
     if (!(found.volume > 1e-2 * mesh.volume) || !(found.waterplane_area > 0.0)) continue;
     ++crossing;
     const Vec3 to_waterplane_W = found.waterplane_centroid_W - pose.q_WB * center_of_mass_B;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const Vec3& e = found.waterplane_axes_W[axis];
       const double righting = e.dot(found.stiffness.block<3, 3>(3, 3) * e);
-      // Turning about the centre of mass also dips the waterplane's centroid, by its distance from the axis.
+      // Rotation about the centre of mass also lowers the waterplane's centroid, by its distance from the
+      // axis.
       const double distance = Vec3::UnitZ().cross(e).dot(to_waterplane_W);
-      const double dipping = found.waterplane_area * distance * distance;
-      const double expected = kWeight * (found.volume * found.metacentric_heights[axis] + dipping);
+      const double lowering = found.waterplane_area * distance * distance;
+      const double expected = kWeight * (found.volume * found.metacentric_heights[axis] + lowering);
       EXPECT_NEAR(righting, expected, 1e-10 * kWeight) << i;
     }
   }
@@ -329,9 +331,9 @@ TEST(Hydrostatics, DerivesGmConsistentWithRightingStiffness) {
 }
 
 TEST(Hydrostatics, OmitsOnlyGmWithoutCentreOfMass) {
-  const HydrostaticMesh mesh = prepared(BoxShape{});
-  const Hydrostatics with = of(mesh, at_height(0.1), Vec3::Zero(), Vec3::Zero());
-  const Hydrostatics without = of(mesh, at_height(0.1));
+  const HydrostaticMesh mesh = mesh_of(BoxShape{});
+  const Hydrostatics with = hydrostatics_of(mesh, at_height(0.1), Vec3::Zero(), Vec3::Zero());
+  const Hydrostatics without = hydrostatics_of(mesh, at_height(0.1));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_TRUE(std::isfinite(with.metacentric_heights[i]));
     EXPECT_TRUE(std::isnan(without.metacentric_heights[i]));
@@ -341,7 +343,7 @@ TEST(Hydrostatics, OmitsOnlyGmWithoutCentreOfMass) {
 }
 
 TEST(Hydrostatics, ReturnsNulloptBeyondDoubleRange) {
-  const HydrostaticMesh mesh = prepared(BoxShape{});
+  const HydrostaticMesh mesh = mesh_of(BoxShape{});
   EXPECT_FALSE(hydrostatics(mesh, at_height(0.1), kWater, Vec3(1e200, 0, 0), std::nullopt));
 }
 

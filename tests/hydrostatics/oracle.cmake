@@ -1,6 +1,6 @@
-# buoyancy_oracle: what the solvers are compared with (the exact oracle and its number types), and the poses and meshes
-# that the comparisons share; of tests and benchmarks. Its functions are compiled here once, since instantiating them in
-# every source that uses them was a third of the time to build the tests. The comparison itself uses no solver.
+# buoyancy_oracle: the exact oracle with its number types, and the poses and meshes that tests and benchmarks share. Its
+# functions are compiled here once, since instantiating them in every source that uses them took a third of the tests'
+# build time. The oracle uses no solver.
 find_library(GMP_LIBRARY gmp REQUIRED)
 
 add_library(

@@ -1,4 +1,4 @@
-// What the paper says of its five methods, section 5 and figure 4: a cube and a sphere lowered into the
+// The paper's statements on its five methods, section 5 and figure 4: a cube and a sphere lowered into the
 // water, rho g = 1.
 #include <cmath>
 #include <numbers>
@@ -16,19 +16,19 @@ namespace {
 
 const Water kPaperWater{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
 
-// Largest |F - closed form| over h, the height of the body's centre over the water.
+// The largest |F - closed form| over h, the height of the body's centre over the water.
 template <typename ClosedForm>
-double largest_error(const TriangleMesh& source, Method method, double reach, const ClosedForm& closed_form) {
+double max_error(const TriangleMesh& source, Method method, double reach, const ClosedForm& closed_form) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
   const Solver solver(mesh, method);
-  double largest = 0.0;
+  double max = 0.0;
   for (int step = 1; step < 40; ++step) {
     const double h = reach * (step / 20.0 - 1.0);
     const Pose pose{Vec3(0, 0, h), Eigen::Quaterniond::Identity()};
     const double force = buoyancy(solver, pose, kPaperWater, Vec3::Zero()).force_W.z();
-    largest = std::max(largest, std::abs(force - closed_form(h)));
+    max = std::max(max, std::abs(force - closed_form(h)));
   }
-  return largest;
+  return max;
 }
 
 double cube_force(double h) {
@@ -46,37 +46,38 @@ const TriangleMesh& cube(int segments) {
 
 TEST(PaperMethods, MatchesCubeForceToRoundingWhenExact) {
   for (const int segments : {10, 100}) {
-    EXPECT_LE(largest_error(cube(segments), Method::kExact, 0.5, cube_force), 1e-13);
-    EXPECT_LE(largest_error(cube(segments), Method::kExactSurface, 0.5, cube_force), 1e-13);
+    EXPECT_LE(max_error(cube(segments), Method::kExact, 0.5, cube_force), 1e-13);
+    EXPECT_LE(max_error(cube(segments), Method::kExactSurface, 0.5, cube_force), 1e-13);
   }
 }
 
 TEST(PaperMethods, ConvergesExceptForFastWhenMeshIsRefined) {
-  const double fast = largest_error(cube(10), Method::kFast, 0.5, cube_force);
-  const double fast_fine = largest_error(cube(100), Method::kFast, 0.5, cube_force);
+  const double fast = max_error(cube(10), Method::kFast, 0.5, cube_force);
+  const double fast_fine = max_error(cube(100), Method::kFast, 0.5, cube_force);
   EXPECT_GT(fast, 0.05);
   EXPECT_GT(fast_fine, 0.5 * fast);
-  EXPECT_LT(largest_error(cube(100), Method::kImproved, 0.5, cube_force),
-            0.2 * largest_error(cube(10), Method::kImproved, 0.5, cube_force));
+  EXPECT_LT(max_error(cube(100), Method::kImproved, 0.5, cube_force),
+            0.2 * max_error(cube(10), Method::kImproved, 0.5, cube_force));
   const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
   const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
-  EXPECT_LT(largest_error(fine, Method::kFastSurface, 1.0, sphere_force),
-            0.2 * largest_error(coarse, Method::kFastSurface, 1.0, sphere_force));
+  EXPECT_LT(max_error(fine, Method::kFastSurface, 1.0, sphere_force),
+            0.2 * max_error(coarse, Method::kFastSurface, 1.0, sphere_force));
 }
 
 TEST(PaperMethods, ErrsOnlyByDiscretizationOnSpheresWhenExact) {
   const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
   const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {
-    const double error = largest_error(coarse, method, 1.0, sphere_force);
-    const double fine_error = largest_error(fine, method, 1.0, sphere_force);
+    const double error = max_error(coarse, method, 1.0, sphere_force);
+    const double fine_error = max_error(fine, method, 1.0, sphere_force);
     EXPECT_LT(error, 4e-3 * 4.19);
     EXPECT_NEAR(error / fine_error, 16.0, 1.6) << "an inscribed mesh's error falls as 1/N";
   }
 }
 
 TEST(PaperMethods, CountsCutTrianglesAtEveryLevelWhenExact) {
-  // The authors' published code compares heights with 0 where the water's level belongs; ours must not.
+  // Regression test against a defect of the authors' published code, which compares heights with 0 instead of
+  // the water level.
   const HydrostaticMesh mesh = make_hydrostatic_mesh({cube(10), {}});
   for (const double level : {-3.0, 0.0, 5.0, 1234.5}) {
     for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(-1, 0, 0)}) {
@@ -92,7 +93,7 @@ TEST(PaperMethods, CountsCutTrianglesAtEveryLevelWhenExact) {
 }
 
 TEST(PaperMethods, KeepsSmallVolumes) {
-  // The authors' published code takes any volume below 1e-5 for none.
+  // The authors' published code treats any volume below 1e-5 as zero.
   const TriangleMesh tiny = moved_and_scaled(cube(10), Vec3::Zero(), 1e-3);
   const HydrostaticMesh mesh = make_hydrostatic_mesh({tiny, {}});
   const Pose pose{Vec3(0, 0, 0.25e-3), Eigen::Quaterniond::Identity()};
@@ -102,7 +103,7 @@ TEST(PaperMethods, KeepsSmallVolumes) {
 }
 
 TEST(PaperMethods, KeepsSignOfRestoringTorqueOnCoarseBox) {
-  // A flat box heeled by 0.2 rad: centroid times force per triangle would turn this torque's sign.
+  // A flat box heeled by 0.2 rad: centroid times force per triangle would reverse the sign of this torque.
   const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(BoxShape{.size = {2, 2, 0.5}}), {}});
   const Eigen::Quaterniond heeled(Eigen::AngleAxisd(0.2, Vec3::UnitX()));
   const Pose pose{Vec3::Zero(), heeled};
@@ -114,7 +115,7 @@ TEST(PaperMethods, KeepsSignOfRestoringTorqueOnCoarseBox) {
 }
 
 TEST(PaperMethods, DependsOnBodyOriginOnlyForFast) {
-  // The same cube, its mesh's origin at a corner: fast changes, improved does not.
+  // The same cube with its mesh's origin at a corner: the result of fast changes, that of improved does not.
   const TriangleMesh cornered = moved_and_scaled(cube(10), Vec3(0.5, 0.5, 0.5));
   const HydrostaticMesh centred_mesh = make_hydrostatic_mesh({cube(10), {}});
   const HydrostaticMesh cornered_mesh = make_hydrostatic_mesh({cornered, {}});

@@ -1,4 +1,4 @@
-// Poses for property tests: random ones over all depths of a body, and ones aimed at difficult cases.
+// Poses for property tests: random ones over all depths of a body, and adversarial ones.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ class RandomPoses {
   Eigen::Quaterniond rotation();
   Vec3 direction();
 
-  // Any rotation; the water's surface cuts the box at a share of its height drawn evenly over a little more
-  // than all.
+  // Any rotation; the height of the box's centre over the water is uniform in +-0.55 times the diagonal.
   Pose crossing(const BoundingBox& box, const Water& water);
 
-  // The water's surface passes through, or within a few ulp of, a vertex, an edge's middle or a face of the
-  // mesh; the rotation is often one that maps axes to axes, or off it by a hair.
+  // The water plane passes through, or within a few ulp of, a vertex, the midpoint of an edge or a face of
+  // the mesh; the rotation often maps axes to axes, or nearly so.
   Pose adversarial(const TriangleMesh& mesh, const Water& water);
 
+  // Uniform in 0 .. count - 1.
   std::size_t pick(std::size_t count);
 
  private:

@@ -103,7 +103,7 @@ std::strong_ordering operator<=>(const Rational& a, const Rational& b) {
 }
 
 std::ostream& operator<<(std::ostream& out, const Rational& a) {
-  // As GMP asks: both numbers' digits, two signs, the slash and the final zero.
+  // The size that GMP requires: both numbers' digits, sign, slash and terminating zero.
   std::vector<char> text(mpz_sizeinbase(&a.value_._mp_num, 10) + mpz_sizeinbase(&a.value_._mp_den, 10) + 3);
   return out << mpq_get_str(text.data(), 10, &a.value_);
 }

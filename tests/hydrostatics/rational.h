@@ -1,7 +1,7 @@
-// Rational numbers for the exact oracle: nothing is ever rounded.
+// Rational numbers for the exact oracle, which never rounds.
 //
-// A thin class over GMP, whose functions are compiled once: the headers of a general library of numbers would
-// be most of what a test source costs to compile.
+// A thin class over GMP whose functions are compiled once: the headers of a general number library would
+// dominate the time to compile a test source.
 #pragma once
 
 #include <compare>
@@ -16,7 +16,7 @@ namespace buoyancy {
 class Rational {
  public:
   Rational();
-  // Every finite double and every int is a rational number, so that expressions may mix them.
+  // Implicit, so that expressions may mix types: every finite double and every int is a rational number.
   Rational(double number);  // NOLINT(google-explicit-constructor)
   Rational(int number);     // NOLINT(google-explicit-constructor)
   Rational(int numerator, int denominator);
@@ -29,7 +29,7 @@ class Rational {
   }
   ~Rational();
 
-  // T: double; rounded towards zero.
+  // T: double. Rounds towards zero.
   template <typename T>
   T convert_to() const;
 
@@ -50,7 +50,7 @@ class Rational {
   friend std::ostream& operator<<(std::ostream& out, const Rational& a);
 
  private:
-  __mpq_struct value_;  // without a denominator after it has been moved from
+  __mpq_struct value_;  // has no denominator in a moved-from object
 };
 
 template <>

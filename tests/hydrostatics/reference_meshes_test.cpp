@@ -1,6 +1,6 @@
-// Real meshes against reference values that others computed: volume and centre of buoyancy below given
+// Real meshes against independently computed reference values: volume and centre of buoyancy below given
 // planes, to the references' own accuracy. The meshes are not part of the project; where they are absent
-// these tests say so.
+// these tests are skipped.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -41,7 +41,7 @@ Water water_below(const Vec3& normal, double offset) {
 class ReferenceMeshes : public testing::Test {
  protected:
   void SetUp() override {
-    // The reference meshes have licences of their own and are kept outside the project.
+    // The reference meshes have their own licences and are kept outside the project.
     if (!std::filesystem::exists(mesh_directory() / "oracles.json")) {
       GTEST_SKIP() << "no reference meshes in " << mesh_directory()
                    << "; set BUOYANCY_MESHES to a folder that has them";
@@ -54,7 +54,7 @@ TEST_F(ReferenceMeshes, MatchesReferenceVolumesAndCentres) {
   int planes = 0;
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;
-    const bool cracked = oracle.at("status") != "closed";  // closed by a tolerance weld only
+    const bool cracked = oracle.at("status") != "closed";  // closed only by welding within a tolerance
     const MeshValidation validation = load(file);
     ASSERT_TRUE(validation.mesh) << file << ": " << validation.refusal->message();
     EXPECT_EQ(validation.report.triangles, oracle.at("triangles").get<std::int64_t>()) << file;
@@ -95,7 +95,7 @@ TEST_F(ReferenceMeshes, AcceptsOpenBunnyOnlyWhileHolesAreDry) {
   ASSERT_TRUE(open.mesh && closed.mesh) << open.refusal->message();
   const HydrostaticMesh open_mesh = make_hydrostatic_mesh(*open.mesh);
   const HydrostaticMesh closed_mesh = make_hydrostatic_mesh(*closed.mesh);
-  int answered = 0;
+  int accepted = 0;
   int refused = 0;
   for (int i = 0; i < 60; ++i) {
     const double angle = 0.1 * i;
@@ -109,13 +109,13 @@ TEST_F(ReferenceMeshes, AcceptsOpenBunnyOnlyWhileHolesAreDry) {
         ++refused;
         continue;
       }
-      ++answered;
+      ++accepted;
       EXPECT_NEAR(result.volume, expected.volume, 1e-11 * closed_mesh.volume) << to_string(method);
       EXPECT_LE((result.torque_W - expected.torque_W).norm(), 1e-11 * closed_mesh.volume)
           << to_string(method);
     }
   }
-  EXPECT_GT(answered, 30);
+  EXPECT_GT(accepted, 30);
   EXPECT_GT(refused, 30);
 }
 

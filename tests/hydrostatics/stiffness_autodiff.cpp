@@ -21,26 +21,26 @@ DualPlane dual_water_plane(const HydrostaticMesh& mesh, const Pose& pose, const 
     p(static_cast<Eigen::Index>(i)) = Dual::parameter(i);
     theta(static_cast<Eigen::Index>(i)) = Dual::parameter(3 + i);
   }
-  // The body turned by theta has R = (1 + [theta] + ..) R_WB; a point y about c is at
-  // p_r + p + R (y + c - r), so k = R^T up and h_c = level - up . (p_r + p) - k . (c - r).
+  // The body rotated by theta has R = (1 + [theta] + ..) R_WB; a point y about c is at
+  // p_r + p + R (y + c - r), so that k = R^T up and h_c = level - up . (p_r + p) - k . (c - r).
   Mat3T<Dual> turn = Mat3T<Dual>::Constant(Dual(0.0));
   turn.diagonal().setConstant(Dual(1.0));
   dual.R_WB = (turn + cross_matrix(theta)) * pose.q_WB.toRotationMatrix().cast<Dual>();
   dual.up_B = dual.R_WB.transpose() * up_W;
   for (int i = 0; i < 3; ++i) dual.up_B(i).value = plane.up_B(i);
   dual.h_c = -(up_W.dot(p) + dual.up_B.dot(dual.c_from_r));
-  dual.h_c.value = plane.h_c;  // what cancels in the sum above
+  dual.h_c.value = plane.h_c;  // the value that cancellation spoils in the sum above
   return dual;
 }
 
 Mat6 stiffness_autodiff(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
-                               const Vec3& reference_B) {
+                        const Vec3& reference_B) {
   using DualVec = Vec3T<Dual>;
   const DualPlane plane = dual_water_plane(mesh, pose, water, reference_B);
-  const auto floating = displacement_moments<Dual>(
+  const auto displaced = displacement_moments<Dual>(
       wetted_moments_reference<Dual>(mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
-  const DualVec force_B = floating.volume * plane.up_B;
-  const DualVec torque_B = floating.moment.cross(plane.up_B) + plane.c_from_r.cross(force_B);
+  const DualVec force_B = displaced.volume * plane.up_B;
+  const DualVec torque_B = displaced.moment.cross(plane.up_B) + plane.c_from_r.cross(force_B);
   const Dual weight(water.density * water.gravity);
   const DualVec force_W = weight * (plane.R_WB * force_B);
   const DualVec torque_W = weight * (plane.R_WB * torque_B);
@@ -54,17 +54,17 @@ Mat6 stiffness_autodiff(const HydrostaticMesh& mesh, const Pose& pose, const Wat
   return result;
 }
 
-double largest_difference(const Mat6& found, const Mat6& expected, bool waterplane) {
-  double largest = 0.0;
+double max_difference(const Mat6& found, const Mat6& expected, bool waterplane) {
+  double max = 0.0;
   for (const int row : {0, 3}) {
     for (const int column : {0, 3}) {
       if (!waterplane && row + column < 6) continue;
       const Mat3 truth = expected.block<3, 3>(row, column);
       const double difference = (found.block<3, 3>(row, column) - truth).norm();
-      if (difference > 0.0) largest = std::max(largest, difference / truth.norm());
+      if (difference > 0.0) max = std::max(max, difference / truth.norm());
     }
   }
-  return largest;
+  return max;
 }
 
 double stiffness_tolerance(const HydrostaticMesh& mesh, double waterplane_area) {

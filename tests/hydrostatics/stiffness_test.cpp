@@ -1,5 +1,5 @@
-// The stiffness against derivatives of force and torque: exact ones by dual numbers, and differences of what
-// buoyancy() answers.
+// The stiffness against derivatives of force and torque: exact ones by dual numbers, and finite differences
+// of the results of buoyancy().
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
@@ -27,7 +27,7 @@ TEST(Stiffness, MatchesAutomaticDifferentiation) {
       ASSERT_TRUE(found);
       const Mat6 expected = stiffness_autodiff(mesh, pose, water, reference_B);
       const double area = found->waterplane_area;
-      EXPECT_LE(largest_difference(found->stiffness, expected, area > 0.0), stiffness_tolerance(mesh, area))
+      EXPECT_LE(max_difference(found->stiffness, expected, area > 0.0), stiffness_tolerance(mesh, area))
           << named.name << ", pose " << i;
       crossing += static_cast<int>(area > 0.0 && stiffness_tolerance(mesh, area) == 1e-9);
     }
@@ -47,15 +47,15 @@ TEST(Stiffness, HoldsAboutDistantReferencePoint) {
     ASSERT_TRUE(found);
     const Mat6 expected = stiffness_autodiff(mesh, pose, {}, Vec3::Zero());
     const double area = found->waterplane_area;
-    // Without one, what the other side's sums leave of it counts with the square of the distance.
+    // Without a waterplane, the rounding error of its area in the reference counts with the distance squared.
     if (!(area > 0.0)) continue;
-    EXPECT_LE(largest_difference(found->stiffness, expected, true), stiffness_tolerance(mesh, area)) << i;
+    EXPECT_LE(max_difference(found->stiffness, expected, true), stiffness_tolerance(mesh, area)) << i;
     crossing += static_cast<int>(stiffness_tolerance(mesh, area) == 1e-9);
   }
   EXPECT_GT(crossing, 15);
 }
 
-// The pose after moving by p and turning by theta about W's axes through the reference point.
+// The pose after translation by p and rotation by theta about W's axes through the reference point.
 Pose displaced(const Pose& pose, const Vec3& reference_B, const Vec3& p, const Vec3& theta) {
   const Vec3 reference_W = pose.p_WB + pose.q_WB * reference_B;
   Pose moved;
@@ -95,7 +95,7 @@ TEST(Stiffness, MatchesFiniteDifferencesOfBuoyancy) {
       }
       const auto found = hydrostatics(mesh, pose, water, reference_B, std::nullopt);
       ASSERT_TRUE(found);
-      // Differences of the size of the whole body's are what rounding and curvature leave.
+      // The tolerance for rounding and curvature is relative to the stiffness of the whole body.
       const double weight = water.density * water.gravity * box.diagonal() * box.diagonal();
       Mat6 difference = found->stiffness - differences;
       difference.block<3, 3>(0, 3) /= box.diagonal();

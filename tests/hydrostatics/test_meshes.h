@@ -1,5 +1,5 @@
-// Closed meshes that the hydrostatic tests share: ordinary ones, and ones that are thin, tiny, huge, hollow
-// or far away.
+// Closed meshes that the hydrostatics tests share: ordinary ones, and thin, tiny, huge, hollow or distant
+// ones.
 #pragma once
 
 #include <string>

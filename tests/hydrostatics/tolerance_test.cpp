@@ -1,4 +1,4 @@
-// `hierarchical` with a tolerance: the bound that it publishes is a bound, and no larger than was asked for.
+// `hierarchical` with a tolerance: the published bound holds and is no larger than requested.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,7 +21,7 @@ namespace {
 
 const Water kUnitWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
 
-// Largest of a set of poses: bound over what was asked for, and true errors over the bound.
+// The largest ratios over a set of poses: bound over requested tolerance, and true errors over bound.
 struct Worst {
   double bound = 0.0, force = 0.0, torque = 0.0;
 };
@@ -31,7 +31,7 @@ Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh,
   const Solver within(mesh, Method::kHierarchical, tolerance);
   const Solver exactly(mesh, Method::kHierarchical);
   const BoundingBox box = bounding_box(source);
-  const double gate = mesh.volume_tolerance();
+  const double rounding = mesh.volume_tolerance();
   RandomPoses random(seed);
   Worst worst;
   for (int i = 0; i < poses; ++i) {
@@ -42,19 +42,19 @@ Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh,
     const BuoyancyResult result = buoyancy(within, pose, water, reference_B);
     const BuoyancyResult truth = buoyancy(exactly, pose, water, reference_B);
     if (result.immersion == Immersion::kDry) continue;
-    const double least = mesh.meets_volume_tolerance() ? 4.0 * gate : mesh.max_rounding_bound();
-    const double allowed = std::max(tolerance * mesh.volume, least);
+    const double min_bound = mesh.meets_volume_tolerance() ? 4.0 * rounding : mesh.max_rounding_bound();
+    const double allowed = std::max(tolerance * mesh.volume, min_bound);
     worst.bound = std::max(worst.bound, result.force_error_bound / allowed);
     worst.bound =
         std::max(worst.bound, result.torque_error_bound / (allowed * mesh.max_lever_arm(reference_B)));
-    // The truth has an error of its own, which is one gate at most.
+    // The truth has an error of its own, at most G_V.
+    worst.force = std::max(worst.force,
+                           (result.force_W - truth.force_W).norm() / (result.force_error_bound + rounding));
     worst.force =
-        std::max(worst.force, (result.force_W - truth.force_W).norm() / (result.force_error_bound + gate));
-    worst.force =
-        std::max(worst.force, std::abs(result.volume - truth.volume) / (result.force_error_bound + gate));
+        std::max(worst.force, std::abs(result.volume - truth.volume) / (result.force_error_bound + rounding));
     worst.torque =
         std::max(worst.torque, (result.torque_W - truth.torque_W).norm() /
-                                   (result.torque_error_bound + gate * mesh.max_lever_arm(reference_B)));
+                                   (result.torque_error_bound + rounding * mesh.max_lever_arm(reference_B)));
   }
   return worst;
 }
@@ -72,9 +72,9 @@ TEST(Tolerance, LimitsPublishedBoundAndError) {
 }
 
 TEST(Tolerance, HoldsOnEveryInstructionSet) {
-  // Below these there is nothing to be saved, and nothing is left undecided.
-  const std::map<int, std::vector<double>> worthwhile{{16, {1e-2, 5e-2}}, {70, {1e-3, 1e-2}}};
-  for (const auto& [frequency, tolerances] : worthwhile) {
+  // Smaller tolerances prune no nodes.
+  const std::map<int, std::vector<double>> tolerances_by_frequency{{16, {1e-2, 5e-2}}, {70, {1e-3, 1e-2}}};
+  for (const auto& [frequency, tolerances] : tolerances_by_frequency) {
     const TriangleMesh rock = make_shape(RockShape{.frequency = frequency});
     const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
     for (const std::string& target : simd_targets()) {
@@ -84,7 +84,7 @@ TEST(Tolerance, HoldsOnEveryInstructionSet) {
         EXPECT_LE(worst.bound, 1.0) << target << ", " << tolerance;
         EXPECT_LE(worst.force, 1.0) << target << ", " << tolerance;
         EXPECT_LE(worst.torque, 1.0) << target << ", " << tolerance;
-        EXPECT_GT(worst.force, 1e-3) << "nothing was left undecided: the test sees nothing";
+        EXPECT_GT(worst.force, 1e-3) << "no node was pruned: the test is void";
       }
     }
     force_simd_target("");
@@ -102,9 +102,9 @@ TEST(Tolerance, UsesRoughPlaneOnlyWithinTolerance) {
   EXPECT_EQ(plane_error(exactly, 0.0), 0.0);
   EXPECT_GT(plane_error(within, 0.0), 0.0);
   EXPECT_LT(plane_error(within, 1e5), 1e-8 * mesh.diagonal);
-  EXPECT_EQ(plane_error(within, 1e9), 0.0) << "exact where plain double would be off by more";
+  EXPECT_EQ(plane_error(within, 1e9), 0.0) << "exact where plain double exceeds the allowed error";
 
-  // In all of this the bound knows of it.
+  // The published bound covers the plane's error in all cases.
   RandomPoses random(43);
   for (int i = 0; i < 400; ++i) {
     Water water = kUnitWater;
@@ -113,15 +113,15 @@ TEST(Tolerance, UsesRoughPlaneOnlyWithinTolerance) {
     Pose pose{aside - (water.up_W.dot(aside) - random.uniform(-1, 1)) * water.up_W, random.rotation()};
     const BuoyancyResult result = buoyancy(within, pose, water, mesh.center_B);
     const BuoyancyResult truth = buoyancy(exactly, pose, water, mesh.center_B);
-    const double gate = mesh.volume_tolerance();
-    EXPECT_LE((result.force_W - truth.force_W).norm(), result.force_error_bound + gate);
+    const double rounding = mesh.volume_tolerance();
+    EXPECT_LE((result.force_W - truth.force_W).norm(), result.force_error_bound + rounding);
     EXPECT_LE((result.torque_W - truth.torque_W).norm(),
-              result.torque_error_bound + gate * mesh.max_lever_arm(mesh.center_B));
+              result.torque_error_bound + rounding * mesh.max_lever_arm(mesh.center_B));
     EXPECT_LE(result.force_error_bound, 1e-6 * mesh.volume);
   }
 }
 
-// One inside the other: the water crosses nearly all nodes, of which many are inner ones.
+// Nested tetrahedra: the water crosses nearly all nodes, many of which are inner nodes.
 TriangleMesh nested_tetrahedra(int count) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -138,8 +138,8 @@ TEST(Tolerance, ReservesRoomForEveryTreeShape) {
   ASSERT_GT(wide.tree->moments.size(), deep.tree->moments.size());
   ASSERT_LT(wide.tree->nodes.size(), deep.tree->nodes.size());
   BudgetLists lists;
-  lists.make_room(*wide.tree);
-  lists.make_room(*deep.tree);
+  lists.reserve(*wide.tree);
+  lists.reserve(*deep.tree);
   EXPECT_GE(lists.inner.size(), deep.tree->nodes.size());
   EXPECT_GE(lists.next_inner.size(), deep.tree->nodes.size());
 
@@ -178,7 +178,7 @@ TEST(Tolerance, VisitsFewerNodesWhenLarger) {
     query.budget = tolerance * mesh.volume;
     const WettedTreeSum sum = sum_wetted_tree(*mesh.tree, query);
     EXPECT_LT(sum.nodes_visited, visited);
-    EXPECT_LE(sum.undecided.error, query.budget);
+    EXPECT_LE(sum.pruned.error, query.budget);
     EXPECT_GT(sum.nodes_pruned, 0);
     visited = sum.nodes_visited;
   }

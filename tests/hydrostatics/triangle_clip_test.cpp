@@ -28,7 +28,7 @@ Clipped<T> clip(const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex
   return clipped;
 }
 
-// A triangle of integer corners whose heights are their z coordinates.
+// A corner with integer coordinates whose height is its z coordinate.
 ClipVertex<Rational> random_corner(RandomPoses& random) {
   const auto coordinate = [&] { return Rational(static_cast<int>(random.pick(41)) - 20); };
   ClipVertex<Rational> corner{{coordinate(), coordinate(), coordinate()}, Rational(0)};
@@ -38,14 +38,14 @@ ClipVertex<Rational> random_corner(RandomPoses& random) {
 
 TEST(TriangleClip, SplitsTrianglesExactly) {
   RandomPoses random(5);
-  int cut_triangles = 0;
+  int num_cut = 0;
   for (int i = 0; i < 2000; ++i) {
     const ClipVertex<Rational> a = random_corner(random);
     const ClipVertex<Rational> b = random_corner(random);
     const ClipVertex<Rational> c = random_corner(random);
     const int wet = int(a.wet()) + int(b.wet()) + int(c.wet());
     if (wet == 0 || wet == 3 || a.z == 0 || b.z == 0 || c.z == 0) continue;
-    ++cut_triangles;
+    ++num_cut;
     const auto mirrored = [](ClipVertex<Rational> corner) {
       corner.z = -corner.z;
       return corner;
@@ -63,7 +63,7 @@ TEST(TriangleClip, SplitsTrianglesExactly) {
       }
     }
   }
-  EXPECT_GT(cut_triangles, 1000);
+  EXPECT_GT(num_cut, 1000);
 }
 
 TEST(TriangleClip, FindsSameCutPointFromBothTriangles) {
@@ -73,8 +73,8 @@ TEST(TriangleClip, FindsSameCutPointFromBothTriangles) {
     const ClipVertex<double> dry{Point<double>::from(random.direction()), random.uniform(0, 1)};
     const ClipVertex<double> left{Point<double>::from(random.direction()), random.uniform(0, 1)};
     const ClipVertex<double> right{Point<double>::from(random.direction()), random.uniform(-1, -1e-12)};
-    const auto one = clip(wet, dry, left);     // the edge runs wet to dry, one corner wet
-    const auto other = clip(dry, wet, right);  // and dry to wet, two corners wet
+    const auto one = clip(wet, dry, left);     // the edge runs from wet to dry, one corner is wet
+    const auto other = clip(dry, wet, right);  // the edge runs from dry to wet, two corners are wet
     EXPECT_EQ(one.triangles[0][1].y.vec3(), other.triangles[0][0].y.vec3());
   }
 }

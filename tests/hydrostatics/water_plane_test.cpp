@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Water, pose and centre over many orders of magnitude, and the plane that they make, exactly.
+// Water, pose and centre over many orders of magnitude, and their exact water plane.
 struct FarRequest {
   Water water;
   Pose pose;
@@ -38,29 +38,30 @@ struct FarRequest {
 TEST(WaterPlane, RoundsExactPlaneOnce) {
   RandomPoses random(1);
   for (int i = 0; i < 2000; ++i) {
-    const FarRequest asked(random, random.uniform(0.999, 1.001));
-    const WaterPlane plane = water_plane_in_body(asked.pose, asked.water, asked.c_B);
+    const FarRequest request(random, random.uniform(0.999, 1.001));
+    const WaterPlane plane = water_plane_in_body(request.pose, request.water, request.c_B);
 
     for (int axis = 0; axis < 3; ++axis) {
-      const Rational error = plane.up_B[axis] - asked.exact.up_B[axis];
+      const Rational error = plane.up_B[axis] - request.exact.up_B[axis];
       EXPECT_LE(std::abs(error.convert_to<double>()), kEpsilon);
     }
-    const double error = std::abs(Rational(plane.h_c - asked.exact.h).convert_to<double>());
-    EXPECT_LE(error, kEpsilon * std::abs(plane.h_c) + 1e-29 * (asked.pose.p_WB.norm() + asked.c_B.norm()));
+    const double error = std::abs(Rational(plane.h_c - request.exact.h).convert_to<double>());
+    EXPECT_LE(error,
+              kEpsilon * std::abs(plane.h_c) + 1e-29 * (request.pose.p_WB.norm() + request.c_B.norm()));
   }
 }
 
 TEST(WaterPlane, StaysWithinStatedErrorInPlainDouble) {
   RandomPoses random(5);
   for (int i = 0; i < 2000; ++i) {
-    const FarRequest asked(random, std::pow(10.0, random.uniform(-20, 20)));
+    const FarRequest request(random, std::pow(10.0, random.uniform(-20, 20)));
     const double reach = std::pow(10.0, random.uniform(-3, 3));
     const Vec3 y = reach * random.direction();
 
-    const RoughWaterPlane rough = rough_water_plane_in_body(asked.pose, asked.water, asked.c_B, reach);
+    const RoughWaterPlane rough = rough_water_plane_in_body(request.pose, request.water, request.c_B, reach);
     const double height = (rough.up_B.vec3().dot(y) - rough.h_c) / rough.norm_squared;
 
-    const Rational true_height = asked.exact.up_B.dot(y.cast<Rational>()) - asked.exact.h;
+    const Rational true_height = request.exact.up_B.dot(y.cast<Rational>()) - request.exact.h;
     const double error = std::abs(Rational(height - true_height).convert_to<double>());
     EXPECT_LE(error, rough.error / rough.norm_squared);
   }

@@ -28,9 +28,10 @@ SurfaceMoments<T> wetted_moments_reference(const TriangleMesh& mesh, const Vec3T
   return moments;
 }
 
-template SurfaceMoments<Rational> wetted_moments_reference<Rational>(const TriangleMesh&, const Vec3T<Rational>&,
-                                                                const Rational&);
-template SurfaceMoments<Dual> wetted_moments_reference<Dual>(const TriangleMesh&, const Vec3T<Dual>&, const Dual&);
+template SurfaceMoments<Rational> wetted_moments_reference<Rational>(const TriangleMesh&,
+                                                                     const Vec3T<Rational>&, const Rational&);
+template SurfaceMoments<Dual> wetted_moments_reference<Dual>(const TriangleMesh&, const Vec3T<Dual>&,
+                                                             const Dual&);
 
 template struct DisplacementMoments<Rational>;
 template DisplacementMoments<Rational> displacement_moments<Rational>(const SurfaceMoments<Rational>&,

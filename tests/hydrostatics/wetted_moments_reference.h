@@ -1,7 +1,7 @@
-// The wet surface's moments by the plainest way, every triangle one by one, in any number type: the oracle of
-// the tree's descent, and what dual numbers go through.
+// Reference implementation of the wetted surface's moments: it adds every triangle one by one, in any number
+// type. It is the oracle of the tree's descent and the kernel that dual numbers differentiate.
 //
-// The library buoyancy_oracle holds the functions for Rational and Dual.
+// The library buoyancy_oracle holds the instantiations for Rational and Dual.
 #pragma once
 
 #include "geometry/surface_moments.h"
@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-// up: k; h: height of the surface over the origin that the mesh's vertices are measured from, along k.
+// up: k. h: [m], height of the water plane along k over the origin of the mesh's coordinates.
 template <typename T>
 SurfaceMoments<T> wetted_moments_reference(const TriangleMesh& mesh, const Vec3T<T>& up, const T& h);
 

@@ -1,4 +1,4 @@
-// The wet surface's moments, and what is read out of them, against rational arithmetic.
+// The wetted surface's moments, and the volume integrals that follow from them, against rational arithmetic.
 #include "hydrostatics/wetted_moments.h"
 
 #include <algorithm>
@@ -22,7 +22,8 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 const Water kWater;
 
-// Largest errors over the poses, in units of eps, of what the tree's descent leads to, against rationals.
+// The largest errors over the poses of the volume integrals against rationals; all but `volume` in units of
+// eps times the quantity's scale.
 struct Errors {
   double volume = 0.0, moment = 0.0, area = 0.0, waterplane_moment = 0.0, second_moments = 0.0;
 };
@@ -42,16 +43,16 @@ double difference(const Matrix& exact, const Eigen::MatrixXd& found) {
   return std::sqrt(sum);
 }
 
-// Of the product and in rationals, both about the product's point.
-struct BothReadOuts {
+// The product's volume integrals and the exact ones, both about the product's point.
+struct BothIntegrals {
   WettedMoments wet;
   DisplacementMoments<double> found;
   DisplacementMoments<Rational> exact;
 };
 
-BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
+BothIntegrals integrals_both_ways(const HydrostaticMesh& mesh, const Pose& pose) {
   const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
-  BothReadOuts both;
+  BothIntegrals both;
   both.wet = wetted_moments(*mesh.tree, plane);
   both.found = displacement_moments(both.wet.moments, both.wet.height, plane.up_B);
   const Vec3T<Rational> k = exact_plane<Rational>(pose, kWater).up_B;
@@ -65,28 +66,29 @@ BothReadOuts read_out_twice(const HydrostaticMesh& mesh, const Pose& pose) {
 
 TEST(WettedMoments, MatchesRationalArithmeticToRounding) {
   for (const NamedMesh& named : closed_test_meshes()) {
-    if (named.mesh.triangles.size() > 800) continue;  // rationals take their time
+    if (named.mesh.triangles.size() > 800) continue;  // rationals are slow
     const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}});
     RandomPoses random(44);
     Errors worst;
     for (int i = 0; i < 8; ++i) {
       const Pose pose = i % 4 == 3 ? random.adversarial(named.mesh, kWater)
                                    : random.crossing(bounding_box(named.mesh), kWater);
-      const BothReadOuts both = read_out_twice(mesh, pose);
-      const auto grow = [](double& largest, double error) { largest = std::max(largest, error); };
+      const BothIntegrals both = integrals_both_ways(mesh, pose);
+      const auto update_max = [](double& max, double error) { max = std::max(max, error); };
       const double area = mesh.area * kEpsilon;
       const double L = mesh.diagonal;
-      grow(worst.volume, std::abs(to_double(both.exact.volume - Rational(both.found.volume))));
-      grow(worst.moment, difference(both.exact.moment, both.found.moment) / (area * L * L));
-      // Where a face lies in the surface to within rounding, so does the request whether it is waterplane.
+      update_max(worst.volume, std::abs(to_double(both.exact.volume - Rational(both.found.volume))));
+      update_max(worst.moment, difference(both.exact.moment, both.found.moment) / (area * L * L));
+      // If a face lies in the water plane to within rounding, whether it counts as waterplane is undefined.
       if (i % 4 == 3) continue;
-      grow(worst.area,
-           std::abs(to_double(both.exact.waterplane_area - Rational(both.found.waterplane_area))) / area);
-      grow(worst.waterplane_moment,
-           difference(both.exact.waterplane_moment, both.found.waterplane_moment) / (area * L));
-      grow(worst.second_moments,
-           difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments) /
-               (area * L * L));
+      update_max(
+          worst.area,
+          std::abs(to_double(both.exact.waterplane_area - Rational(both.found.waterplane_area))) / area);
+      update_max(worst.waterplane_moment,
+                 difference(both.exact.waterplane_moment, both.found.waterplane_moment) / (area * L));
+      update_max(worst.second_moments,
+                 difference(both.exact.waterplane_second_moments, both.found.waterplane_second_moments) /
+                     (area * L * L));
     }
     EXPECT_LE(worst.volume, mesh.volume_tolerance()) << named.name;
     for (const double error : {worst.moment, worst.area, worst.waterplane_moment, worst.second_moments}) {
@@ -110,7 +112,7 @@ TEST(WettedMoments, KeepsDigitsOfMillionthVolumeCap) {
       const double volume = displacement_moments(moments.moments, moments.height, plane.up_B).volume;
       (volume < 1e-6 * mesh.volume ? dry : wet) = pose.p_WB.z();
     }
-    const BothReadOuts both = read_out_twice(mesh, pose);
+    const BothIntegrals both = integrals_both_ways(mesh, pose);
     const double volume = to_double(both.exact.volume);
     const double area = to_double(both.exact.waterplane_area);
     const double second = difference(both.exact.waterplane_second_moments, Mat3::Zero());
@@ -134,8 +136,8 @@ TEST(WettedMoments, TakesHeightsFromLeafCentres) {
     }
     const double draft = 1e-9;
     pose.p_WB.z() = -lowest - draft;
-    const BothReadOuts both = read_out_twice(mesh, pose);
-    // A cone's volume is A draft/3, so an error of the height of z is 3 z/draft of it.
+    const BothIntegrals both = integrals_both_ways(mesh, pose);
+    // A cone's volume is A draft/3, so that a height error z is a relative volume error of 3 z/draft.
     const double volume = to_double(both.exact.volume);
     EXPECT_LE(std::abs(both.found.volume - volume), 3.0 * kEpsilon * kLeaf / draft * volume);
   }

@@ -345,7 +345,7 @@ TEST(StressInvariants, TorqueAndStiffnessAreDerivatives) {
       const double area = found->waterplane_area;
       if (stiffness_tolerance(body.mesh, area) > 1e-9) continue;
       stress.check(
-          largest_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B),
+          max_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B),
                              area > 0.0),
           1e-9, "stiffness, " + body.name);
     }
