@@ -1,4 +1,4 @@
-// The stress catalogue, "Invariants": the tree's descent against the sum over every triangle.
+// The stress catalogue, "Invariants": the descent of the tree against the sum over all triangles.
 #include <cmath>
 #include <set>
 #include <string>
@@ -14,8 +14,8 @@
 namespace buoyancy {
 namespace {
 
-// A tetrahedron whose faces are raised to pyramids, in turn, until there are `faces`; of odd numbers the last
-// face has no area.
+// A tetrahedron whose faces are replaced by pyramids, in turn, until it has `faces` faces; if that number is
+// odd, the last face has zero area.
 TriangleMesh pyramids(int faces) {
   TriangleMesh mesh;
   for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(-1, -1, 1), Vec3(-1, 1, -1), Vec3(1, -1, -1)}) {
@@ -34,7 +34,7 @@ TriangleMesh pyramids(int faces) {
   return mesh;
 }
 
-// Meshes whose trees have leaves of every size: up to 16 faces are one leaf, 17 to 19 two.
+// Meshes whose trees have leaves of every size: up to 16 faces form one leaf, 17 to 19 two.
 std::vector<StressedBody> bodies_of_every_leaf_size() {
   std::vector<StressedBody> bodies = stressed_bodies();
   for (int faces = 4; faces <= kLeafTriangles + 3; ++faces) {
@@ -57,7 +57,7 @@ TEST(StressInvariants, HierarchicalMatchesBruteForce) {
       const Pose pose = stressed_pose(random, body, i, water);
       const Vec3 reference_B = reference_near(random, body);
       const BuoyancyResult one = buoyancy(brute, pose, water, reference_B);
-      if (one.immersion == Immersion::kSubmerged) continue;  // from its constants, without the tree
+      if (one.immersion == Immersion::kSubmerged) continue;  // evaluated without the tree
       for (const std::string& target : simd_targets()) {
         ASSERT_TRUE(force_simd_target(target));
         for (const double tolerance : {0.0, 1e-9, 1e-3}) {

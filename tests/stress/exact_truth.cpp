@@ -59,7 +59,8 @@ TrueWaterplane true_waterplane(const TriangleMesh& mesh, const Pose& pose, const
     return Rational(k.dot(cross(b.y - a.y, c.y - a.y).vec3()));
   };
   TrueWaterplane found;
-  Rational twice_area(0);  // of the wet surface, projected on the water's: what closes it has the opposite
+  // Twice the wetted surface's area projected on the water plane; the waterplane has the opposite sign.
+  Rational twice_area(0);
   for (const Triangle& triangle : mesh.triangles) {
     const ClipVertex<Rational> a = corner(triangle[0]);
     const ClipVertex<Rational> b = corner(triangle[1]);

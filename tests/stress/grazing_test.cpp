@@ -1,5 +1,5 @@
-// The stress catalogue, "Cases": the water's surface in vertices, edges and faces or a hair beside them;
-// bodies that hardly touch it, or are hardly out of it.
+// The stress catalogue, "Cases": the water plane through vertices, edges and faces or within a few ulp of
+// them; bodies that barely touch the water, and bodies that are nearly submerged.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -27,7 +27,7 @@ TriangleMesh octahedron() {
   return mesh;
 }
 
-// q such that R_WB maps axes to axes: all 24 of them, without rounding in R.
+// All 24 quaternions for which R_WB maps axes to axes, without rounding in R.
 std::vector<Eigen::Quaterniond> axis_rotations() {
   std::vector<Eigen::Quaterniond> found;
   for (const double w : {0.0, 1.0}) {
@@ -52,7 +52,7 @@ TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
   const StressedBody box("box", make_shape(BoxShape{.segments = {2, 2, 2}}));
   EXPECT_EQ(axis_rotations().size(), 24U);
   for (const Eigen::Quaterniond& q_WB : axis_rotations()) {
-    // Heights at which a corner, the four edges around the middle, or whole faces lie in the surface.
+    // Heights at which a corner, the four edges around the middle, or whole faces lie in the water plane.
     for (const double height : {1.0, 0.0, -1.0}) {
       check_exactly(stress, diamond, {Vec3(0, 0, height), q_WB}, kLevelZero, Vec3(0.5, 0.25, 0));
     }
@@ -67,7 +67,7 @@ TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
       stress.check(buoyancy(solver, {Vec3(0, 0, 0.5), q_WB}, kLevelZero, Vec3::Zero()).volume, 0.0,
                    "on a face, " + method);
     });
-    // A dry face is no wetted area, and where it is in the surface the waterplane takes its place.
+    // A face in the water plane does not count as wetted area; the waterplane includes it instead.
     const auto standing = hydrostatics(box.mesh, {Vec3(0, 0, 0.5), q_WB}, kLevelZero, Vec3::Zero(), {});
     const auto awash = hydrostatics(box.mesh, {Vec3(0, 0, -0.5), q_WB}, kLevelZero, Vec3::Zero(), {});
     stress.require(standing && awash, "hydrostatics");
@@ -80,8 +80,8 @@ TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
                  "waterplane of a box awash");
   }
 
-  // Any rotation about a vertex, and about an edge along x, that lies in B's origin, which lies in the
-  // surface.
+  // Any rotation about a vertex at B's origin, and about an edge along x through it; the origin lies in the
+  // water plane.
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(301);
     for (int i = 0; i < tries(6); ++i) {
@@ -123,13 +123,13 @@ TEST(StressGrazing, IsExactForFlatFaceWithinUlpsOfPlane) {
   const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 1}, .segments = {4, 4, 1}});
   const TriangleMesh plate = make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {5, 5, 1}});
   RandomPoses random(303);
-  // Upright in B, and turned in B, so that the face's vertices are rounded to both sides of its plane.
+  // Upright in B, and rotated in B, so that the face's vertices are rounded to both sides of its plane.
   const Eigen::Quaterniond rotation = random.rotation();
   for (const bool oblique : {false, true}) {
     for (const TriangleMesh* shape : {&box, &plate}) {
       const TriangleMesh mesh = oblique ? turned(*shape, rotation) : *shape;
-      const std::string called = shape == &box ? "box" : "plate";
-      const StressedBody body(oblique ? "oblique " + called : called, mesh);
+      const std::string name = shape == &box ? "box" : "plate";
+      const StressedBody body(oblique ? "oblique " + name : name, mesh);
       const double half = shape == &box ? 0.5 : 0.5e-3;
       for (const double level : {0.0, 0.3, 1000.3}) {
         for (const double face : {half, -half}) {
@@ -179,11 +179,12 @@ double lowest_point(const TriangleMesh& mesh, const Eigen::Quaterniond& q_WB) {
   return lowest;
 }
 
-// The volume's error that each method may make where the water reaches no farther than `plane`. What is
-// rounded is
-//   exact_surface  the heights: 4 eps L A_wp, the catalogue's gate
-//   hierarchical   also, where the water runs along an edge, the dry parts of large triangles that are taken
-//   off again exact          also the place of the cut points, under an apex that lies L away
+// [m^3], the allowed error of each method's volume where the water reaches no farther than `plane`. Rounding
+// errors come from
+//   exact_surface  the heights: 4 eps L A_wp, the catalogue's gate;
+//   hierarchical   the heights and, where the water runs along an edge, the dry parts of large triangles,
+//                  which are subtracted again;
+//   exact          the heights and the positions of the cut points, under an apex that lies L away.
 double grazing_gate(Method method, const TrueWaterplane& plane, double diagonal) {
   const double gate = 4 * kEpsilon * diagonal;
   if (method == Method::kHierarchical) return gate * (plane.area + plane.cut_area);
@@ -203,7 +204,7 @@ TEST(StressGrazing, BoundsErrorOfTinyWetTips) {
         const Pose pose{Vec3(0, 0, -lowest_point(body.source, grazing.q_WB) - draft), grazing.q_WB};
         const Truth truth = true_result(body.source, pose, kLevelZero, body.mesh.center_B);
         if (truth.volume > Rational(1e-9 * body.mesh.volume)) continue;
-        // A tip, or a face that a body rests on, is in the water or not as rounding has it.
+        // Rounding decides whether a tip, or a face that a body rests on, is in the water.
         const TrueWaterplane plane =
             true_waterplane(body.source, pose, kLevelZero, 4 * kEpsilon * body.mesh.diagonal);
         visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {

@@ -1,4 +1,4 @@
-// The stress catalogue, "Invariants": what holds for every closed mesh at every pose, random and adversarial.
+// The stress catalogue, "Invariants": they hold for every closed mesh at every pose, random and adversarial.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace buoyancy {
 namespace {
 
-// The same surface with the water on its other side.
+// The same plane with the water on its other side.
 Water from_above(Water water) {
   water.up_W = -water.up_W;
   water.level = -water.level;
@@ -44,27 +44,26 @@ TEST(StressInvariants, WetAndDryVolumesSumToTotal) {
   }
 }
 
-// F/(rho g) in B and tau_c/(rho g) along k, as the surface's moments have them before anything is known of
-// them.
+// F/(rho g) in B and tau_c/(rho g) along k, as computed from the surface moments without projection.
 struct Unprojected {
   Vec3 force;
   double twist;
 };
 
 Unprojected from_moments(const MomentTree& tree, const WaterPlane& plane) {
-  const WettedMoments wet = wetted_moments(tree, plane);
+  const WettedMoments wetted = wetted_moments(tree, plane);
   const Vec3& k = plane.up_B;
-  const Vec3 force = wet.moments.N.transpose() * k + wet.height * wet.moments.S;
+  const Vec3 force = wetted.moments.N.transpose() * k + wetted.height * wetted.moments.S;
   Mat3 pressure;  // (j, k): int y_j z n_k dA
   for (int j = 0; j < 3; ++j) {
     for (int n = 0; n < 3; ++n) {
-      pressure(j, n) = wet.height * wet.moments.N(j, n);
-      for (int i = 0; i < 3; ++i) pressure(j, n) += k[i] * wet.moments.second(i, j, n);
+      pressure(j, n) = wetted.height * wetted.moments.N(j, n);
+      for (int i = 0; i < 3; ++i) pressure(j, n) += k[i] * wetted.moments.second(i, j, n);
     }
   }
   const Vec3 torque(pressure(1, 2) - pressure(2, 1), pressure(2, 0) - pressure(0, 2),
                     pressure(0, 1) - pressure(1, 0));
-  return {force, k.dot(torque + wet.point.cross(force))};
+  return {force, k.dot(torque + wetted.point.cross(force))};
 }
 
 double horizontal(const Vec3& force, const Vec3& k) {
@@ -72,8 +71,8 @@ double horizontal(const Vec3& force, const Vec3& k) {
 }
 
 TEST(StressInvariants, HorizontalForceVanishesBeforeProjection) {
-  // The pressure on either side of a thin plate cancels, and is as large as A_s times the depth: 1.3 G_V are
-  // measured where half of it is wet. What is published has no such part.
+  // The pressures on the two sides of a thin plate cancel; each is as large as A_s times the depth: 1.3 G_V
+  // are measured with the plate half submerged. The published force has no such component.
   StressCase stress("horizontal force = 0 before projection", "0", "G_V; exact_surface: 2 G_V");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(102);
@@ -113,7 +112,7 @@ TEST(StressInvariants, TorqueAboutUpVanishesBeforeProjection) {
   }
 }
 
-TEST(StressInvariants, VolumeIncreasesWithLevel) {
+TEST(StressInvariants, VolumeNeverFallsAsLevelRises) {
   StressCase stress("V never falls as the level rises", "the level before", "G_V");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(104);
@@ -126,7 +125,7 @@ TEST(StressInvariants, VolumeIncreasesWithLevel) {
       for (int step = -20; step <= 20; ++step) {
         levels.push_back(middle + 0.026 * step * body.mesh.diagonal);
       }
-      // And, where something may jump, a few ulp around the heights of vertices.
+      // A few ulp around the heights of vertices, where the volume may jump.
       for (int v = 0; v < 8; ++v) {
         const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
         double level = water.up_W.dot(pose.p_WB + pose.q_WB * body.source.vertex(vertex));
@@ -235,17 +234,18 @@ TEST(StressInvariants, TorqueShiftsWithReferencePoint) {
         const BuoyancyResult about_r = buoyancy(solver, pose, water, r);
         const BuoyancyResult about_s = buoyancy(solver, pose, water, s);
         const Vec3 lever_W = pose.q_WB.normalized() * (r - s);
-        stress.check((about_s.torque_W - about_r.torque_W - lever_W.cross(about_r.force_W)).norm(),
-                     depth_factor(solver, pose, water) * std::max(body.torque_tolerance(r), body.torque_tolerance(s)),
-                     body.name + ", " + method);
+        stress.check(
+            (about_s.torque_W - about_r.torque_W - lever_W.cross(about_r.force_W)).norm(),
+            depth_factor(solver, pose, water) * std::max(body.torque_tolerance(r), body.torque_tolerance(s)),
+            body.name + ", " + method);
       });
     }
   }
 }
 
-// Faces on one side of a plane through the middle, and the rest. Every edge between the two gets a triangle
-// to one common point in either part, once each way round: both are closed, and their sum is the whole,
-// exactly.
+// The faces on one side of a plane through the middle, and the rest. Every edge between the two gets a
+// triangle to one common point in both parts, with opposite orientations: both parts are closed, and their
+// sum is exactly the whole.
 struct TwoParts {
   TriangleMesh first, second;
 };
@@ -325,9 +325,9 @@ TEST(StressInvariants, TorqueAndStiffnessAreDerivatives) {
 
       // U = -rho g H with H the integral of the height over the displaced volume, H = k . M - h_c V.
       const DualPlane plane = dual_water_plane(body.mesh, pose, water, reference_B);
-      const auto floating = displacement_moments<Dual>(
+      const auto displaced = displacement_moments<Dual>(
           wetted_moments_reference<Dual>(body.mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
-      const Dual H = plane.up_B.dot(floating.moment) - plane.h_c * floating.volume;
+      const Dual H = plane.up_B.dot(displaced.moment) - plane.h_c * displaced.volume;
       const Vec3 force_W(H.slope[0], H.slope[1], H.slope[2]);
       const Vec3 torque_W(H.slope[3], H.slope[4], H.slope[5]);
       visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
@@ -341,13 +341,12 @@ TEST(StressInvariants, TorqueAndStiffnessAreDerivatives) {
       const auto found = hydrostatics(body.mesh, pose, water, reference_B, std::nullopt);
       stress.require(found.has_value(), body.name);
       if (!found) continue;
-      // Of a waterplane that is hardly there the area is known to eps A_s and no better.
+      // The area of a tiny waterplane is known only to eps A_s.
       const double area = found->waterplane_area;
       if (stiffness_tolerance(body.mesh, area) > 1e-9) continue;
-      stress.check(
-          max_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B),
-                             area > 0.0),
-          1e-9, "stiffness, " + body.name);
+      stress.check(max_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B),
+                                  area > 0.0),
+                   1e-9, "stiffness, " + body.name);
     }
   }
 }

@@ -1,5 +1,5 @@
-// The stress catalogue, "Cases": meshes that are not one plain closed surface, what becomes of them at load,
-// and what those that are accepted are answered with; meshes of round bodies as they are refined.
+// The stress catalogue, "Cases": meshes that are not one simple closed surface, their treatment at load and
+// the results for those that are accepted; convergence for meshes of round bodies.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -38,13 +38,13 @@ void check_at_random_poses(StressCase& stress, const StressedBody& body, int pos
 
 TEST(StressMeshPolicy, ReorientsAndReportsInsideOutMeshes) {
   StressCase stress("inside-out mesh, one inside-out component",
-                    "V < 0 at load; turned and said so; then rational", "G_V, G_V L_r");
+                    "V < 0 at load; reoriented and reported; then rational", "G_V, G_V L_r");
   const TriangleMesh rock = make_shape(RockShape{.frequency = 3, .roughness = 0.4});
   const TriangleMesh crate = box_from({4, 0, 1}, {1, 1, 1});
   struct InsideOut {
     std::string name;
     TriangleMesh given, meant;
-    bool whole;  // all of it was inside out
+    bool whole;  // true if all of it is inside out
   };
   const std::vector<InsideOut> cases{
       {"rock inside out", inside_out(rock), rock, true},
@@ -61,7 +61,7 @@ TEST(StressMeshPolicy, ReorientsAndReportsInsideOutMeshes) {
     }
     stress.require(components_turned == 1, "the report on components, " + one.name);
     if (one.whole) stress.require(make_hydrostatic_mesh({one.given, {}}).volume < 0.0, "V at load");
-    // As it was meant, and as it was accepted.
+    // The mesh as intended and as accepted.
     const StressedBody meant(one.name, one.meant);
     const StressedBody accepted(one.name, validation.mesh->mesh);
     RandomPoses random(502);
@@ -110,7 +110,7 @@ TEST(StressMeshPolicy, AcceptsOnlyBalancedEdgesAndReportsAll) {
   stress.require(!of_misoriented.mesh && of_misoriented.report.misoriented_edges == 3,
                  "misoriented: refused");
 
-  // Two boxes that share an edge, and two that share a face, which is there twice, once each way round.
+  // Two boxes that share an edge, and two that share a face, which exists twice with opposite orientations.
   const TriangleMesh by_edge = joined(box_from({0, 0, 0}, {1, 1, 1}), box_from({1, 1, 0}, {1, 1, 1}));
   const TriangleMesh by_face = joined(box_from({0, 0, 0}, {1, 1, 1}), box_from({1, 0, 0}, {1, 1, 1}));
   for (const TriangleMesh* mesh : {&by_edge, &by_face}) {
@@ -120,7 +120,7 @@ TEST(StressMeshPolicy, AcceptsOnlyBalancedEdgesAndReportsAll) {
     check_at_random_poses(stress, StressedBody("balanced", balanced.mesh->mesh), tries(16));
   }
 
-  // What closed surfaces have in common, in the report and in the moments of the whole.
+  // Identities of closed surfaces, in the report and in the moments of the whole.
   for (const StressedBody& body : stressed_bodies()) {
     const MeshReport report = validate(body.source).report;
     const Vec3& volumes = report.volume_by_axis;
@@ -245,7 +245,7 @@ TEST(StressMeshPolicy, ConvergesAsOneOverTriangleCount) {
   const auto cap = [](double draft, double) {
     return std::numbers::pi / 3.0 * draft * draft * (3.0 * kRadius - draft);
   };
-  const auto cylinder = [](double draft, double tilt) {  // the water reaches neither end
+  const auto cylinder = [](double draft, double tilt) {  // the water plane meets neither end
     return std::numbers::pi * kRadius * kRadius * (1.0 + (draft - kRadius) / std::cos(tilt));
   };
   struct Refined {

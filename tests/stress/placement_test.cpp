@@ -1,4 +1,5 @@
-// The stress catalogue, "Cases": bodies far away, huge, tiny, and far from the origin of their own mesh.
+// The stress catalogue, "Cases": bodies that are far away, huge, tiny or far from the origin of their own
+// mesh.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -22,13 +23,13 @@ double waterplane_area(const StressedBody& body, const Pose& pose, const Water& 
   return found ? found->waterplane_area : kNaN;
 }
 
-// Two answers to what would be the same request if poses had all digits: within what the body's waterplane
-// makes of the last digit of p.
+// Checks the results of two poses that would be equivalent without rounding: they may differ by the change of
+// volume that the last digit of p causes, the waterplane's area times eps |p|.
 void check_moved(StressCase& stress, const StressedBody& body, const Pose& near, const Water& near_water,
                  const Pose& far, const Water& far_water, double distance) {
   const double area =
       std::max(waterplane_area(body, near, near_water), waterplane_area(body, far, far_water));
-  const double volume_tolerance = area * kEpsilon * distance + body.volume_tolerance();
+  const double volume_tolerance = area * kEpsilon * distance + body.volume_tolerance();  // [m^3]
   const double torque_tolerance = volume_tolerance * body.mesh.max_lever_arm(body.mesh.center_B);
   visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
     const BuoyancyResult one = buoyancy(solver, near, near_water, body.mesh.center_B);
@@ -88,7 +89,7 @@ TEST(StressPlacement, IsAsExactAsPoseFarAwayWhenUpIsTilted) {
 
 TEST(StressPlacement, IsExactForDistantPose) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted",
-                    "rational arithmetic at the pose as asked", "G_V, G_V L_r");
+                    "rational arithmetic at the pose as requested", "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(203);
     for (int i = 0; i < tries(8); ++i) {
@@ -97,7 +98,7 @@ TEST(StressPlacement, IsExactForDistantPose) {
       Pose pose = random.crossing(body.box, water);
       const Vec3 sideways = random.direction();
       pose.p_WB += (i % 2 == 0 ? 1e6 : 1e9) * (sideways - water.up_W.dot(sideways) * water.up_W);
-      // What the rounding of p took away from the level is given back, roughly.
+      // Moves the level to compensate, approximately, for the rounding of p.
       const Vec3 center_W = pose.p_WB + pose.q_WB * body.box.center();
       water.level = water.up_W.dot(center_W) + 0.3 * body.mesh.diagonal * random.uniform(-1, 1);
       check_exactly(stress, body, pose, water, reference_near(random, body));
@@ -125,8 +126,8 @@ TEST(StressPlacement, IsAsExactAsPoseForVerticalOffset) {
 }
 
 TEST(StressPlacement, IsExactForVerticalOffset) {
-  StressCase stress("vertical offset 1e6 m (level and position)", "rational arithmetic at the pose as asked",
-                    "G_V, G_V L_r");
+  StressCase stress("vertical offset 1e6 m (level and position)",
+                    "rational arithmetic at the pose as requested", "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
     RandomPoses random(205);
     for (int i = 0; i < tries(8); ++i) {
@@ -153,7 +154,7 @@ TEST(StressPlacement, IsExactForMeshFarFromItsOrigin) {
       for (int i = 0; i < tries(60); ++i) {
         Water water = kStressWater;
         const Pose pose = stressed_pose(random, body, i, water);
-        // Torque about the far origin, and about a point near the body.
+        // The torque is about the far origin or about a point near the body.
         check_exactly(stress, body, pose, water, i % 2 == 0 ? Vec3::Zero() : reference_near(random, body));
       }
     }

@@ -1,5 +1,4 @@
-// The stress catalogue, "Cases": triangles and bodies of no width, faces that are none, denormals, unwelded
-// files.
+// The stress catalogue, "Cases": degenerate triangles and bodies, invalid faces, denormals, unwelded files.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -25,8 +24,9 @@ TriangleMesh small_rock() {
   return make_shape(RockShape{.frequency = 3, .roughness = 0.4, .seed = 7});
 }
 
-// The face a b c gets a new corner m beside its edge ab: a m c and m b c take its place, and the sliver a b m
-// closes the gap. along: where on ab; off: how far from it towards c, as a share of the face's height.
+// Adds a corner m near edge ab of the face a b c: a m c and m b c replace the face, and the sliver a b m
+// closes the gap. along: position of m on ab; off: its distance from ab towards c, as a share of the face's
+// height.
 TriangleMesh with_sliver(TriangleMesh mesh, std::size_t face, double along, double off) {
   const auto [a, b, c] = mesh.triangles[face];
   const Vec3 on_edge = mesh.vertex(a) + along * (mesh.vertex(b) - mesh.vertex(a));
@@ -50,7 +50,7 @@ TEST(StressPoorMeshes, IsExactForSliversAndNeedles) {
         for (const std::size_t face : {0U, 5U, 11U, 17U, 29U, 41U})
           spoilt = with_sliver(spoilt, face, along, off);
         const StressedBody poor(body.name + " with slivers", spoilt);
-        // The middle of a box's edge is a number of few bits: such slivers have no area at all.
+        // The midpoint of a box's edge has few bits: the area of such slivers is exactly 0.
         const bool same_body = off == 0.0 && along == 0.5 && body.name == "box";
         RandomPoses random(401);
         for (int i = 0; i < tries(12); ++i) {
@@ -72,8 +72,8 @@ TEST(StressPoorMeshes, IsExactForSliversAndNeedles) {
       }
     }
   }
-  // Of bodies whose every face is a needle G_V asks too much: it would be missed from an aspect of 1 : 100 on
-  // (exact, exact_surface), of 1 : 1000 (hierarchical).
+  // G_V does not hold for bodies all of whose faces are needles: it is exceeded from an aspect ratio of 1 :
+  // 100 on (exact, exact_surface), or of 1 : 1000 (hierarchical).
   for (const bool oblique : {false, true}) {
     const std::vector<NamedMesh> needles{
         {"bar 1 : 1000", make_shape(BoxShape{.size = {1000, 1, 1}})},
@@ -139,7 +139,7 @@ TEST(StressPoorMeshes, IsExactForThinPlate) {
       const Pose pose = stressed_pose(random, plate, i, water);
       check_exactly(stress, plate, pose, water, reference_near(random, plate));
     }
-    // Flat in the water, which lies between its two sides.
+    // The plate lies flat in the water, with the water plane between its two sides.
     for (int i = 0; i < tries(40); ++i) {
       const double height = kStressWater.level + 1e-8 * random.uniform(-0.6, 0.6);
       const Eigen::Quaterniond flat(1.0, random.uniform(-1e-8, 1e-8), random.uniform(-1e-8, 1e-8),
@@ -163,14 +163,14 @@ TEST(StressPoorMeshes, StaysFiniteWithDenormals) {
     bodies.emplace_back("rock of " + format_shortest(scale) + " m",
                         moved_and_scaled(small_rock(), Vec3::Zero(), scale));
   }
-  TriangleMesh speckled = make_shape(BoxShape{.segments = {2, 2, 2}});  // its zeros become denormals
+  TriangleMesh speckled = make_shape(BoxShape{.segments = {2, 2, 2}});  // denormals replace its zeros
   for (std::vector<double>* axis : {&speckled.x, &speckled.y, &speckled.z}) {
     for (double& coordinate : *axis) {
       if (coordinate == 0.0) coordinate = axis == &speckled.y ? -kDenormal : 3 * kDenormal;
     }
   }
   bodies.emplace_back("box with denormal corners", speckled);
-  // Its deck lies in the water at height 0, tilted by next to nothing.
+  // Its deck lies in the water plane at height 0, with tilts down to denormals.
   bodies.emplace_back("box below its deck",
                       moved_and_scaled(make_shape(BoxShape{.segments = {6, 6, 2}}), {0, 0, -0.5}));
   for (const StressedBody& body : bodies) {
@@ -194,7 +194,7 @@ TEST(StressPoorMeshes, StaysFiniteWithDenormals) {
   }
 }
 
-// As an STL file stores it: single precision, every face with three corners of its own.
+// The mesh as an STL file stores it: single precision, every face with its own three corners.
 std::string binary_stl(const TriangleMesh& mesh) {
   std::string bytes(80, '\0');
   append_bytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));

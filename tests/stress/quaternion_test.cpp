@@ -1,5 +1,5 @@
-// The stress catalogue, "Cases": quaternions and positions as people send them, through the solvers and
-// through the handler that stands before them.
+// The stress catalogue, "Cases": quaternions and positions as clients send them, through the solvers and
+// through the request handler.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kMaxDouble = std::numeric_limits<double>::max();
 
 Eigen::Quaterniond scaled(const Eigen::Quaterniond& q, double factor) {
   return Eigen::Quaterniond(factor * q.w(), factor * q.x(), factor * q.y(), factor * q.z());
@@ -51,7 +51,7 @@ TEST(StressQuaternions, IsBitIdenticalForNegatedQuaternion) {
   }
 }
 
-BodyState asked(std::int32_t id, const Pose& pose) {
+BodyState state_of(std::int32_t id, const Pose& pose) {
   BodyState state;
   state.body_id = id;
   state.position = {pose.p_WB.x(), pose.p_WB.y(), pose.p_WB.z()};
@@ -59,12 +59,12 @@ BodyState asked(std::int32_t id, const Pose& pose) {
   return state;
 }
 
-WrenchResponse result_of(RequestHandler& handler, const std::vector<BodyState>& bodies,
-                         double lead_time = 0.0) {
+WrenchResponse response_of(RequestHandler& handler, const std::vector<BodyState>& bodies,
+                           double lead_time = 0.0) {
   static std::int64_t seq = 0;
-  WrenchResponse result;
-  EXPECT_FALSE(decode(handler.handle(request_bytes({.seq = ++seq}, bodies, lead_time)), result));
-  return result;
+  WrenchResponse response;
+  EXPECT_FALSE(decode(handler.handle(request_bytes({.seq = ++seq}, bodies, lead_time)), response));
+  return response;
 }
 
 TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
@@ -90,41 +90,42 @@ TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
     pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i) % norms.size()]);
     const Truth truth = true_result(box.source, pose, water, Vec3::Zero());
     const std::int64_t before = handler.counters().quaternions_normalised;
-    const WrenchResponse result = result_of(handler, {asked(kBox, pose), asked(kHierarchicalBox, pose)});
-    for (const BodyWrench& wrench : result.bodies) {
+    const WrenchResponse response =
+        response_of(handler, {state_of(kBox, pose), state_of(kHierarchicalBox, pose)});
+    for (const BodyWrench& wrench : response.bodies) {
       const std::string where = box.name + ", body " + std::to_string(wrench.body_id);
       stress.require(wrench.status == BodyStatus::kOk, "the status of " + where);
       stress.check(distance(wrench.submerged_volume, truth.volume), box.volume_tolerance(),
                    "volume, " + where);
       stress.check(distance(to_vec3(wrench.force) / kWeight, truth.force_W), box.volume_tolerance(),
                    "force, " + where);
-      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W), box.torque_tolerance(Vec3::Zero()),
-                   "torque, " + where);
+      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W),
+                   box.torque_tolerance(Vec3::Zero()), "torque, " + where);
     }
-    const bool noteworthy = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
-    if (noteworthy) stress.require(handler.counters().quaternions_normalised == before + 2, "counted");
+    const bool counted = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
+    if (counted) stress.require(handler.counters().quaternions_normalised == before + 2, "counted");
   }
 }
 
-struct Refused {
+struct InvalidState {
   std::string name;
   BodyState state;
   double lead_time;
   BodyStatus status;
 };
 
-std::vector<Refused> refused_states() {
-  std::vector<Refused> found;
-  const auto add = [&](const std::string& called, const BodyState& state, BodyStatus status,
+std::vector<InvalidState> invalid_states() {
+  std::vector<InvalidState> found;
+  const auto add = [&](const std::string& name, const BodyState& state, BodyStatus status,
                        double lead_time = 0.0) {
-    found.push_back({called, state, lead_time, status});
+    found.push_back({name, state, lead_time, status});
   };
   const auto with_quaternion = [](double w, double x, double y, double z) {
     BodyState state = upright(kBox, 0.1);
     state.quaternion_wxyz = {w, x, y, z};
     return state;
   };
-  for (const double norm : {0.0, 1e-300, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 2.0, 1e200, kLargest}) {
+  for (const double norm : {0.0, 1e-300, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 2.0, 1e200, kMaxDouble}) {
     add("a quaternion of norm " + std::to_string(norm), with_quaternion(0.6 * norm, 0, 0.8 * norm, 0),
         BodyStatus::kBadQuaternion);
   }
@@ -145,10 +146,10 @@ std::vector<Refused> refused_states() {
     add("a lead time of " + std::to_string(value), upright(kBox, 0.1), BodyStatus::kBadLeadTime, value);
   }
   BodyState fast = upright(kBox, 0.1);
-  fast.linear_velocity = {kLargest, 0, 0};
+  fast.linear_velocity = {kMaxDouble, 0, 0};
   add("a position that overflows", fast, BodyStatus::kOutOfRange, 10.0);
   fast = upright(kBox, 0.1);
-  fast.angular_velocity = {0, kLargest, 0};
+  fast.angular_velocity = {0, kMaxDouble, 0};
   add("a turn that overflows", fast, BodyStatus::kOutOfRange, 10.0);
   return found;
 }
@@ -157,33 +158,33 @@ TEST(StressQuaternions, RejectsInvalidPosesAndKeepsOtherBodies) {
   StressCase stress("q further off, NaN, Inf, overflow to Inf",
                     "its status, counted; zeros for it, the others' wrenches unchanged", "status");
   const Scene scene = box_scene();
-  for (const Refused& refused : refused_states()) {
+  for (const InvalidState& invalid : invalid_states()) {
     RequestHandler handler(scene);
     const BodyState good = upright(kHierarchicalBox, 0.2);
-    const WrenchResponse alone = result_of(handler, {good}, 0.0);
+    const WrenchResponse alone = response_of(handler, {good}, 0.0);
     const ServiceCounters before = handler.counters();
-    const WrenchResponse result = result_of(handler, {refused.state, good}, refused.lead_time);
-    ASSERT_EQ(result.bodies.size(), 2U);
-    const BodyWrench& bad = result.bodies[0];
+    const WrenchResponse response = response_of(handler, {invalid.state, good}, invalid.lead_time);
+    ASSERT_EQ(response.bodies.size(), 2U);
+    const BodyWrench& bad = response.bodies[0];
     const std::array<double, 3> zeros{};
-    stress.require(bad.status == refused.status, "the status of " + refused.name);
+    stress.require(bad.status == invalid.status, "the status of " + invalid.name);
     stress.require(bad.force == zeros && bad.torque == zeros && bad.submerged_volume == 0.0 &&
                        bad.center_of_buoyancy == zeros && bad.force_error_bound == 0.0 &&
                        bad.torque_error_bound == 0.0,
-                   "zeros for " + refused.name);
-    const auto index = static_cast<std::size_t>(refused.status);
-    const bool concerns_all = refused.status == BodyStatus::kBadLeadTime;
-    stress.require(handler.counters().bodies[index] == before.bodies[index] + (concerns_all ? 2 : 1),
-                   "counted, " + refused.name);
-    if (!concerns_all) {
-      stress.require(result.bodies[1].status == BodyStatus::kOk &&
-                         result.bodies[1].force == alone.bodies[0].force &&
-                         result.bodies[1].torque == alone.bodies[0].torque,
-                     "the other body beside " + refused.name);
+                   "zeros for " + invalid.name);
+    const auto index = static_cast<std::size_t>(invalid.status);
+    const bool affects_all = invalid.status == BodyStatus::kBadLeadTime;
+    stress.require(handler.counters().bodies[index] == before.bodies[index] + (affects_all ? 2 : 1),
+                   "counted, " + invalid.name);
+    if (!affects_all) {
+      stress.require(response.bodies[1].status == BodyStatus::kOk &&
+                         response.bodies[1].force == alone.bodies[0].force &&
+                         response.bodies[1].torque == alone.bodies[0].torque,
+                     "the other body beside " + invalid.name);
     }
-    // And the body is answered again as soon as it is asked about properly.
-    stress.require(result_of(handler, {upright(kBox, 0.1)}).bodies[0].status == BodyStatus::kOk,
-                   "afterwards, " + refused.name);
+    // The body is evaluated again with the next valid pose.
+    stress.require(response_of(handler, {upright(kBox, 0.1)}).bodies[0].status == BodyStatus::kOk,
+                   "afterwards, " + invalid.name);
   }
 }
 

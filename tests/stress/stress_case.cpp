@@ -11,7 +11,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr int kShown = 4;  // of the violations
+constexpr int kMaxShown = 4;  // violations
 
 }  // namespace
 
@@ -19,8 +19,8 @@ StressCase::StressCase(std::string row, std::string oracle, std::string gate)
     : row_(std::move(row)), oracle_(std::move(oracle)), gate_(std::move(gate)) {}
 
 StressCase::~StressCase() {
-  EXPECT_GT(checks_, 0) << "nothing was measured";
-  if (violations_ > kShown) ADD_FAILURE() << violations_ << " violations in " << checks_ << " checks";
+  EXPECT_GT(checks_, 0) << "the row made no measurement";
+  if (violations_ > kMaxShown) ADD_FAILURE() << violations_ << " violations in " << checks_ << " checks";
   std::array<char, 32> largest{};
   std::snprintf(largest.data(), largest.size(), "%.4g", largest_);
   testing::Test::RecordProperty("row", row_);
@@ -40,8 +40,9 @@ void StressCase::check(double measured, double gate, const std::string& where) {
     largest_ = ratio;
     largest_at_ = where;
   }
-  if (!holds && ++violations_ <= kShown) {
-    ADD_FAILURE() << row_ << ": " << measured << ", allowed " << gate << " (" << gate_ << "), at " << where;
+  if (!holds && ++violations_ <= kMaxShown) {
+    ADD_FAILURE() << row_ << ": " << measured << ", expected at most " << gate << " (" << gate_ << "), at "
+                  << where;
   }
 }
 

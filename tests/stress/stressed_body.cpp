@@ -9,8 +9,8 @@
 
 namespace buoyancy {
 
-StressedBody::StressedBody(std::string called, TriangleMesh from)
-    : name(std::move(called)),
+StressedBody::StressedBody(std::string body_name, TriangleMesh from)
+    : name(std::move(body_name)),
       source(std::move(from)),
       mesh(make_hydrostatic_mesh({source, {}})),
       box(bounding_box(source)) {}

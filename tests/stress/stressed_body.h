@@ -1,5 +1,4 @@
-// The bodies that the catalogue's rows are tried on, and their results by every method that claims to be
-// exact.
+// The bodies that the catalogue's rows test, and their evaluation by every exact method.
 #pragma once
 
 #include <functional>
@@ -11,10 +10,10 @@
 
 namespace buoyancy {
 
-// Density times gravity is 1: forces are m^3, torques m^4.
+// Density times gravity is 1: forces are in [m^3], torques in [m^4].
 inline const Water kStressWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
 
-// x_B -> q x_B: coordinates of all their digits.
+// Maps x_B to q x_B, so that coordinates use all of their bits.
 TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q);
 
 struct StressedBody {
@@ -23,32 +22,32 @@ struct StressedBody {
   HydrostaticMesh mesh;
   BoundingBox box;
 
-  StressedBody(std::string called, TriangleMesh from);
+  StressedBody(std::string body_name, TriangleMesh from);
 
   double volume_tolerance() const { return mesh.volume_tolerance(); }  // G_V
-  double torque_tolerance(const Vec3& reference_B) const {                  // G_tau
+  double torque_tolerance(const Vec3& reference_B) const {             // G_tau
     return mesh.volume_tolerance() * mesh.max_lever_arm(reference_B);
   }
 };
 
-// Closed, small enough for rational arithmetic: plain, hollow, knotted, thin, in pieces, tiny, huge, far from
-// its origin.
+// Closed bodies small enough for rational arithmetic: simple, hollow, knotted, thin, in several parts, tiny,
+// huge, far from their origin.
 const std::vector<StressedBody>& stressed_bodies();
 
-// A random or an adversarial pose, by turns; every fourth time `water` gets an up direction that is no axis.
+// Random and adversarial poses in turn; every fourth time `water` gets a random up direction.
 Pose stressed_pose(RandomPoses& random, const StressedBody& body, int turn, Water& water);
 
-// Somewhere in or near the body, so that torques are about a point that is none of its own.
+// A random point in or near the body as the reference point of torques.
 Vec3 reference_near(RandomPoses& random, const StressedBody& body);
 
-// visit(name, solver) for every method that claims to be exact, `hierarchical` on every instruction set of
-// this processor.
+// Calls visit(name, solver) for every exact method, and for `hierarchical` on every instruction set of this
+// processor.
 void visit_exact_solvers(const HydrostaticMesh& mesh,
                          const std::function<void(const std::string&, const Solver&)>& visit);
 
-// By how much an exact method's gates are wider at this pose. The paper's two sum up a submerged body instead
-// of taking its constants, and the terms of that sum are as large as A_s times the depth: in the catalogue 1
-// + depth/L. On thin plates, whose V_T is next to nothing against that, they are measured to need the 8 (a
+// The factor on an exact method's tolerances at this pose. The paper's two sum over a submerged body instead
+// of using its constants, and the terms of that sum are as large as A_s times the depth: 1 + depth/L in the
+// catalogue. Thin plates, whose V_T is negligible against that, need a factor of 8 on depth/L (measured on a
 // plate of 1 : 1e8 in 10 x 10 squares: 4.3).
 double depth_factor(const Solver& solver, const Pose& pose, const Water& water);
 
