@@ -1,7 +1,7 @@
-// What is asked of every result: numbers, within the gates of the oracle's, within the bound that came with
-// it.
+// Checks results against the oracle. Rules for every result: it holds finite numbers, its errors are within
+// the bounds published with it, and those of exact methods are within the gates G_V and G_tau.
 //
-// Truth comes from balls, and from rational arithmetic where a ball is too wide to tell.
+// The truth comes from balls, and from rational arithmetic where a ball is too wide to decide.
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@
 
 namespace buoyancy {
 
-// Who answers: the six methods, and `hierarchical` within the request's tolerance.
+// The six methods, and `hierarchical` within the request's tolerance.
 enum class Evaluator { kExact, kExactSurface, kHierarchical, kTolerance, kImproved, kFastSurface, kFast };
 inline constexpr std::array kEvaluators{
     Evaluator::kExact,    Evaluator::kExactSurface, Evaluator::kHierarchical, Evaluator::kTolerance,
     Evaluator::kImproved, Evaluator::kFastSurface,  Evaluator::kFast};
-const char* to_string(Evaluator answerer);
-Method method_of(Evaluator answerer);
+const char* to_string(Evaluator evaluator);
+Method method_of(Evaluator evaluator);
 
 struct GivenResult {
-  Evaluator answerer = Evaluator::kExact;
-  std::string target;  // the instruction set, of `hierarchical`
+  Evaluator evaluator = Evaluator::kExact;
+  std::string target;  // the instruction set, for `hierarchical` only
   BuoyancyResult result;
 };
 
-// Of one result. Errors over G_V and G_tau are only of those who claim exactness, and of bodies that are
-// neither slender nor made of thin faces (is_held_to_gates()); 0 of the others.
+// Error ratios of one result. Errors over G_V and G_tau are set only for exact methods and for bodies that
+// are neither slender nor made of thin faces (HydrostaticMesh::meets_volume_tolerance()); 0 otherwise.
 struct Figures {
   double force_over_gate = 0.0, torque_over_gate = 0.0;
   double force_over_bound = 0.0, torque_over_bound = 0.0;
@@ -41,19 +41,19 @@ struct Figures {
 };
 
 struct CheckReport {
-  std::vector<Figures> figures;         // of each result
-  std::vector<std::string> violations;  // one line each; empty: all is well
+  std::vector<Figures> figures;         // one per result
+  std::vector<std::string> violations;  // one line each; empty if all checks pass
 };
 
-// source: the mesh as validated, in B; mesh: made of it.
-CheckReport judge(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& asked,
-                const std::vector<GivenResult>& results);
+// source: the mesh as validated, in B. mesh: made from source.
+CheckReport check_results(const TriangleMesh& source, const HydrostaticMesh& mesh,
+                          const SearchPose& requested, const std::vector<GivenResult>& results);
 
-// The gates of the exact methods in volume and in torque/(rho g): G_V and G_V L_r, of the paper's methods
-// times 1 + depth/L (docs/stability.md).
+// The gates of the exact methods, the largest errors allowed in volume and in torque/(rho g): G_V and G_V
+// L_r, for the paper's methods times 1 + depth/L (docs/stability.md).
 struct Gates {
   double volume, torque;
 };
-Gates gates(Method method, const HydrostaticMesh& mesh, const SearchPose& asked);
+Gates gates(Method method, const HydrostaticMesh& mesh, const SearchPose& requested);
 
 }  // namespace buoyancy

@@ -15,8 +15,8 @@
 namespace buoyancy {
 namespace {
 
-std::int32_t count(RandomPoses& random, int least, int most) {
-  return least + static_cast<std::int32_t>(random.pick(static_cast<std::size_t>(most - least) + 1));
+std::int32_t count(RandomPoses& random, int min, int max) {
+  return min + static_cast<std::int32_t>(random.pick(static_cast<std::size_t>(max - min) + 1));
 }
 
 double power_of_ten(RandomPoses& random, double low, double high) {
@@ -80,7 +80,7 @@ NamedShape random_shape(RandomPoses& random) {
   }
 }
 
-// Puts a vertex on an edge, near one of its ends: two faces become four, two of them slivers.
+// Adds a vertex on an edge, near one of its ends: two faces become four, two of them slivers.
 void split_edge(TriangleMesh& mesh, RandomPoses& random) {
   const Triangle face = mesh.triangles[random.pick(mesh.triangles.size())];
   const std::int32_t a = face[0];
@@ -102,7 +102,7 @@ void split_edge(TriangleMesh& mesh, RandomPoses& random) {
   }
 }
 
-// Puts a vertex inside a face, near one of its edges: one face becomes three, one of them a needle.
+// Adds a vertex inside a face, near one of its edges: one face becomes three, one of them a needle.
 void split_face(TriangleMesh& mesh, RandomPoses& random) {
   const std::size_t t = random.pick(mesh.triangles.size());
   const Triangle face = mesh.triangles[t];

@@ -1,4 +1,4 @@
-// Closed meshes drawn at random, small enough for the oracle to judge thousands of poses a second: convex,
+// Random closed meshes, small enough for the oracle to check thousands of poses per second: convex,
 // star-shaped, knotted, hollow, in several parts, with slivers and needles, stretched, of 1e-6 to 1e6 m, up
 // to 1e6 times their size from B's origin, in double and in float32 coordinates.
 #pragma once
@@ -15,7 +15,7 @@ struct RandomMesh {
   ValidatedMesh validated;
 };
 
-// The same mesh for the same seed. Drawn again where validation refuses it.
+// Returns the same mesh for the same seed. Draws again if validation refuses a mesh.
 RandomMesh random_mesh(std::uint64_t seed);
 
 }  // namespace buoyancy

@@ -19,14 +19,14 @@ std::uint64_t mesh_seed(std::uint64_t seed, std::int64_t mesh) {
   return std::uint64_t{bits[0]} << 32U | bits[1];
 }
 
-// A mesh and what is asked of it.
+// A mesh, its requests and their results.
 struct MeshCases {
   std::int64_t first = 0;
   std::string kind;
   TriangleMesh source;
   HydrostaticMesh mesh;
-  std::vector<SearchPose> asked;
-  std::vector<std::vector<GivenResult>> results;  // to each
+  std::vector<SearchPose> requested;
+  std::vector<std::vector<GivenResult>> results;  // of each request
 };
 
 MeshCases make_cases(std::uint64_t seed, std::int64_t mesh_number) {
@@ -39,51 +39,52 @@ MeshCases make_cases(std::uint64_t seed, std::int64_t mesh_number) {
   cases.source = std::move(drawn.validated.mesh);
   RandomPoses random(own_seed + 1);
   for (std::int64_t i = 0; i < kRequestsPerMesh; ++i)
-    cases.asked.push_back(random_request(cases.source, random));
-  cases.results.resize(cases.asked.size());
+    cases.requested.push_back(random_search_pose(cases.source, random));
+  cases.results.resize(cases.requested.size());
   return cases;
 }
 
-BuoyancyResult result_of(Evaluator answerer, const HydrostaticMesh& mesh, const SearchPose& asked) {
-  const double tolerance = answerer == Evaluator::kTolerance ? asked.tolerance : 0.0;
-  return buoyancy(Solver(mesh, method_of(answerer), tolerance), asked.pose, asked.water, asked.reference_B);
+BuoyancyResult result_of(Evaluator evaluator, const HydrostaticMesh& mesh, const SearchPose& requested) {
+  const double tolerance = evaluator == Evaluator::kTolerance ? requested.tolerance : 0.0;
+  return buoyancy(Solver(mesh, method_of(evaluator), tolerance), requested.pose, requested.water,
+                  requested.reference_B);
 }
 
 void add_hierarchical(MeshCases& cases, const std::string& target) {
-  for (std::size_t i = 0; i < cases.asked.size(); ++i) {
-    for (const Evaluator answerer : {Evaluator::kHierarchical, Evaluator::kTolerance})
-      cases.results[i].push_back({answerer, target, result_of(answerer, cases.mesh, cases.asked[i])});
+  for (std::size_t i = 0; i < cases.requested.size(); ++i) {
+    for (const Evaluator evaluator : {Evaluator::kHierarchical, Evaluator::kTolerance})
+      cases.results[i].push_back({evaluator, target, result_of(evaluator, cases.mesh, cases.requested[i])});
   }
 }
 
 void add_others(MeshCases& cases) {
-  for (std::size_t i = 0; i < cases.asked.size(); ++i) {
-    for (const Evaluator answerer : kEvaluators) {
-      if (method_of(answerer) != Method::kHierarchical)
-        cases.results[i].push_back({answerer, "", result_of(answerer, cases.mesh, cases.asked[i])});
+  for (std::size_t i = 0; i < cases.requested.size(); ++i) {
+    for (const Evaluator evaluator : kEvaluators) {
+      if (method_of(evaluator) != Method::kHierarchical)
+        cases.results[i].push_back({evaluator, "", result_of(evaluator, cases.mesh, cases.requested[i])});
     }
   }
 }
 
 SearchStats stats_of(const MeshCases& cases) {
-  SearchStats tally;
-  for (std::size_t i = 0; i < cases.asked.size(); ++i) {
+  SearchStats stats;
+  for (std::size_t i = 0; i < cases.requested.size(); ++i) {
     const std::int64_t number = cases.first + static_cast<std::int64_t>(i);
-    const CheckReport judgement = judge(cases.source, cases.mesh, cases.asked[i], cases.results[i]);
-    ++tally.cases;
-    tally.results += static_cast<std::int64_t>(cases.results[i].size());
-    for (std::size_t n = 0; n < judgement.figures.size(); ++n) {
-      auto& row = tally.largest[static_cast<std::size_t>(cases.results[i][n].answerer)];
-      const auto values = judgement.figures[n].values();
+    const CheckReport report = check_results(cases.source, cases.mesh, cases.requested[i], cases.results[i]);
+    ++stats.cases;
+    stats.results += static_cast<std::int64_t>(cases.results[i].size());
+    for (std::size_t n = 0; n < report.figures.size(); ++n) {
+      auto& row = stats.largest[static_cast<std::size_t>(cases.results[i][n].evaluator)];
+      const auto values = report.figures[n].values();
       for (std::size_t column = 0; column < values.size(); ++column) {
         if (values[column] > row[column].value) row[column] = {values[column], number};
       }
     }
-    if (judgement.violations.empty()) continue;
-    ++tally.failed_cases;
-    tally.failures.push_back({number, cases.kind, judgement.violations});
+    if (report.violations.empty()) continue;
+    ++stats.failed_cases;
+    stats.failures.push_back({number, cases.kind, report.violations});
   }
-  return tally;
+  return stats;
 }
 
 template <typename Work>
@@ -115,11 +116,11 @@ SearchStats& SearchStats::operator+=(const SearchStats& other) {
   return *this;
 }
 
-std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked) {
+std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& requested) {
   std::vector<GivenResult> results;
-  for (const Evaluator answerer : kEvaluators) {
-    const bool dispatched = method_of(answerer) == Method::kHierarchical;
-    results.push_back({answerer, dispatched ? simd_target() : "", result_of(answerer, mesh, asked)});
+  for (const Evaluator evaluator : kEvaluators) {
+    const bool dispatched = method_of(evaluator) == Method::kHierarchical;
+    results.push_back({evaluator, dispatched ? simd_target() : "", result_of(evaluator, mesh, requested)});
   }
   return results;
 }
@@ -136,19 +137,19 @@ SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, uns
     in_parallel(meshes.size(), threads, [&](std::size_t i) { add_hierarchical(meshes[i], target); });
   }
   force_simd_target("");
-  std::vector<SearchStats> tallies(meshes.size());
-  in_parallel(meshes.size(), threads, [&](std::size_t i) { tallies[i] = stats_of(meshes[i]); });
+  std::vector<SearchStats> stats_per_mesh(meshes.size());
+  in_parallel(meshes.size(), threads, [&](std::size_t i) { stats_per_mesh[i] = stats_of(meshes[i]); });
   SearchStats total;
-  for (const SearchStats& tally : tallies) total += tally;
+  for (const SearchStats& stats : stats_per_mesh) total += stats;
   return total;
 }
 
-SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& answering) {
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& evaluate) {
   SearchStats total;
   for (std::int64_t mesh = begin / kRequestsPerMesh; mesh < end / kRequestsPerMesh; ++mesh) {
     MeshCases cases = make_cases(seed, mesh);
-    for (std::size_t i = 0; i < cases.asked.size(); ++i)
-      cases.results[i] = answering(cases.mesh, cases.asked[i]);
+    for (std::size_t i = 0; i < cases.requested.size(); ++i)
+      cases.results[i] = evaluate(cases.mesh, cases.requested[i]);
     total += stats_of(cases);
   }
   return total;
@@ -157,7 +158,7 @@ SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, con
 SearchCase search_case(std::uint64_t seed, std::int64_t number) {
   MeshCases cases = make_cases(seed, number / kRequestsPerMesh);
   return {std::move(cases.kind), std::move(cases.source),
-          cases.asked[static_cast<std::size_t>(number % kRequestsPerMesh)]};
+          cases.requested[static_cast<std::size_t>(number % kRequestsPerMesh)]};
 }
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
-// The random search: cases numbered from 0, each the same for the same seed whatever the number of threads
-// and wherever a run begins. 32 requests are asked of each mesh.
+// The random search. Cases are numbered from 0; each depends only on the seed and its number, not on the
+// number of threads or on where a run begins. Each mesh has 32 requests.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@ inline constexpr std::int64_t kRequestsPerMesh = 32;
 
 struct Largest {
   double value = 0.0;
-  std::int64_t at = -1;  // number of the case
+  std::int64_t at = -1;  // the case's number
 };
 
 struct FailedCase {
   std::int64_t number = 0;
-  std::string mesh;  // what kind
+  std::string mesh;  // RandomMesh::kind
   std::vector<std::string> violations;
 };
 
-// What a run found; runs add up.
+// The results of a run; those of several runs can be added.
 struct SearchStats {
   std::int64_t cases = 0;
   std::int64_t results = 0;
@@ -36,23 +36,23 @@ struct SearchStats {
   SearchStats& operator+=(const SearchStats& other);
 };
 
-// What is asked for a result: the product, or in tests something broken.
+// Evaluates a request by all evaluators; tests substitute a broken implementation for the product's.
 using EvaluateAll = std::function<std::vector<GivenResult>(const HydrostaticMesh&, const SearchPose&)>;
 
-// The results of every method, of `hierarchical` on the instruction set in use.
-std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& asked);
+// The product's results by every evaluator, with `hierarchical` on the instruction set in use.
+std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& requested);
 
-// Cases begin <= number < end; both multiples of kRequestsPerMesh. `hierarchical` is asked on every
-// instruction set in turn (force_simd_target: nobody else may ask meanwhile).
+// Runs the cases begin <= number < end; both are multiples of kRequestsPerMesh. `hierarchical` runs on every
+// instruction set in turn; because of force_simd_target(), no other thread may run it meanwhile.
 SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads);
-// The same of others' answers, on one thread.
-SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& answering);
+// The same with another implementation, on one thread.
+SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& evaluate);
 
-// A case by itself.
+// A single case.
 struct SearchCase {
   std::string kind;
   TriangleMesh mesh;
-  SearchPose asked;
+  SearchPose requested;
 };
 SearchCase search_case(std::uint64_t seed, std::int64_t number);
 

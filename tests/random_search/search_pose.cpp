@@ -40,7 +40,7 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
       return quarter_turns(random) *
              Eigen::Quaterniond(1.0, tilt * sign(random), tilt * random.uniform(-1, 1), 0.0);
     }
-    case 2: {  // a face lies on the water, or nearly so
+    case 2: {  // a face lies in the water plane, or nearly so
       const Vec3 normal = normal_of(mesh, face).normalized();
       if (!(normal.norm() > 0.5)) return random.rotation();
       Eigen::Quaterniond flat = rotation_between(normal, sign(random) * up_W);
@@ -53,7 +53,7 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
   }
 }
 
-// A point of B that the water's surface is to pass through.
+// A point of B through which the water plane is to pass.
 Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& up_B, RandomPoses& random) {
   const BoundingBox box = bounding_box(mesh);
   Vec3 a = mesh.vertex(face[0]);
@@ -84,44 +84,45 @@ double nudged(double value, RandomPoses& random) {
 
 }  // namespace
 
-SearchPose random_request(const TriangleMesh& mesh, RandomPoses& random) {
+SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random) {
   const double size = bounding_box(mesh).diagonal();
-  SearchPose asked;
-  if (random.pick(3) == 0) asked.water.up_W = random.direction();
-  const Vec3 up_W = asked.water.up_W;
+  SearchPose requested;
+  if (random.pick(3) == 0) requested.water.up_W = random.direction();
+  const Vec3 up_W = requested.water.up_W;
   const Triangle face = mesh.triangles[random.pick(mesh.triangles.size())];
-  asked.pose.q_WB = random_rotation(mesh, face, up_W, random);
-  const Eigen::Quaterniond q_WB = asked.pose.q_WB.normalized();
+  requested.pose.q_WB = random_rotation(mesh, face, up_W, random);
+  const Eigen::Quaterniond q_WB = requested.pose.q_WB.normalized();
   const Vec3 target_B = random_target(mesh, face, q_WB.conjugate() * up_W, random);
 
-  Vec3 target_W = Vec3::Zero();  // where the target is to be, over the water's surface at 0
+  Vec3 target_W = Vec3::Zero();  // position of the target point, relative to the water plane at level 0
   if (random.pick(3) == 0) {
     target_W = size * power_of_ten(random, 0.0, 8.0) * random.direction();
     target_W -= up_W.dot(target_W) * up_W;
   }
   if (random.pick(3) == 0) {
-    asked.water.level = sign(random) * size * power_of_ten(random, -2.0, 6.0);
-    target_W += asked.water.level * up_W;
+    requested.water.level = sign(random) * size * power_of_ten(random, -2.0, 6.0);
+    target_W += requested.water.level * up_W;
   }
   if (random.pick(12) == 0) target_W += sign(random) * size * power_of_ten(random, -1.0, 4.0) * up_W;
-  asked.pose.p_WB = target_W - q_WB * target_B;
+  requested.pose.p_WB = target_W - q_WB * target_B;
   switch (random.pick(4)) {
     case 0:
-      asked.water.level = nudged(asked.water.level, random);
+      requested.water.level = nudged(requested.water.level, random);
       break;
-    case 1:  // as rounding would have it: the vertex's own height is the level
-      asked.water.level = up_W.dot(q_WB * target_B + asked.pose.p_WB);
-      asked.water.level = nudged(asked.water.level, random);
+    case 1:  // the level is the rounded height of the target point
+      requested.water.level = up_W.dot(q_WB * target_B + requested.pose.p_WB);
+      requested.water.level = nudged(requested.water.level, random);
       break;
     default:
       break;
   }
-  if (random.pick(4) == 0) asked.pose.q_WB.coeffs() *= sign(random) * random.uniform(0.999, 1.001);
-  asked.reference_B = bounding_box(mesh).center();
-  if (random.pick(2) == 0) asked.reference_B += size * power_of_ten(random, -1.0, 3.0) * random.direction();
-  if (random.pick(3) == 0) asked.reference_B = Vec3::Zero();
-  asked.tolerance = power_of_ten(random, -9.0, -1.0);
-  return asked;
+  if (random.pick(4) == 0) requested.pose.q_WB.coeffs() *= sign(random) * random.uniform(0.999, 1.001);
+  requested.reference_B = bounding_box(mesh).center();
+  if (random.pick(2) == 0)
+    requested.reference_B += size * power_of_ten(random, -1.0, 3.0) * random.direction();
+  if (random.pick(3) == 0) requested.reference_B = Vec3::Zero();
+  requested.tolerance = power_of_ten(random, -9.0, -1.0);
+  return requested;
 }
 
 }  // namespace buoyancy

@@ -1,5 +1,5 @@
-// A request about a mesh, drawn at random or aimed at trouble: the water's surface through vertices, edges
-// and faces and a few ulp beside them, grazing, along the axes, tilted by next to nothing, far away and deep.
+// A request about a mesh, random or adversarial: the water plane through vertices, edges and faces or a few
+// ulp beside them, grazing, along the axes, tilted by tiny angles, far away and deep.
 #pragma once
 
 #include "tests/hydrostatics/random_poses.h"
@@ -10,9 +10,9 @@ struct SearchPose {
   Pose pose;
   Water water;
   Vec3 reference_B = Vec3::Zero();
-  double tolerance = 0.0;  // that `hierarchical` is asked a second time with
+  double tolerance = 0.0;  // for the second evaluation by `hierarchical`
 };
 
-SearchPose random_request(const TriangleMesh& mesh, RandomPoses& random);
+SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random);
 
 }  // namespace buoyancy

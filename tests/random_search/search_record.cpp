@@ -16,36 +16,36 @@ std::filesystem::path file_of(const std::filesystem::path& directory, std::uint6
   return directory / (kPrefix + std::to_string(seed) + ".json");
 }
 
-Json to_json(const SearchStats& tally) {
-  Json json{{"cases", tally.cases}, {"results", tally.results}, {"failed_cases", tally.failed_cases}};
+Json to_json(const SearchStats& stats) {
+  Json json{{"cases", stats.cases}, {"results", stats.results}, {"failed_cases", stats.failed_cases}};
   for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
-      const Largest& largest = tally.largest[row][column];
+      const Largest& largest = stats.largest[row][column];
       json["largest"][to_string(kEvaluators[row])][Figures::kNames[column]] = {{"value", largest.value},
-                                                                              {"case", largest.at}};
+                                                                               {"case", largest.at}};
     }
   }
   json["failures"] = Json::array();
-  for (const FailedCase& failure : tally.failures)
+  for (const FailedCase& failure : stats.failures)
     json["failures"].push_back(
         {{"case", failure.number}, {"mesh", failure.mesh}, {"violations", failure.violations}});
   return json;
 }
 
 SearchStats from_json(const Json& json) {
-  SearchStats tally;
-  tally.cases = json.at("cases");
-  tally.results = json.at("results");
-  tally.failed_cases = json.at("failed_cases");
+  SearchStats stats;
+  stats.cases = json.at("cases");
+  stats.results = json.at("results");
+  stats.failed_cases = json.at("failed_cases");
   for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
     for (std::size_t column = 0; column < Figures::kNames.size(); ++column) {
       const Json& largest = json.at("largest").at(to_string(kEvaluators[row])).at(Figures::kNames[column]);
-      tally.largest[row][column] = {largest.at("value"), largest.at("case")};
+      stats.largest[row][column] = {largest.at("value"), largest.at("case")};
     }
   }
   for (const Json& failure : json.at("failures"))
-    tally.failures.push_back({failure.at("case"), failure.at("mesh"), failure.at("violations")});
-  return tally;
+    stats.failures.push_back({failure.at("case"), failure.at("mesh"), failure.at("violations")});
+  return stats;
 }
 
 Expected<SearchStats> load(const std::filesystem::path& path) {
@@ -54,8 +54,8 @@ Expected<SearchStats> load(const std::filesystem::path& path) {
   try {
     return from_json(json);
   } catch (const Json::exception&) {
-    return make_error({path.string(), "is no record of a search", "what an earlier run wrote",
-                       "another version wrote it, or something else", "Remove it"});
+    return make_error({path.string(), "is not a record of a search", "a file written by an earlier run",
+                       "another version or another program wrote it", "Remove the file"});
   }
 }
 
@@ -68,18 +68,18 @@ Expected<SearchStats> load_stats(const std::filesystem::path& directory, std::ui
 }
 
 Expected<void> save_stats(const std::filesystem::path& directory, std::uint64_t seed,
-                          const SearchStats& tally) {
+                          const SearchStats& stats) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   const std::filesystem::path path = file_of(directory, seed);
   const std::filesystem::path fresh = path.string() + ".new";
   std::ofstream file(fresh);
-  file << to_json(tally).dump(1) << '\n';
+  file << to_json(stats).dump(1) << '\n';
   file.close();
   if (file) std::filesystem::rename(fresh, path, error);
   if (!file || error) {
-    return make_error({path.string(), "cannot be written", "a directory for the search's records", "",
-                       "Name another with --record"});
+    return make_error({path.string(), "cannot be written", "a writable directory for the records", "",
+                       "Choose another directory with --record"});
   }
   return {};
 }
@@ -90,20 +90,20 @@ Expected<SearchStats> load_all(const std::filesystem::path& directory) {
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
-    Expected<SearchStats> tally = load(entry.path());
-    if (!tally) return tally;
-    total += *tally;
+    Expected<SearchStats> stats = load(entry.path());
+    if (!stats) return stats;
+    total += *stats;
   }
   return total;
 }
 
-std::string markdown(const SearchStats& tally) {
+std::string markdown(const SearchStats& stats) {
   std::string text = "| |";
   for (const char* column : Figures::kNames) text += std::string(" ") + column + " |";
   text += "\n|---|---|---|---|---|\n";
   for (std::size_t row = 0; row < kEvaluators.size(); ++row) {
     text += std::string("| `") + to_string(kEvaluators[row]) + "` |";
-    for (const Largest& largest : tally.largest[row]) {
+    for (const Largest& largest : stats.largest[row]) {
       std::array<char, 32> number;
       std::snprintf(number.data(), number.size(), " %.2g |", largest.value);
       text += largest.value > 0.0 ? number.data() : " |";
@@ -113,11 +113,11 @@ std::string markdown(const SearchStats& tally) {
   return text;
 }
 
-std::string summary(const SearchStats& tally) {
+std::string summary(const SearchStats& stats) {
   std::array<char, 160> text;
-  std::snprintf(text.data(), text.size(), "%lld cases, %lld answers, %lld violations",
-                static_cast<long long>(tally.cases), static_cast<long long>(tally.results),
-                static_cast<long long>(tally.failed_cases));
+  std::snprintf(text.data(), text.size(), "%lld cases, %lld results, %lld violations",
+                static_cast<long long>(stats.cases), static_cast<long long>(stats.results),
+                static_cast<long long>(stats.failed_cases));
   return text.data();
 }
 

@@ -1,4 +1,4 @@
-// What runs of the search have found so far, on disk: one JSON file per seed in a directory.
+// The results of the search so far, on disk: one JSON file per seed in a directory.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace buoyancy {
 
-// Zeros where there is no such file. Errors: a file that is not one of ours.
+// Returns zeros if there is no such file. Error: the file is not a record of a search.
 Expected<SearchStats> load_stats(const std::filesystem::path& directory, std::uint64_t seed);
-// Replaces the file at once or not at all. Errors: a directory that cannot be written.
+// Replaces the file atomically. Error: the directory or the file cannot be written.
 Expected<void> save_stats(const std::filesystem::path& directory, std::uint64_t seed,
-                          const SearchStats& tally);
-// Of all seeds of the directory.
+                          const SearchStats& stats);
+// Adds up the records of all seeds in the directory.
 Expected<SearchStats> load_all(const std::filesystem::path& directory);
 
-// The largest figures as a Markdown table: who answers x error over gate and over bound.
-std::string markdown(const SearchStats& tally);
-// One line.
-std::string summary(const SearchStats& tally);
+// The largest error ratios as a Markdown table: evaluators x error over gate and over bound.
+std::string markdown(const SearchStats& stats);
+// A summary in one line.
+std::string summary(const SearchStats& stats);
 
 }  // namespace buoyancy

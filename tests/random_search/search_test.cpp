@@ -1,5 +1,5 @@
-// The search itself: that it finds what is broken, that it makes it small, that runs add up; and 20,000 cases
-// that find nothing.
+// Tests of the search itself: it finds and shrinks defects, and runs add up; 20,000 cases of the product have
+// no violation.
 #include <filesystem>
 #include <thread>
 
@@ -18,48 +18,49 @@ constexpr std::int64_t kCases = 625 * kRequestsPerMesh;  // 20,000
 #endif
 
 TEST(RandomSearch, FindsNoViolationIn20000Cases) {
-  const SearchStats tally = search(1, 0, kCases, std::max(1U, std::thread::hardware_concurrency()));
-  EXPECT_EQ(tally.cases, kCases);
-  EXPECT_GE(tally.results, 7 * kCases);
-  for (const FailedCase& failure : tally.failures) {
+  const SearchStats stats = search(1, 0, kCases, std::max(1U, std::thread::hardware_concurrency()));
+  EXPECT_EQ(stats.cases, kCases);
+  EXPECT_GE(stats.results, 7 * kCases);
+  for (const FailedCase& failure : stats.failures) {
     for (const std::string& violation : failure.violations)
       ADD_FAILURE() << "case " << failure.number << ", " << failure.mesh << ": " << violation;
   }
 }
 
-// Off by four G_V where the water cuts the box's middle.
-std::vector<GivenResult> broken_results(const HydrostaticMesh& mesh, const SearchPose& asked) {
-  BuoyancyResult result = buoyancy(Solver(mesh, Method::kExact), asked.pose, asked.water, asked.reference_B);
+// A wrong result, off by four force error bounds, where about half of the body is submerged.
+std::vector<GivenResult> broken_results(const HydrostaticMesh& mesh, const SearchPose& requested) {
+  BuoyancyResult result =
+      buoyancy(Solver(mesh, Method::kExact), requested.pose, requested.water, requested.reference_B);
   if (result.volume > 0.4 * mesh.volume && result.volume < 0.6 * mesh.volume)
-    result.force_W += 4.0 * result.force_error_bound * asked.water.up_W;
+    result.force_W += 4.0 * result.force_error_bound * requested.water.up_W;
   return {{Evaluator::kExact, "", result}};
 }
 
 TEST(RandomSearch, FindsAndShrinksInaccurateResult) {
-  const SearchStats tally = search(2, 0, 8 * kRequestsPerMesh, broken_results);
-  ASSERT_GT(tally.failed_cases, 0);
-  ASSERT_FALSE(tally.failures.empty());
-  EXPECT_GT(tally.largest[0][0].value, 3.0);
-  const std::int64_t number = tally.failures[0].number;
+  const SearchStats stats = search(2, 0, 8 * kRequestsPerMesh, broken_results);
+  ASSERT_GT(stats.failed_cases, 0);
+  ASSERT_FALSE(stats.failures.empty());
+  EXPECT_GT(stats.largest[0][0].value, 3.0);
+  const std::int64_t number = stats.failures[0].number;
   const SearchCase found = search_case(2, number);
-  const auto still_fails = [](const TriangleMesh& mesh, const SearchPose& asked) {
-    return fails(mesh, asked, broken_results);
+  const auto still_fails = [](const TriangleMesh& mesh, const SearchPose& requested) {
+    return fails(mesh, requested, broken_results);
   };
-  ASSERT_TRUE(still_fails(found.mesh, found.asked));
+  ASSERT_TRUE(still_fails(found.mesh, found.requested));
   const SearchCase small = shrunk(found, still_fails);
-  EXPECT_TRUE(still_fails(small.mesh, small.asked));
+  EXPECT_TRUE(still_fails(small.mesh, small.requested));
   EXPECT_LE(small.mesh.triangles.size(), 8U);
   const std::string text = as_test(small, 2, number);
   EXPECT_NE(text.find("TEST(FoundBySearch, Seed2Case" + std::to_string(number)), std::string::npos) << text;
 }
 
 TEST(RandomSearch, FindsNanResult) {
-  const SearchStats tally = search(3, 0, kRequestsPerMesh, [](const HydrostaticMesh&, const SearchPose&) {
+  const SearchStats stats = search(3, 0, kRequestsPerMesh, [](const HydrostaticMesh&, const SearchPose&) {
     BuoyancyResult result;
     result.torque_W.x() = std::numeric_limits<double>::quiet_NaN();
     return std::vector<GivenResult>{{Evaluator::kFast, "", result}};
   });
-  EXPECT_EQ(tally.failed_cases, kRequestsPerMesh);
+  EXPECT_EQ(stats.failed_cases, kRequestsPerMesh);
 }
 
 TEST(RandomSearch, IsReproducibleAcrossRunsAndThreads) {

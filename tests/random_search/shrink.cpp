@@ -8,7 +8,7 @@
 namespace buoyancy {
 namespace {
 
-// Without vertices that no face uses.
+// The mesh without unused vertices.
 TriangleMesh compacted(const TriangleMesh& mesh) {
   TriangleMesh result;
   std::vector<std::int32_t> place(mesh.vertex_count(), -1);
@@ -27,7 +27,7 @@ TriangleMesh compacted(const TriangleMesh& mesh) {
   return result;
 }
 
-// Moves a vertex onto its neighbour; what is left is as closed as it was.
+// Merges a vertex into its neighbour, which keeps a closed mesh closed.
 TriangleMesh collapsed(const TriangleMesh& mesh, std::int32_t from, std::int32_t to) {
   TriangleMesh result = mesh;
   result.triangles.clear();
@@ -58,7 +58,7 @@ bool collapse_one_edge(SearchCase& failing, const StillFails& still_fails) {
   for (const Triangle& face : failing.mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       TriangleMesh smaller = collapsed(failing.mesh, face[i], face[(i + 1) % 3]);
-      if (smaller.triangles.empty() || !still_fails(smaller, failing.asked)) continue;
+      if (smaller.triangles.empty() || !still_fails(smaller, failing.requested)) continue;
       failing.mesh = std::move(smaller);
       return true;
     }
@@ -66,25 +66,25 @@ bool collapse_one_edge(SearchCase& failing, const StillFails& still_fails) {
   return false;
 }
 
-// Tries each simpler value of what is asked.
+// Tries simpler values of each parameter of the request.
 void simplify_request(SearchCase& failing, const StillFails& still_fails) {
   const auto try_change = [&](auto&& change) {
-    SearchPose simpler = failing.asked;
+    SearchPose simpler = failing.requested;
     change(simpler);
-    if (still_fails(failing.mesh, simpler)) failing.asked = simpler;
+    if (still_fails(failing.mesh, simpler)) failing.requested = simpler;
   };
-  try_change([](SearchPose& asked) { asked.reference_B = Vec3::Zero(); });
-  try_change([](SearchPose& asked) { asked.pose.q_WB = Eigen::Quaterniond::Identity(); });
-  try_change([](SearchPose& asked) { asked.pose.p_WB = Vec3::Zero(); });
-  try_change([](SearchPose& asked) { asked.water.level = 0.0; });
-  try_change([](SearchPose& asked) { asked.water.up_W = Vec3::UnitZ(); });
-  try_change([](SearchPose& asked) { asked.tolerance = 1e-3; });
+  try_change([](SearchPose& requested) { requested.reference_B = Vec3::Zero(); });
+  try_change([](SearchPose& requested) { requested.pose.q_WB = Eigen::Quaterniond::Identity(); });
+  try_change([](SearchPose& requested) { requested.pose.p_WB = Vec3::Zero(); });
+  try_change([](SearchPose& requested) { requested.water.level = 0.0; });
+  try_change([](SearchPose& requested) { requested.water.up_W = Vec3::UnitZ(); });
+  try_change([](SearchPose& requested) { requested.tolerance = 1e-3; });
   for (const int bits : {30, 16, 8, 4}) {
-    try_change([bits](SearchPose& asked) {
-      for (double& value : asked.pose.p_WB) value = rounded_to(value, bits);
-      for (double& value : asked.reference_B) value = rounded_to(value, bits);
-      for (double& value : asked.pose.q_WB.coeffs()) value = rounded_to(value, bits);
-      asked.water.level = rounded_to(asked.water.level, bits);
+    try_change([bits](SearchPose& requested) {
+      for (double& value : requested.pose.p_WB) value = rounded_to(value, bits);
+      for (double& value : requested.reference_B) value = rounded_to(value, bits);
+      for (double& value : requested.pose.q_WB.coeffs()) value = rounded_to(value, bits);
+      requested.water.level = rounded_to(requested.water.level, bits);
     });
   }
 }
@@ -101,13 +101,14 @@ std::string numbers(const Vec3& v) {
 
 }  // namespace
 
-bool fails(const TriangleMesh& mesh, const SearchPose& asked, const EvaluateAll& answering) {
+bool fails(const TriangleMesh& mesh, const SearchPose& requested, const EvaluateAll& evaluate) {
   ImportedMesh imported;
   imported.mesh = mesh;
   const MeshValidation validation = validate_mesh(imported, "case");
   if (!validation.mesh) return false;
   const HydrostaticMesh prepared = make_hydrostatic_mesh(*validation.mesh);
-  return !judge(validation.mesh->mesh, prepared, asked, answering(prepared, asked)).violations.empty();
+  return !check_results(validation.mesh->mesh, prepared, requested, evaluate(prepared, requested))
+              .violations.empty();
 }
 
 SearchCase shrunk(SearchCase failing, const StillFails& still_fails) {
@@ -115,7 +116,7 @@ SearchCase shrunk(SearchCase failing, const StillFails& still_fails) {
   }
   for (const int bits : {24, 12, 6, 3}) {
     SearchCase shorter = with_short_numbers(failing, bits);
-    if (still_fails(shorter.mesh, shorter.asked)) failing = std::move(shorter);
+    if (still_fails(shorter.mesh, shorter.requested)) failing = std::move(shorter);
   }
   simplify_request(failing, still_fails);
   while (collapse_one_edge(failing, still_fails)) {
@@ -124,8 +125,8 @@ SearchCase shrunk(SearchCase failing, const StillFails& still_fails) {
 }
 
 std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t number_of_case) {
-  const SearchPose& asked = failing.asked;
-  const Eigen::Quaterniond& q = asked.pose.q_WB;
+  const SearchPose& requested = failing.requested;
+  const Eigen::Quaterniond& q = requested.pose.q_WB;
   std::string text = "TEST(FoundBySearch, Seed" + std::to_string(seed) + "Case" +
                      std::to_string(number_of_case) + ") {\n  // from: " + failing.kind +
                      "\n  TriangleMesh mesh;\n";
@@ -137,14 +138,14 @@ std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t 
     std::snprintf(corners.data(), corners.size(), "{%d, %d, %d}, ", face[0], face[1], face[2]);
     text += corners.data();
   }
-  text += "};\n  SearchPose asked;\n";
-  text += "  asked.pose.p_WB = {" + numbers(asked.pose.p_WB) + "};\n";
-  text += "  asked.pose.q_WB = {" + number(q.w()) + ", " + numbers(q.vec()) + "};\n";
-  text += "  asked.water.up_W = {" + numbers(asked.water.up_W) + "};\n";
-  text += "  asked.water.level = " + number(asked.water.level) + ";\n";
-  text += "  asked.reference_B = {" + numbers(asked.reference_B) + "};\n";
-  text += "  asked.tolerance = " + number(asked.tolerance) + ";\n";
-  text += "  EXPECT_FALSE(fails(mesh, asked, product_results));\n}\n";
+  text += "};\n  SearchPose requested;\n";
+  text += "  requested.pose.p_WB = {" + numbers(requested.pose.p_WB) + "};\n";
+  text += "  requested.pose.q_WB = {" + number(q.w()) + ", " + numbers(q.vec()) + "};\n";
+  text += "  requested.water.up_W = {" + numbers(requested.water.up_W) + "};\n";
+  text += "  requested.water.level = " + number(requested.water.level) + ";\n";
+  text += "  requested.reference_B = {" + numbers(requested.reference_B) + "};\n";
+  text += "  requested.tolerance = " + number(requested.tolerance) + ";\n";
+  text += "  EXPECT_FALSE(fails(mesh, requested, product_results));\n}\n";
   return text;
 }
 

@@ -1,5 +1,5 @@
-// A failing case made small: edges collapsed while the case still fails, numbers made short; and as a test to
-// paste.
+// Shrinks a failing case, by collapsing edges and shortening numbers while it still fails, and formats it as
+// a test to paste.
 #pragma once
 
 #include <functional>
@@ -11,12 +11,12 @@ namespace buoyancy {
 
 using StillFails = std::function<bool(const TriangleMesh&, const SearchPose&)>;
 
-// The case as validation accepts it and a result that `answering` gives breaks a law.
-bool fails(const TriangleMesh& mesh, const SearchPose& asked, const EvaluateAll& answering);
+// True if validation accepts the mesh and a result of `evaluate` violates a rule.
+bool fails(const TriangleMesh& mesh, const SearchPose& requested, const EvaluateAll& evaluate);
 
 SearchCase shrunk(SearchCase failing, const StillFails& still_fails);
 
-// A GoogleTest test of the case, numbers in hexadecimal.
+// Formats the case as a GoogleTest test, with numbers in hexadecimal.
 std::string as_test(const SearchCase& failing, std::uint64_t seed, std::int64_t number);
 
 }  // namespace buoyancy
