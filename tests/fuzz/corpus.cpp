@@ -22,14 +22,14 @@ std::optional<std::uint8_t> hexadecimal_digit(char c) {
 FuzzInput from_hexadecimal(const FuzzInput& text, const std::string& name) {
   FuzzInput bytes;
   std::optional<std::uint8_t> high;
-  bool in_remark = false;
+  bool in_comment = false;
   for (const std::uint8_t character : text) {
     const auto c = static_cast<char>(character);
-    if (c == '\n') in_remark = false;
-    if (c == '#') in_remark = true;
-    if (in_remark || c == '\n' || c == ' ') continue;
+    if (c == '\n') in_comment = false;
+    if (c == '#') in_comment = true;
+    if (in_comment || c == '\n' || c == ' ') continue;
     const std::optional<std::uint8_t> digit = hexadecimal_digit(c);
-    if (!digit) throw std::runtime_error(name + ": '" + c + "' where a digit of 0-9, a-f was expected");
+    if (!digit) throw std::runtime_error(name + ": '" + c + "': expected a hexadecimal digit, 0-9 or a-f");
     if (high) {
       bytes.push_back(static_cast<std::uint8_t>(16U * *high + *digit));
       high.reset();
@@ -37,11 +37,11 @@ FuzzInput from_hexadecimal(const FuzzInput& text, const std::string& name) {
       high = digit;
     }
   }
-  if (high) throw std::runtime_error(name + ": an odd number of hexadecimal digits");
+  if (high) throw std::runtime_error(name + ": odd number of hexadecimal digits; expected pairs");
   return bytes;
 }
 
-// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014: SplitMix64.
+// SplitMix64: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -52,7 +52,7 @@ class Random {
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
     return z ^ (z >> 31U);
   }
-  // 0 to count - 1; 0 also where count is 0.
+  // Returns a number from 0 to count - 1, or 0 if count is 0.
   std::size_t below(std::size_t count) { return count == 0 ? 0 : next() % count; }
 
  private:
@@ -106,7 +106,7 @@ std::vector<CorpusFile> read_corpus(const std::filesystem::path& directory) {
     if (entry.path().extension() == ".hex") content = from_hexadecimal(content, name);
     files.push_back({name, std::move(content)});
   }
-  if (files.empty()) throw std::runtime_error(directory.string() + ": no file");
+  if (files.empty()) throw std::runtime_error(directory.string() + ": contains no files; expected a corpus");
   std::sort(files.begin(), files.end(),
             [](const CorpusFile& a, const CorpusFile& b) { return a.name < b.name; });
   return files;

@@ -1,7 +1,7 @@
-// The corpus in tests/fuzz/corpus: small inputs that seed the fuzzer, and those that once broke something.
+// The corpus in tests/fuzz/corpus: small inputs that seed the fuzzer, and inputs of former findings.
 //
-// A file is an input as it stands, but for names that end in .hex: these are text, pairs of hexadecimal
-// digits, where white space is passed over and # begins a remark that ends with its line.
+// A file contains the input's bytes, except files named *.hex: these are text, pairs of hexadecimal digits,
+// in which spaces and newlines are ignored and # starts a comment to the end of the line.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ struct CorpusFile {
   FuzzInput input;
 };
 
-// In the order of their names. Throws std::runtime_error where the directory holds no file, or one that says
-// .hex and is not.
+// Returns the files sorted by name. Throws std::runtime_error if the directory contains no file or an invalid
+// .hex file.
 std::vector<CorpusFile> read_corpus(const std::filesystem::path& directory);
 
-// One of the input's neighbours: a few bytes changed, inserted, repeated or left out, or its head before
-// another's tail. The same for the same arguments, on every machine.
+// Returns a mutation of the input: a few bytes changed, inserted, repeated or removed, or its head joined to
+// the tail of `other`. The same arguments give the same result on every machine.
 FuzzInput mutated(const FuzzInput& input, const FuzzInput& other, std::uint64_t seed);
 
 }  // namespace buoyancy

@@ -1,5 +1,6 @@
-// Bytes as a CSV file of recorded poses. Every line must turn up once: as the header, blank, as a body of a
-// request, or reported; and the rows written out again, 17 digits each, must be read as the same requests.
+// Fuzz target: bytes as a CSV file of recorded poses. Every line must be accounted for exactly once: as the
+// header, as blank, as a body of a request, or as reported; and the rows written with 17 digits must be read
+// as the same rows.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,10 +19,10 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kMaxLineLength = 4096;
 constexpr std::string_view kTwistHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
 
-// A file without a place on any disk, one for the whole run.
+// Writes the text to an in-memory file, one for the whole run, and returns its path.
 std::string path_of_file_with(std::string_view text) {
   static const int kFile = ::memfd_create("fuzz.csv", MFD_CLOEXEC);
   const auto size = static_cast<ssize_t>(text.size());
@@ -31,13 +32,13 @@ std::string path_of_file_with(std::string_view text) {
   return "/proc/self/fd/" + std::to_string(kFile);
 }
 
-// Lines behind the header that are not blank; the last one counts without its newline too.
+// The lines after the header that are not blank; the last one counts even without a newline.
 std::vector<std::string_view> data_lines(std::string_view text) {
   std::vector<std::string_view> lines;
   bool is_header = true;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
-    const bool blank = line.find_first_not_of(" \t\r") == line.npos && line.size() <= kLongestLine;
+    const bool blank = line.find_first_not_of(" \t\r") == line.npos && line.size() <= kMaxLineLength;
     if (!is_header && !blank) lines.push_back(line);
     is_header = false;
     text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -45,47 +46,48 @@ std::vector<std::string_view> data_lines(std::string_view text) {
   return lines;
 }
 
-// Of a line that was read as a row.
+// The utime of a line that was read as a row.
 std::int64_t utime_of(std::string_view line) {
   return std::strtoll(std::string(line.substr(0, line.find(','))).c_str(), nullptr, 10);
 }
 
 WrenchRequest request_of(const RecordedEvent& recorded, std::size_t number) {
   WrenchRequest request;
-  law(!decode(recorded.bytes, request), "a request from CSV is a message of ours");
-  law(!request.bodies.empty() && request.bodies.size() <= kMaxRowsPerRequest, "a request has bodies");
-  law(request.key.utime == recorded.timestamp && request.key.session_id == 0 &&
-          request.key.seq == static_cast<std::int64_t>(number) && request.lead_time == 0.0,
-      "a request from CSV has its rows' utime, session 0, and counts from 0");
+  require(!decode(recorded.bytes, request), "a request from CSV decodes");
+  require(!request.bodies.empty() && request.bodies.size() <= kMaxRowsPerRequest, "a request has bodies");
+  require(request.key.utime == recorded.timestamp && request.key.session_id == 0 &&
+              request.key.seq == static_cast<std::int64_t>(number) && request.lead_time == 0.0,
+          "a request from CSV has its rows' utime, session 0 and seq counted from 0");
   return request;
 }
 
-// Walks along the lines: each is a row of the next request, or the next one reported.
+// Reads all items and checks that each line is a row of the next request or the next reported line.
 std::vector<WrenchRequest> read_all(StateCsvReader& reader, const std::vector<std::string_view>& lines) {
   std::vector<WrenchRequest> requests;
   std::int64_t offset = 0;
   std::size_t next_line = 0;
   while (true) {
     const LogItem item = reader.next();
-    law(reader.offset() >= offset && reader.offset() <= reader.size(), "reading goes forward, to the end");
+    require(reader.offset() >= offset && reader.offset() <= reader.size(),
+            "the offset increases up to the file's size");
     offset = reader.offset();
     if (std::holds_alternative<EndOfLog>(item)) break;
-    law(next_line < lines.size(), "a file has no more rows and reports than lines");
+    require(next_line < lines.size(), "a file has no more rows and reports than lines");
     if (const auto* recorded = std::get_if<RecordedEvent>(&item)) {
       requests.push_back(request_of(*recorded, requests.size()));
       const WrenchRequest& request = requests.back();
-      law(request.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");
+      require(request.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");
       for (std::size_t row = 0; row < request.bodies.size(); ++row) {
-        law(utime_of(lines[next_line++]) == request.key.utime, "the rows of a request have its utime");
+        require(utime_of(lines[next_line++]) == request.key.utime, "the rows of a request have its utime");
       }
     } else {
-      law(!std::get<CorruptSection>(item).description.empty(), "a report says what is wrong");
+      require(!std::get<CorruptSection>(item).description.empty(), "a report describes the error");
       ++next_line;
     }
   }
-  law(offset == reader.size(), "the end is the end of the file");
-  law(std::holds_alternative<EndOfLog>(reader.next()), "the end stays the end");
-  law(next_line == lines.size(), "every line is a row or reported");
+  require(offset == reader.size(), "reading ends at the end of the file");
+  require(std::holds_alternative<EndOfLog>(reader.next()), "the end of the log is final");
+  require(next_line == lines.size(), "every line is a row or reported");
   return requests;
 }
 
@@ -95,7 +97,7 @@ void append(double value, std::string& row) {
   row += text;
 }
 
-std::string written_again(const std::vector<WrenchRequest>& requests) {
+std::string rewrite(const std::vector<WrenchRequest>& requests) {
   std::string text(kTwistHeader);
   for (const WrenchRequest& request : requests) {
     for (const BodyState& body : request.bodies) {
@@ -124,30 +126,30 @@ void check_same_rows(const std::vector<WrenchRequest>& first, const std::vector<
   }
   std::size_t row = 0;
   for (const WrenchRequest& request : second) {
-    law(request.bodies.size() <= rows.size() - row, "what we write has no more rows");
+    require(request.bodies.size() <= rows.size() - row, "a rewritten file has no more rows");
     for (const BodyState& again : request.bodies) {
       const BodyState& body = rows[row++];
-      law(body.body_id == again.body_id && same(body.position, again.position) &&
-              same(body.quaternion_wxyz, again.quaternion_wxyz) &&
-              same(body.linear_velocity, again.linear_velocity) &&
-              same(body.angular_velocity, again.angular_velocity),
-          "a row written again is read as the same row");
+      require(body.body_id == again.body_id && same(body.position, again.position) &&
+                  same(body.quaternion_wxyz, again.quaternion_wxyz) &&
+                  same(body.linear_velocity, again.linear_velocity) &&
+                  same(body.angular_velocity, again.angular_velocity),
+              "a rewritten row is read as the same row");
     }
   }
-  law(row == rows.size(), "what we write is read whole");
+  require(row == rows.size(), "a rewritten file is read completely");
 }
 
 void check(std::string_view text) {
   Expected<StateCsvReader> reader = StateCsvReader::open(path_of_file_with(text));
   if (!reader) {
-    law(reader.error().message().find('\n') == std::string::npos, "an error is one line");
+    require(reader.error().message().find('\n') == std::string::npos, "an error is one line");
     return;
   }
   const std::vector<WrenchRequest> requests = read_all(*reader, data_lines(text));
 
-  const std::string again = written_again(requests);
+  const std::string again = rewrite(requests);
   Expected<StateCsvReader> second = StateCsvReader::open(path_of_file_with(again));
-  law(second.has_value(), "what we write has our header");
+  require(second.has_value(), "a rewritten file opens");
   check_same_rows(requests, read_all(*second, data_lines(again)));
 }
 

@@ -1,5 +1,5 @@
-// A fuzzer's bytes read as numbers: whatever is asked for past their end is zero, so that every input is a
-// valid one and a shorter one means something near.
+// Reads a fuzzer's bytes as numbers. Reads past the end return zero, so that every input is valid and a
+// shorter input has a similar meaning.
 #pragma once
 
 #include <algorithm>
@@ -31,11 +31,11 @@ class FuzzBytes {
   double raw_double() { return number<double>(); }
   float raw_float() { return number<float>(); }
 
-  // An integer of eight bits and, 26 binary digits below it, another: a place on a coarse grid or beside it
-  // by less than the weld's tolerance.
+  // An integer of eight bits plus 2^-26 times another: a position on a coarse grid or beside it by less than
+  // the weld's tolerance.
   double beside_grid() {
-    const double place = small();
-    return place + std::ldexp(static_cast<double>(small()), -26);
+    const double on_grid = small();
+    return on_grid + std::ldexp(static_cast<double>(small()), -26);
   }
 
  private:

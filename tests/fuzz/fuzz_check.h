@@ -1,5 +1,5 @@
-// A law that no input may break. What breaks one is a finding: libFuzzer keeps the input where the process
-// aborts.
+// Requirements that must hold for every input. A violation is a finding: the process aborts, and libFuzzer
+// keeps the input.
 #pragma once
 
 #include <cstdio>
@@ -8,13 +8,14 @@
 
 namespace buoyancy {
 
-[[noreturn]] inline void fail_requirement(const char* law, const std::string& found = {}) {
-  std::fprintf(stderr, "broken law: %s%s%s\n", law, found.empty() ? "" : ": ", found.c_str());
+[[noreturn]] inline void fail_requirement(const char* requirement, const std::string& actual = {}) {
+  std::fprintf(stderr, "violated requirement: %s%s%s\n", requirement, actual.empty() ? "" : ": ",
+               actual.c_str());
   std::abort();
 }
 
-inline void law(bool holds, const char* law) {
-  if (!holds) fail_requirement(law);
+inline void require(bool holds, const char* requirement) {
+  if (!holds) fail_requirement(requirement);
 }
 
 }  // namespace buoyancy

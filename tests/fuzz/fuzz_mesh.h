@@ -1,11 +1,10 @@
-// A mesh and what validation is asked of it, out of a fuzzer's bytes:
+// Reads a mesh and its validation options from a fuzzer's bytes:
 //
-//   options   1 byte: bit 0 open policy, bit 1 counts intersecting pairs, bits 2-3 how coordinates are
-//   written
-//             (0 an int8 each; 1 two int8, the second 2^-26 of the first; 2 float32; 3 double), bit 4 faces
+//   options   1 byte: bit 0 open policy; bit 1 count intersecting pairs; bits 2-3 encoding of coordinates
+//             (0 an int8 each; 1 two int8, the second in units of 2^-26; 2 float32; 3 double); bit 4 faces
 //             are tetrahedra of four indices instead of triangles of three
 //   scale     1 int8 e: coordinates are multiplied by 2^(8 e)
-//   vertices  1 byte: how many, then their coordinates
+//   vertices  1 byte: their number, then their coordinates
 //   indices   1 byte each, modulo the number of vertices, to the end
 #pragma once
 
@@ -23,8 +22,8 @@ struct FuzzMesh {
   ValidationOptions options;
 };
 
-inline double coordinate(FuzzBytes& bytes, unsigned writing) {
-  switch (writing) {
+inline double coordinate(FuzzBytes& bytes, unsigned encoding) {
+  switch (encoding) {
     case 0:
       return bytes.small();
     case 1:
@@ -46,9 +45,9 @@ inline FuzzMesh read_mesh(FuzzBytes bytes) {
   const std::uint8_t vertices = bytes.byte();
   TriangleMesh& mesh = input.imported.mesh;
   for (int v = 0; v < vertices; ++v) {
-    std::array<double, 3> place{};
-    for (double& value : place) value = std::ldexp(coordinate(bytes, (options >> 2U) & 3U), scale);
-    mesh.add_vertex({place[0], place[1], place[2]});
+    std::array<double, 3> position{};
+    for (double& value : position) value = std::ldexp(coordinate(bytes, (options >> 2U) & 3U), scale);
+    mesh.add_vertex({position[0], position[1], position[2]});
   }
   const auto index = [&] { return static_cast<std::int32_t>(bytes.byte() % vertices); };
   while (vertices > 0 && !bytes.empty()) {

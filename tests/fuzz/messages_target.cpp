@@ -1,12 +1,12 @@
-// Bytes as packets from the network: every decoder on every packet, and an handler with a small scene that
-// is asked all of them one after another, as requests and as bot_core's poses. What decodes must encode to
-// the same bytes; what is a request must be answered in its form, a repeat with the same bytes, and as an
-// handler would that never saw the others.
+// Fuzz target: bytes as packets from the network. Every decoder runs on every packet, and a handler with a
+// small scene handles all of them one after another, as requests and as bot_core poses. A decoded message
+// must encode to the same bytes; the response to a request must have the request's form, be repeated bit for
+// bit for a retry, and be the same as that of a fresh handler.
 //
-//   each packet   1 byte: bits 0-2 a kind of message (0 request, 1 answer, 2 hydrostatics, 3 status, else
-//                 none), bit 3 its fingerprint is written over the packet's head, bit 4 the number of bodies
-//                 that fits the length is written to its place
-//                 2 bytes: the packet's length, little-endian; then so many bytes, or all that are left
+//   each packet   1 byte: bits 0-2 a kind of message (0 request, 1 response, 2 hydrostatics, 3 status, else
+//                 none), bit 3 its fingerprint overwrites the packet's first bytes, bit 4 the number of
+//                 bodies that matches the length is written to the packet 2 bytes: the packet's length,
+//                 little-endian; then that many bytes, or all that remain
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,7 +54,7 @@ outputs = ["wrench", "hydrostatics"]
 const Scene& small_scene() {
   static const Scene kPrepared = [] {
     const Expected<SceneDescription> description = parse_scene(kScene, "fuzz.toml", "/nowhere");
-    if (!description) fail_requirement("the target's own scene is one", description.error().message());
+    if (!description) fail_requirement("the target's own scene parses", description.error().message());
     Expected<Scene> scene = Scene::prepare(*description);
     if (!scene) fail_requirement("the target's own scene is prepared", scene.error().message());
     return *std::move(scene);
@@ -62,11 +62,11 @@ const Scene& small_scene() {
   return kPrepared;
 }
 
-// A kind of message without bodies, as a template: its fingerprint is its first eight bytes, the number of
-// its bodies its last four, and a body takes so many.
+// A kind of message. `empty` is an encoded message without bodies: its first eight bytes are the fingerprint,
+// its last four the number of bodies.
 struct Kind {
   Packet empty;
-  std::size_t body_size;
+  std::size_t body_size;  // [bytes]
 };
 
 template <typename Message>
@@ -96,7 +96,7 @@ void write_fingerprint(const Kind& kind, Packet& packet) {
   std::copy_n(kind.empty.begin(), size, packet.begin());
 }
 
-// Leaves what is over after the last whole body.
+// Truncates the packet after the last complete body and writes the number of bodies.
 void write_count(const Kind& kind, Packet& packet) {
   const std::size_t fixed = kind.empty.size();
   if (kind.body_size == 0 || packet.size() < fixed) return;
@@ -127,7 +127,7 @@ bool decodes(const Packet& packet) {
   if (decode(packet, message)) return false;
   Packet again;
   encode(message, again);
-  law(again == packet, "what was decoded encodes to the same bytes");
+  require(again == packet, "a decoded message encodes to the same bytes");
   return true;
 }
 
@@ -137,15 +137,15 @@ bool finite(const std::array<double, kSize>& values) {
 }
 
 void check_wrench(const BodyWrench& wrench) {
-  law(finite(wrench.force) && finite(wrench.torque) && finite(wrench.center_of_buoyancy) &&
-          std::isfinite(wrench.submerged_volume),
-      "a wrench holds numbers");
+  require(finite(wrench.force) && finite(wrench.torque) && finite(wrench.center_of_buoyancy) &&
+              std::isfinite(wrench.submerged_volume),
+          "a wrench holds finite numbers");
   if (wrench.status == BodyStatus::kOk) return;
   const std::array<double, 3> zero{};
-  law(wrench.force == zero && wrench.torque == zero && wrench.center_of_buoyancy == zero &&
-          wrench.submerged_volume == 0.0 && wrench.force_error_bound == 0.0 &&
-          wrench.torque_error_bound == 0.0,
-      "a body that is not answered carries zeros");
+  require(wrench.force == zero && wrench.torque == zero && wrench.center_of_buoyancy == zero &&
+              wrench.submerged_volume == 0.0 && wrench.force_error_bound == 0.0 &&
+              wrench.torque_error_bound == 0.0,
+          "a body whose status is not OK carries zeros");
 }
 
 bool same(const RequestId& a, const RequestId& b) {
@@ -154,74 +154,76 @@ bool same(const RequestId& a, const RequestId& b) {
 
 void check_response(const WrenchRequest& request, Bytes bytes) {
   WrenchResponse response;
-  law(!decode(bytes, response), "a response is a message of ours");
-  law(same(response.key, request.key), "a response carries its request's key");
-  law(response.bodies.size() == request.bodies.size(), "a response has its request's bodies");
+  require(!decode(bytes, response), "a response decodes");
+  require(same(response.key, request.key), "a response carries its request's id");
+  require(response.bodies.size() == request.bodies.size(), "a response has its request's bodies");
   for (std::size_t i = 0; i < response.bodies.size(); ++i) {
-    law(response.bodies[i].body_id == request.bodies[i].body_id, "bodies keep their order");
+    require(response.bodies[i].body_id == request.bodies[i].body_id, "bodies keep their order");
     check_wrench(response.bodies[i]);
   }
 }
 
 void check_hydrostatics(const WrenchRequest& request, Bytes bytes) {
   const Scene& scene = small_scene();
-  std::vector<std::int32_t> asking;
+  std::vector<std::int32_t> expected_ids;
   for (const BodyState& state : request.bodies) {
     const Body* body = scene.find(state.body_id);
-    if (body != nullptr && body->hydrostatics) asking.push_back(body->id);
+    if (body != nullptr && body->hydrostatics) expected_ids.push_back(body->id);
   }
-  law(bytes.empty() == asking.empty(), "hydrostatics are there where a body asks");
+  require(bytes.empty() == expected_ids.empty(), "hydrostatics exist if a body requests them");
   if (bytes.empty()) return;
   BodiesHydrostatics hydrostatics;
-  law(!decode(bytes, hydrostatics), "hydrostatics are a message of ours");
-  law(same(hydrostatics.key, request.key), "hydrostatics carry their request's key");
-  law(std::equal(asking.begin(), asking.end(), hydrostatics.bodies.begin(), hydrostatics.bodies.end(),
-                 [](std::int32_t id, const BodyHydrostatics& body) { return id == body.body_id; }),
-      "hydrostatics are of the bodies that ask");
+  require(!decode(bytes, hydrostatics), "hydrostatics decode");
+  require(same(hydrostatics.key, request.key), "hydrostatics carry their request's id");
+  require(std::equal(expected_ids.begin(), expected_ids.end(), hydrostatics.bodies.begin(),
+                     hydrostatics.bodies.end(),
+                     [](std::int32_t id, const BodyHydrostatics& body) { return id == body.body_id; }),
+          "hydrostatics cover the bodies that request them");
 }
 
 Packet copy_of(Bytes bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-// session: one that is asked all packets.
-void send_request(const Packet& packet, RequestHandler& session) {
-  const auto key = peek_request_id(packet);
+// handler: the one that receives all packets.
+void send_request(const Packet& packet, RequestHandler& handler) {
+  const auto id = peek_request_id(packet);
   WrenchRequest request;
-  const std::optional<DecodeError> rejection = decode(packet, request);
-  law(key.has_value() == !rejection, "peek_request_id() and decode() agree on what is a request");
-  const Packet response = copy_of(session.handle(packet));
-  const Packet hydrostatics = copy_of(session.last_hydrostatics());
-  if (rejection) {
-    law(key.error() == *rejection, "peek_request_id() and decode() agree on what is wrong");
-    law(response.empty() && hydrostatics.empty(), "what is no request is not answered");
+  const std::optional<DecodeError> error = decode(packet, request);
+  require(id.has_value() == !error, "peek_request_id() and decode() accept the same packets");
+  const Packet response = copy_of(handler.handle(packet));
+  const Packet hydrostatics = copy_of(handler.last_hydrostatics());
+  if (error) {
+    require(id.error() == *error, "peek_request_id() and decode() return the same error");
+    require(response.empty() && hydrostatics.empty(), "an invalid packet gets no response");
     return;
   }
-  law(same(*key, request.key), "peek_request_id() finds the request's key");
+  require(same(*id, request.key), "peek_request_id() finds the request's id");
   check_response(request, response);
   check_hydrostatics(request, hydrostatics);
-  law(copy_of(session.handle(packet)) == response && copy_of(session.last_hydrostatics()) == hydrostatics,
-      "a repeat gets the same bytes");
+  require(copy_of(handler.handle(packet)) == response && copy_of(handler.last_hydrostatics()) == hydrostatics,
+          "a retry gets the same bytes");
   RequestHandler fresh(small_scene(), {.max_sessions = 1, .threads = 1});
-  law(copy_of(fresh.handle(packet)) == response && copy_of(fresh.last_hydrostatics()) == hydrostatics,
-      "a response does not depend on earlier requests");
+  require(copy_of(fresh.handle(packet)) == response && copy_of(fresh.last_hydrostatics()) == hydrostatics,
+          "a response does not depend on earlier requests");
 }
 
-// As a pose on a channel of its own.
-void ask_pose(const Packet& packet, PoseRequestAdapter& poses, RequestHandler& session) {
+// Handles the packet as a pose on a channel of its own.
+void send_pose(const Packet& packet, PoseRequestAdapter& poses, RequestHandler& handler) {
   const auto request = poses.make_request(0, packet);
-  law(request.has_value() == decode_bot_pose(packet).has_value(), "a pose asks a request");
+  require(request.has_value() == decode_bot_pose(packet).has_value(), "every valid pose gives a request");
   if (!request) {
-    session.record_rejected(request.error());
+    handler.record_rejected(request.error());
     return;
   }
-  const Packet asked = copy_of(*request);
-  law(decodes<WrenchRequest>(asked), "what a pose asks is a request of ours");
-  send_request(asked, session);
+  const Packet request_packet = copy_of(*request);
+  require(decodes<WrenchRequest>(request_packet), "the request for a pose decodes");
+  send_request(request_packet, handler);
   WrenchResponse response;
   Packet force_torque;
-  encode_force_torque(session.handle(asked), response, force_torque);
-  law(force_torque.size() == 8 + 8 + 6 * sizeof(double), "a response about one body is a force and a torque");
+  encode_force_torque(handler.handle(request_packet), response, force_torque);
+  require(force_torque.size() == 8 + 8 + 6 * sizeof(double),
+          "a response for one body converts to a force and a torque");
 }
 
 void check_counters(const RequestHandler& handler) {
@@ -229,10 +231,10 @@ void check_counters(const RequestHandler& handler) {
   status.version = "0";
   status.counters = handler.counters();
   const ServiceCounters& c = status.counters;
-  law(c.requests == c.computed + c.retries + c.rejected(), "every packet is counted once");
+  require(c.requests == c.computed + c.retries + c.rejected(), "every packet is counted once");
   Packet bytes;
   encode(status, bytes);
-  law(decodes<ServiceStatus>(bytes), "the status of any handler is a message of ours");
+  require(decodes<ServiceStatus>(bytes), "the status of any handler decodes");
 }
 
 void check(FuzzBytes bytes) {
@@ -246,9 +248,9 @@ void check(FuzzBytes bytes) {
     const Packet packet = next_packet(bytes);
     const int read_as = int{decodes<WrenchRequest>(packet)} + int{decodes<WrenchResponse>(packet)} +
                         int{decodes<BodiesHydrostatics>(packet)} + int{decodes<ServiceStatus>(packet)};
-    law(read_as <= 1, "a packet is one kind of message");
+    require(read_as <= 1, "a packet decodes as at most one kind of message");
     send_request(packet, handler);
-    ask_pose(packet, poses, handler);
+    send_pose(packet, poses, handler);
   }
   check_counters(handler);
 }

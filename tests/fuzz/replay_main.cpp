@@ -1,11 +1,11 @@
-// Runs a fuzz target over its corpus and over neighbours of every file in it, without libFuzzer: what every
-// build type and compiler does in the test suite. Ends as the target does where a law is broken; the last
-// line of stderr then names the input, by its file and the mutation's number (0: none), and --write brings
-// it back.
+// Runs a fuzz target over its corpus and over mutations of every file in it, without libFuzzer: the test
+// suite does so with every build type and compiler. If a requirement is violated the program aborts; the last
+// line of stderr then names the input by its file and the mutation's number (0: none), and --write reproduces
+// it.
 //
-//   replay_TARGET CORPUS [MUTATIONS]                        every file, and so many mutations of each
-//   replay_TARGET CORPUS --write DIRECTORY                  the files' inputs as bytes, for libFuzzer
-//   replay_TARGET CORPUS --write DIRECTORY FILE MUTATION    one mutation's
+//   replay_TARGET CORPUS [MUTATIONS]                        run every file and MUTATIONS mutations of each
+//   replay_TARGET CORPUS --write DIRECTORY                  write the files' inputs as bytes, for libFuzzer
+//   replay_TARGET CORPUS --write DIRECTORY FILE MUTATION    write the input of one mutation
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -38,7 +38,7 @@ int replay(const std::vector<CorpusFile>& files, std::size_t mutations) {
     }
     std::fprintf(stderr, "\n");
   }
-  std::printf("%zu files, %zu runs, no finding\n", files.size(), files.size() * (1 + mutations));
+  std::printf("%zu files, %zu runs, no findings\n", files.size(), files.size() * (1 + mutations));
   return 0;
 }
 
@@ -54,14 +54,16 @@ int write_mutation(const std::vector<CorpusFile>& files, const std::filesystem::
     write(directory / (name + "." + std::to_string(number)), mutation_of(files, place, number));
     return 0;
   }
-  throw std::runtime_error(name + ": no such file in the corpus");
+  throw std::runtime_error(name + ": not found in the corpus");
 }
 
 int main_of(const std::vector<std::string>& arguments) {
   const std::size_t count = arguments.size();
   const bool writes = count >= 3 && arguments[1] == "--write";
   if (count == 0 || count > 5 || (count > 2 && !writes) || count == 4) {
-    std::fprintf(stderr, "arguments: CORPUS [MUTATIONS], or CORPUS --write DIRECTORY [FILE MUTATION]\n");
+    std::fprintf(stderr,
+                 "usage: replay_TARGET CORPUS [MUTATIONS]\n       replay_TARGET CORPUS --write DIRECTORY "
+                 "[FILE MUTATION]\n");
     return 2;
   }
   const std::vector<CorpusFile> files = read_corpus(arguments[0]);

@@ -1,6 +1,6 @@
-// Bytes as the text of a scene file. What is refused must say why, on one line; what is read must keep to the
-// ranges that docs/scene_file.md states. Where every body is a generated shape, and a small one, the scene is
-// prepared as well, reported on, and asked about each body. No file is read.
+// Fuzz target: bytes as the text of a scene file. A refusal must state its reason on one line; an accepted
+// scene must be within the ranges of docs/scene_file.md. If every body is a small generated shape, the scene
+// is also prepared, reported on and evaluated for each body. No file is read.
 #include <algorithm>
 #include <set>
 #include <string>
@@ -17,9 +17,9 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::int64_t kMaxTriangles = 1500;  // of all bodies; more would cost the fuzzer its speed
+constexpr std::int64_t kMaxTriangles = 1500;  // of all bodies together, to keep the fuzzer fast
 
-// docs/scene_file.md, "Shapes".
+// The formulas of docs/scene_file.md, "Shapes".
 std::int64_t triangle_count(const Shape& shape) {
   const auto count = [](const auto& s) -> std::int64_t {
     using S = std::decay_t<decltype(s)>;
@@ -46,56 +46,56 @@ std::int64_t triangle_count(const Shape& shape) {
 
 void check_error(const Error& error) {
   const std::string message = error.message();
-  law(message.starts_with("fuzz.toml"), "an error names the file");
-  law(!error.actual.empty() && !error.expected.empty(), "an error says what was found and expected");
+  require(message.starts_with("fuzz.toml"), "an error names the file");
+  require(!error.actual.empty() && !error.expected.empty(), "an error states actual and expected");
   const bool one_line = std::none_of(message.begin(), message.end(), [](char c) {
     const auto code = static_cast<unsigned char>(c);
     return code < 0x20 || code == 0x7f;
   });
-  law(one_line, "an error is one line without control characters");
+  require(one_line, "an error is one line without control characters");
 }
 
 void check_water(const Water& water) {
-  law(std::abs(water.up_W.norm() - 1.0) <= 1e-15, "up is a unit vector");
-  law(std::isfinite(water.level), "the level is a number");
-  law(std::isfinite(water.density) && water.density >= 0.0, "the density is at least 0");
-  law(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
+  require(std::abs(water.up_W.norm() - 1.0) <= 1e-15, "up is a unit vector");
+  require(std::isfinite(water.level), "the level is finite");
+  require(std::isfinite(water.density) && water.density >= 0.0, "the density is at least 0");
+  require(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
 }
 
 void check_client(const DynamicsSpec& client) {
-  law(!(client.mass && client.density), "mass and density exclude each other");
+  require(!(client.mass && client.density), "mass and density exclude each other");
   for (const auto& given : {client.mass, client.density}) {
-    law(!given || (std::isfinite(*given) && *given > 0.0), "mass and density are above 0");
+    require(!given || (std::isfinite(*given) && *given > 0.0), "mass and density are above 0");
   }
-  law(!client.center_of_mass_B || client.center_of_mass_B->allFinite(), "the centre of mass is finite");
+  require(!client.center_of_mass_B || client.center_of_mass_B->allFinite(), "the centre of mass is finite");
   if (client.inertia_B) {
-    law(client.inertia_B->allFinite() && Eigen::LLT<Mat3>(*client.inertia_B).info() == Eigen::Success,
-        "the inertia is positive definite");
+    require(client.inertia_B->allFinite() && Eigen::LLT<Mat3>(*client.inertia_B).info() == Eigen::Success,
+            "the inertia is positive definite");
   }
-  law(client.position.allFinite() && client.linear_velocity.allFinite() &&
-          client.angular_velocity.allFinite(),
-      "position and velocities are finite");
-  law(std::abs(client.orientation.norm() - 1.0) <= 1e-15, "the orientation is a unit quaternion");
+  require(client.position.allFinite() && client.linear_velocity.allFinite() &&
+              client.angular_velocity.allFinite(),
+          "position and velocities are finite");
+  require(std::abs(client.orientation.norm() - 1.0) <= 1e-15, "the orientation is a unit quaternion");
   for (const double damping : {client.linear_damping, client.linear_damping_quadratic, client.angular_damping,
                                client.angular_damping_quadratic}) {
-    law(std::isfinite(damping) && damping >= 0.0, "damping is at least 0");
+    require(std::isfinite(damping) && damping >= 0.0, "damping is at least 0");
   }
 }
 
 void check_description(const SceneDescription& scene) {
   check_water(scene.water);
-  law(!scene.bodies.empty(), "a scene has a body");
+  require(!scene.bodies.empty(), "a scene has a body");
   std::set<std::int32_t> ids;
   for (const BodyDescription& body : scene.bodies) {
-    law(ids.insert(body.id).second, "ids are unique");
-    law(!body.name.empty() && !body.source_location.empty(), "a body has a name and a place in the file");
-    law(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
-    law(body.tolerance >= 0.0 && body.tolerance <= 1.0, "a tolerance is from 0 to 1");
-    law(body.reference_B.allFinite(), "the reference point is finite");
+    require(ids.insert(body.id).second, "ids are unique");
+    require(!body.name.empty() && !body.source_location.empty(), "a body has a name and a source location");
+    require(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
+    require(body.tolerance >= 0.0 && body.tolerance <= 1.0, "a tolerance is from 0 to 1");
+    require(body.reference_B.allFinite(), "the reference point is finite");
     if (const auto* file = std::get_if<MeshFile>(&body.source)) {
-      law(!file->path.empty(), "a mesh file has a name");
+      require(!file->path.empty(), "a mesh file has a name");
     } else {
-      law(check_shape(std::get<Shape>(body.source)).has_value(), "a shape keeps to its ranges");
+      require(check_shape(std::get<Shape>(body.source)).has_value(), "a shape is within its ranges");
     }
     check_client(body.client);
   }
@@ -115,15 +115,16 @@ bool is_small_and_generated(const SceneDescription& scene) {
 void check_prepared(const SceneDescription& description) {
   const Expected<Scene> scene = Scene::prepare(description);
   if (!scene) return check_error(scene.error());
-  law(scene->bodies().size() == description.bodies.size(), "every body is prepared");
-  law(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"), "there is a report");
+  require(scene->bodies().size() == description.bodies.size(), "every body is prepared");
+  require(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"),
+          "the reports are not empty");
   for (const Body& body : scene->bodies()) {
     const Pose pose{.p_WB = body.client.position, .q_WB = body.client.orientation};
-    const BuoyancyResult response = buoyancy(body.solver, pose, scene->water(), body.reference_B);
-    law(response.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
-    law(response.force_W.allFinite() && response.torque_W.allFinite() && std::isfinite(response.volume) &&
-            response.center_of_buoyancy_W.allFinite(),
-        "a response holds numbers");
+    const BuoyancyResult result = buoyancy(body.solver, pose, scene->water(), body.reference_B);
+    require(result.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
+    require(result.force_W.allFinite() && result.torque_W.allFinite() && std::isfinite(result.volume) &&
+                result.center_of_buoyancy_W.allFinite(),
+            "a result holds finite numbers");
   }
 }
 

@@ -1,10 +1,10 @@
 // The true wrench of a body, from the exact oracle in numbers of 512 bits: rationals would take a hundred
-// times as long. For values that are 0 or within 2^-40 and 2^40: what is rounded, 2^-512 of the fourth power
-// of 2^41, is far below the smallest bound that an exact method can publish, 2^-52 of the third power of
-// 2^-40.
+// times as long. Valid for values that are 0 or of magnitude 2^-40 to 2^40: the rounding error, 2^-512 times
+// the fourth power of 2^41, is far below the smallest bound that an exact method can publish, 2^-52 times the
+// third power of 2^-40.
 //
-// A library of its own, without sanitizers: they would make it most of the fuzzer's time, and what it is to
-// find is not here.
+// This is a library of its own, compiled without sanitizers: with them it would take most of the fuzzer's
+// time, and it is not the code under test.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class TrueWrench {
   TrueWrench& operator=(const TrueWrench&) = delete;
   ~TrueWrench();
 
-  // How far what was found is off, rounded once: m^3; N; N m.
+  // The errors of given values, rounded once: [m^3], [N], [N m].
   double volume_error(double volume) const;
   double force_error(const Vec3& force_W) const;
   double torque_error(const Vec3& torque_W) const;
