@@ -9,7 +9,7 @@
 #include "geometry/mesh_validation.h"
 #include "geometry/shapes.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 BenchmarkMesh from_shape(const std::string& name, const Shape& shape) {
@@ -70,4 +70,4 @@ std::vector<BenchmarkMesh> paper_meshes() {
   return meshes;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -6,7 +6,7 @@
 
 #include "hydrostatics/hydrostatic_mesh.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 struct BenchmarkMesh {
   std::string name;  // "bunny", or "rock for bunny" where the model was not at hand
@@ -29,4 +29,4 @@ BenchmarkMesh rock(int frequency);
 // machine. Its name says "shuffled".
 BenchmarkMesh shuffled(const BenchmarkMesh& model);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

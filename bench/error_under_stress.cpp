@@ -22,7 +22,7 @@
 #include "tests/hydrostatics/rational.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 struct Sample {
@@ -202,13 +202,13 @@ void sweep_wet_share() {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main() {
   std::printf("sweep,x,method,error_of_whole\n");
-  buoyancy::sweep_tilt();
-  buoyancy::sweep_level();
-  buoyancy::sweep_scale();
-  buoyancy::sweep_origin();
-  buoyancy::sweep_wet_share();
+  buoyancy::bench::sweep_tilt();
+  buoyancy::bench::sweep_level();
+  buoyancy::bench::sweep_scale();
+  buoyancy::bench::sweep_origin();
+  buoyancy::bench::sweep_wet_share();
 }

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // What could not be measured, or was answered wrongly, ends the program.
 template <typename T>
@@ -21,9 +21,9 @@ T value_or_exit(Expected<T> expected) {
   if constexpr (!std::is_void_v<T>) return std::move(*expected);
 }
 
-[[noreturn]] inline void give_up(const std::string& reason) {
+[[noreturn]] inline void fail(const std::string& reason) {
   value_or_exit<void>(make_error({"benchmark", reason, "right results", "", ""}));
   std::abort();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -15,7 +15,7 @@
 #include "engine/request_handler.h"
 #include "median.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 constexpr int kBodies = 1000;
@@ -124,8 +124,8 @@ int run() {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main() {
-  return buoyancy::run();
+  return buoyancy::bench::run();
 }

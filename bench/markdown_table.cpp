@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 void MarkdownTable::print(std::FILE* file, std::size_t text_columns) const {
   std::vector<std::size_t> widths(rows_[0].size(), 3);
@@ -26,10 +26,10 @@ void MarkdownTable::print(std::FILE* file, std::size_t text_columns) const {
   std::fprintf(file, "\n");
 }
 
-std::string text(const char* format, double value) {
+std::string format_cell(const char* format, double value) {
   std::array<char, 64> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, value);
   return buffer.data();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 class MarkdownTable {
  public:
@@ -21,10 +21,10 @@ class MarkdownTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-std::string text(const char* format, double value);  // of a cell, as printf has it
+std::string format_cell(const char* format, double value);  // of a cell, as printf has it
 
-inline std::string met(bool holds) {
+inline std::string pass_or_fail(bool holds) {
   return holds ? "met" : "MISSED";
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

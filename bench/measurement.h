@@ -20,12 +20,12 @@
 
 #include "reference_results.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 inline constexpr const char* kMemoryReadRow = "read";
 inline constexpr const char* kNoTarget = "-";
 
-struct MeasuredRow {
+struct Measurement {
   std::string mesh;
   std::size_t triangles = 0;
   std::string method;
@@ -36,11 +36,11 @@ struct MeasuredRow {
   SolverErrors errors;
 };
 
-void write_csv(std::FILE* file, const std::vector<MeasuredRow>& rows);
+void write_csv(std::FILE* file, const std::vector<Measurement>& rows);
 
 // The row that answers to all of it; nullptr: not measured. target "": the first, which is the best.
-const MeasuredRow* find_row(const std::vector<MeasuredRow>& rows, const std::string& mesh,
+const Measurement* find_measurement(const std::vector<Measurement>& rows, const std::string& mesh,
                             std::size_t triangles, const std::string& method, double tolerance,
                             const std::string& target, const std::string& regime);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

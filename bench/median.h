@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // Of an even count the mean of the two in the middle. At least one value, none of them NaN.
 inline double median(std::vector<double> values) {
@@ -22,4 +22,4 @@ inline double percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 // Not under AddressSanitizer, here and below: on the stack that it moves variables to, GCC 12 does not align
@@ -53,4 +53,4 @@ std::uint64_t read_vertices_and_indices(const TriangleMesh& mesh) {
   return seen ^ read_once(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -6,11 +6,11 @@
 
 #include "geometry/triangle_mesh.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // Reads every coordinate and every index, 64 bytes at a time, with the widest registers that this processor
 // has; what is left of an array after its last 64 bytes is not read. Returns the exclusive or of all, so that
 // nothing can be left out.
 std::uint64_t read_vertices_and_indices(const TriangleMesh& mesh);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -19,7 +19,7 @@
 #include "service_process.h"
 #include "transport/lcm_connection.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -107,8 +107,8 @@ class Clients {
 
   void receive(Bytes bytes) {
     const auto now = Clock::now();
-    if (decode(bytes, response_)) give_up("a response that is none");
-    if (response_.bodies.size() != 1 || response_.bodies[0].force[2] <= 0.0) give_up("a wrong response");
+    if (decode(bytes, response_)) fail("a response that is none");
+    if (response_.bodies.size() != 1 || response_.bodies[0].force[2] <= 0.0) fail("a wrong response");
     const auto session = static_cast<std::size_t>(response_.key.session_id);
     heard_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(response_.key.seq)]));
     ++heard_.responses[session];
@@ -129,7 +129,7 @@ void run(bool quick) {
   const QueryTime alone = query_time(scene_of(kScene));
   const double interval = alone.p50 / kOverload;
   Heard heard = Clients().run(quick ? 2.0 : 10.0, interval);
-  if (heard.ages.empty()) give_up("no responses");
+  if (heard.ages.empty()) fail("no responses");
   std::sort(heard.ages.begin(), heard.ages.end());
   const auto age_at = [&](double share) {
     return 1e3 * heard.ages[static_cast<std::size_t>(share * static_cast<double>(heard.ages.size() - 1))];
@@ -152,9 +152,9 @@ void run(bool quick) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::run_with_quick_option(argc, argv, "Ten times more requests than buoyancyd can answer",
-                                         "Two seconds instead of ten", buoyancy::run);
+  return buoyancy::bench::run_with_quick_option(argc, argv, "Ten times more requests than buoyancyd can answer",
+                                         "Two seconds instead of ten", buoyancy::bench::run);
 }

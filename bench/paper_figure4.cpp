@@ -12,7 +12,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 struct Case {
@@ -53,8 +53,8 @@ void run() {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main() {
-  buoyancy::run();
+  buoyancy::bench::run();
 }

@@ -17,7 +17,7 @@
 #include "tests/hydrostatics/exact_oracle.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 struct Errors {
@@ -99,8 +99,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::run(argc, argv);
+  return buoyancy::bench::run(argc, argv);
 }

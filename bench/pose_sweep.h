@@ -8,7 +8,7 @@
 #include "geometry/triangle_mesh.h"
 #include "hydrostatics/water_plane.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // `count` poses with random rotations from `seed`, the water at level 0 with up +z: in the first all but 1 %
 // of the body's height in its attitude is out of the water, in the last all but 1 % is in it.
@@ -36,4 +36,4 @@ inline std::vector<Pose> sweep_of_poses(const TriangleMesh& mesh, int count = 10
   return poses;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -5,7 +5,7 @@
 
 #include "cli/tool_command_line.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // For main() to return: 0, or 2 where the arguments are wrong. quick_help: what --quick changes.
 inline int run_with_quick_option(int argc, char** argv, const std::string& description,
@@ -18,4 +18,4 @@ inline int run_with_quick_option(int argc, char** argv, const std::string& descr
   return 0;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

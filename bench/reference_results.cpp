@@ -10,7 +10,7 @@
 #include "tests/hydrostatics/exact_oracle.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 ReferenceResult true_result(const TriangleMesh& source, const Pose& pose) {
@@ -98,4 +98,4 @@ Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& 
   return errors;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

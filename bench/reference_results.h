@@ -12,7 +12,7 @@
 #include "benchmark_meshes.h"
 #include "hydrostatics/buoyancy.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 struct ReferenceResult {
   Vec3 force_W;   // of kUnitWater: m^3
@@ -45,4 +45,4 @@ struct SolverErrors {
 // names the mesh, the method and the pose.
 Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -24,12 +24,12 @@
 #include "median.h"
 #include "service/replay/replay.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 constexpr int kRuns = 5;
 constexpr std::int64_t kEvents = 300'000;
-constexpr double kMust = 0.5;
+constexpr double kMinSpeedRatio = 0.5;
 
 double height_at(std::int64_t event) {
   return 0.9 * std::sin(1e-3 * static_cast<double>(event));
@@ -67,7 +67,7 @@ void read_and_write(const std::string& input, const std::string& output) {
     const LogItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
     if (recorded == nullptr) break;
-    if (decode(recorded->bytes, request)) give_up("not a request");
+    if (decode(recorded->bytes, request)) fail("not a request");
     response.key = request.key;
     response.bodies.resize(request.bodies.size());
     for (std::size_t i = 0; i < response.bodies.size(); ++i)
@@ -83,12 +83,12 @@ void read_and_write(const std::string& input, const std::string& output) {
 void read_and_write_with_lcm(const std::string& input, const std::string& output) {
   lcm::LogFile reader(input, "r");
   lcm::LogFile writer(output, "w");
-  if (!reader.good() || !writer.good()) give_up("LCM could not open the logs");
+  if (!reader.good() || !writer.good()) fail("LCM could not open the logs");
   body_states_t request{};
   body_wrenches_t response{};
   std::vector<std::uint8_t> bytes;
   while (const lcm::LogEvent* event = reader.readNextEvent()) {
-    if (request.decode(event->data, 0, event->datalen) < 0) give_up("not a request");
+    if (request.decode(event->data, 0, event->datalen) < 0) fail("not a request");
     response.utime = request.utime;
     response.session_id = request.session_id;
     response.seq = request.seq;
@@ -103,7 +103,7 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
     written.channel = std::string(kWrenchesChannel);
     written.datalen = static_cast<std::int32_t>(bytes.size());
     written.data = bytes.data();
-    if (writer.writeEvent(&written) != 0) give_up("LCM could not write the log");
+    if (writer.writeEvent(&written) != 0) fail("LCM could not write the log");
   }
 }
 
@@ -126,7 +126,7 @@ void replay_log(const Scene& scene, const std::string& input, const std::string&
                                   std::string(kHydrostaticsChannel)},
                        .jobs = jobs},
                       signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
-  if (!summary.complete()) give_up("the replay was not complete");
+  if (!summary.complete()) fail("the replay was not complete");
 }
 
 void check_responses(const std::string& path) {
@@ -136,10 +136,10 @@ void check_responses(const std::string& path) {
   for (std::int64_t i = 0; i < kEvents; ++i) {
     const LogItem item = reader.next();
     const auto* recorded = std::get_if<RecordedEvent>(&item);
-    if (recorded == nullptr || decode(recorded->bytes, response)) give_up("a response is missing");
+    if (recorded == nullptr || decode(recorded->bytes, response)) fail("a response is missing");
     const double volume = 2.0 * 3.0 * (1.0 - height_at(i));
     if (!(std::abs(response.bodies.at(0).submerged_volume - volume) < 1e-12)) {
-      give_up("answer " + std::to_string(i) + " is wrong");
+      fail("answer " + std::to_string(i) + " is wrong");
     }
   }
 }
@@ -204,9 +204,9 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
     const double of_lcm = median(with_lcm.wall) / median(times.wall);
     const double of_bare = median(bare.wall) / median(times.wall);
     const char* verdict = "";
-    if (held && of_bare >= kMust) verdict = "at least 0.5 of both: met";
-    if (held && of_bare < kMust) verdict = "at least 0.5 of the first: met; of the second: MISSED";
-    if (held && of_lcm < kMust) verdict = "at least 0.5: MISSED";
+    if (held && of_bare >= kMinSpeedRatio) verdict = "at least 0.5 of both: met";
+    if (held && of_bare < kMinSpeedRatio) verdict = "at least 0.5 of the first: met; of the second: MISSED";
+    if (held && of_lcm < kMinSpeedRatio) verdict = "at least 0.5: MISSED";
     std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %s |\n", what, events / median(times.wall),
                 1e6 * median(times.processor) / events, of_lcm, median(bare.wall) / median(times.wall),
                 verdict);
@@ -225,13 +225,13 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
   if (argc < 2) {
     std::fprintf(stderr, "usage: replay_speed DIRECTORY [LARGE_LOG_MB]\n");
     return 2;
   }
-  buoyancy::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
+  buoyancy::bench::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
   return 0;
 }

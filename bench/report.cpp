@@ -9,7 +9,7 @@
 #include "markdown_table.h"
 #include "time_queries.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 constexpr const char* kRock = "rock";
@@ -34,19 +34,19 @@ constexpr double kTreeBytes = 250.0;      // likewise
 // Three digits that count, without an exponent.
 std::string microseconds(double ns) {
   const double us = 1e-3 * ns;
-  return text(us < 9.995 ? "%.2f" : us < 99.95 ? "%.1f" : "%.0f", us);
+  return format_cell(us < 9.995 ? "%.2f" : us < 99.95 ? "%.1f" : "%.0f", us);
 }
 
 std::string error(double value) {
-  return std::isnan(value) ? "" : text("%.2g", value);
+  return std::isnan(value) ? "" : format_cell("%.2g", value);
 }
 
 // "0", "1e-6".
 std::string power_of_ten(double value) {
-  return value == 0.0 ? "0" : text("1e%g", std::round(std::log10(value)));
+  return value == 0.0 ? "0" : format_cell("1e%g", std::round(std::log10(value)));
 }
 
-std::string verdict(bool met) {
+std::string pass_or_fail(bool met) {
   return met ? "met" : "MISSED";
 }
 
@@ -57,9 +57,9 @@ struct MeshName {
   bool operator==(const MeshName&) const = default;
 };
 
-std::vector<MeshName> meshes_of(const std::vector<MeasuredRow>& rows) {
+std::vector<MeshName> meshes_of(const std::vector<Measurement>& rows) {
   std::vector<MeshName> meshes;
-  for (const MeasuredRow& row : rows) {
+  for (const Measurement& row : rows) {
     const MeshName mesh{row.mesh, row.triangles};
     if (std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) meshes.push_back(mesh);
   }
@@ -68,20 +68,20 @@ std::vector<MeshName> meshes_of(const std::vector<MeasuredRow>& rows) {
 
 class Report {
  public:
-  Report(std::FILE* file, const Measurements& measured)
+  Report(std::FILE* file, const BenchmarkResults& measured)
       : file_(file), rows_(measured.rows), trees_(measured.trees), meshes_(meshes_of(measured.rows)) {}
 
   void times(const std::string& regime, const char* heading) const {
     std::fprintf(file_, "### %s\n\nMedian time per query, us.\n\n", heading);
-    by_method(regime, true, [](const MeasuredRow& row) { return microseconds(row.median_ns); });
+    by_method(regime, true, [](const Measurement& row) { return microseconds(row.median_ns); });
   }
 
   void errors() const {
     std::fprintf(file_, "### Largest error\n\n");
     std::fprintf(file_, "Of force, over the poses of both regimes, relative to the whole.\n\n");
-    by_method("independent", false, [&](const MeasuredRow& row) {
-      const MeasuredRow* coherent =
-          find_row(rows_, row.mesh, row.triangles, row.method, row.tolerance, "", "coherent");
+    by_method("independent", false, [&](const Measurement& row) {
+      const Measurement* coherent =
+          find_measurement(rows_, row.mesh, row.triangles, row.method, row.tolerance, "", "coherent");
       return error(std::max(row.errors.force, coherent->errors.force));
     });
   }
@@ -92,9 +92,9 @@ class Report {
     MarkdownTable table({"mesh", "triangles", "exact, us", "hierarchical, us", "target", "ratio", "must",
                          "aim", "slowest target", "ratio", "must", ""});
     for (const MeshName& mesh : meshes_) {
-      const MeasuredRow* const exact = find(mesh, "exact", 0.0);
-      const MeasuredRow* const best = find(mesh, "hierarchical", 0.0);
-      const MeasuredRow* const slowest = slowest_target(mesh);
+      const Measurement* const exact = find(mesh, "exact", 0.0);
+      const Measurement* const best = find(mesh, "hierarchical", 0.0);
+      const Measurement* const slowest = slowest_target(mesh);
       const double ratio = exact->median_ns / best->median_ns;
       const double slowest_ratio = exact->median_ns / slowest->median_ns;
       std::vector<std::string> cells{mesh.name,
@@ -102,20 +102,20 @@ class Report {
                                      microseconds(exact->median_ns),
                                      microseconds(best->median_ns),
                                      best->target,
-                                     text("%.1f", ratio),
+                                     format_cell("%.1f", ratio),
                                      "",
                                      "",
                                      slowest->target,
-                                     text("%.1f", slowest_ratio),
+                                     format_cell("%.1f", slowest_ratio),
                                      "",
                                      ""};
       const auto goal = std::find_if(kRatioGoals.begin(), kRatioGoals.end(),
                                      [&](const RatioGoal& g) { return g.triangles == mesh.triangles; });
       if (goal != kRatioGoals.end() && mesh.name.starts_with(kRock)) {
-        cells[6] = text("%g", goal->must);
-        cells[7] = text("%g", goal->aim);
-        cells[10] = text("%g", goal->any_must);
-        cells[11] = verdict(ratio >= goal->must && slowest_ratio >= goal->any_must);
+        cells[6] = format_cell("%g", goal->must);
+        cells[7] = format_cell("%g", goal->aim);
+        cells[10] = format_cell("%g", goal->any_must);
+        cells[11] = pass_or_fail(ratio >= goal->must && slowest_ratio >= goal->any_must);
         if (ratio >= goal->aim) cells[11] += ", aim too";
       }
       table.add(std::move(cells));
@@ -132,8 +132,8 @@ class Report {
       const double reading = find(mesh, kMemoryReadRow, 0.0)->median_ns;
       const double query = find(mesh, "hierarchical", 0.0)->median_ns;
       table.add({mesh.name, std::to_string(mesh.triangles), microseconds(reading), microseconds(query),
-                 text("%.2f", query / reading),
-                 mesh.triangles >= kReadGoalTriangles ? verdict(query < reading) : ""});
+                 format_cell("%.2f", query / reading),
+                 mesh.triangles >= kReadGoalTriangles ? pass_or_fail(query < reading) : ""});
     }
     table.print(file_, 1);
   }
@@ -143,7 +143,7 @@ class Report {
     std::fprintf(file_, "Median time of `hierarchical` at tolerance 0, us, poses far apart.\n\n");
     std::vector<std::string> header{"mesh", "triangles"};
     std::vector<std::string> names;
-    for (const MeasuredRow& row : rows_) {
+    for (const Measurement& row : rows_) {
       if (row.target != kNoTarget && std::find(names.begin(), names.end(), row.target) == names.end())
         names.push_back(row.target);
     }
@@ -153,7 +153,7 @@ class Report {
       std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
       for (const std::string& target : names) {
         cells.push_back(microseconds(
-            find_row(rows_, mesh.name, mesh.triangles, "hierarchical", 0.0, target, "independent")
+            find_measurement(rows_, mesh.name, mesh.triangles, "hierarchical", 0.0, target, "independent")
                 ->median_ns));
       }
       table.add(std::move(cells));
@@ -162,7 +162,7 @@ class Report {
   }
 
   void growth() const {
-    std::vector<const MeasuredRow*> hierarchical;
+    std::vector<const Measurement*> hierarchical;
     for (const MeshName& mesh : meshes_) {
       if (mesh.name == kRock) hierarchical.push_back(find(mesh, "hierarchical", 0.0));
     }
@@ -172,8 +172,8 @@ class Report {
         file_,
         "### Growth\n\nThe time of `hierarchical` at tolerance 0 grows as triangles^%.2f, fitted to the "
         "%zu rocks, poses far apart\n(at most %.2f: %s; aim %.2f: %s).\n\n",
-        exponent, hierarchical.size(), kExponentMust, verdict(exponent <= kExponentMust).c_str(),
-        kExponentAim, verdict(exponent <= kExponentAim).c_str());
+        exponent, hierarchical.size(), kExponentMust, pass_or_fail(exponent <= kExponentMust).c_str(),
+        kExponentAim, pass_or_fail(exponent <= kExponentAim).c_str());
   }
 
   void tolerances() const {
@@ -185,7 +185,7 @@ class Report {
     for (const MeshName& mesh : meshes_) {
       if (mesh.name != kRock) continue;
       for (const double tolerance : kMeasuredTolerances) {
-        const MeasuredRow& row = *find(mesh, "hierarchical", tolerance);
+        const Measurement& row = *find(mesh, "hierarchical", tolerance);
         table.add({mesh.name, std::to_string(mesh.triangles), power_of_ten(tolerance),
                    microseconds(row.median_ns), error(row.errors.force_median), error(row.errors.force),
                    error(row.errors.bound_median), error(row.errors.bound)});
@@ -200,21 +200,21 @@ class Report {
     MarkdownTable table({"mesh", "triangles", "build, ns per triangle", "at most",
                          "memory, bytes per triangle", "at most", ""});
     for (const TreeCost& tree : trees_) {
-      table.add({tree.mesh, std::to_string(tree.triangles), text("%.0f", tree.build_ns), text("%g", kBuildNs),
-                 text("%.0f", tree.bytes), text("%g", kTreeBytes),
-                 verdict(tree.build_ns <= kBuildNs && tree.bytes <= kTreeBytes)});
+      table.add({tree.mesh, std::to_string(tree.triangles), format_cell("%.0f", tree.build_ns), format_cell("%g", kBuildNs),
+                 format_cell("%.0f", tree.bytes), format_cell("%g", kTreeBytes),
+                 pass_or_fail(tree.build_ns <= kBuildNs && tree.bytes <= kTreeBytes)});
     }
     table.print(file_, 1);
   }
 
  private:
-  const MeasuredRow* find(const MeshName& mesh, const std::string& method, double tolerance) const {
-    return find_row(rows_, mesh.name, mesh.triangles, method, tolerance, "", "independent");
+  const Measurement* find(const MeshName& mesh, const std::string& method, double tolerance) const {
+    return find_measurement(rows_, mesh.name, mesh.triangles, method, tolerance, "", "independent");
   }
 
-  const MeasuredRow* slowest_target(const MeshName& mesh) const {
-    const MeasuredRow* slowest = find(mesh, "hierarchical", 0.0);
-    for (const MeasuredRow& row : rows_) {
+  const Measurement* slowest_target(const MeshName& mesh) const {
+    const Measurement* slowest = find(mesh, "hierarchical", 0.0);
+    for (const Measurement& row : rows_) {
       if (row.mesh == mesh.name && row.triangles == mesh.triangles && row.method == "hierarchical" &&
           row.tolerance == 0.0 && row.regime == "independent" && row.median_ns > slowest->median_ns)
         slowest = &row;
@@ -238,18 +238,18 @@ class Report {
     for (const MeshName& mesh : meshes_) {
       std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
       for (const auto& [method, tolerance] : columns)
-        cells.push_back(cell(*find_row(rows_, mesh.name, mesh.triangles, method, tolerance, "", regime)));
+        cells.push_back(cell(*find_measurement(rows_, mesh.name, mesh.triangles, method, tolerance, "", regime)));
       table.add(std::move(cells));
     }
     table.print(file_, 1);
   }
 
   void tolerance_verdicts() const {
-    const MeasuredRow* smallest = nullptr;
-    const MeasuredRow* largest = nullptr;
+    const Measurement* smallest = nullptr;
+    const Measurement* largest = nullptr;
     std::string dearer;
     for (const MeshName& mesh : meshes_) {
-      const MeasuredRow* const row = find(mesh, "hierarchical", kToleranceGoal);
+      const Measurement* const row = find(mesh, "hierarchical", kToleranceGoal);
       if (mesh.triangles > 5'000 && row->median_ns >= find(mesh, "hierarchical", 0.0)->median_ns) {
         dearer += (dearer.empty() ? "" : ", ") + mesh.name + " " + std::to_string(mesh.triangles);
       }
@@ -262,32 +262,32 @@ class Report {
     std::fprintf(file_,
                  "- Tolerance %s takes %.2f times as long at %zu triangles as at %zu (at most %g: %s).\n",
                  power_of_ten(kToleranceGoal).c_str(), growth, largest->triangles, smallest->triangles,
-                 kToleranceGrowth, verdict(growth <= kToleranceGrowth).c_str());
+                 kToleranceGrowth, pass_or_fail(growth <= kToleranceGrowth).c_str());
     std::fprintf(
         file_,
         "- It takes less time than tolerance 0 on every mesh of more than 5,000 triangles: %s%s%s.\n\n",
-        verdict(dearer.empty()).c_str(), dearer.empty() ? "" : ", not on ", dearer.c_str());
+        pass_or_fail(dearer.empty()).c_str(), dearer.empty() ? "" : ", not on ", dearer.c_str());
   }
 
   std::FILE* file_;
-  const std::vector<MeasuredRow>& rows_;
+  const std::vector<Measurement>& rows_;
   const std::vector<TreeCost>& trees_;
   std::vector<MeshName> meshes_;
 };
 
 }  // namespace
 
-double fitted_exponent(const std::vector<const MeasuredRow*>& rows) {
+double fitted_exponent(const std::vector<const Measurement*>& rows) {
   const auto count = static_cast<double>(rows.size());
   double mean_x = 0.0;
   double mean_y = 0.0;
-  for (const MeasuredRow* row : rows) {
+  for (const Measurement* row : rows) {
     mean_x += std::log(static_cast<double>(row->triangles)) / count;
     mean_y += std::log(row->median_ns) / count;
   }
   double xy = 0.0;
   double xx = 0.0;
-  for (const MeasuredRow* row : rows) {
+  for (const Measurement* row : rows) {
     const double x = std::log(static_cast<double>(row->triangles)) - mean_x;
     xy += x * (std::log(row->median_ns) - mean_y);
     xx += x * x;
@@ -295,7 +295,7 @@ double fitted_exponent(const std::vector<const MeasuredRow*>& rows) {
   return xy / xx;
 }
 
-void print_report(std::FILE* file, const Measurements& measured) {
+void print_report(std::FILE* file, const BenchmarkResults& measured) {
   const Report report(file, measured);
   report.times("independent", "Time, poses far apart");
   report.times("coherent", "Time, a floating body's trajectory");
@@ -308,4 +308,4 @@ void print_report(std::FILE* file, const Measurements& measured) {
   report.trees();
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

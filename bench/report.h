@@ -10,7 +10,7 @@
 
 #include "measurement.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 // What the moment tree of a mesh costs.
 struct TreeCost {
@@ -20,15 +20,15 @@ struct TreeCost {
   double bytes = 0.0;     // per triangle
 };
 
-struct Measurements {
-  std::vector<MeasuredRow> rows;
+struct BenchmarkResults {
+  std::vector<Measurement> rows;
   std::vector<TreeCost> trees;
 };
 
 // The exponent e of time = c triangles^e that fits best in the least squares of the logarithms. At least two
 // different numbers of triangles.
-double fitted_exponent(const std::vector<const MeasuredRow*>& rows);
+double fitted_exponent(const std::vector<const Measurement*>& rows);
 
-void print_report(std::FILE* file, const Measurements& measured);
+void print_report(std::FILE* file, const BenchmarkResults& measured);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

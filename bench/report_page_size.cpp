@@ -22,7 +22,7 @@
 #include "tests/support/child_process.h"
 #include "tests/view/browser.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 constexpr double kLongest = 3'600.0;  // s
@@ -109,7 +109,7 @@ Made make_page(const std::string& directory, int bodies, std::int64_t megabytes)
   made.seconds = seconds_since(start);
   made.memory = max_memory();
   std::filesystem::remove(log);
-  if (finished.exit_code != 0) give_up(finished.standard_error);
+  if (finished.exit_code != 0) fail(finished.standard_error);
   return made;
 }
 
@@ -136,13 +136,13 @@ void run(const std::string& directory, std::int64_t megabytes) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
   if (argc < 2) {
     std::fprintf(stderr, "usage: report_page_size DIRECTORY [LOG_MB]\n");
     return 2;
   }
-  buoyancy::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
+  buoyancy::bench::run(argv[1], argc > 2 ? std::atoll(argv[2]) : 2048);
   return 0;
 }

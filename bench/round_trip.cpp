@@ -27,7 +27,7 @@
 #include "quick_option.h"
 #include "service_process.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 using Times = std::vector<double>;  // us
@@ -92,15 +92,15 @@ void check_responses(Client& client, const Scene& scene) {
   std::vector<std::uint8_t> found;
   encode(crossing, found);
   if (!std::equal(found.begin(), found.end(), expected.begin(), expected.end())) {
-    give_up("the service's response is not the handler's");
+    fail("the service's response is not the handler's");
   }
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Water& water = scene.water();
     const double whole =
         water.density * water.gravity * scene.bodies()[i].prepared_mesh->mass_properties.volume;
     const double force = crossing.bodies[i].force[2];
-    if (std::abs(deep.bodies[i].force[2] - whole) > kRelative * whole) give_up("a wrong force under water");
-    if (force <= 0.0 || force >= whole) give_up("a body does not cross the surface");
+    if (std::abs(deep.bodies[i].force[2] - whole) > kRelative * whole) fail("a wrong force under water");
+    if (force <= 0.0 || force >= whole) fail("a body does not cross the surface");
   }
 }
 
@@ -121,7 +121,7 @@ void time_block(Client& client, const std::vector<States>& block, std::size_t fi
     const auto start = Clock::now();
     const auto response = client.request(static_cast<std::int64_t>(first + i), block[i]);
     times.push_back(microseconds(Clock::now() - start));
-    if (!response) give_up(response.error().message());
+    if (!response) fail(response.error().message());
   }
 }
 
@@ -201,15 +201,15 @@ Figures measure(const std::string& scene, int bodies, std::size_t requests, Proc
 void add_round_trips(MarkdownTable& table, const std::string& where, Processors processors,
                      std::size_t requests) {
   const Figures one = measure(bodies_of(1, kCrate), 1, requests, processors);
-  table.add({where, "1", "p50", text("%.1f", one.service_p50), text("%.1f", one.echo_p50),
-             text("%.2f", one.solver_p50), text("%.2f", one.ratio_p50), text("%.2f", kMaxP50),
-             met(one.ratio_p50 <= kMaxP50)});
-  table.add({where, "1", "p99", text("%.1f", one.service_p99), text("%.1f", one.echo_p99), "",
-             text("%.2f", one.ratio_p99), text("%.2f", kMaxP99), met(one.ratio_p99 <= kMaxP99)});
+  table.add({where, "1", "p50", format_cell("%.1f", one.service_p50), format_cell("%.1f", one.echo_p50),
+             format_cell("%.2f", one.solver_p50), format_cell("%.2f", one.ratio_p50), format_cell("%.2f", kMaxP50),
+             pass_or_fail(one.ratio_p50 <= kMaxP50)});
+  table.add({where, "1", "p99", format_cell("%.1f", one.service_p99), format_cell("%.1f", one.echo_p99), "",
+             format_cell("%.2f", one.ratio_p99), format_cell("%.2f", kMaxP99), pass_or_fail(one.ratio_p99 <= kMaxP99)});
   const Figures many = measure(bodies_of(100, kCrate), 100, requests / 4, processors);
-  table.add({where, "100", "p50", text("%.1f", many.service_p50), text("%.1f", many.echo_p50),
-             text("%.1f", many.solver_p50), text("%.2f", many.of_echo) + " *", text("%.2f", kMaxOfMany),
-             met(many.of_echo <= kMaxOfMany)});
+  table.add({where, "100", "p50", format_cell("%.1f", many.service_p50), format_cell("%.1f", many.echo_p50),
+             format_cell("%.1f", many.solver_p50), format_cell("%.2f", many.of_echo) + " *", format_cell("%.2f", kMaxOfMany),
+             pass_or_fail(many.of_echo <= kMaxOfMany)});
 }
 
 void print_round_trips(std::size_t requests) {
@@ -237,7 +237,7 @@ void print_round_trips(std::size_t requests) {
 double crate_steps(int port) {
   const FinishedProcess finished = run_to_end(command_of({BULLET_CRATE, url_of_port(port)}), 120.0);
   const std::size_t end = finished.standard_output.find(" steps/s");
-  if (finished.exit_code != 0 || end == std::string::npos) give_up(finished.standard_error);
+  if (finished.exit_code != 0 || end == std::string::npos) fail(finished.standard_error);
   const std::size_t line = finished.standard_output.rfind('\n', end) + 1;
   return std::stod(finished.standard_output.substr(line, end - line));
 }
@@ -253,9 +253,9 @@ void add_steps(MarkdownTable& table, const std::string& where, std::size_t runs)
     of_echo[i] = crate_steps(kEchoPort);
     shares[i] = of_service[i] / of_echo[i];
   }
-  table.add({where, text("%.0f", median(of_service)), text("%.0f", median(of_echo)),
-             text("%.0f %%", 100.0 * median(shares)), text("%.0f", kStepsNeeded),
-             met(median(of_service) >= kStepsNeeded)});
+  table.add({where, format_cell("%.0f", median(of_service)), format_cell("%.0f", median(of_echo)),
+             format_cell("%.0f %%", 100.0 * median(shares)), format_cell("%.0f", kStepsNeeded),
+             pass_or_fail(median(of_service) >= kStepsNeeded)});
 }
 
 void print_steps(std::size_t runs) {
@@ -294,9 +294,9 @@ void print_large_scenes(std::size_t requests) {
   for (const Row& row : rows) {
     const Figures figures = measure(bodies_of(100, row.body), 100, requests, Processors::kAll);
     table.add(
-        {row.name, text("%.0f", figures.steps), text("%.0f", figures.service_p50),
-         text("%.0f", figures.service_p99), text("%.0f", figures.solver_p50), text("%.0f", figures.echo_p50),
-         text("%.0f %%", 100.0 * figures.solver_p50 / figures.service_p50), met(figures.steps >= kRealTime)});
+        {row.name, format_cell("%.0f", figures.steps), format_cell("%.0f", figures.service_p50),
+         format_cell("%.0f", figures.service_p99), format_cell("%.0f", figures.solver_p50), format_cell("%.0f", figures.echo_p50),
+         format_cell("%.0f %%", 100.0 * figures.solver_p50 / figures.service_p50), pass_or_fail(figures.steps >= kRealTime)});
   }
   table.print(stdout, 1);
 }
@@ -334,7 +334,7 @@ void print_restart() {
       "`kill -9`, then the same command again, %zu times, while a client asks every 5 ms: ready after %.0f "
       "ms "
       "(median), its request\nanswered %.1f ms later (median; at most %.1f ms, must 1000 ms: %s).\n\n",
-      kRuns, median(until_ready), median(until_response), worst, met(worst <= 1000.0).c_str());
+      kRuns, median(until_ready), median(until_response), worst, pass_or_fail(worst <= 1000.0).c_str());
 }
 
 void run(bool quick) {
@@ -345,9 +345,9 @@ void run(bool quick) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::run_with_quick_option(argc, argv, "Round trips against buoyancyd beside an echo",
-                                         "Fewer requests", buoyancy::run);
+  return buoyancy::bench::run_with_quick_option(argc, argv, "Round trips against buoyancyd beside an echo",
+                                         "Fewer requests", buoyancy::bench::run);
 }

@@ -14,7 +14,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 inline Scene scene_of(const std::string& text) {
   return value_or_exit(Scene::prepare(value_or_exit(parse_scene(text, "benchmark", {}))));
@@ -31,7 +31,7 @@ inline std::string bodies_of(int count, const std::string& what) {
 class ReadyProcess {
  public:
   explicit ReadyProcess(std::vector<std::string> command) : child_(command_of(std::move(command))) {
-    if (!child_.wait_for_text("ready", 60.0)) give_up(child_.standard_error());
+    if (!child_.wait_for_text("ready", 60.0)) fail(child_.standard_error());
   }
   ChildProcess& child() { return child_; }
 
@@ -87,4 +87,4 @@ class EchoProcess {
   ReadyProcess process_;
 };
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -24,10 +24,10 @@
 #include "time_queries.h"
 #include "trajectory_poses.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
-enum class Extent { kFull, kSpinTime, kSmoke };
+enum class Extent { kFull, kQuick, kSmoke };
 
 // A mesh of the plan; its poses and true results are shared with the same mesh in shuffled order.
 struct PlannedMesh {
@@ -55,7 +55,7 @@ bool is_part_of(const PlannedMesh& planned, Extent extent) {
   switch (extent) {
     case Extent::kFull:
       return planned.full;
-    case Extent::kSpinTime:
+    case Extent::kQuick:
       return planned.quick;
     case Extent::kSmoke:
       return planned.smoke;
@@ -89,7 +89,7 @@ TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
 }
 
 Expected<void> measure(const BenchmarkMesh& model, const std::vector<PoseSet>& sets, Extent extent,
-                       Measurements& measured) {
+                       BenchmarkResults& measured) {
   for (const PoseSet& set : sets) {
     const int sweeps = sweeps_of(extent, model.source.triangles.size());
     std::fprintf(stderr, "%s of %zu triangles, %s: %zu poses, %d sweeps\n", model.name.c_str(),
@@ -102,8 +102,8 @@ Expected<void> measure(const BenchmarkMesh& model, const std::vector<PoseSet>& s
   return {};
 }
 
-Expected<Measurements> measure_all(Extent extent) {
-  Measurements measured;
+Expected<BenchmarkResults> measure_all(Extent extent) {
+  BenchmarkResults measured;
   for (const PlannedMesh& planned : kPlan) {
     if (!is_part_of(planned, extent)) continue;
     const BenchmarkMesh model = planned.make();
@@ -140,7 +140,7 @@ int run(int argc, char** argv) {
       return EXIT_FAILURE;
     }
   }
-  const auto measured = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kSpinTime : Extent::kFull);
+  const auto measured = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kQuick : Extent::kFull);
   if (!measured) {
     std::fprintf(stderr, "%s\n", measured.error().message().c_str());
     return EXIT_FAILURE;
@@ -158,8 +158,8 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::run(argc, argv);
+  return buoyancy::bench::run(argc, argv);
 }

@@ -9,7 +9,7 @@
 #include "memory_read_baseline.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -36,7 +36,7 @@ volatile std::uint64_t kept_reading;
 
 // One row and what it takes to time it.
 struct Contender {
-  MeasuredRow row;
+  Measurement row;
   const Solver* solver = nullptr;  // nullptr: reads the mesh
   std::string forced_target;       // "": the best
   std::vector<double> min_ns;      // of each pose
@@ -69,7 +69,7 @@ void sweep(Contender& contender, const TriangleMesh& surface, const std::vector<
 
 }  // namespace
 
-Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, const PoseSet& set, int sweeps) {
+Expected<std::vector<Measurement>> time_queries(const BenchmarkMesh& model, const PoseSet& set, int sweeps) {
   std::vector<Solver> solvers;
   solvers.reserve(kAllMethods.size() + kMeasuredTolerances.size());
   for (const Method method : kAllMethods) {
@@ -123,7 +123,7 @@ Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, cons
   }
   force_simd_target("");
 
-  std::vector<MeasuredRow> rows;
+  std::vector<Measurement> rows;
   rows.reserve(contenders.size());
   for (Contender& contender : contenders) {
     contender.row.median_ns = median(std::move(contender.min_ns));
@@ -132,4 +132,4 @@ Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, cons
   return rows;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

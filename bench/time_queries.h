@@ -13,13 +13,13 @@
 
 #include "measurement.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 inline constexpr std::array kMeasuredTolerances{0.0, 1e-6, 1e-4, 1e-3, 1e-2};
 
 // Rows: `read`; the five methods of the paper; `hierarchical` at each tolerance on the best instruction set,
 // and exact on each of the others. The results of all are checked before anything is timed; errors:
 // measure_errors.
-Expected<std::vector<MeasuredRow>> time_queries(const BenchmarkMesh& model, const PoseSet& set, int sweeps);
+Expected<std::vector<Measurement>> time_queries(const BenchmarkMesh& model, const PoseSet& set, int sweeps);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

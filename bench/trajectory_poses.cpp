@@ -7,7 +7,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "unit_water.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 // The pose whose centroid is at centroid_W.
@@ -70,4 +70,4 @@ std::vector<Pose> coherent_poses(const HydrostaticMesh& mesh, const Pose& floati
   return poses;
 }
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -6,7 +6,7 @@
 
 #include "hydrostatics/solver.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 inline constexpr double kCoherentStep = 1e-3;  // of the bounding box's diagonal L, and rad
 
@@ -20,4 +20,4 @@ Pose floating_pose(const Solver& solver);
 // the centroid moves by kCoherentStep L and the body turns by kCoherentStep rad, to 1 %.
 std::vector<Pose> coherent_poses(const HydrostaticMesh& mesh, const Pose& floating, int count = 100);
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

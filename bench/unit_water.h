@@ -3,8 +3,8 @@
 
 #include "hydrostatics/water_plane.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 
 inline const Water kUnitWater{.up_W = Vec3::UnitZ(), .level = 0.0, .density = 1.0, .gravity = 1.0};
 
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

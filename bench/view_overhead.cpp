@@ -29,7 +29,7 @@
 #include "service_process.h"
 #include "tests/view/http_peer.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 using Times = std::vector<double>;  // us
@@ -73,7 +73,7 @@ class WatchedView {
     thread_.join();
   }
   std::int64_t snapshots() const { return snapshots_; }
-  double processor_time() { return buoyancy::processor_time(process_.child().pid()); }
+  double processor_time() { return bench::processor_time(process_.child().pid()); }
 
  private:
   TempDir directory_;
@@ -99,8 +99,8 @@ class PacedClient {
       const auto start = Clock::now();
       const auto response = client_.request(++step_, states_);
       times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
-      if (!response) give_up(response.error().message());
-      if ((*response)->bodies.back().force[2] <= 0.0) give_up("a body in the water is not borne");
+      if (!response) fail(response.error().message());
+      if ((*response)->bodies.back().force[2] <= 0.0) fail("a body in the water is not borne");
       due = std::max(due + std::chrono::microseconds(static_cast<int>(1e6 / kRate)), Clock::now());
     }
     return times;
@@ -178,24 +178,24 @@ void run(bool quick) {
       "requests each.\n\n",
       kBodies, kRate, rounds, kRequests);
   MarkdownTable table({"", "without", "with", "change", "must", ""});
-  table.add({"round trip, p50, us", text("%.1f", median(without_p50)), text("%.1f", median(with_p50)),
-             text("%+.1f %%", 100.0 * change), "below 5 %", met(change < kMaxChange)});
-  table.add({"round trip, p99, us", text("%.1f", median(without_p99)), text("%.1f", median(with_p99)),
-             text("%+.1f %%", 100.0 * (median(with_p99) / median(without_p99) - 1.0)), "", ""});
+  table.add({"round trip, p50, us", format_cell("%.1f", median(without_p50)), format_cell("%.1f", median(with_p50)),
+             format_cell("%+.1f %%", 100.0 * change), "below 5 %", pass_or_fail(change < kMaxChange)});
+  table.add({"round trip, p99, us", format_cell("%.1f", median(without_p99)), format_cell("%.1f", median(with_p99)),
+             format_cell("%+.1f %%", 100.0 * (median(with_p99) / median(without_p99) - 1.0)), "", ""});
   const double mean_updates =
       std::accumulate(updates.begin(), updates.end(), 0.0) / static_cast<double>(updates.size());
-  table.add({"snapshots a second, mean", "", text("%.1f", mean_updates), "", "20 or more",
-             met(mean_updates >= kMinUpdates)});
+  table.add({"snapshots a second, mean", "", format_cell("%.1f", mean_updates), "", "20 or more",
+             pass_or_fail(mean_updates >= kMinUpdates)});
   table.add({"snapshots a second, the fewest of a round", "",
-             text("%.1f", *std::min_element(updates.begin(), updates.end())), "", "", ""});
-  table.add({"processor time of the view, % of one", "", text("%.1f", median(processor)), "", "", ""});
+             format_cell("%.1f", *std::min_element(updates.begin(), updates.end())), "", "", ""});
+  table.add({"processor time of the view, % of one", "", format_cell("%.1f", median(processor)), "", "", ""});
   table.print(stdout, 1);
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::run_with_quick_option(argc, argv, "What a live view costs the service that it looks at",
-                                         "Fewer requests and rounds", buoyancy::run);
+  return buoyancy::bench::run_with_quick_option(argc, argv, "What a live view costs the service that it looks at",
+                                         "Fewer requests and rounds", buoyancy::bench::run);
 }

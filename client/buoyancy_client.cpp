@@ -1,6 +1,6 @@
-// buoyancy-client: simulates the bodies of a scene that have a [body.client] and asks a buoyancy service, or
-// the same handler in its own process, for the wrenches on them. Exit codes: 0 the run is complete, 1 it
-// failed or was interrupted, 2 wrong arguments, scene or mesh.
+// buoyancy-client: simulates the bodies of a scene that have a [body.client]. The wrenches come from a
+// buoyancy service or from the same request handler in this process. Exit codes: 0 the run is complete, 1 it
+// failed or was interrupted, 2 invalid arguments, scene or mesh.
 
 #include <array>
 #include <atomic>
@@ -25,12 +25,12 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kMaxSteps = 1e15;  // whole numbers up to here are exact as doubles
+constexpr double kMaxSteps = 1e15;  // integers up to this value are exact as doubles
 constexpr std::int64_t kMaxCount = std::int64_t{1} << 40U;
-constexpr std::int64_t kMaxLateSteps = 10000;  // so many answers are kept
+constexpr std::int64_t kMaxDelaySteps = 10000;  // bounds the number of responses that are kept
 
 std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+static_assert(std::atomic<bool>::is_always_lock_free, "written by a signal handler");
 
 void request_stop(int /*signal*/) {
   stop_requested.store(true);
@@ -42,9 +42,9 @@ struct Arguments {
   RetryPolicy retry_policy;
   bool embedded = false;
   bool no_spin = false;
-  double duration = 10.0;  // s
+  double duration = 10.0;  // [s]
   std::optional<double> step;
-  std::optional<double> rate;  // Hz
+  std::optional<double> rate;  // [Hz]
   std::string csv;
   std::int64_t csv_every = 1;
   std::string integrator{to_string(Integrator::kVelocityVerlet)};
@@ -54,17 +54,17 @@ struct Arguments {
   bool json = false;
 };
 
-// A number above `low` and at most `high`; CLI::Range would let NaN pass.
+// Accepts numbers above `low` and at most `high`; unlike CLI::Range it rejects NaN.
 CLI::Validator number_in(double low, double high, const std::string& unit) {
   const auto check = [low, high](const std::string& text) -> std::string {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool is_number = error == std::errc{} && end == text.data() + text.size();
     if (is_number && value > low && value <= high) return "";
-    std::array<char, 128> wrong{};
-    std::snprintf(wrong.data(), wrong.size(), "%.40s is not a number above %g and at most %g", text.c_str(),
-                  low, high);
-    return wrong.data();
+    std::array<char, 128> message{};
+    std::snprintf(message.data(), message.size(), "%.40s is not a number above %g and at most %g",
+                  text.c_str(), low, high);
+    return message.data();
   };
   return {check, unit};
 }
@@ -75,25 +75,26 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* url = app.add_option("-l,--lcm-url", arguments.channel.lcm_url,
                              "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
   auto* embedded = app.add_flag("--embedded", arguments.embedded,
-                                "Answer in this process, without a network and without buoyancyd");
+                                "Compute wrenches in this process, without a network or buoyancyd");
   embedded->excludes(url);
-  app.add_option("--duration", arguments.duration, "Simulated time, s")
+  app.add_option("--duration", arguments.duration, "Simulated time in seconds")
       ->check(number_in(0.0, 1e9, "S"))
       ->capture_default_str();
-  app.add_option("--step", arguments.step, "Time step, s (default: 0.001; with --rate: its inverse)")
-      ->check(number_in(0.0, 1e6, "S"));
+  app.add_option("--step", arguments.step, "Time step in seconds")
+      ->check(number_in(0.0, 1e6, "S"))
+      ->default_str("0.001, or 1/HZ with --rate");
   auto* rate =
       app.add_option(
              "--rate", arguments.rate,
-             "Run freely at this many steps per second of wall-clock time, with the newest response there is "
-             "(default: lock-step, as fast as responses come)")
+             "Free-running mode: steps per wall-clock second, using the newest response available; without "
+             "this option lock-step mode, as fast as responses arrive")
           ->check(number_in(0.0, 1e6, "HZ"))
           ->excludes(embedded);
-  app.add_option("--csv", arguments.csv, "Write states and wrenches to this file");
-  app.add_option("--csv-every", arguments.csv_every, "Write only every Nth step")
+  app.add_option("--csv", arguments.csv, "Write states and wrenches to this CSV file");
+  app.add_option("--csv-every", arguments.csv_every, "Write only every Nth step to the CSV file")
       ->check(CLI::Range(std::int64_t{1}, kMaxCount, "N"))
       ->capture_default_str();
-  app.add_option("--integrator", arguments.integrator, "How bodies are moved")
+  app.add_option("--integrator", arguments.integrator, "Integration method")
       ->check(CLI::IsMember({std::string(to_string(Integrator::kSemiImplicitEuler)),
                              std::string(to_string(Integrator::kVelocityVerlet))}))
       ->capture_default_str();
@@ -101,34 +102,38 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Have the wrench evaluated at the pose extrapolated by this many seconds")
       ->check(number_in(-1e3, 1e3, "S"))
       ->capture_default_str();
-  app.add_option(
-         "--late", arguments.delay_steps,
-         "Use every response this many steps late: what a simulator that does not wait would see, but "
-         "the same in every run")
-      ->check(CLI::Range(std::int64_t{0}, kMaxLateSteps, "STEPS"))
+  const CLI::Range delay_range(std::int64_t{0}, kMaxDelaySteps, "STEPS");
+  auto* delay = app.add_option("--delay-steps", arguments.delay_steps,
+                               "Use every response this many steps late, reproducibly, to simulate a "
+                               "simulator that does not wait for responses")
+                    ->check(delay_range)
+                    ->excludes(rate)
+                    ->capture_default_str();
+  app.add_option("--late", arguments.delay_steps, "Alias of --delay-steps")
+      ->check(delay_range)
       ->excludes(rate)
-      ->capture_default_str();
-  app.add_option("--timeout", arguments.retry_policy.timeout, "Ask again after this many seconds")
+      ->excludes(delay)
+      ->group("");  // hidden
+  app.add_option("--timeout", arguments.retry_policy.timeout, "Response timeout in seconds before resending")
       ->check(number_in(0.0, 1e6, "S"))
       ->capture_default_str();
   app.add_option("--retries", arguments.retry_policy.max_retries,
-                 "Ask again at most this often before giving up")
+                 "Maximum number of resends of a request before the run fails")
       ->check(CLI::Range(std::int64_t{0}, kMaxCount, "N"))
       ->capture_default_str();
   app.add_option("--states-channel", arguments.channel.states_channel, "Channel of the requests")
       ->capture_default_str();
   app.add_option("--wrenches-channel", arguments.channel.wrenches_channel, "Channel of the responses")
       ->capture_default_str();
-  app.add_flag(
-         "--no-spin", arguments.no_spin,
-         "Sleep as soon as no response is there, instead of looking for it for up to 50 us while they come "
-         "quickly: takes less of the processor, and longer for each step")
+  app.add_flag("--no-spin", arguments.no_spin,
+               "Block immediately while waiting for a response instead of spinning for up to 50 us first: "
+               "uses less processor time, but each step takes longer")
       ->excludes(embedded);
-  app.add_option("--session", arguments.session, "Session id (default: drawn anew by every run)");
-  app.add_flag("--json", arguments.json, "Print the table at the end as JSON");
+  app.add_option("--session", arguments.session, "Session id")->default_str("random");
+  app.add_flag("--json", arguments.json, "Print the summary as JSON");
 }
 
-// What no single option shows.
+// Checks combinations of arguments.
 Expected<void> check_arguments(const Arguments& arguments, double steps) {
   if (steps > kMaxSteps) {
     return make_error({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
@@ -139,7 +144,7 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
   }
   if (channel.states_channel == channel.wrenches_channel) {
     return make_error({"channels", "both are " + channel.states_channel, "two different names",
-                       "requests would be taken for answers", ""});
+                       "requests would be taken for responses", ""});
   }
   return check_lcm_url(channel.lcm_url);
 }
@@ -176,11 +181,11 @@ int simulate(Arguments arguments) {
   if (!scene) return report(scene.error(), kUsageError);
   Expected<Simulation> simulation = Simulation::make(*scene, options);
   if (!simulation) return report(simulation.error(), kUsageError);
-  std::optional<RunCsv> csv;
+  std::optional<RunCsvWriter> csv;
   if (!arguments.csv.empty()) {
-    const Expected<void> own = check_output_is_its_own(arguments.csv, {arguments.scene});
-    if (!own) return report(own.error(), kUsageError);
-    Expected<RunCsv> created = RunCsv::create(arguments.csv, arguments.csv_every);
+    const Expected<void> distinct = check_output_is_its_own(arguments.csv, {arguments.scene});
+    if (!distinct) return report(distinct.error(), kUsageError);
+    Expected<RunCsvWriter> created = RunCsvWriter::create(arguments.csv, arguments.csv_every);
     if (!created) return report(created.error(), kFailure);
     csv = std::move(*created);
   }
@@ -198,15 +203,15 @@ int simulate(Arguments arguments) {
   LatencyMonitor latency;
 
   const Clock::time_point start = Clock::now();
-  Expected<RunOutcome> end = RunOutcome::kCompleted;
+  Expected<RunOutcome> outcome = RunOutcome::kCompleted;
   {
     ProgressBar progress("steps");
-    end = run(*simulation, *client, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
+    outcome = run(*simulation, *client, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
       progress.update(now.step_number(), steps, now.step_number());
       if (arguments.rate) {
-        if (std::optional<Error> late = latency.update(now)) {
+        if (std::optional<Error> warning = latency.update(now)) {
           progress.clear();
-          warn(std::move(late));
+          warn(std::move(warning));
         }
       }
       return csv ? csv->write(now) : Expected<void>{};
@@ -214,13 +219,13 @@ int simulate(Arguments arguments) {
   }
   const double wall_time = std::chrono::duration<double>(Clock::now() - start).count();
   const Expected<void> closed = csv ? csv->close() : Expected<void>{};
-  if (!end) return report(end.error(), kFailure);
+  if (!outcome) return report(outcome.error(), kFailure);
   if (!closed) return report(closed.error(), kFailure);
 
   warn(energy_warning(*simulation));
   summary.steps = simulation->completed_steps();
   summary.steps_requested = steps;
-  summary.interrupted = *end == RunOutcome::kInterrupted;
+  summary.interrupted = *outcome == RunOutcome::kInterrupted;
   summary.time = static_cast<double>(summary.steps) * options.step;
   summary.wall_time = wall_time;
   summary.options = options;
@@ -230,7 +235,8 @@ int simulate(Arguments arguments) {
   summary.client = statistics(*client);
   const std::string text = arguments.json ? to_json(summary) : to_text(summary);
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    return report({"standard output", "cannot be written", "a place for the table", "", ""}, kFailure);
+    return report({"standard output", "cannot be written", "a writable output for the summary", "", ""},
+                  kFailure);
   }
   return summary.interrupted ? kFailure : kSuccess;
 }
@@ -242,8 +248,7 @@ int client_main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
 
   CLI::App app(
-      "Simulates the bodies of a scene that have a [body.client] and asks buoyancyd for the wrenches on "
-      "them.\n"
+      "Simulate the bodies of a scene that have a [body.client], with wrenches from buoyancyd.\n"
       "Exit codes: 0 done, 1 it ran and failed or was interrupted (SIGINT, SIGTERM: the table and the CSV "
       "are of\n"
       "the steps done), 2 wrong arguments, scene or mesh.",

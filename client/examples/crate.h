@@ -1,5 +1,5 @@
-// What the examples float: the box of scenes/box.toml. The service knows its mesh and the water, the
-// simulator its mass, gravity and damping. Everything that the two engines do not do differently is here.
+// The crate of both examples, the box of scenes/box.toml, and the code that does not depend on the engine.
+// The service knows the mesh and the water; the simulator knows mass, gravity and damping.
 #pragma once
 
 #include <array>
@@ -13,42 +13,42 @@
 
 namespace crate {
 
-inline constexpr std::int32_t kBodyId = 1;                             // as in the scene
-inline constexpr std::array<double, 3> kSize{1.0, 1.0, 0.5};           // m
-inline constexpr double kMass = 256.25;                                // kg: half of what the box displaces
-inline constexpr double kGravity = 9.80665;                            // m/s^2
-inline constexpr double kLinearDamping = 500.0;                        // N/(m/s)
-inline constexpr double kAngularDamping = 40.0;                        // N m/(rad/s)
-inline constexpr std::array<double, 3> kStart{0.0, 0.0, 0.75};         // m
-inline constexpr std::array<double, 4> kTurned{0.98, 0.15, 0.1, 0.0};  // (w, x, y, z), not normalised
-inline constexpr double kSimulatedTime = 20.0;                         // s
+inline constexpr std::int32_t kBodyId = 1;                    // as in the scene
+inline constexpr std::array<double, 3> kSize{1.0, 1.0, 0.5};  // [m]
+inline constexpr double kMass = 256.25;                       // [kg], half the mass of water it can displace
+inline constexpr double kGravity = 9.80665;                   // [m/s^2]
+inline constexpr double kLinearDamping = 500.0;               // [N/(m/s)]
+inline constexpr double kAngularDamping = 40.0;               // [N m/(rad/s)]
+inline constexpr std::array<double, 3> kInitialPosition{0.0, 0.0, 0.75};           // [m]
+inline constexpr std::array<double, 4> kInitialOrientation{0.98, 0.15, 0.1, 0.0};  // wxyz, not normalised
+inline constexpr double kSimulatedTime = 20.0;                                     // [s]
 
-// The command line: [LCM URL [STEP [RETRIES]]].
+// Command line: [LCM URL [STEP [RETRIES]]].
 struct Arguments {
   Arguments(int argc, char** argv) {
     if (argc > 1) lcm_url = argv[1];
     if (argc > 2) step = std::stod(argv[2]);
-    if (argc > 3) retries = std::stoll(argv[3]);
+    if (argc > 3) max_retries = std::stoll(argv[3]);
   }
-  std::string lcm_url;  // "" for what LCM's own tools would take
-  double step = 1e-3;   // s
-  // At 0.1 s each: a minute, in which a service that is started together with us loads its scene.
-  std::int64_t retries = 600;
+  std::string lcm_url;  // "": the default of LCM's own tools
+  double step = 1e-3;   // [s]
+  // One minute at 0.1 s each: a service that is started at the same time loads its scene meanwhile.
+  std::int64_t max_retries = 600;
 };
 
-// Where the crate came to rest and how fast it got there. tilt_cosine: z of the crate's own z axis.
-inline void report(const buoyancy::ClientStats& asked, double height, double tilt_cosine,
-                   std::chrono::steady_clock::duration took) {
-  const double seconds = std::chrono::duration<double>(took).count();
+// Prints the final pose of the crate and the timing. tilt_cosine: z component of the crate's own z axis.
+inline void report(const buoyancy::ClientStats& stats, double height, double tilt_cosine,
+                   std::chrono::steady_clock::duration elapsed) {
+  const double seconds = std::chrono::duration<double>(elapsed).count();
   std::printf("height %.6f m, tilt %.6f rad after %.3g s of simulated time\n", height,
               std::acos(std::fmin(tilt_cosine, 1.0)), kSimulatedTime);
-  std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld requests sent again\n",
-              static_cast<double>(asked.requests) / seconds, 1e6 * asked.round_trip.percentiles().p50,
-              1e6 * asked.round_trip.percentiles().p99, static_cast<long long>(asked.retries));
+  std::printf("%.0f steps/s, round trip p50 %.1f us, p99 %.1f us, %lld retries\n",
+              static_cast<double>(stats.requests) / seconds, 1e6 * stats.round_trip.percentiles().p50,
+              1e6 * stats.round_trip.percentiles().p99, static_cast<long long>(stats.retries));
 }
 
-// All that a simulator does. World is an engine with a crate in it: state(), step_with(wrench, step),
-// height(), tilt_cosine(). Returns main's exit code.
+// The complete simulation loop. World is an engine with a crate in it: state(), step_with(wrench, step),
+// height(), tilt_cosine(). Returns the exit code of main().
 template <typename World>
 int float_crate(World& world, const Arguments& arguments) {
   const double step_size = arguments.step;
@@ -63,18 +63,18 @@ int float_crate(World& world, const Arguments& arguments) {
   }
   const auto start = std::chrono::steady_clock::now();
   for (std::int64_t step = 0; step < steps; ++step) {
-    // Of simulated time, from the step's number: the same run asks the same.
+    // Simulated time, computed from the step number: every run sends the same requests.
     const std::int64_t utime = std::llround(1e6 * step_size * static_cast<double>(step));
-    // Once per step, at the step's own pose: the engines then integrate semi-implicitly, which keeps energy
-    // bounded.
+    // One request per step, for the pose at the step's start: the engines then integrate semi-implicitly,
+    // which keeps the energy bounded.
     const std::array states{world.state()};
     const auto response = client->request(utime, states);
     if (!response) {
       std::fprintf(stderr, "%s\n", response.error().message().c_str());
       return 1;
     }
-    if (const auto* wrong = buoyancy::find_failed_body(**response)) {
-      std::fprintf(stderr, "body %d is answered with status %s\n", wrong->body_id, to_string(wrong->status));
+    if (const auto* failed = buoyancy::find_failed_body(**response)) {
+      std::fprintf(stderr, "body %d has status %s\n", failed->body_id, to_string(failed->status));
       return 1;
     }
     world.step_with((*response)->bodies[0], step_size);

@@ -1,5 +1,5 @@
-// The crate of bullet_crate.cpp in another engine, ODE (package libode-dev, which calculates with 64 bits):
-// only what reads a pose and applies a wrench is different.
+// The crate of bullet_crate.cpp in another engine, ODE (package libode-dev, in double precision): only the
+// code that reads a pose and applies a wrench differs.
 //
 //   buoyancyd --scene scenes/box.toml &
 //   ode_crate [LCM URL [STEP [RETRIES]]]
@@ -7,7 +7,7 @@
 
 #include "client/examples/crate.h"
 
-static_assert(sizeof(dReal) == sizeof(double), "ODE built for 32 bits knows poses to 7 digits only");
+static_assert(sizeof(dReal) == sizeof(double), "single-precision ODE stores poses with 7 digits only");
 
 namespace {
 
@@ -21,10 +21,12 @@ class World {
     dMass mass;
     dMassSetBoxTotal(&mass, crate::kMass, crate::kSize[0], crate::kSize[1], crate::kSize[2]);
     dBodySetMass(body_, &mass);
-    dBodySetPosition(body_, crate::kStart[0], crate::kStart[1], crate::kStart[2]);
-    dQuaternion turned{crate::kTurned[0], crate::kTurned[1], crate::kTurned[2], crate::kTurned[3]};
-    dSafeNormalize4(turned);
-    dBodySetQuaternion(body_, turned);
+    dBodySetPosition(body_, crate::kInitialPosition[0], crate::kInitialPosition[1],
+                     crate::kInitialPosition[2]);
+    const auto& [w, x, y, z] = crate::kInitialOrientation;
+    dQuaternion orientation{w, x, y, z};
+    dSafeNormalize4(orientation);
+    dBodySetQuaternion(body_, orientation);
   }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -33,15 +35,15 @@ class World {
     dCloseODE();
   }
 
-  // ODE's origin of a body is its centre of mass; see bullet_crate.cpp for where that is not the mesh's
-  // origin.
+  // ODE's body origin is the centre of mass; bullet_crate.cpp explains what to do if the mesh's origin
+  // differs.
   buoyancy::BodyState state() const {
     const dReal* p = dBodyGetPosition(body_);
     const dReal* q = dBodyGetQuaternion(body_);
     return {.body_id = crate::kBodyId,
             .position = {p[0], p[1], p[2]},
             .quaternion_wxyz = {q[0], q[1], q[2], q[3]},
-            .linear_velocity = {},  // read only with a lead_time
+            .linear_velocity = {},  // used only with a lead_time
             .angular_velocity = {}};
   }
 
@@ -58,7 +60,7 @@ class World {
   }
 
   double height() const { return dBodyGetPosition(body_)[2]; }
-  double tilt_cosine() const { return dBodyGetRotation(body_)[10]; }  // row 2, column 2 of rows of 4
+  double tilt_cosine() const { return dBodyGetRotation(body_)[10]; }  // row 2, column 2; rows have 4 entries
 
  private:
   dWorldID world_;

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Asks buoyancyd from Python, with the standard library and what lcm-gen makes of our message definitions:
+"""Sends a request to buoyancyd from Python, using only the standard library and the code that lcm-gen generates:
 
     lcm-gen -p --ppath types lcmtypes/*.lcm
     buoyancyd --scene scenes/box.toml &
     PYTHONPATH=types client/examples/round_trip.py
 
-LCM's own Python module does the same with fewer lines where it is installed. Here the wire is plain to see: a datagram is
-"LC02", a number that counts up, the channel, a zero byte, and the message. Messages of more than 65,499 bytes come in
-several datagrams ("LC03"); this client asks for so few bodies that none does.
+Where LCM's own Python module is installed, it does the same in fewer lines. This example shows the wire format: a
+datagram holds "LC02", a sequence number, the channel, a zero byte, and the message. Messages of more than 65,499 bytes
+are split into several datagrams ("LC03"); the messages of this client are always smaller.
 """
 import argparse
 import random
@@ -22,7 +22,7 @@ STATES, WRENCHES = "BUOYANCY_STATES", "BUOYANCY_WRENCHES"
 
 
 class Client:
-    """One session in lock-step: a request is sent again until its response is there."""
+    """One session in lock-step: a request is resent until its response arrives."""
 
     def __init__(self, group="239.255.76.67", port=7667, ttl=0, timeout=0.1, retries=50):
         self.address = (group, port)
@@ -38,8 +38,8 @@ class Client:
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
 
-    def ask(self, utime, states, lead_time=0.0):
-        """states: body_state_t's. Returns their body_wrench_t's, in the same order."""
+    def request(self, utime, states, lead_time=0.0):
+        """Takes a list of body_state_t and returns the list of their body_wrench_t, in the same order."""
         request = buoyancy.body_states_t()
         request.utime, request.session_id, request.seq = utime, self.session_id, self.seq
         request.lead_time, request.num_bodies, request.bodies = lead_time, len(states), states
@@ -47,9 +47,9 @@ class Client:
         encoded = request.encode()
         for _ in range(1 + self.retries):
             self.publish(STATES, encoded)
-            answer = self.wait_for(request)
-            if answer is not None:
-                return answer.bodies
+            response = self.wait_for(request)
+            if response is not None:
+                return response.bodies
         raise TimeoutError(
             f"no response to request {request.seq} in {(1 + self.retries) * self.timeout:g} s: is buoyancyd running "
             f"on {self.address[0]}:{self.address[1]}?")
@@ -60,7 +60,7 @@ class Client:
         self.socket.sendto(header + channel.encode() + b"\0" + message, self.address)
 
     def wait_for(self, request):
-        """The answer with the request's session and number; None: not in time."""
+        """Returns the response with the request's session and seq, or None after the timeout."""
         deadline = time.monotonic() + self.timeout
         while (left := deadline - time.monotonic()) > 0:
             self.socket.settimeout(left)
@@ -72,11 +72,11 @@ class Client:
             if message is None:
                 continue
             try:
-                answer = buoyancy.body_wrenches_t.decode(message)
+                response = buoyancy.body_wrenches_t.decode(message)
             except (ValueError, struct.error):
-                continue  # not ours
-            if (answer.session_id, answer.seq) == (request.session_id, request.seq):
-                return answer
+                continue  # another message type
+            if (response.session_id, response.seq) == (request.session_id, request.seq):
+                return response
         return None
 
     @staticmethod
@@ -88,16 +88,16 @@ class Client:
 
 
 def main():
-    parser = argparse.ArgumentParser(description="One round trip: the force on a body at some height.")
-    parser.add_argument("--body", type=int, default=1, help="its id in the scene (default: 1)")
-    parser.add_argument("--height", type=float, default=0.0, help="m, of its origin (default: 0)")
+    parser = argparse.ArgumentParser(description="Send one request to buoyancyd and print the force on a body.")
+    parser.add_argument("--body", type=int, default=1, help="body id in the scene (default: %(default)s)")
+    parser.add_argument("--height", type=float, default=0.0, help="height of the body's origin in metres (default: %(default)s)")
     arguments = parser.parse_args()
 
     state = buoyancy.body_state_t()
     state.body_id = arguments.body
     state.position = [0.0, 0.0, arguments.height]
     state.quaternion_wxyz = [1.0, 0.0, 0.0, 0.0]
-    wrench, = Client().ask(utime=0, states=[state])
+    wrench, = Client().request(utime=0, states=[state])
     print(f"status {wrench.status}, force {wrench.force[0]:.6g} {wrench.force[1]:.6g} {wrench.force[2]:.6f} N, "
           f"submerged volume {wrench.submerged_volume:.9f} m^3")
 

@@ -5,7 +5,7 @@
 namespace buoyancy {
 namespace {
 
-// exp of a rotation vector.
+// Exponential map of a rotation vector [rad].
 Eigen::Quaterniond rotation(const Vec3& angle) {
   const double norm = angle.norm();
   if (norm == 0.0) return Eigen::Quaterniond::Identity();
@@ -22,8 +22,8 @@ void drift(const RigidBody& body, double time, RigidBodyState& state) {
   integrate_free_rotation(body, time, state);
 }
 
-// The integral of s over `time` for ds/dt = -(linear + quadratic s) s / inertia from s = speed: what a
-// quadratic resistance sees of the motion.
+// Path length of a damped motion: the integral of s over `time` for ds/dt = -(linear + quadratic s) s /
+// inertia with s(0) = speed. The quadratic resistance depends on it.
 double damped_path(const Damping& damping, double inertia, double speed, double time) {
   const double rate = damping.linear / inertia;
   const double linear_path = speed * (rate > 0.0 ? -std::expm1(-rate * time) / rate : time);
@@ -46,7 +46,7 @@ void damp_rotation(const RigidBody& body, double time, RigidBodyState& state) {
   const Vec3 w_P = momentum_P.cwiseQuotient(body.principal_inertia);
   const double speed_squared = w_P.squaredNorm();
   if (speed_squared == 0.0) return;
-  // The inertia with which |w| starts to fall: d|w|/dt = -(c + d |w|) |w| / inertia.
+  // Effective inertia of the initial decay of |w|: d|w|/dt = -(c + d |w|) |w| / inertia.
   const double inertia = speed_squared / w_P.cwiseProduct(w_P).cwiseQuotient(body.principal_inertia).sum();
   const double path = damped_path(damping, inertia, std::sqrt(speed_squared), time);
   const Vec3 decay =
@@ -70,9 +70,10 @@ std::optional<Integrator> integrator_from_name(std::string_view text) {
 }
 
 void integrate_free_rotation(const RigidBody& body, double time, RigidBodyState& state) {
-  // With the middle inertia I_1: L.L/(2 I_1) + L_0^2/2 (1/I_0 - 1/I_1) + L_2^2/2 (1/I_2 - 1/I_1). The first
-  // is a rotation about L and commutes with the others, each a rotation about its axis; the second or the
-  // third vanishes where two inertias are equal.
+  // The kinetic energy is split about the middle inertia I_1: L.L/(2 I_1) + L_0^2/2 (1/I_0 - 1/I_1) +
+  // L_2^2/2 (1/I_2 - 1/I_1). The first term generates a rotation about L, which commutes with the others;
+  // each of the others generates a rotation about its axis, and one of them vanishes where two inertias are
+  // equal.
   const Vec3 inverse = body.principal_inertia.cwiseInverse();
   const auto turn_about_axis = [&](int i, double seconds) {
     const Vec3 axis_B = body.principal_axes_B.col(i);
@@ -86,17 +87,17 @@ void integrate_free_rotation(const RigidBody& body, double time, RigidBodyState&
   state.q_WB.normalize();
 }
 
-void damp(const RigidBody& body, double time, RigidBodyState& state) {
+void apply_damping(const RigidBody& body, double time, RigidBodyState& state) {
   damp_velocity(body, time, state);
   damp_rotation(body, time, state);
 }
 
 void begin_step(Integrator integrator, const RigidBody& body, const Load& load, double step,
                 RigidBodyState& state) {
-  damp(body, 0.5 * step, state);
+  apply_damping(body, 0.5 * step, state);
   if (integrator == Integrator::kSemiImplicitEuler) {
     kick(body, load, step, state);
-    damp(body, 0.5 * step, state);
+    apply_damping(body, 0.5 * step, state);
   } else {
     kick(body, load, 0.5 * step, state);
   }
@@ -107,7 +108,7 @@ void finish_step(Integrator integrator, const RigidBody& body, const Load& load,
                  RigidBodyState& state) {
   if (integrator == Integrator::kSemiImplicitEuler) return;
   kick(body, load, 0.5 * step, state);
-  damp(body, 0.5 * step, state);
+  apply_damping(body, 0.5 * step, state);
 }
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// How a rigid body moves through one time step h. One wrench per step serves either integrator.
+// Time integrators of a rigid body, for one step h. Either of them needs one wrench per step.
 //
 //   semi_implicit_euler  (symplectic Euler)   D(h/2) K(h) D(h/2) X(h)                        order 1
 //   velocity_verlet                           D(h/2) K(h/2) X(h), new load, K(h/2) D(h/2)    order 2
@@ -10,9 +10,9 @@
 //                Leimkuhler and McLachlan, J. Chem. Phys. 107, 1997, and Fasso, J. Comput. Phys. 189, 2003).
 //                Exact for bodies with two equal principal inertias, order 2 for others.
 //   D(t), damping: dv/dt = -(c + d |v|) v / m: exact. dw_i/dt = -(c + d |w|) w_i / I_i in principal axes with
-//                the path that |w| runs through taken from the scalar law: exact for equal inertias, order 2
-//                for others. Every component only ever shrinks: no damping, however large, and no step can
-//                make it overshoot or blow up.
+//                the path of |w| taken from the scalar equation: exact for equal inertias, order 2 for
+//                others. The magnitude of every component decreases monotonically: no damping and no step,
+//                however large, makes it overshoot or diverge.
 //
 // K and X are maps of Hamilton's equations and the compositions without D are symplectic: over a step within
 // the stability limit (h times the highest frequency < 2) the energy of an undamped body oscillates by O(h)
@@ -32,16 +32,16 @@ enum class Integrator { kSemiImplicitEuler, kVelocityVerlet };
 std::string_view to_string(Integrator integrator);  // "velocity_verlet"
 std::optional<Integrator> integrator_from_name(std::string_view name);
 
-// From t to the pose at t + h, given the load at t. step: s, > 0.
+// Moves the state from t to the pose at t + h, given the load at t. step: h [s], > 0.
 void begin_step(Integrator integrator, const RigidBody& body, const Load& load, double step,
                 RigidBodyState& state);
-// The velocities at t + h, given the load at the pose of t + h.
+// Completes the velocities at t + h, given the load at the pose of t + h.
 void finish_step(Integrator integrator, const RigidBody& body, const Load& load, double step,
                  RigidBodyState& state);
 
-// The drift's rotation alone, for a body on which no torque acts.
+// Applies the rotation of X(time) alone: the motion of a body on which no torque acts.
 void integrate_free_rotation(const RigidBody& body, double time, RigidBodyState& state);
-// Damping alone.
-void damp(const RigidBody& body, double time, RigidBodyState& state);
+// Applies D(time) alone.
+void apply_damping(const RigidBody& body, double time, RigidBodyState& state);
 
 }  // namespace buoyancy

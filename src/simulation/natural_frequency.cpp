@@ -17,18 +17,18 @@ constexpr int kLevels = 16;
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// The mesh with its tree, which only some methods give it.
-class TreeOf {
+// Gives access to a mesh that has a tree: the mesh itself, or a copy where its method needs no tree.
+class MeshWithTree {
  public:
-  explicit TreeOf(const HydrostaticMesh& mesh) : mesh_(&mesh) {
+  explicit MeshWithTree(const HydrostaticMesh& mesh) : mesh_(&mesh) {
     if (mesh.tree) return;
     copy_ = mesh;
     copy_->tree = build_moment_tree(copy_->surface);
     mesh_ = &*copy_;
   }
-  TreeOf(const TreeOf&) = delete;
-  TreeOf& operator=(const TreeOf&) = delete;
-  ~TreeOf() = default;
+  MeshWithTree(const MeshWithTree&) = delete;
+  MeshWithTree& operator=(const MeshWithTree&) = delete;
+  ~MeshWithTree() = default;
 
   const HydrostaticMesh& mesh() const { return *mesh_; }
 
@@ -37,9 +37,9 @@ class TreeOf {
   const HydrostaticMesh* mesh_;
 };
 
-// Of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically. Eigen's solver of fixed
-// size takes seconds to compile.
-double largest_eigenvalue(Mat6 matrix) {
+// Largest eigenvalue of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically.
+// Eigen's fixed-size solver takes seconds to compile.
+double max_eigenvalue(Mat6 matrix) {
   constexpr int kMaxSweeps = 30;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     bool diagonal = true;
@@ -75,16 +75,16 @@ double largest_eigenvalue(Mat6 matrix) {
 
 double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid, const RigidBodyState& state,
                     const Water& water) {
-  const std::optional<Hydrostatics> found =
+  const std::optional<Hydrostatics> result =
       hydrostatics(mesh, pose_of(rigid, state), water, rigid.center_of_mass_B, std::nullopt);
-  if (!found) return 0.0;
+  if (!result) return 0.0;
   const Mat3 axes_W = state.q_WB.toRotationMatrix() * rigid.principal_axes_B;
-  // M^-1/2 K M^-1/2, with M^-1/2 = diag(by_mass, by_inertia): block by block, since products of 6 x 6
-  // matrices are expensive to compile.
+  // M^-1/2 K M^-1/2, with M^-1/2 = diag(by_mass, by_inertia): computed block by block, since products of
+  // 6 x 6 matrices are expensive to compile.
   const double by_mass = 1.0 / std::sqrt(rigid.mass);
   const Mat3 by_inertia =
       axes_W * rigid.principal_inertia.cwiseSqrt().cwiseInverse().asDiagonal() * axes_W.transpose();
-  const Mat6& K = found->stiffness;
+  const Mat6& K = result->stiffness;
   Mat6 scaled;
   scaled.topLeftCorner<3, 3>() = by_mass * by_mass * K.topLeftCorner<3, 3>();
   scaled.topRightCorner<3, 3>() = by_mass * K.topRightCorner<3, 3>() * by_inertia;
@@ -92,11 +92,11 @@ double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid, const R
   scaled.bottomRightCorner<3, 3>() = by_inertia * K.bottomRightCorner<3, 3>() * by_inertia;
   scaled = (0.5 * (scaled + scaled.transpose())).eval();
   if (!scaled.allFinite()) return 0.0;
-  return std::sqrt(std::max(largest_eigenvalue(scaled), 0.0));
+  return std::sqrt(std::max(max_eigenvalue(scaled), 0.0));
 }
 
-// Up as seen from the body: along the principal axes and between each two and three of them, both ways. What
-// is flat or upright about a body usually is so along these.
+// Candidate up directions in B: along the principal axes and along the bisectors of each two and three of
+// them, in both senses. The flat and the slender sides of most bodies face one of these directions.
 std::vector<Vec3> directions_B(const RigidBody& rigid) {
   std::vector<Vec3> directions;
   const auto components = {-1.0, 0.0, 1.0};
@@ -113,19 +113,19 @@ std::vector<Vec3> directions_B(const RigidBody& rigid) {
 }
 
 struct Extent {
-  double lowest = std::numeric_limits<double>::infinity();    // m
-  double highest = -std::numeric_limits<double>::infinity();  // m
+  double min = std::numeric_limits<double>::infinity();   // [m]
+  double max = -std::numeric_limits<double>::infinity();  // [m]
 };
 
-// Of the mesh along a direction, from the centre of mass.
+// Extent of the mesh along a direction, relative to the centre of mass.
 Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const Vec3& up_B) {
   const double offset = up_B.dot(mesh.center_B - rigid.center_of_mass_B);
   Extent extent;
   for (const Triangle& triangle : mesh.surface.triangles) {
     for (const std::int32_t i : triangle) {
       const double height = up_B.dot(mesh.vertex(i)) + offset;
-      extent.lowest = std::min(extent.lowest, height);
-      extent.highest = std::max(extent.highest, height);
+      extent.min = std::min(extent.min, height);
+      extent.max = std::max(extent.max, height);
     }
   }
   return extent;
@@ -134,9 +134,8 @@ Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const V
 }  // namespace
 
 double natural_frequency_bound(const Body& body, const RigidBody& rigid, const Water& water) {
-  // The parts of K are the waterplane's, which scaled have the trace rho g A (1/m + l^2/I) at most, and the
-  // buoyancy's lever, at most rho g V l / I. No waterplane is larger than the whole surface A, and
-  // V <= A l / 3.
+  // K is the sum of a waterplane term, whose scaled trace is at most rho g A (1/m + l^2/I), and of a buoyancy
+  // lever term, at most rho g V l / I. No waterplane is larger than the whole surface A, and V <= A l / 3.
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const double lever = mesh.max_lever_arm(rigid.center_of_mass_B);
   const double levers = 4.0 / 3.0 * lever * lever / rigid.principal_inertia[0];
@@ -145,37 +144,37 @@ double natural_frequency_bound(const Body& body, const RigidBody& rigid, const W
 
 HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidBody& rigid,
                                                   const RigidBodyState& state, const Water& water) {
-  const TreeOf tree(body.prepared_mesh->mesh);
-  const HydrostaticMesh& mesh = tree.mesh();
+  const MeshWithTree with_tree(body.prepared_mesh->mesh);
+  const HydrostaticMesh& mesh = with_tree.mesh();
   const Solver solver(mesh, Method::kHierarchical);
   const std::optional<double> energy = mechanical_energy(rigid, state, solver, water);
   if (!energy) return {};
 
-  HighestNaturalFrequency fastest;
+  HighestNaturalFrequency highest;
   const auto consider = [&](const RigidBodyState& candidate, double draft) {
     const double frequency = frequency_at(mesh, rigid, candidate, water);
-    if (frequency > fastest.frequency) fastest = {frequency, draft};
+    if (frequency > highest.frequency) highest = {frequency, draft};
   };
   const double height = water.up_W.dot(state.center_W) - water.level;
   const auto sweep = [&](const Eigen::Quaterniond& q_WB) {
     const Extent extent = extent_along(mesh, rigid, q_WB.conjugate() * water.up_W);
     for (int i = 1; i <= kLevels; ++i) {
-      // From half a level's distance above the lowest vertex to the highest.
-      const double draft = (extent.highest - extent.lowest) * (i < kLevels ? (i - 0.5) / (kLevels - 1) : 1.0);
+      // The drafts run from half a level spacing above the lowest vertex to the highest vertex.
+      const double draft = (extent.max - extent.min) * (i < kLevels ? (i - 0.5) / (kLevels - 1) : 1.0);
       RigidBodyState candidate;
       candidate.q_WB = q_WB;
-      candidate.center_W = water.up_W * (water.level - extent.lowest - draft);
+      candidate.center_W = water.up_W * (water.level - extent.min - draft);
       const std::optional<double> potential = mechanical_energy(rigid, candidate, solver, water);
       if (potential && *potential <= *energy) consider(candidate, draft);
     }
     return extent;
   };
   const Extent present = sweep(state.q_WB);
-  consider(state, -(height + present.lowest));
+  consider(state, -(height + present.min));
   for (const Vec3& up_B : directions_B(rigid)) {
     sweep(rotation_between(up_B, water.up_W));
   }
-  return fastest;
+  return highest;
 }
 
 }  // namespace buoyancy

@@ -6,21 +6,21 @@
 namespace buoyancy {
 
 Expected<const WrenchResponse*> InProcessClient::request(const WrenchRequest& request) {
-  const Clock::time_point asked_at = Clock::now();
+  const Clock::time_point sent_at = Clock::now();
   encode(request, bytes_);
-  [[maybe_unused]] const auto rejection = decode(handler_.handle(bytes_), response_);
-  assert(!rejection);  // what we encode, the handler answers
+  [[maybe_unused]] const auto error = decode(handler_.handle(bytes_), response_);
+  assert(!error);  // a request that we encode is always valid
   ++statistics_.requests;
-  statistics_.round_trip.add(std::chrono::duration<double>(Clock::now() - asked_at).count());
+  statistics_.round_trip.add(std::chrono::duration<double>(Clock::now() - sent_at).count());
   return &response_;
 }
 
 Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request) {
-  return std::visit([&](auto& a) { return a.request(request); }, client);
+  return std::visit([&](auto& alternative) { return alternative.request(request); }, client);
 }
 
 ClientStats statistics(const RequestClient& client) {
-  return std::visit([](const auto& a) -> ClientStats { return a.statistics(); }, client);
+  return std::visit([](const auto& alternative) -> ClientStats { return alternative.statistics(); }, client);
 }
 
 }  // namespace buoyancy

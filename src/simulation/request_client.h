@@ -1,5 +1,5 @@
-// How the simulator gets a response to its request: over LCM (client/client.h), or from the handler
-// itself in this process, for machines without a network.
+// The simulator's source of responses: a service over LCM (client/lockstep_client.h), or the request handler
+// in this process, which needs no network.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class InProcessClient {
 using RequestClient = std::variant<InProcessClient, LockstepClient, FreeRunningClient>;
 
 // The response holds as many bodies as the request, in the same order, and is valid until the next call.
-// Errors: the client's.
+// Errors: those of the client in use.
 Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request);
 ClientStats statistics(const RequestClient& client);
 

@@ -21,8 +21,7 @@ std::string number(double value) {
 
 Error open_mesh_error(const std::string& subject) {
   return {subject, "an open mesh without mass, center_of_mass and inertia", "all three in [body.client]",
-          "an open mesh encloses no volume that they could be taken from",
-          "Give the three, or close the mesh"};
+          "an open mesh encloses no volume to derive them from", "Set all three, or close the mesh"};
 }
 
 }  // namespace
@@ -42,7 +41,7 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
     return make_error({subject, "mass = " + number(rigid.mass) + " kg", "a mass above 0",
                        "a density of " + number(density) + " kg/m^3 times an enclosed volume of " +
                            number(enclosed.volume) + " m^3",
-                       "Give mass or density in [body.client]"});
+                       "Set mass or density in [body.client]"});
   }
 
   rigid.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
@@ -57,8 +56,8 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
   rigid.principal_axes_B = principal.eigenvectors();
   if (!(rigid.principal_inertia.minCoeff() > 0.0) || !rigid.principal_inertia.allFinite()) {
     return make_error({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),
-                       "an inertia matrix whose principal values are all above 0 (kg m^2)", "",
-                       "Correct or give inertia in [body.client]"});
+                       "a positive definite inertia matrix (kg m^2)", "",
+                       "Set or correct inertia in [body.client]"});
   }
   return rigid;
 }
@@ -121,11 +120,11 @@ double mechanical_energy(const RigidBody& body, const RigidBodyState& state, con
 
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water) {
-  const BuoyancyResult response = buoyancy(solver, pose_of(body, state), water, body.reference_B);
-  if (response.status != BuoyancyStatus::kOk) return std::nullopt;
+  const BuoyancyResult result = buoyancy(solver, pose_of(body, state), water, body.reference_B);
+  if (result.status != BuoyancyStatus::kOk) return std::nullopt;
   BodyWrench wrench;
-  wrench.submerged_volume = response.volume;
-  wrench.center_of_buoyancy = to_array(response.center_of_buoyancy_W);
+  wrench.submerged_volume = result.volume;
+  wrench.center_of_buoyancy = to_array(result.center_of_buoyancy_W);
   return mechanical_energy(body, state, wrench, water);
 }
 

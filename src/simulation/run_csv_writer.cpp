@@ -49,8 +49,8 @@ void append_row(std::string& rows, std::int64_t utime, const SimulatedBody& body
 
 }  // namespace
 
-Expected<RunCsv> RunCsv::create(const std::filesystem::path& path, std::int64_t every) {
-  RunCsv csv(path, every, std::fopen(path.c_str(), "w"));
+Expected<RunCsvWriter> RunCsvWriter::create(const std::filesystem::path& path, std::int64_t every) {
+  RunCsvWriter csv(path, every, std::fopen(path.c_str(), "w"));
   if (!csv.file_) return csv.write_error();
   if (std::fwrite(kHeader.data(), 1, kHeader.size(), csv.file_.get()) != kHeader.size()) {
     return csv.write_error();
@@ -58,7 +58,7 @@ Expected<RunCsv> RunCsv::create(const std::filesystem::path& path, std::int64_t 
   return csv;
 }
 
-Expected<void> RunCsv::write(const Simulation& simulation) {
+Expected<void> RunCsvWriter::write(const Simulation& simulation) {
   if (simulation.step_number() % every_ != 0) return {};
   rows_.clear();
   for (const SimulatedBody& body : simulation.bodies()) append_row(rows_, simulation.utime(), body);
@@ -66,12 +66,12 @@ Expected<void> RunCsv::write(const Simulation& simulation) {
   return {};
 }
 
-Expected<void> RunCsv::close() {
+Expected<void> RunCsvWriter::close() {
   if (std::fclose(file_.release()) != 0) return write_error();
   return {};
 }
 
-tl::unexpected<Error> RunCsv::write_error() const {
+tl::unexpected<Error> RunCsvWriter::write_error() const {
   return make_error({path_.string(), std::generic_category().message(errno), "a file that can be written",
                      "a missing directory, missing permission or a full disk", ""});
 }

@@ -11,10 +11,10 @@
 namespace buoyancy {
 namespace {
 
-// Of the largest kinetic energy: what a rise has to exceed for the energy to have more than doubled.
-constexpr double kDoubled = 0.5;
-// Of m g L: a rise that is no more than this is rounding.
-constexpr double kNoise = 1e-9;
+// Rise, as a fraction of the largest kinetic energy, above which the energy has more than doubled.
+constexpr double kMaxEnergyRise = 0.5;
+// Rise, as a fraction of m g L, that counts as rounding error.
+constexpr double kEnergyNoise = 1e-9;
 
 std::string number(double value, int digits = 3) {
   std::array<char, 32> text{};
@@ -22,7 +22,7 @@ std::string number(double value, int digits = 3) {
   return text.data();
 }
 
-// The next number below with two digits: what is advised must not be a little too large.
+// Rounds down to two significant digits, so that the recommended value is not too large.
 std::string rounded_down(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   return number(std::floor(value / unit) * unit, 2);
@@ -30,22 +30,22 @@ std::string rounded_down(double value) {
 
 struct Worst {
   const SimulatedBody* body = nullptr;
-  HighestNaturalFrequency motion;
-  int others = 0;  // bodies beyond the limit, too
+  HighestNaturalFrequency highest;
+  int others = 0;  // number of further bodies above the limit
 };
 
-// The body with the highest frequency, of those whose frequency is above `limit`.
+// Finds the body with the highest natural frequency, among those above `limit`.
 Worst worst_above(const Simulation& simulation, double limit) {
   Worst worst;
   for (const SimulatedBody& body : simulation.bodies()) {
     if (!(natural_frequency_bound(*body.body, body.rigid, simulation.water()) > limit)) continue;
-    const HighestNaturalFrequency motion =
+    const HighestNaturalFrequency highest =
         highest_natural_frequency(*body.body, body.rigid, body.state, simulation.water());
-    if (!(motion.frequency > limit)) continue;
+    if (!(highest.frequency > limit)) continue;
     if (worst.body != nullptr) ++worst.others;
-    if (motion.frequency > worst.motion.frequency) {
+    if (highest.frequency > worst.highest.frequency) {
       worst.body = &body;
-      worst.motion = motion;
+      worst.highest = highest;
     }
   }
   return worst;
@@ -57,9 +57,9 @@ std::string subject(const SimulatedBody& body, int others) {
   return subject;
 }
 
-std::string swing(const Worst& worst) {
-  return number(worst.body->rigid.mass) + " kg swing at up to " + number(worst.motion.frequency) +
-         " rad/s, with a draft of " + number(worst.motion.draft) + " m";
+std::string describe_frequency(const Worst& worst) {
+  return "a body of " + number(worst.body->rigid.mass) + " kg has natural frequencies up to " +
+         number(worst.highest.frequency) + " rad/s, at a draft of " + number(worst.highest.draft) + " m";
 }
 
 }  // namespace
@@ -67,14 +67,14 @@ std::string swing(const Worst& worst) {
 std::optional<Error> step_warning(const Simulation& simulation) {
   const SimulationOptions& options = simulation.options();
   const double step = options.step;
-  const double late = static_cast<double>(options.delay_steps) * step;
+  const double delay = static_cast<double>(options.delay_steps) * step;
   const double lead = (options.integrator == Integrator::kVelocityVerlet ? 2.0 : 1.0) *
-                      std::max(options.lead_time - late, 0.0);
+                      std::max(options.lead_time - delay, 0.0);
   const double effective_step = std::sqrt(step * (step + 2.0 * lead));
   const Worst worst = worst_above(simulation, kAccuracyLimit / effective_step);
   if (worst.body == nullptr) return std::nullopt;
 
-  const double frequency = worst.motion.frequency;
+  const double frequency = worst.highest.frequency;
   const double good = kAccuracyLimit / frequency;
   const double good_step = good * good / (std::sqrt(lead * lead + good * good) + lead);
   const double value = effective_step * frequency;
@@ -83,12 +83,12 @@ std::optional<Error> step_warning(const Simulation& simulation) {
   warning.actual = "step x frequency = " + number(effective_step) + " s x " + number(frequency) +
                    " rad/s = " + number(value);
   if (lead > 0.0)
-    warning.actual += " (with the lead time, which makes the step of " + number(step) + " s worse)";
-  warning.actual += value < kStabilityLimit ? ", stable but inaccurate" : ", which blows up";
+    warning.actual += " (effective step: the lead time worsens the step of " + number(step) + " s)";
+  warning.actual += value < kStabilityLimit ? ", stable but inaccurate" : ", unstable";
   warning.expected = "at most " + number(kAccuracyLimit) + "; from " + number(kStabilityLimit) +
                      " on the motion grows without bound";
-  warning.cause = swing(worst);
-  warning.hint = "Take --step " + rounded_down(good_step) + " or less";
+  warning.cause = describe_frequency(worst);
+  warning.hint = "Use --step " + rounded_down(good_step) + " or less";
   return warning;
 }
 
@@ -97,16 +97,17 @@ std::optional<Error> latency_warning(const Simulation& simulation, double delay)
   const Worst worst = worst_above(simulation, kLatencyLimit / delay);
   if (worst.body == nullptr) return std::nullopt;
 
-  const double frequency = worst.motion.frequency;
+  const double frequency = worst.highest.frequency;
   Error warning;
   warning.subject = subject(*worst.body, worst.others);
-  warning.actual = "delay of the responses x frequency = " + number(delay) + " s x " + number(frequency) +
+  warning.actual = "response delay x frequency = " + number(delay) + " s x " + number(frequency) +
                    " rad/s = " + number(delay * frequency);
-  warning.expected = "at most " + number(kLatencyLimit) + ", with --lead-time set to the delay (it is " +
+  warning.expected = "at most " + number(kLatencyLimit) + ", with --lead-time set to the delay (now " +
                      number(simulation.options().lead_time) + " s)";
-  warning.cause = "wrenches this late give the body energy, with a lead time too: " + swing(worst);
-  warning.hint = "Have answers come within " + rounded_down(kLatencyLimit / frequency) +
-                 " s, or wait for each of them, without --rate or --late";
+  warning.cause =
+      "wrenches this late add energy to the body even with a lead time: " + describe_frequency(worst);
+  warning.hint = "Reduce the response delay to " + rounded_down(kLatencyLimit / frequency) +
+                 " s or less, or use lock-step mode (no --rate, no --delay-steps)";
   return warning;
 }
 
@@ -124,14 +125,14 @@ std::optional<Error> LatencyMonitor::update(const Simulation& simulation) {
 
 std::optional<Error> energy_warning(const Simulation& simulation) {
   const SimulatedBody* worst = nullptr;
-  double worst_rise = 0.0;  // of the largest kinetic energy
+  double worst_rise = 0.0;  // as a fraction of the largest kinetic energy
   int bodies = 0;
   for (const SimulatedBody& body : simulation.bodies()) {
     const EnergyStats& energy = body.energy;
     const double rise = energy.max - energy.initial;
     const double noise =
-        kNoise * body.rigid.mass * simulation.water().gravity * body.body->prepared_mesh->mesh.diagonal;
-    if (!(rise > std::max(kDoubled * energy.max_kinetic, noise))) continue;
+        kEnergyNoise * body.rigid.mass * simulation.water().gravity * body.body->prepared_mesh->mesh.diagonal;
+    if (!(rise > std::max(kMaxEnergyRise * energy.max_kinetic, noise))) continue;
     ++bodies;
     if (worst == nullptr || rise / energy.max_kinetic > worst_rise) {
       worst = &body;
@@ -144,12 +145,11 @@ std::optional<Error> energy_warning(const Simulation& simulation) {
   Error warning;
   warning.subject = subject(*worst, bodies - 1);
   warning.actual = "mechanical energy rose by " + number(energy.max - energy.initial) +
-                   " J, of a largest kinetic energy of " + number(energy.max_kinetic) + " J";
-  warning.expected = "an energy that never rises but for the step's error: nothing in the scene gives any";
+                   " J; the largest kinetic energy is " + number(energy.max_kinetic) + " J";
+  warning.expected = "no rise beyond the integrator's error: nothing in the scene adds energy";
   warning.cause =
-      "a step too large for the body, answers that came late without a --lead-time, or a method that "
-      "approximates";
-  warning.hint = "Do not trust this run; take a smaller --step, lock-step, or an exact method";
+      "a step too large for the body, late responses without a --lead-time, or an approximate method";
+  warning.hint = "Do not trust this run; use a smaller --step, lock-step mode, or an exact method";
   return warning;
 }
 

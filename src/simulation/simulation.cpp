@@ -12,11 +12,11 @@ Load current_load(const SimulatedBody& body, const Water& water) {
   return total_load(body.rigid, body.state, body.wrench, water);
 }
 
-// own_wrench: the body's wrench belongs to its pose.
-void record_energy(SimulatedBody& body, bool first, bool own_wrench, const Water& water) {
+// wrench_is_current: the body's wrench belongs to its present pose.
+void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, const Water& water) {
   EnergyStats& energy = body.energy;
   energy.current =
-      own_wrench
+      wrench_is_current
           ? mechanical_energy(body.rigid, body.state, body.wrench, water)
           : mechanical_energy(body.rigid, body.state, body.body->solver, water).value_or(energy.current);
   const double kinetic = kinetic_energy(body.rigid, body.state);
@@ -26,9 +26,8 @@ void record_energy(SimulatedBody& body, bool first, bool own_wrench, const Water
   energy.max_kinetic = std::max(energy.max_kinetic, kinetic);
 }
 
-constexpr const char* kBlownUp =
-    "the simulation has left the range of numbers: a step too large for the body";
-constexpr const char* kSmallerStep = "Take a smaller --step";
+constexpr const char* kDiverged = "the simulation diverged: the step is too large for the body";
+constexpr const char* kUseSmallerStep = "Use a smaller --step";
 
 std::string body_at(const SimulatedBody& body, double time) {
   return "body " + std::to_string(body.body->id) + " (" + body.body->name + ") at " + std::to_string(time) +
@@ -42,16 +41,16 @@ Error not_ok_error(const SimulatedBody& body, double time) {
   error.expected = "status OK";
   switch (body.wrench.status) {
     case BodyStatus::kUnknownBody:
-      error.cause = "buoyancyd runs another scene";
+      error.cause = "buoyancyd runs a different scene";
       error.hint = "Start buoyancyd and buoyancy-client with the same scene file";
       break;
     case BodyStatus::kOpenEdgeWet:
-      error.cause = "the mesh is open and its boundary got under water";
-      error.hint = "Close the mesh, or start the body lighter, higher or calmer";
+      error.cause = "the mesh is open and its boundary is submerged";
+      error.hint = "Close the mesh, or start with a lighter body, a higher position or a slower motion";
       break;
     default:
-      error.cause = kBlownUp;
-      error.hint = kSmallerStep;
+      error.cause = kDiverged;
+      error.hint = kUseSmallerStep;
   }
   return error;
 }
@@ -73,7 +72,7 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
   if (simulation.bodies_.empty()) {
     return make_error({"the scene", "no body with a [body.client]", "at least one body to simulate",
                        "the scene was written for another simulator",
-                       "Add [body.client] with position and density to the bodies that shall move"});
+                       "Add [body.client] with position and density to each body to simulate"});
   }
   return simulation;
 }
@@ -101,25 +100,25 @@ const WrenchRequest& Simulation::request() {
   return request_;
 }
 
-const WrenchResponse& Simulation::delayed_response(const WrenchResponse& newest) {
-  if (delay_line_.empty()) return newest;
+const WrenchResponse& Simulation::delayed_response(const WrenchResponse& latest) {
+  if (delay_line_.empty()) return latest;
   const auto slot = [&](std::int64_t step) { return static_cast<std::size_t>(step) % delay_line_.size(); };
-  delay_line_[slot(step_number_)] = newest;
+  delay_line_[slot(step_number_)] = latest;
   return delay_line_[slot(std::max<std::int64_t>(step_number_ - options_.delay_steps, 0))];
 }
 
-void Simulation::accept(const WrenchResponse& newest) {
-  const WrenchResponse& response = delayed_response(newest);
+void Simulation::accept(const WrenchResponse& latest) {
+  const WrenchResponse& response = delayed_response(latest);
   assert(response.bodies.size() == bodies_.size());
   delay_ = static_cast<double>(step_number_ - response.key.seq) * options_.step;
-  const bool own_wrenches = delay_ == 0.0 && options_.lead_time == 0.0;
+  const bool wrenches_are_current = delay_ == 0.0 && options_.lead_time == 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SimulatedBody& body = bodies_[i];
     body.wrench = response.bodies[i];
     if (in_step_) {
       finish_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, body.state);
     }
-    record_energy(body, !in_step_, own_wrenches, water_);
+    record_energy(body, !in_step_, wrenches_are_current, water_);
   }
   in_step_ = false;
 }
@@ -147,7 +146,7 @@ Expected<void> Simulation::check_motion() const {
                         std::isfinite(body.energy.current);
     if (finite || body.wrench.status != BodyStatus::kOk) continue;
     return make_error({body_at(body, time()), "a velocity or energy that is not finite", "finite numbers",
-                       kBlownUp, kSmallerStep});
+                       kDiverged, kUseSmallerStep});
   }
   return {};
 }
@@ -161,7 +160,8 @@ Expected<RunOutcome> run(Simulation& simulation, RequestClient& client, std::int
     if (!response) return make_error(response.error());
     simulation.accept(**response);
     if (const Expected<void> finite = simulation.check_motion(); !finite) return make_error(finite.error());
-    if (const Expected<void> seen = after_step(simulation); !seen) return make_error(seen.error());
+    if (const Expected<void> observed = after_step(simulation); !observed)
+      return make_error(observed.error());
     if (const Expected<void> ok = simulation.check_wrenches(); !ok) return make_error(ok.error());
     if (simulation.step_number() >= steps) return RunOutcome::kCompleted;
     if (stop.load()) return RunOutcome::kInterrupted;

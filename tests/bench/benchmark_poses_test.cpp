@@ -10,14 +10,14 @@
 #include "bench/unit_water.h"
 #include "hydrostatics/buoyancy.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 Vec3 centroid_W(const HydrostaticMesh& mesh, const Pose& pose) {
   return pose.p_WB + pose.q_WB * (mesh.center_B + mesh.centroid);
 }
 
-TEST(ShuffledMesh, HoldsTheSameTrianglesInAnotherOrderThatIsTheSameEveryTime) {
+TEST(ShuffledMesh, PermutesTrianglesReproducibly) {
   const BenchmarkMesh model = rock(8);
   const BenchmarkMesh first = shuffled(model);
   EXPECT_EQ(first.name, "rock shuffled");
@@ -32,13 +32,13 @@ TEST(ShuffledMesh, HoldsTheSameTrianglesInAnotherOrderThatIsTheSameEveryTime) {
   EXPECT_EQ(triangles, others);
 }
 
-TEST(BenchmarkMesh, IsARockThatSaysWhatItStandsForWhereTheModelIsAbsent) {
+TEST(BenchmarkMesh, SubstitutesNamedRockForMissingModel) {
   const BenchmarkMesh stand_in = model_or_rock("bunny", "no such file.ply", 5);
   EXPECT_EQ(stand_in.name, "rock for bunny");
   EXPECT_EQ(stand_in.source.triangles.size(), 500U);
 }
 
-TEST(SweepOfPoses, RunsFromAlmostDryToAlmostSubmerged) {
+TEST(PoseSweep, RunsFromAlmostDryToAlmostSubmerged) {
   const BenchmarkMesh model = rock(16);
   const Solver solver(model.mesh, Method::kExact);
   const auto wet_share = [&](const Pose& pose) {
@@ -52,7 +52,7 @@ TEST(SweepOfPoses, RunsFromAlmostDryToAlmostSubmerged) {
   EXPECT_LT(wet_share(poses.back()), 1.0);
 }
 
-TEST(FloatingPose, IsInBalance) {
+TEST(TrajectoryPoses, StartsInEquilibrium) {
   for (const BenchmarkMesh& model : {rock(16), torus_knot()}) {
     const Solver solver(model.mesh, Method::kExact);
     const Vec3 centroid_B = model.mesh.center_B + model.mesh.centroid;
@@ -62,7 +62,7 @@ TEST(FloatingPose, IsInBalance) {
   }
 }
 
-TEST(CoherentPoses, MoveAThousandthFromEachToTheNextAndBackToTheFirst) {
+TEST(TrajectoryPoses, ClosesOrbitWithStepsOfOneThousandth) {
   const BenchmarkMesh model = torus_knot();
   const Pose floating = floating_pose(Solver(model.mesh, Method::kExact));
   const std::vector<Pose> poses = coherent_poses(model.mesh, floating);
@@ -77,4 +77,4 @@ TEST(CoherentPoses, MoveAThousandthFromEachToTheNextAndBackToTheFirst) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

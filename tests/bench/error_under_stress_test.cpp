@@ -10,10 +10,10 @@
 #include "tests/support/child_process.h"
 #include "tests/support/timeouts.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
-TEST(ErrorUnderStress, LeavesTheExactMethodsAloneAndBreaksSinglePrecisionFarAway) {
+TEST(ErrorUnderStress, AffectsSinglePrecisionButNotExactMethods) {
   const FinishedProcess program =
       run_to_end({{BUOYANCY_STRESS_PROGRAM}, {}, "/dev/null", "", ""}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
@@ -50,4 +50,4 @@ TEST(ErrorUnderStress, LeavesTheExactMethodsAloneAndBreaksSinglePrecisionFarAway
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -8,7 +8,7 @@
 #include "bench/pose_sweep.h"
 #include "bench/report.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 constexpr std::size_t kPoses = 12;
@@ -17,7 +17,7 @@ PoseSet sweep_with_truth(const BenchmarkMesh& model) {
   return with_reference_results("independent", sweep_of_poses(model.source, kPoses), model.source);
 }
 
-TEST(CheckedErrors, AreWithinTheBoundOfEveryExactMethod) {
+TEST(MeasureErrors, StaysWithinPublishedBounds) {
   const BenchmarkMesh model = rock(8);
   const PoseSet set = sweep_with_truth(model);
   for (const Method method : kAllMethods) {
@@ -33,7 +33,7 @@ TEST(CheckedErrors, AreWithinTheBoundOfEveryExactMethod) {
   }
 }
 
-TEST(CheckedErrors, NameMeshMethodAndPoseOfAnAnswerThatBreaksItsBound) {
+TEST(MeasureErrors, NamesMeshMethodAndPoseOfViolatedBound) {
   const BenchmarkMesh model = rock(8);
   PoseSet set = sweep_with_truth(model);
   set.truth[7].force_W.z() += 2e-13 * model.mesh.volume;
@@ -53,7 +53,7 @@ TEST(CheckedErrors, NameMeshMethodAndPoseOfAnAnswerThatBreaksItsBound) {
   EXPECT_NE(torque.error().actual.find("torque is off by"), std::string::npos);
 }
 
-TEST(ReadVerticesAndIndices, SeesEveryCoordinateAndEveryIndex) {
+TEST(MemoryReadBaseline, ReadsEveryCoordinateAndIndex) {
   TriangleMesh mesh;
   for (int i = 0; i < 16; ++i) mesh.add_vertex({0, 0, 0});
   mesh.triangles.assign(32, {0, 0, 0});
@@ -74,15 +74,15 @@ TEST(ReadVerticesAndIndices, SeesEveryCoordinateAndEveryIndex) {
   }
 }
 
-TEST(Median, IsTheMiddleOrTheMeanOfTheTwoInTheMiddle) {
+TEST(Median, AveragesTwoMiddleValuesOfEvenCount) {
   EXPECT_EQ(median({3.0}), 3.0);
   EXPECT_EQ(median({9.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median({9.0, 1.0, 2.0, 4.0}), 3.0);
 }
 
-TEST(FittedExponent, FindsThePowerLawThatTimesFollow) {
-  std::vector<MeasuredRow> rows(3);
-  std::vector<const MeasuredRow*> pointers;
+TEST(FittedExponent, RecoversPowerLaw) {
+  std::vector<Measurement> rows(3);
+  std::vector<const Measurement*> pointers;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].triangles = 1000 << (3 * i);
     rows[i].median_ns = 7.0 * std::pow(static_cast<double>(rows[i].triangles), 0.6);
@@ -92,4 +92,4 @@ TEST(FittedExponent, FindsThePowerLawThatTimesFollow) {
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -12,7 +12,7 @@
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
-namespace buoyancy {
+namespace buoyancy::bench {
 namespace {
 
 struct CsvRow {
@@ -36,7 +36,7 @@ CsvRow parse(const std::string& line) {
   return row;
 }
 
-TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
+TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
   const TempDir directory;
   const std::string csv = directory.path("rows.csv");
   const FinishedProcess program =
@@ -76,7 +76,7 @@ TEST(TimeAndError, WritesOneRowPerMeshMethodToleranceTargetAndRegime) {
   EXPECT_EQ(combinations.size(), expected * meshes.size());
 }
 
-TEST(TimeAndError, SaysWhatItWasNotAbleToWrite) {
+TEST(SpeedAccuracy, ReportsUnwritableCsv) {
   const FinishedProcess program = run_to_end(
       {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/no/such/directory/rows.csv"}, {}, "/dev/null", "", ""},
       kRunTimeout);
@@ -87,11 +87,11 @@ TEST(TimeAndError, SaysWhatItWasNotAbleToWrite) {
   EXPECT_EQ(full.exit_code, 1);
 }
 
-TEST(TimeAndError, RefusesArgumentsThatContradictEachOther) {
+TEST(SpeedAccuracy, RejectsContradictoryArguments) {
   const FinishedProcess program =
       run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
   EXPECT_EQ(program.exit_code, 2);
 }
 
 }  // namespace
-}  // namespace buoyancy
+}  // namespace buoyancy::bench

@@ -16,7 +16,7 @@ std::string crate(const std::string& world = "", const std::string& client = "de
          client;
 }
 
-class ClientProgram : public testing::Test {
+class BuoyancyClient : public testing::Test {
  protected:
   FinishedProcess run(const Options& options) const {
     return run_to_end(client_command(scene_, options), kRunTimeout);
@@ -26,7 +26,7 @@ class ClientProgram : public testing::Test {
   std::string scene_ = directory_.write("crate.toml", crate());
 };
 
-TEST_F(ClientProgram, PrintsATableWithEveryFigure) {
+TEST_F(BuoyancyClient, PrintsSummaryTable) {
   const FinishedProcess finished = run({"--embedded", "--duration", "0.1"});
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
   EXPECT_EQ(finished.standard_error, "") << "a progress bar belongs on terminals only";
@@ -37,7 +37,7 @@ TEST_F(ClientProgram, PrintsATableWithEveryFigure) {
   }
 }
 
-TEST_F(ClientProgram, WritesARowPerBodyAndStepThatReadsBackExactly) {
+TEST_F(BuoyancyClient, WritesCsvRowPerBodyAndStepThatReadsBackExactly) {
   const std::string csv = directory_.path("run.csv");
   const nlohmann::json summary =
       simulate(scene_, {"--embedded", "--duration", "0.01", "--step", "0.001", "--csv", csv});
@@ -52,13 +52,13 @@ TEST_F(ClientProgram, WritesARowPerBodyAndStepThatReadsBackExactly) {
   EXPECT_EQ(csv_column(text, "pz").back(), double{body(summary, 1)["heave"]});
 }
 
-TEST_F(ClientProgram, ThinsTheCsvOnRequest) {
+TEST_F(BuoyancyClient, WritesOnlyEveryNthStepToCsv) {
   const std::string csv = directory_.path("run.csv");
   simulate(scene_, {"--embedded", "--duration", "0.1", "--step", "0.001", "--csv", csv, "--csv-every", "25"});
   EXPECT_EQ(csv_column(read_file(csv), "utime"), (std::vector<double>{0, 25000, 50000, 75000, 100000}));
 }
 
-TEST_F(ClientProgram, FloatsTheSameWhicheverWayIsUp) {
+TEST_F(BuoyancyClient, FloatsIndependentlyOfUpDirection) {
   const std::string damped = "density = 300\nlinear_damping = 900\nangular_damping = 60\n";
   const std::string up_x = directory_.write(
       "up_x.toml", crate("[world]\nup = [1, 0, 0]\ngravity = 3.7\n[water]\nlevel = -4\n",
@@ -70,7 +70,7 @@ TEST_F(ClientProgram, FloatsTheSameWhicheverWayIsUp) {
   EXPECT_NEAR(body(summary, 1)["pitch_deg"], 0.0, 1e-6);
 }
 
-TEST_F(ClientProgram, TellsRollFromPitchAndTheirSigns) {
+TEST_F(BuoyancyClient, ReportsRollAndPitchWithSigns) {
   // Nothing moves: no gravity, no water.
   const auto still = [&](const std::string& orientation) {
     const std::string path = directory_.write(
@@ -87,7 +87,7 @@ TEST_F(ClientProgram, TellsRollFromPitchAndTheirSigns) {
   EXPECT_NEAR(turned["pitch_deg"], 0.2 * degrees, 1e-9);
 }
 
-TEST_F(ClientProgram, MovesTheSameWhereverTorqueIsTakenAbout) {
+TEST_F(BuoyancyClient, MovesIndependentlyOfReferencePoint) {
   const std::string tilted =
       "density = 400\norientation = [0.9, 0.3, 0.2, 0.1]\ncenter_of_mass = [0.1, 0, 0.05]\n";
   const std::string other = crate("", tilted);
@@ -101,7 +101,7 @@ TEST_F(ClientProgram, MovesTheSameWhereverTorqueIsTakenAbout) {
   }
 }
 
-TEST_F(ClientProgram, KeepsTheEnergyOfATumblingUndampedBodyWithEitherIntegrator) {
+TEST_F(BuoyancyClient, ConservesEnergyOfTumblingBodyWithEitherIntegrator) {
   const std::string path =
       directory_.write("tumbling.toml",
                        "[[body]]\nid = 1\nshape = { type = \"rock\", frequency = 3 }\n[body.client]\n"
@@ -120,7 +120,7 @@ TEST_F(ClientProgram, KeepsTheEnergyOfATumblingUndampedBodyWithEitherIntegrator)
   EXPECT_LT(range("semi_implicit_euler", "0.0025"), euler / 1.5);
 }
 
-TEST_F(ClientProgram, HasTheWrenchEvaluatedAheadByTheLeadTime) {
+TEST_F(BuoyancyClient, EvaluatesWrenchAtLeadTime) {
   const std::string falling = directory_.write("falling.toml", crate("",
                                                                      "density = 500\nposition = [0, 0, 0.1]\n"
                                                                      "linear_velocity = [0, 0, -1]\n"));
@@ -139,7 +139,7 @@ TEST_F(ClientProgram, HasTheWrenchEvaluatedAheadByTheLeadTime) {
   }
 }
 
-TEST_F(ClientProgram, AFullDiskIsAnError) {
+TEST_F(BuoyancyClient, FailsOnFullDisk) {
   const FinishedProcess finished = run({"--embedded", "--csv", "/dev/full"});
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("/dev/full"), std::string::npos) << finished.standard_error;
@@ -148,20 +148,20 @@ TEST_F(ClientProgram, AFullDiskIsAnError) {
   EXPECT_EQ(run_to_end(command, kRunTimeout).exit_code, 1);
 }
 
-TEST_F(ClientProgram, ACsvThatCannotBeCreatedIsAnErrorBeforeTheRun) {
+TEST_F(BuoyancyClient, FailsBeforeRunIfCsvCannotBeCreated) {
   const std::string path = directory_.path("no_such_directory/run.csv");
   const FinishedProcess finished = run({"--embedded", "--csv", path});
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find(path), std::string::npos) << finished.standard_error;
 }
 
-TEST_F(ClientProgram, ACsvThatIsTheSceneItselfIsRefused) {
+TEST_F(BuoyancyClient, RefusesToOverwriteSceneWithCsv) {
   const std::string before = read_file(scene_);
   EXPECT_EQ(run({"--embedded", "--csv", scene_}).exit_code, 2);
   EXPECT_EQ(read_file(scene_), before);
 }
 
-TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
+TEST_F(BuoyancyClient, EndsRunAtFailedBodyAndWritesItsRow) {
   const std::string csv = directory_.path("run.csv");
   // A tray without its lid, too heavy for its sides.
   const std::string mesh = directory_.write(
@@ -182,7 +182,7 @@ TEST_F(ClientProgram, ABodyThatIsNotOkEndsTheRunAndIsTheLastRow) {
   EXPECT_NE(csv_column(read_file(csv), "status").back(), 0.0);
 }
 
-TEST_F(ClientProgram, AMotionThatLeavesTheRangeOfNumbersIsAnErrorAndNoRowHidesIt) {
+TEST_F(BuoyancyClient, FailsOnDivergedMotionWithoutNonFiniteRows) {
   const struct {
     std::string client;
     Options options;
@@ -210,7 +210,7 @@ TEST_F(ClientProgram, AMotionThatLeavesTheRangeOfNumbersIsAnErrorAndNoRowHidesIt
   }
 }
 
-TEST_F(ClientProgram, WarnsOfAStepTooLargeBeforeTheRunAndOfTheEnergyAfterIt) {
+TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
   // A plate of 2 kg: w = 70 rad/s.
   const std::string plate = directory_.write(
       "plate.toml",
@@ -233,7 +233,7 @@ TEST_F(ClientProgram, WarnsOfAStepTooLargeBeforeTheRunAndOfTheEnergyAfterIt) {
   simulate(plate, {"--embedded", "--step", "0.007", "--duration", "20"});
 }
 
-TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForIt) {
+TEST_F(BuoyancyClient, DelaysResponsesAndWarnsIfLeadTimeIsNotEnough) {
   const std::string bob = directory_.write(
       "bob.toml",
       "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\nshape = { type = \"box\", size "
@@ -256,7 +256,7 @@ TEST_F(ClientProgram, UsesAnswersLateOnRequestAndWarnsWhereNoLeadTimeMakesUpForI
   EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the responses"), std::string::npos);
 }
 
-TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
+TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
   const std::string unknown_key = directory_.write("unknown.toml", crate("", "densty = 500\n"));
   const std::string nobody =
       directory_.write("nobody.toml", "[[body]]\nid = 1\nshape = { type = \"box\" }\n");
@@ -290,7 +290,7 @@ TEST_F(ClientProgram, WrongArgumentsAndScenesExitWith2AndSayWhy) {
   }
 }
 
-TEST_F(ClientProgram, TellsItsVersionAndHelp) {
+TEST_F(BuoyancyClient, PrintsVersionAndHelp) {
   ChildCommand command = client_command(scene_, {});
   command.arguments = {command.arguments.front(), "--version"};
   EXPECT_EQ(run_to_end(command, kWaitTimeout).exit_code, 0);

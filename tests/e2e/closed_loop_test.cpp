@@ -27,7 +27,7 @@ nlohmann::json simulate_with_service(const std::string& scene, Options options) 
   return simulate(scene, options);
 }
 
-TEST(ClosedLoop, BoxCylinderAndSphereSettleAtTheirDrafts) {
+TEST(ClosedLoop, BodiesSettleAtTheirDrafts) {
   const TempDir directory;
   const std::string path = directory.write("drafts.toml", R"(
 [water]
@@ -99,7 +99,7 @@ std::string bar(int id, double relative_density) {
          "linear_damping = 5000\nangular_damping = 250\n";
 }
 
-TEST(ClosedLoop, LongSquareBarSettlesAtItsAngleOfLoll) {
+TEST(ClosedLoop, SquareBarsSettleAtTheirAngleOfLoll) {
   const TempDir directory;
   const std::string path = directory.write("bars.toml", "[water]\ndensity = 1000\n" + bar(19, 0.19) +
                                                             bar(22, 0.22) + bar(23, 0.23) + bar(24, 0.24));
@@ -158,7 +158,7 @@ void expect_the_period_and_the_energy_of_the_bob(std::int64_t steps, int csv_eve
   EXPECT_LT(std::abs(double{body(summary, 1)["energy_drift"]}), 2e-3);
 }
 
-TEST(ClosedLoop, UndampedBoxBobsWithItsPeriodAndKeepsItsEnergy) {
+TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergy) {
   expect_the_period_and_the_energy_of_the_bob(1000, 1, simulate_with_service);
 }
 

@@ -46,24 +46,24 @@ void comes_to_rest_level(const std::string& program) {
   EXPECT_NEAR(tilt, 0.0, 1e-3);
 }
 
-TEST(Examples, BulletsCrateComesToRestLevelInTheWater) {
+TEST(Examples, BulletCrateSettlesLevel) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
   comes_to_rest_level(BULLET_CRATE);
 }
 
-TEST(Examples, OdesCrateComesToRestLevelInTheWater) {
+TEST(Examples, OdeCrateSettlesLevel) {
   if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;
   comes_to_rest_level(ODE_CRATE);
 }
 
-TEST(Examples, SayWhatIsWrongWhereNothingAnswers) {
+TEST(Examples, ReportMissingService) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
   const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://", kStep, "3"}), kRunTimeout);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.standard_error.find("no buoyancyd is running"), std::string::npos) << run.standard_error;
 }
 
-TEST(Examples, PythonGetsTheForceOfAHalfSubmergedBox) {
+TEST(Examples, PythonReceivesForceOnBox) {
   if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;
   const TempDir directory;
   std::vector<std::string> generate{LCM_GEN, "-p", "--ppath", directory.path("")};

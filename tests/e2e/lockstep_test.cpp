@@ -50,7 +50,7 @@ class Lockstep : public testing::Test {
   nlohmann::json summary_;
 };
 
-TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLosesOneInTwenty) {
+TEST_F(Lockstep, ProducesSameBytesEmbeddedOverUdpAndOverLossyNetwork) {
   const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "4"});
   ASSERT_GT(embedded.size(), 4000U * 300U);
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
@@ -66,7 +66,7 @@ TEST_F(Lockstep, RunsGiveTheSameBytesWhetherEmbeddedOverUdpOrOverANetworkThatLos
   EXPECT_EQ(summary_["unanswered"], 0);
 }
 
-TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
+TEST_F(Lockstep, ProducesSameBytesAcrossServiceRestart) {
   auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("udp.csv");
   // Without an end: however late this test gets the processor, the service dies in the middle of the run.
@@ -82,7 +82,7 @@ TEST_F(Lockstep, AServiceThatDiesAndComesBackChangesNoByte) {
   EXPECT_TRUE(read_file(csv) == embedded_csv(directory_, scene_, summary["steps"], "0.002"));
 }
 
-TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
+TEST_F(Lockstep, FailsWithoutServiceAndNamesEndpoint) {
   const FinishedProcess finished = run_to_end(
       client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.01", "--retries", "3", "--states-channel",
                               "SOME_STATES", "--wrenches-channel", "SOME_WRENCHES"}),
@@ -96,7 +96,7 @@ TEST_F(Lockstep, WithoutAServiceItGivesUpAndSaysWhereItAsked) {
   }
 }
 
-TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) {
+TEST_F(Lockstep, NamesBodyAndStatusIfServiceHasDifferentScene) {
   const std::string other = directory_.write("other.toml", "[[body]]\nid = 7\nshape = { type = \"box\" }\n");
   ChildProcess service(service_command(other, {"-l", kServiceUrl}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
@@ -106,7 +106,7 @@ TEST_F(Lockstep, AServiceWithAnotherSceneIsAnErrorThatNamesTheBodyAndTheStatus) 
   EXPECT_NE(finished.standard_error.find("UNKNOWN_BODY"), std::string::npos) << finished.standard_error;
 }
 
-TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
+TEST_F(Lockstep, EndsOnSigintWithSummaryAndValidCsv) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const std::string csv = directory_.path("interrupted.csv");
@@ -118,7 +118,7 @@ TEST_F(Lockstep, SigintEndsTheRunWithTheTableAndAUsableCsv) {
   EXPECT_EQ(csv_column(read_file(csv), "energy").size(), 2 * (std::size_t{summary["steps"]} + 1));
 }
 
-TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
+TEST_F(Lockstep, EndsOnSigtermWhileWaitingForService) {
   Expected<LcmConnection> bus = LcmConnection::open(kServiceUrl);
   ASSERT_TRUE(bus) << bus.error().message();
   bool requested = false;
@@ -137,7 +137,7 @@ TEST_F(Lockstep, SigtermEndsTheWaitForAServiceThatIsNotThere) {
 
 using FreeRunning = Lockstep;
 
-TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
+TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   // Answers take eight intervals or more.
@@ -158,7 +158,7 @@ TEST_F(FreeRunning, UsesTheNewestAnswerThereIsAndCountsHowLateItWas) {
       << summary["warnings"];
 }
 
-TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
+TEST_F(FreeRunning, ContinuesWithOlderResponseAfterLoss) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
@@ -171,7 +171,7 @@ TEST_F(FreeRunning, GoesOnWithAnOlderAnswerWhereOneIsLost) {
   EXPECT_GE(summary["late"], summary["unanswered"]);
 }
 
-TEST_F(FreeRunning, GivesUpWhenTheServiceDies) {
+TEST_F(FreeRunning, FailsIfServiceDies) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const std::string csv = directory_.path("free.csv");

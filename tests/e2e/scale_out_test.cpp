@@ -82,7 +82,7 @@ std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
   return bytes;
 }
 
-TEST(ScaleOut, TwoServicesWithHalfTheBodiesEachSayTogetherWhatOneSaysBitForBit) {
+TEST(ScaleOut, TwoServicesMatchOneServiceBitForBit) {
   const TempDir directory;
   Share all(directory, "ALL", {1, 2, 3, 4, 5, 6});
   Share odd(directory, "ODD", {1, 3, 5});
@@ -107,7 +107,7 @@ TEST(ScaleOut, TwoServicesWithHalfTheBodiesEachSayTogetherWhatOneSaysBitForBit) 
   }
 }
 
-TEST(ScaleOut, AServiceAskedForABodyOfTheOthersSharesSaysThatItDoesNotKnowIt) {
+TEST(ScaleOut, ReportsUnknownBodyOfOtherService) {
   const TempDir directory;
   Share odd(directory, "ODD", {1, 3, 5});
   Share even(directory, "EVEN", {2, 4, 6});

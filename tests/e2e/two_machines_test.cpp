@@ -76,7 +76,7 @@ class TwoMachinesTest : public testing::Test {
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
 
-TEST_F(TwoMachinesTest, ARunAcrossThemGivesTheBytesOfARunInOneProcess) {
+TEST_F(TwoMachinesTest, MatchesRunInOneProcess) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   const std::string csv = directory_.path("across.csv");
@@ -84,7 +84,7 @@ TEST_F(TwoMachinesTest, ARunAcrossThemGivesTheBytesOfARunInOneProcess) {
   EXPECT_TRUE(read_file(csv) == embedded(kSteps));
 }
 
-TEST_F(TwoMachinesTest, WithTtlZeroTheyDoNotHearEachOther) {
+TEST_F(TwoMachinesTest, DoesNotConnectWithTtlZero) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   const FinishedProcess finished = run_to_end(
@@ -93,7 +93,7 @@ TEST_F(TwoMachinesTest, WithTtlZeroTheyDoNotHearEachOther) {
   EXPECT_NE(finished.standard_error.find("no response"), std::string::npos) << finished.standard_error;
 }
 
-TEST_F(TwoMachinesTest, LossDuplicationAndReorderingOnTheWayChangeNoByte) {
+TEST_F(TwoMachinesTest, ProducesSameBytesDespiteLossAndReordering) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   RelayOptions options{kClientUrl, kTwoMachinesUrl, 0.05, 0.0, 7};
@@ -128,7 +128,7 @@ bool repeats_its_request(LcmConnection& bus, int times) {
   return heard >= times;
 }
 
-TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
+TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   ChildProcess client(endless_run());
@@ -152,7 +152,7 @@ TEST_F(TwoMachinesTest, ARunOutlastsTheCableBeingOutAndSaysHowLongItWaited) {
   EXPECT_EQ(summary["unanswered"], 0);
 }
 
-TEST_F(TwoMachinesTest, ARunOutlastsItsMachinesInterfaceBeingTakenDown) {
+TEST_F(TwoMachinesTest, SurvivesClientInterfaceDown) {
   ChildProcess running(service());
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   ChildProcess client(endless_run());

@@ -88,7 +88,7 @@ double observed_order(Integrator integrator, const RigidBody& body) {
   return std::log2(coarse / fine);
 }
 
-TEST(FreeRotation, PrecessesASymmetricTopAsInClosedForm) {
+TEST(FreeRotation, MatchesClosedFormForSymmetricTop) {
   for (const Vec3& inertia : {Vec3(1, 1, 1.8), Vec3(0.3, 2, 2), Vec3(1, 1, 1)}) {
     const RigidBody body = body_with_inertia(inertia);
     const int odd = inertia[0] == inertia[1] ? 2 : 0;
@@ -112,7 +112,7 @@ TEST(FreeRotation, PrecessesASymmetricTopAsInClosedForm) {
   }
 }
 
-TEST(FreeRotation, KeepsAngularMomentumExactlyAndEnergyWithoutDriftOverAMillionSteps) {
+TEST(FreeRotation, ConservesMomentumAndEnergyOverOneMillionSteps) {
   const RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   RigidBodyState state = tumbling();
   const Vec3 momentum_W = state.angular_momentum_W;
@@ -131,7 +131,7 @@ TEST(FreeRotation, KeepsAngularMomentumExactlyAndEnergyWithoutDriftOverAMillionS
   EXPECT_LT(ever, 1.05 * early);
 }
 
-TEST(FreeRotation, OfAnAsymmetricBodyIsOfSecondOrder) {
+TEST(FreeRotation, ConvergesWithOrderTwoForAsymmetricBody) {
   const RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   const auto turned = [&](int steps) {
     RigidBodyState state = tumbling();
@@ -143,7 +143,7 @@ TEST(FreeRotation, OfAnAsymmetricBodyIsOfSecondOrder) {
               0.02);
 }
 
-TEST(FreeRotation, TurnsABodyThatSpinsAboutItsMiddleAxisOver) {
+TEST(FreeRotation, FlipsBodyThatSpinsAboutIntermediateAxis) {
   // The instability of the middle axis: a nearly pure spin about it flips over and over.
   const RigidBody body = body_with_inertia({0.5, 1.0, 1.5});
   RigidBodyState state;
@@ -157,7 +157,7 @@ TEST(FreeRotation, TurnsABodyThatSpinsAboutItsMiddleAxisOver) {
   EXPECT_LT(least, -0.99);
 }
 
-TEST(Integrators, FollowTheirClosedFormsOnAHarmonicOscillator) {
+TEST(Integrator, MatchesClosedFormOnHarmonicOscillator) {
   // On x'' = -w^2 x both give x_n that satisfies x_(n+1) - 2 cos(phi) x_n + x_(n-1) = 0 with cos(phi) = 1 -
   // (w h)^2 / 2; they differ in x_1. The rotation rests: the pointer is upright.
   RigidBody body = body_with_inertia({1, 2, 3});
@@ -179,13 +179,13 @@ TEST(Integrators, FollowTheirClosedFormsOnAHarmonicOscillator) {
   }
 }
 
-TEST(Integrators, AreOfFirstAndSecondOrderInTheStep) {
+TEST(Integrator, ConvergesWithOrderOneOrTwo) {
   const RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   EXPECT_NEAR(observed_order(Integrator::kSemiImplicitEuler, body), 1.0, 0.03);
   EXPECT_NEAR(observed_order(Integrator::kVelocityVerlet, body), 2.0, 0.03);
 }
 
-TEST(Integrators, KeepTheirOrderUnderDamping) {
+TEST(Integrator, KeepsOrderUnderDamping) {
   RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   body.linear_damping = {1.0, 2.0};
   body.angular_damping = {0.4, 1.5};
@@ -193,7 +193,7 @@ TEST(Integrators, KeepTheirOrderUnderDamping) {
   EXPECT_NEAR(observed_order(Integrator::kVelocityVerlet, body), 2.0, 0.03);
 }
 
-TEST(Integrators, KeepTheEnergyOfAnUndampedBodyBoundedOverAMillionSteps) {
+TEST(Integrator, BoundsEnergyErrorOverOneMillionSteps) {
   const RigidBody body = body_with_inertia({0.6, 1.1, 1.9});
   for (const Integrator integrator : kBoth) {
     RigidBodyState state = displaced();
@@ -212,7 +212,7 @@ TEST(Integrators, KeepTheEnergyOfAnUndampedBodyBoundedOverAMillionSteps) {
   }
 }
 
-TEST(Damping, FollowsTheExactLawOfLinearAndQuadraticResistance) {
+TEST(Damping, MatchesClosedFormOfLinearAndQuadraticResistance) {
   const double time = 0.8;
   for (const Damping& damping : {Damping{2.0, 0.0}, Damping{0.0, 3.0}, Damping{2.0, 3.0}, Damping{}}) {
     RigidBody body = body_with_inertia({0.4, 0.4, 0.4});
@@ -220,7 +220,7 @@ TEST(Damping, FollowsTheExactLawOfLinearAndQuadraticResistance) {
     RigidBodyState state = tumbling();
     state.velocity_W = {3, -4, 12};
     const RigidBodyState start = state;
-    damp(body, time, state);
+    apply_damping(body, time, state);
 
     // s' = -(a + b s) s: s = a s0 e^(-a t) / (a + b s0 (1 - e^(-a t))), s0 / (1 + b s0 t) for a = 0.
     const auto speed_left = [&](double speed, double inertia) {
@@ -237,7 +237,7 @@ TEST(Damping, FollowsTheExactLawOfLinearAndQuadraticResistance) {
   }
 }
 
-TEST(Damping, NeverOvershootsHoweverLargeItIs) {
+TEST(Damping, NeverOvershoots) {
   for (const double scale : {1.0, 1e6, 1e12, 1e100}) {
     RigidBody body = body_with_inertia({1e-3, 1.0, 50.0});
     body.linear_damping = body.angular_damping = {scale, scale};
@@ -246,7 +246,7 @@ TEST(Damping, NeverOvershootsHoweverLargeItIs) {
       double energy = spring_energy(body, state);
       for (int i = 0; i < 200; ++i) {
         const RigidBodyState before = state;
-        damp(body, 0.1, state);
+        apply_damping(body, 0.1, state);
         ASSERT_GE(state.velocity_W.dot(before.velocity_W), 0.0);
         ASSERT_LE(state.velocity_W.norm(), before.velocity_W.norm());
         ASSERT_GE(rotational_energy(body, before) * (1 + 1e-12), rotational_energy(body, state));
@@ -258,7 +258,7 @@ TEST(Damping, NeverOvershootsHoweverLargeItIs) {
   }
 }
 
-TEST(Damping, ReachesTheTerminalSpeed) {
+TEST(Damping, ReachesTerminalSpeed) {
   // m g = c v + d v^2 with m g = 6, c = 1, d = 2: v = 1.5 m/s.
   RigidBody body;
   body.mass = 0.6;
@@ -273,7 +273,7 @@ TEST(Damping, ReachesTheTerminalSpeed) {
   EXPECT_NEAR(state.velocity_W.z(), -1.5, 1e-4);
 }
 
-TEST(Integrators, HaveNamesThatReadBack) {
+TEST(Integrator, NamesRoundTrip) {
   for (const Integrator integrator : kBoth)
     EXPECT_EQ(integrator_from_name(to_string(integrator)), integrator);
   EXPECT_EQ(integrator_from_name("runge_kutta"), std::nullopt);

@@ -44,7 +44,7 @@ std::string floating_plate(double relative_density, double above_rest = 0.0) {
 }
 const std::string kPlate = R"(shape = { type = "box", size = [1, 1, 0.2] })";
 
-TEST(HighestNaturalFrequency, OfAFlatPlateAtRestIsItsHeave) {
+TEST(HighestNaturalFrequency, EqualsHeaveFrequencyOfFlatPlateAtRest) {
   for (const double s : {0.05, 0.3, 0.8}) {
     const HighestNaturalFrequency fastest = prepared(kPlate, floating_plate(s)).fastest();
     EXPECT_NEAR(fastest.frequency, std::sqrt(kStandardGravity / (0.2 * s)), 1e-9 * fastest.frequency) << s;
@@ -52,7 +52,7 @@ TEST(HighestNaturalFrequency, OfAFlatPlateAtRestIsItsHeave) {
   }
 }
 
-TEST(HighestNaturalFrequency, OfABodyOfLittleInertiaIsItsRoll) {
+TEST(HighestNaturalFrequency, EqualsRollFrequencyOfBodyWithLowInertia) {
   // Mass on the axes: rho g (J + V (z_b - z_c)) / I with J = 1/12 and z_b - z_c = -0.1 (1 - s).
   const double s = 0.5;
   const double inertia = 0.2;
@@ -61,12 +61,12 @@ TEST(HighestNaturalFrequency, OfABodyOfLittleInertiaIsItsRoll) {
   EXPECT_NEAR(plate.fastest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.fastest().frequency);
 }
 
-TEST(HighestNaturalFrequency, OfADryBodyIsThatOfTheWaterThatItFallsInto) {
+TEST(HighestNaturalFrequency, CoversWaterBelowDryBody) {
   const Prepared plate = prepared(kPlate, floating_plate(0.1, 1.0));
   EXPECT_GE(plate.fastest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));
 }
 
-TEST(HighestNaturalFrequency, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
+TEST(HighestNaturalFrequency, CoversFlatSideOfBodyOnEdge) {
   // A light plate on its edge has a small waterplane; lying flat it is stiff.
   const double heave = std::sqrt(kStandardGravity / 0.02);
   const Prepared on_edge = prepared(kPlate,
@@ -75,7 +75,7 @@ TEST(HighestNaturalFrequency, OfABodyThatTurnsOverIsThatOfItsFlatSide) {
   EXPECT_GE(on_edge.fastest().frequency, heave * (1.0 - 1e-9));
 }
 
-TEST(HighestNaturalFrequency, CountsNothingThatItsEnergyDoesNotReach) {
+TEST(HighestNaturalFrequency, IgnoresPosesBeyondAvailableEnergy) {
   // An upright cone on its apex, at rest at half its height: the waterplane further up is wider, and stays
   // dry.
   const Prepared cone = prepared(
@@ -86,7 +86,7 @@ TEST(HighestNaturalFrequency, CountsNothingThatItsEnergyDoesNotReach) {
   EXPECT_NEAR(cone.fastest().draft, 0.5, 1e-9);
 }
 
-TEST(HighestNaturalFrequency, IsTheSameWhateverMethodAnswersForTheBody) {
+TEST(HighestNaturalFrequency, DoesNotDependOnMethod) {
   const HighestNaturalFrequency expected = prepared(kPlate, floating_plate(0.3)).fastest();
   for (const char* method : {R"(method = "exact")", R"(method = "fast_surface")"}) {
     std::string keys = kPlate + "\n";
@@ -97,7 +97,7 @@ TEST(HighestNaturalFrequency, IsTheSameWhateverMethodAnswersForTheBody) {
   }
 }
 
-TEST(HighestNaturalFrequency, IsZeroWithoutWaterOrGravity) {
+TEST(HighestNaturalFrequency, IsZeroWithoutGravity) {
   Prepared plate = prepared(kPlate, floating_plate(0.3));
   Water none = plate.scene.water();
   none.gravity = 0.0;
@@ -105,7 +105,7 @@ TEST(HighestNaturalFrequency, IsZeroWithoutWaterOrGravity) {
   EXPECT_EQ(natural_frequency_bound(plate.body(), plate.rigid, none), 0.0);
 }
 
-TEST(HighestNaturalFrequency, IsNeverAboveItsBound) {
+TEST(HighestNaturalFrequency, StaysBelowBound) {
   for (const char* shape : {R"(shape = { type = "box", size = [2, 1, 0.1] })",
                             R"(shape = { type = "sphere" })", R"(shape = { type = "torus_knot" })",
                             R"(shape = { type = "wigley" })", R"(shape = { type = "rock", frequency = 5 })",
@@ -119,7 +119,7 @@ TEST(HighestNaturalFrequency, IsNeverAboveItsBound) {
   }
 }
 
-TEST(HighestNaturalFrequency, OfAnOpenHullIsThatOfItsSidesWhileItsEdgeIsDry) {
+TEST(HighestNaturalFrequency, SupportsOpenHullWithDryBoundary) {
   // A tray of 1 x 1 x 0.2 m, without its lid.
   const TempDir directory;
   const std::filesystem::path path = directory.path() / "tray.off";

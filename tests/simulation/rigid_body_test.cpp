@@ -31,7 +31,7 @@ Mat3 inertia_B(const RigidBody& body) {
   return body.principal_axes_B * body.principal_inertia.asDiagonal() * body.principal_axes_B.transpose();
 }
 
-TEST(RigidBody, TakesMassCentreAndInertiaFromTheMesh) {
+TEST(RigidBody, DerivesMassPropertiesFromMesh) {
   const RigidBody body = rigid_body_of(box_with("density = 500\n"));
   EXPECT_NEAR(body.mass, 3000.0, 1e-9);
   EXPECT_LT(body.center_of_mass_B.norm(), 1e-15);
@@ -40,11 +40,11 @@ TEST(RigidBody, TakesMassCentreAndInertiaFromTheMesh) {
   EXPECT_NEAR(body.principal_inertia[0], 1250.0, 1e-9);
 }
 
-TEST(RigidBody, HasHalfTheWatersDensityWhereNoneIsGiven) {
+TEST(RigidBody, DefaultsToHalfTheWaterDensity) {
   EXPECT_NEAR(rigid_body_of(box_with("")).mass, 3000.0, 1e-9);
 }
 
-TEST(RigidBody, TakesWhatIsGiven) {
+TEST(RigidBody, UsesGivenMassProperties) {
   const RigidBody body = rigid_body_of(
       box_with("mass = 10\ncenter_of_mass = [0.1, 0.2, 0.3]\ninertia = [3, 4, 5, 0.1, 0.2, 0.3]\n"));
   EXPECT_EQ(body.mass, 10.0);
@@ -54,12 +54,12 @@ TEST(RigidBody, TakesWhatIsGiven) {
   EXPECT_LT((inertia_B(body) - expected).norm(), 1e-14);
 }
 
-TEST(RigidBody, ScalesTheMeshsInertiaToAGivenMass) {
+TEST(RigidBody, ScalesMeshInertiaToGivenMass) {
   const RigidBody body = rigid_body_of(box_with("mass = 12\n"));
   EXPECT_NEAR(body.principal_inertia[2], 13.0, 1e-12);
 }
 
-TEST(RigidBody, StartsAndReportsItsStateAsGivenOfTheOriginOfB) {
+TEST(RigidBody, ConvertsStateToAndFromBodyOrigin) {
   const Scene scene = box_with(
       "center_of_mass = [0.1, -0.4, 0.7]\ninertia = [3, 4, 5, 0.1, 0.2, 0.3]\nposition = [5, 6, 7]\n"
       "orientation = [0.5, 0.5, -0.5, 0.5]\nlinear_velocity = [1, 2, 3]\nangular_velocity = [-0.3, 0.2, "
@@ -79,7 +79,7 @@ TEST(RigidBody, StartsAndReportsItsStateAsGivenOfTheOriginOfB) {
   EXPECT_EQ(message.quaternion_wxyz, (std::array{0.5, 0.5, -0.5, 0.5}));
 }
 
-TEST(RigidBody, CarriesTheTorqueFromTheReferencePointToTheCentreOfMass) {
+TEST(RigidBody, TransfersTorqueToCentreOfMass) {
   const Scene scene = box_with("center_of_mass = [0.1, -0.4, 0.7]\n");
   const RigidBody body = rigid_body_of(scene);
   std::mt19937 random(1);
@@ -105,7 +105,7 @@ TEST(RigidBody, CarriesTheTorqueFromTheReferencePointToTheCentreOfMass) {
   }
 }
 
-TEST(RigidBody, HasTheEnergyOfItsMotion) {
+TEST(RigidBody, ComputesKineticEnergy) {
   RigidBody body = rigid_body_of(box_with("mass = 12\n"));
   RigidBodyState state;
   state.velocity_W = {3, 0, 4};
@@ -115,7 +115,7 @@ TEST(RigidBody, HasTheEnergyOfItsMotion) {
   EXPECT_NEAR(kinetic_energy(body, state), 0.5 * 5.0 * 4.0, 1e-12);
 }
 
-TEST(RigidBody, LosesInPotentialWhatTheForcesDo) {
+TEST(RigidBody, PotentialMatchesWorkOfForces) {
   // -dE/ds along a small motion of the body at rest is the load's power, whatever the pose.
   const Scene scene = box_with("density = 700\ncenter_of_mass = [0.1, -0.4, 0.7]\n");
   const Body& described = scene.bodies().front();
@@ -152,7 +152,7 @@ TEST(RigidBody, LosesInPotentialWhatTheForcesDo) {
   }
 }
 
-TEST(RigidBody, IsRefusedWithoutMass) {
+TEST(RigidBody, RejectsZeroMass) {
   Scene scene =
       scene_of("[water]\ndensity = 0\n[[body]]\nid = 3\nshape = { type = \"box\" }\n[body.client]\n");
   const Expected<RigidBody> rigid = make_rigid_body(scene.bodies().front(), scene.water());

@@ -40,7 +40,7 @@ bool contains(const std::optional<Error>& warning, const std::string& words) {
   return warning && warning->message().find(words) != std::string::npos;
 }
 
-TEST(StepWarning, ComesBeforeEveryBlowUpFrom1KilohertzTo10HertzAndOnlyThen) {
+TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
   StressCase stress("1 kHz to 10 Hz steps, stiff light bodies", "w h; 2,000 steps of the body itself",
                     "warned of exactly where w h > 0.5, as blowing up from 2 on");
   int quiet = 0;
@@ -79,7 +79,7 @@ TEST(StepWarning, ComesBeforeEveryBlowUpFrom1KilohertzTo10HertzAndOnlyThen) {
   EXPECT_GE(blown_up, 4);
 }
 
-TEST(StepWarning, AdvisesAStepThatItHasNothingAgainst) {
+TEST(StepWarning, RecommendsAcceptableStep) {
   for (const double lead_time : {0.0, 0.02, 1.0}) {
     for (const Integrator integrator : kBoth) {
       const Scene scene = scene_of(kWater + plate(1, 0.02));
@@ -97,7 +97,7 @@ TEST(StepWarning, AdvisesAStepThatItHasNothingAgainst) {
   }
 }
 
-TEST(StepWarning, NamesTheWorstBodyItsFiguresAndHowManyMore) {
+TEST(StepWarning, NamesWorstBodyAndCountsOthers) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(3, 0.02) + plate(2, 0.004) + plate(4, 0.02));
   const std::optional<Error> warning =
       step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02)));
@@ -108,12 +108,12 @@ TEST(StepWarning, NamesTheWorstBodyItsFiguresAndHowManyMore) {
   }
 }
 
-TEST(StepWarning, ComesWhileTheBodyIsStillInTheAir) {
+TEST(StepWarning, AppliesToBodyAboveWater) {
   const Scene scene = scene_of(kWater + plate(1, 0.02) + "linear_velocity = [0, 0, 10]\n");
   EXPECT_TRUE(step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02))));
 }
 
-TEST(StepWarning, KnowsThatDampingMakesNoStepTooLarge) {
+TEST(StepWarning, IgnoresDamping) {
   // The same plate at w h = 0.49, with a damping whose own rate is 1e6 per step.
   const double step = 0.49 / frequency_of_plate(0.1);
   const Scene scene =
@@ -127,7 +127,7 @@ TEST(StepWarning, KnowsThatDampingMakesNoStepTooLarge) {
   }
 }
 
-TEST(StepWarning, KnowsTheStepFromWhichALeadTimeThatNothingIsLateByBlowsUp) {
+TEST(StepWarning, AccountsForExcessLeadTime) {
   // h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
   const double w = frequency_of_plate(0.1);
   const Scene scene = scene_of(kWater + plate(1, 0.1));
@@ -158,7 +158,7 @@ TEST(StepWarning, KnowsTheStepFromWhichALeadTimeThatNothingIsLateByBlowsUp) {
   }
 }
 
-TEST(LatenessWarning, ComesAboveATenthOfARadian) {
+TEST(LatencyWarning, AppearsAboveOneTenthRadian) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(2, 0.1));
   const double w = frequency_of_plate(0.1);
   const Simulation simulation = simulation_of(scene, {});
@@ -170,7 +170,7 @@ TEST(LatenessWarning, ComesAboveATenthOfARadian) {
   EXPECT_TRUE(contains(latency_warning(simulation, 1.0), "and 1 more"));
 }
 
-TEST(LatencyMonitor, WarnsOnceWhenTheMeanDelayOfASecondIsTooMuch) {
+TEST(LatencyMonitor, WarnsOnceAboutMeanDelay) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + "linear_damping = 1000\n");
   const double w = frequency_of_plate(0.5);
   const double step = 0.02 / w;
@@ -192,7 +192,7 @@ TEST(LatencyMonitor, WarnsOnceWhenTheMeanDelayOfASecondIsTooMuch) {
   }
 }
 
-TEST(EnergyWarning, DoesNotMistakeRestForARun) {
+TEST(EnergyWarning, IgnoresRoundingOfBodyAtRest) {
   // A nanometre from rest: the energy's rounding is more than its kinetic energy.
   const Scene scene = scene_of(
       "[water]\ndensity = 1000\nlevel = 1e3\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 0.3] "

@@ -38,7 +38,7 @@ double roll_of_bar(double relative_density) {
   return settled(scene, 60.0, 0.01).roll;
 }
 
-TEST(LongSquareBar, SettlesAtItsAngleOfLollUpToADensityOfAQuarter) {
+TEST(LongSquareBar, SettlesAtAngleOfLollUpToQuarterDensity) {
   StressCase stress("long square bar of relative density 0.215 to 0.25", "tan^2 theta = 12 s (1 - s) - 2",
                     "1e-4 rad");
   for (const double s : {0.215, 0.22, 0.235, 0.245, 0.249, 0.2499, 0.25}) {
@@ -48,7 +48,7 @@ TEST(LongSquareBar, SettlesAtItsAngleOfLollUpToADensityOfAQuarter) {
   EXPECT_NEAR(roll_of_bar(0.25) * kDegrees, 26.565, 0.001);
 }
 
-TEST(LongSquareBar, FloatsFlatBelowItsCriticalDensity) {
+TEST(LongSquareBar, FloatsFlatBelowCriticalDensity) {
   const double critical = (3.0 - std::sqrt(3.0)) / 6.0;
   StressCase stress("long square bar below relative density (3 - sqrt 3) / 6", "flat", "1e-4 rad");
   for (const double s : {0.1, 0.15, 0.2, critical - 0.005}) {
@@ -86,7 +86,7 @@ double draft_of(const Floater& floater) {
 
 constexpr const char* kDraftGate = "1e-6 L";
 
-TEST(Drafts, OfABoxAndACylinderAreTheirHeightTimesTheirRelativeDensity) {
+TEST(EquilibriumDraft, IsProportionalToDensityForBoxAndCylinder) {
   StressCase stress("draft of a box, a cylinder", "height times relative density", kDraftGate);
   for (const double density : {150.0, 500.0, 850.0}) {
     const Floater box{R"({ type = "box", size = [1.2, 1, 0.5], segments = [3, 2, 2] })", 1.64, density, -0.1};
@@ -97,7 +97,7 @@ TEST(Drafts, OfABoxAndACylinderAreTheirHeightTimesTheirRelativeDensity) {
   }
 }
 
-TEST(Drafts, OfAConeFollowTheCubeRootOfItsRelativeDensityEitherWayUp) {
+TEST(EquilibriumDraft, FollowsCubeRootOfDensityForCone) {
   StressCase stress("draft of a cone, either way up", "cube roots of the relative density", kDraftGate);
   // What is cut off a cone, or off the pyramid that its mesh is, is similar to it.
   for (const double s : {0.2, 0.5, 0.8}) {
@@ -110,7 +110,7 @@ TEST(Drafts, OfAConeFollowTheCubeRootOfItsRelativeDensityEitherWayUp) {
   }
 }
 
-TEST(Drafts, OfAWigleyHullIsThatAtWhichItsMeshDisplacesItsMass) {
+TEST(EquilibriumDraft, DisplacesMassOfWigleyHull) {
   StressCase stress("draft of a Wigley hull", "bisection on the same mesh", kDraftGate);
   for (const double density : {300.0, 450.0, 600.0}) {
     const Floater hull{R"({ type = "wigley", length = 4, beam = 1, draft = 0.5, freeboard = 0.3 })", 4.2,

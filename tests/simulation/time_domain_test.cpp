@@ -72,7 +72,7 @@ EnergyErrors energy_errors(const Scene& scene, Integrator integrator, double ste
   return errors;
 }
 
-TEST(UndampedBob, KeepsItsEnergyWithinTheIntegratorsSwingOverAMillionSteps) {
+TEST(UndampedHeave, BoundsEnergyErrorOverOneMillionSteps) {
   const Bob bob;
   const Scene scene = bob.scene();
   const double step = 0.01;
@@ -88,7 +88,7 @@ TEST(UndampedBob, KeepsItsEnergyWithinTheIntegratorsSwingOverAMillionSteps) {
   }
 }
 
-TEST(UndampedBob, KeepsItsEnergyWhereItRollsAndPitchesToo) {
+TEST(UndampedHeave, BoundsEnergyErrorWithRollAndPitch) {
   const Scene scene = scene_of(
       "[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 0.8, 0.4] }\n"
       "[body.client]\ndensity = 500\nposition = [0, 3, 0.03]\norientation = [0.999, 0.03, 0.02, 0]\n");
@@ -128,7 +128,7 @@ double fitted_order(Integrator integrator) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-TEST(UndampedBob, ConvergesWithOrderOneAndTwoInTheStep) {
+TEST(UndampedHeave, ConvergesWithOrderOneOrTwo) {
   StressCase stress("undamped bob: order in the step", "closed form; steps of 1/200 to 1/3200 s",
                     "order 1 (semi-implicit Euler), 2 (Verlet), +- 0.05");
   const auto check = [&](Integrator integrator, double order) {
@@ -157,7 +157,7 @@ class PeriodMeter {
   int periods_ = -1;
 };
 
-TEST(UndampedBob, HasThePeriodOfItsMassAndWaterplaneWhateverItsWallSidedShape) {
+TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
   struct {
     std::string shape;
     double area;    // m^2
@@ -223,7 +223,7 @@ LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t delay_steps
   return run;
 }
 
-TEST(LateWrench, KeepsTheEnergyWithinOnePercentOverAMinuteWithALeadTime) {
+TEST(DelayedResponse, KeepsEnergyWithinOnePercentWithLeadTime) {
   const Bob bob;
   StressCase stress("wrench one and five steps late, `lead_time` set, alpha = w delay <= 0.02",
                     "the energy at the start, over 60 s", "1 % (Euler: and its own swing)");
@@ -243,7 +243,7 @@ TEST(LateWrench, KeepsTheEnergyWithinOnePercentOverAMinuteWithALeadTime) {
   }
 }
 
-TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
+TEST(DelayedResponse, AddsEnergyWithoutLeadTime) {
   // At the rate w^2 delay: threefold in a minute. A large, slow bob: a delay that is worth as much is few
   // steps.
   const Bob bob{5.0, 20.0};
@@ -263,7 +263,7 @@ TEST(LateWrench, FeedsTheBobEnergyWithoutALeadTime) {
   }
 }
 
-TEST(LateWrench, IsThatOfSoManyStepsAgoAndTheFirstUntilThen) {
+TEST(DelayedResponse, UsesFirstResponseUntilDelayHasPassed) {
   SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
   options.delay_steps = 3;
   const Bob bob;
@@ -279,7 +279,7 @@ TEST(LateWrench, IsThatOfSoManyStepsAgoAndTheFirstUntilThen) {
   });
 }
 
-TEST(LateWrench, LeavesTheEnergyThatOfTheBodyAsItLies) {
+TEST(DelayedResponse, ReportsEnergyOfCurrentPose) {
   const Bob bob;
   const Scene scene = bob.scene();
   for (const std::int64_t delay_steps : {0, 3}) {
