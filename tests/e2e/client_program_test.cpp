@@ -1,4 +1,4 @@
-// buoyancy-client --embedded as a process: arguments, exit codes, files, table. Needs no network.
+// Tests buoyancy-client --embedded as a process: arguments, exit codes, files, summary. They need no network.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -29,10 +29,10 @@ class BuoyancyClient : public testing::Test {
 TEST_F(BuoyancyClient, PrintsSummaryTable) {
   const FinishedProcess finished = run({"--embedded", "--duration", "0.1"});
   EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
-  EXPECT_EQ(finished.standard_error, "") << "a progress bar belongs on terminals only";
-  for (const char* word : {"crate", "draft", "heave", "roll", "pitch", "energy drift", "100 of 100", "p50",
+  EXPECT_EQ(finished.standard_error, "") << "a progress bar is shown on terminals only";
+  for (const char* text : {"crate", "draft", "heave", "roll", "pitch", "energy drift", "100 of 100", "p50",
                            "p99", "p99.9", "max", "retries 0", "unanswered 0", "late 0"}) {
-    EXPECT_NE(finished.standard_output.find(word), std::string::npos) << word << "\n"
+    EXPECT_NE(finished.standard_output.find(text), std::string::npos) << text << "\n"
                                                                       << finished.standard_output;
   }
 }
@@ -71,13 +71,13 @@ TEST_F(BuoyancyClient, FloatsIndependentlyOfUpDirection) {
 }
 
 TEST_F(BuoyancyClient, ReportsRollAndPitchWithSigns) {
-  // Nothing moves: no gravity, no water.
+  // The body does not move: without gravity neither weight nor buoyancy acts.
   const auto still = [&](const std::string& orientation) {
     const std::string path = directory_.write(
         "still.toml", crate("[world]\ngravity = 0\n", "density = 1\norientation = " + orientation + "\n"));
     return body(simulate(path, {"--embedded", "--duration", "0.01"}), 1);
   };
-  // 0.2 rad about x, then about y; then both after a yaw of 1 rad: Rz(1) Ry(0.2) Rx(0.3).
+  // A rotation of 0.2 rad about x, one about y, and both after a yaw of 1 rad: Rz(1) Ry(0.2) Rx(0.3).
   const double degrees = 180.0 / std::numbers::pi;
   EXPECT_NEAR(still("[0.9950041652780258, 0.09983341664682815, 0, 0]")["roll_deg"], 0.2 * degrees, 1e-9);
   EXPECT_NEAR(still("[0.9950041652780258, 0, 0.09983341664682815, 0]")["pitch_deg"], 0.2 * degrees, 1e-9);
@@ -90,12 +90,13 @@ TEST_F(BuoyancyClient, ReportsRollAndPitchWithSigns) {
 TEST_F(BuoyancyClient, MovesIndependentlyOfReferencePoint) {
   const std::string tilted =
       "density = 400\norientation = [0.9, 0.3, 0.2, 0.1]\ncenter_of_mass = [0.1, 0, 0.05]\n";
-  const std::string other = crate("", tilted);
-  const std::string moved = other.substr(0, other.find("[body.client]")) + "reference_point = [3, -2, 5]\n" +
-                            other.substr(other.find("[body.client]"));
+  const std::string original = crate("", tilted);
+  const std::size_t end_of_body = original.find("[body.client]");
+  const std::string shifted =
+      original.substr(0, end_of_body) + "reference_point = [3, -2, 5]\n" + original.substr(end_of_body);
   const Options options = {"--embedded", "--duration", "1"};
-  const nlohmann::json at_origin = simulate(directory_.write("a.toml", other), options);
-  const nlohmann::json elsewhere = simulate(directory_.write("b.toml", moved), options);
+  const nlohmann::json at_origin = simulate(directory_.write("a.toml", original), options);
+  const nlohmann::json elsewhere = simulate(directory_.write("b.toml", shifted), options);
   for (const char* key : {"heave", "roll_deg", "pitch_deg"}) {
     EXPECT_NEAR(body(at_origin, 1)[key], body(elsewhere, 1)[key], 1e-9) << key;
   }
@@ -115,7 +116,7 @@ TEST_F(BuoyancyClient, ConservesEnergyOfTumblingBodyWithEitherIntegrator) {
   const double euler = range("semi_implicit_euler", "0.005");
   EXPECT_LT(verlet, 1e-3);
   EXPECT_LT(euler, 1e-1);
-  // Orders 2 and 1 of the error in energy.
+  // The energy error is of order 2 and 1 in the step.
   EXPECT_LT(range("velocity_verlet", "0.0025"), verlet / 3.0);
   EXPECT_LT(range("semi_implicit_euler", "0.0025"), euler / 1.5);
 }
@@ -134,7 +135,7 @@ TEST_F(BuoyancyClient, EvaluatesWrenchAtLeadTime) {
   ASSERT_EQ(volumes.size(), 21U);
   EXPECT_NEAR(volumes[0], 0.25 - (0.1 - 0.05), 1e-15);
   for (std::size_t i = 0; i < volumes.size(); ++i) {
-    // Not the velocity of the half step, which would be off by 1e-4.
+    // The velocity of the half step would be off by 1e-4.
     EXPECT_NEAR(volumes[i], 0.25 - (heights[i] + 0.05 * speeds[i]), 1e-5);
   }
 }
@@ -163,7 +164,7 @@ TEST_F(BuoyancyClient, RefusesToOverwriteSceneWithCsv) {
 
 TEST_F(BuoyancyClient, EndsRunAtFailedBodyAndWritesItsRow) {
   const std::string csv = directory_.path("run.csv");
-  // A tray without its lid, too heavy for its sides.
+  // An open tray that is so heavy that its edge gets wet.
   const std::string mesh = directory_.write(
       "tray.off",
       "OFF\n8 10 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0.2\n1 0 0.2\n1 1 0.2\n0 1 0.2\n"
@@ -191,15 +192,15 @@ TEST_F(BuoyancyClient, FailsOnDivergedMotionWithoutNonFiniteRows) {
       {"linear_velocity = [1e200, 0, 0]\n", {}},
       {"angular_velocity = [1e200, 1e200, 0]\n", {}},
       {"position = [0, 0, -1e308]\ndensity = 1e-3\n", {"--step", "1e6", "--duration", "1e9"}},
-      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10", "--late", "2"}},
+      {"linear_velocity = [0, 0, 1e308]\n", {"--step", "10", "--delay-steps", "2"}},
   };
-  for (const auto& wrong : cases) {
+  for (const auto& test : cases) {
     const std::string csv = directory_.path("run.csv");
-    const std::string path = directory_.write("far.toml", crate("", wrong.client));
+    const std::string path = directory_.write("far.toml", crate("", test.client));
     Options options = {"--embedded", "--csv", csv};
-    options.insert(options.end(), wrong.options.begin(), wrong.options.end());
+    options.insert(options.end(), test.options.begin(), test.options.end());
     const FinishedProcess finished = run_to_end(client_command(path, options), kRunTimeout);
-    EXPECT_EQ(finished.exit_code, 1) << wrong.client << finished.standard_output;
+    EXPECT_EQ(finished.exit_code, 1) << test.client << finished.standard_output;
     EXPECT_EQ(finished.standard_output, "");
     EXPECT_NE(finished.standard_error.find("body 1 (crate) at"), std::string::npos)
         << finished.standard_error;
@@ -220,7 +221,7 @@ TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
       simulate_with_warnings(plate, {"--embedded", "--step", "0.05", "--duration", "20"});
   ASSERT_EQ(summary["warnings"].size(), 2U) << summary["warnings"];
   EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (plate): step x frequency"), std::string::npos);
-  EXPECT_NE(std::string(summary["warnings"][0]).find("Take --step 0.007"), std::string::npos)
+  EXPECT_NE(std::string(summary["warnings"][0]).find("Use --step 0.007"), std::string::npos)
       << summary["warnings"][0];
   EXPECT_NE(std::string(summary["warnings"][1]).find("mechanical energy rose"), std::string::npos);
 
@@ -234,43 +235,46 @@ TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
 }
 
 TEST_F(BuoyancyClient, DelaysResponsesAndWarnsIfLeadTimeIsNotEnough) {
-  const std::string bob = directory_.write(
-      "bob.toml",
-      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\nshape = { type = \"box\", size "
+  const std::string box = directory_.write(
+      "box.toml",
+      "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"box\"\nshape = { type = \"box\", size "
       "= [1, 1, 0.4] }\n[body.client]\ndensity = 500\nposition = [0, 0, 0.05]\n");
   // w = 7 rad/s: alpha = 0.007, then 0.14.
   const Options minute = {"--embedded", "--duration", "60", "--step", "0.001"};
   const auto with = [&](Options more) {
     more.insert(more.end(), minute.begin(), minute.end());
-    return simulate_with_warnings(bob, more);
+    return simulate_with_warnings(box, more);
   };
-  const nlohmann::json led = with({"--late", "1", "--lead-time", "0.001"});
-  EXPECT_EQ(led["delay_steps"], 1);
-  EXPECT_EQ(led["warnings"].size(), 0U) << led["warnings"];
-  EXPECT_LT(double{body(led, 1)["energy_range"]}, 1e-3);
-  const nlohmann::json late = with({"--late", "1"});
-  ASSERT_EQ(late["warnings"].size(), 1U) << late["warnings"];
-  EXPECT_NE(std::string(late["warnings"][0]).find("energy rose"), std::string::npos);
-  const nlohmann::json too_late = with({"--late", "20", "--lead-time", "0.02"});
+  const nlohmann::json with_lead = with({"--delay-steps", "1", "--lead-time", "0.001"});
+  EXPECT_EQ(with_lead["delay_steps"], 1);
+  EXPECT_EQ(with_lead["warnings"].size(), 0U) << with_lead["warnings"];
+  EXPECT_LT(double{body(with_lead, 1)["energy_range"]}, 1e-3);
+  // --late is the hidden alias of --delay-steps.
+  const nlohmann::json without_lead = with({"--late", "1"});
+  EXPECT_EQ(without_lead["delay_steps"], 1);
+  ASSERT_EQ(without_lead["warnings"].size(), 1U) << without_lead["warnings"];
+  EXPECT_NE(std::string(without_lead["warnings"][0]).find("energy rose"), std::string::npos);
+  const nlohmann::json too_late = with({"--delay-steps", "20", "--lead-time", "0.02"});
   ASSERT_FALSE(too_late["warnings"].empty());
-  EXPECT_NE(std::string(too_late["warnings"][0]).find("delay of the responses"), std::string::npos);
+  EXPECT_NE(std::string(too_late["warnings"][0]).find("response delay"), std::string::npos);
 }
 
 TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
   const std::string unknown_key = directory_.write("unknown.toml", crate("", "densty = 500\n"));
-  const std::string nobody =
-      directory_.write("nobody.toml", "[[body]]\nid = 1\nshape = { type = \"box\" }\n");
+  const std::string no_client =
+      directory_.write("no_client.toml", "[[body]]\nid = 1\nshape = { type = \"box\" }\n");
   const struct {
     std::string scene;
     Options options;
-    std::string said;
+    std::string message;
   } cases[] = {
       {scene_, {"--step", "0", "--embedded"}, "--step"},
       {scene_, {"--step", "nan", "--embedded"}, "--step"},
       {scene_, {"--duration", "-1", "--embedded"}, "--duration"},
       {scene_, {"--integrator", "euler", "--embedded"}, "--integrator"},
       {scene_, {"--rate", "100", "--embedded"}, "--embedded"},
-      {scene_, {"--rate", "100", "--late", "1"}, "--late"},
+      {scene_, {"--rate", "100", "--delay-steps", "1"}, "--delay-steps"},
+      {scene_, {"--delay-steps", "-1", "--embedded"}, "--delay-steps"},
       {scene_, {"--late", "-1", "--embedded"}, "--late"},
       {scene_, {"-l", "udpm://239.255.76.67:7667", "--embedded"}, "--embedded"},
       {scene_, {"--no-such-option"}, "--no-such-option"},
@@ -280,13 +284,13 @@ TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
       {scene_, {"--step", "1e-6", "--duration", "1e13", "--embedded"}, "--duration"},
       {directory_.path("missing.toml"), {"--embedded"}, "missing.toml"},
       {unknown_key, {"--embedded"}, "densty"},
-      {nobody, {"--embedded"}, "[body.client]"},
+      {no_client, {"--embedded"}, "[body.client]"},
   };
-  for (const auto& wrong : cases) {
-    const FinishedProcess finished = run_to_end(client_command(wrong.scene, wrong.options), kRunTimeout);
-    EXPECT_EQ(finished.exit_code, 2) << wrong.said;
-    EXPECT_NE(finished.standard_error.find(wrong.said), std::string::npos)
-        << wrong.said << ": " << finished.standard_error;
+  for (const auto& invalid : cases) {
+    const FinishedProcess finished = run_to_end(client_command(invalid.scene, invalid.options), kRunTimeout);
+    EXPECT_EQ(finished.exit_code, 2) << invalid.message;
+    EXPECT_NE(finished.standard_error.find(invalid.message), std::string::npos)
+        << invalid.message << ": " << finished.standard_error;
   }
 }
 

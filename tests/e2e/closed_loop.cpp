@@ -55,15 +55,15 @@ nlohmann::json simulate(const std::string& scene, const Options& options) {
 }
 
 std::uintmax_t size_of(const std::filesystem::path& path) {
-  std::error_code not_there_yet;
-  const std::uintmax_t size = std::filesystem::file_size(path, not_there_yet);
-  return not_there_yet ? 0 : size;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
 }
 
 bool grows_to(const std::filesystem::path& path, std::uintmax_t bytes, ChildProcess& program) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kRunTimeout);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kRunTimeout);
   while (size_of(path) < bytes) {
-    if (program.wait(0.001) || std::chrono::steady_clock::now() >= limit) return false;
+    if (program.wait(0.001) || std::chrono::steady_clock::now() >= deadline) return false;
   }
   return true;
 }

@@ -1,5 +1,4 @@
-// The real programs as a test runs them: a scene file and a CSV in a directory of the test's own, buoyancyd
-// and buoyancy-client as processes.
+// Runs buoyancyd and buoyancy-client as processes, with scene files and CSV files in a directory of the test.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +15,14 @@
 
 namespace buoyancy {
 
-// Two buses that do not hear each other: the port tells them apart.
+// Two LCM networks that are separated by their ports.
 inline constexpr const char* kServiceUrl = "udpm://239.255.76.67:7667?ttl=0";
 inline constexpr const char* kClientUrl = "udpm://239.255.76.67:7668?ttl=0";
 
-std::uintmax_t size_of(const std::filesystem::path& path);  // 0 where there is no such file yet
+std::uintmax_t size_of(const std::filesystem::path& path);  // 0 if the file does not exist yet
 
-// Waits until the file that the program writes has so many bytes; false where the program ends before, or
-// does not get so far.
+// Waits until the file that the program writes has at least `bytes` bytes. False: the program ended before,
+// or the wait timed out.
 bool grows_to(const std::filesystem::path& path, std::uintmax_t bytes, ChildProcess& program);
 
 using Options = std::vector<std::string>;
@@ -31,24 +30,24 @@ using Options = std::vector<std::string>;
 ChildCommand client_command(const std::string& scene, const Options& options);
 ChildCommand service_command(const std::string& scene, const Options& options);
 
-// Runs buoyancy-client --json to its end, which the test expects to be a success, and to be silent but for
-// the warnings that are in the table too; null after a failure.
+// Runs buoyancy-client --json to its end and returns its summary. Expects success, and nothing on standard
+// error but the warnings of the summary; null after a failure.
 nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options);
-// The same where the test expects no warnings.
+// Same, and expects no warnings.
 nlohmann::json simulate(const std::string& scene, const Options& options);
 
-// Ends a run of buoyancy-client --json, which the test expects to go on until then; its table, or null after
-// a failure.
+// Interrupts a run of buoyancy-client --json, which must still be in progress. Returns its summary, or null
+// after a failure.
 nlohmann::json interrupt(ChildProcess& client);
 
-// What a run of so many steps, in one process and without a network, writes into its CSV.
+// Contents of the CSV file of an --embedded run of `steps` steps.
 std::string embedded_csv(const TempDir& directory, const std::string& scene, std::int64_t steps,
                          const std::string& step);
 
-// The run's table: the body with this id.
+// The body with this id in a summary.
 nlohmann::json body(const nlohmann::json& summary, int id);
 
-// A column of the CSV, one number per row.
+// A column of a CSV file, one number per row.
 std::vector<double> csv_column(const std::string& csv, const std::string& name);
 
 }  // namespace buoyancy

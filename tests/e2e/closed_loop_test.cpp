@@ -1,8 +1,8 @@
-// Floating bodies come to rest where hydrostatics says, and swing as it says: with buoyancyd and
-// buoyancy-client as two processes in lock-step over UDP multicast, each test in a network namespace of its
-// own. A run over the network takes as many steps as show that the loop is closed; what is a promise about
-// many steps is tested with --embedded, which gives the same bytes (lockstep_test.cpp) and depends on no
-// scheduler.
+// Floating bodies reach the rest positions and oscillate with the periods that hydrostatics predicts, with
+// buoyancyd and buoyancy-client as two processes in lock-step over UDP multicast, each test in its own
+// network namespace. A run over the network has just enough steps to show that the loop is closed; properties
+// of many steps are tested with --embedded, which gives the same bytes (lockstep_test.cpp) and does not
+// depend on the scheduler.
 #include "tests/e2e/closed_loop.h"
 
 #include <cmath>
@@ -55,7 +55,7 @@ linear_damping = 2000
 angular_damping = 100
 [[body]]
 id = 3
-name = "sphere, heavy below"
+name = "sphere, low centre of mass"
 shape = { type = "sphere", radius = 0.5, segments = 24 }
 [body.client]
 density = 400
@@ -78,19 +78,19 @@ angular_damping_quadratic = 20
   ASSERT_TRUE(scene) << scene.error().message();
   const Body& sphere = *scene->find(3);
   const double displaced = 400.0 / 1000.0 * sphere.prepared_mesh->mass_properties.volume;
-  double deep = -0.5;
+  double low = -0.5;
   double high = 0.5;
   for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (deep + high);
+    const double middle = 0.5 * (low + high);
     const Pose pose{{0, 0, scene->water().level + middle}, Eigen::Quaterniond::Identity()};
-    const BuoyancyResult response = buoyancy(sphere.solver, pose, scene->water(), Vec3::Zero());
-    (response.volume > displaced ? deep : high) = middle;
+    const BuoyancyResult result = buoyancy(sphere.solver, pose, scene->water(), Vec3::Zero());
+    (result.volume > displaced ? low : high) = middle;
   }
-  EXPECT_NEAR(body(summary, 3)["draft"], 0.5 - deep, 1e-6 * std::sqrt(3.0));
+  EXPECT_NEAR(body(summary, 3)["draft"], 0.5 - low, 1e-6 * std::sqrt(3.0));
   EXPECT_NEAR(body(summary, 3)["pitch_deg"], 0.0, 1e-4);
 }
 
-// One bar of square section 1 x 1, its long axis along x, started with a roll of 0.3 rad.
+// A bar of square section 1 x 1 m along x that starts with a roll of 0.3 rad.
 std::string bar(int id, double relative_density) {
   return "[[body]]\nid = " + std::to_string(id) +
          "\nshape = { type = \"box\", size = [3, 1, 1] }\n[body.client]\ndensity = " +
@@ -112,7 +112,7 @@ TEST(ClosedLoop, SquareBarsSettleAtTheirAngleOfLoll) {
   EXPECT_NEAR(double{body(summary, 19)["roll_deg"]} / kDegrees, 0.0, 1e-4);
 }
 
-constexpr const char* kBob = R"(
+constexpr const char* kHeavingBox = R"(
 [water]
 density = 1000
 [[body]]
@@ -123,7 +123,7 @@ density = 500
 position = [0, 0, 0.05]
 )";
 
-// From the first to the last upward crossing of the level.
+// Mean period from the first to the last upward crossing of the level.
 double mean_period(const std::vector<double>& heights, double step) {
   double first = 0.0;
   double last = 0.0;
@@ -137,33 +137,34 @@ double mean_period(const std::vector<double>& heights, double step) {
   return (last - first) / periods;
 }
 
-// `run` simulates so many steps of 0.01 s with the options it is given.
+// Checks period and energy of the heaving box over `steps` steps of 0.01 s. run(scene, options) simulates
+// them.
 template <typename Run>
-void expect_the_period_and_the_energy_of_the_bob(std::int64_t steps, int csv_every, const Run& run) {
+void expect_period_and_energy(std::int64_t steps, int csv_every, const Run& run) {
   const TempDir directory;
-  const std::string path = directory.write("bob.toml", kBob);
-  const std::string csv = directory.path("bob.csv");
+  const std::string path = directory.write("box.toml", kHeavingBox);
+  const std::string csv = directory.path("box.csv");
   const double step = 0.01;
   const nlohmann::json summary =
       run(path, {"--duration", std::to_string(static_cast<double>(steps) * step), "--step",
                  std::to_string(step), "--csv", csv, "--csv-every", std::to_string(csv_every)});
   EXPECT_EQ(summary["steps"], steps);
 
-  // m = 200 kg, A_wp = 1 m^2. The period of velocity Verlet itself is shorter by (w h)^2 / 24 = 2e-4.
+  // m = 200 kg, A_wp = 1 m^2. The period of velocity Verlet is shorter by (w h)^2 / 24 = 2e-4 of itself.
   const double w = std::sqrt(1000.0 * kGravity * 1.0 / 200.0);
   const double period = 2.0 * std::numbers::pi / w;
   EXPECT_NEAR(mean_period(csv_column(read_file(csv), "pz"), csv_every * step), period, 1e-3 * period);
-  // The energy of Verlet swings by (w h)^2 / 4 of itself.
+  // The energy of velocity Verlet oscillates by (w h)^2 / 4 of itself.
   EXPECT_LT(double{body(summary, 1)["energy_range"]}, 2e-3);
   EXPECT_LT(std::abs(double{body(summary, 1)["energy_drift"]}), 2e-3);
 }
 
 TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergy) {
-  expect_the_period_and_the_energy_of_the_bob(1000, 1, simulate_with_service);
+  expect_period_and_energy(1000, 1, simulate_with_service);
 }
 
 TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergyOver100000Steps) {
-  expect_the_period_and_the_energy_of_the_bob(100'000, 10, [](const std::string& scene, Options options) {
+  expect_period_and_energy(100'000, 10, [](const std::string& scene, Options options) {
     options.emplace_back("--embedded");
     return simulate(scene, options);
   });

@@ -1,6 +1,5 @@
-// client/examples beside the real buoyancyd, over UDP: the crate of scenes/box.toml comes to rest level, at
-// the height that Archimedes gives, in engines that are not ours; and Python gets the force that a closed
-// form gives.
+// Runs client/examples with buoyancyd over UDP: in third-party engines the crate of scenes/box.toml comes to
+// rest level and at its equilibrium height, and the Python client receives the force of a closed form.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -15,8 +14,8 @@ namespace buoyancy {
 namespace {
 
 const std::string kSources = BUOYANCY_SOURCE_DIR;
-// Of 20 s of the crate's motion, so that its rest takes 4,000 round trips.
-constexpr const char* kStep = "0.005";  // s
+// Time step [s]: the 20 s of the crate's motion take 4,000 round trips.
+constexpr const char* kStep = "0.005";
 
 class Service {
  public:
@@ -28,13 +27,13 @@ class Service {
   ChildProcess child_;
 };
 
-// The engines and Python are optional for a build. scripts/test installs them, so there none of these is
-// skipped; whoever builds by hand without one is told which, instead of being kept from the other tests.
-constexpr const char* kNoBullet = "Bullet for 64 bits (libbullet-dev) was not there when this was configured";
-constexpr const char* kNoOde = "ODE (libode-dev) was not there when this was configured";
-constexpr const char* kNoPython = "python3 was not there when this was configured";
+// The engines and Python are optional for a build. scripts/test installs them, so that it skips none of these
+// tests; a build without one of them names it and runs the other tests.
+constexpr const char* kNoBullet = "double-precision Bullet (libbullet-dev) was not found by CMake";
+constexpr const char* kNoOde = "ODE (libode-dev) was not found by CMake";
+constexpr const char* kNoPython = "python3 was not found by CMake";
 
-void comes_to_rest_level(const std::string& program) {
+void expect_crate_settles_level(const std::string& program) {
   const Service service;
   const FinishedProcess run = run_to_end(command_of({program, "", kStep}), kRunTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
@@ -48,12 +47,12 @@ void comes_to_rest_level(const std::string& program) {
 
 TEST(Examples, BulletCrateSettlesLevel) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
-  comes_to_rest_level(BULLET_CRATE);
+  expect_crate_settles_level(BULLET_CRATE);
 }
 
 TEST(Examples, OdeCrateSettlesLevel) {
   if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;
-  comes_to_rest_level(ODE_CRATE);
+  expect_crate_settles_level(ODE_CRATE);
 }
 
 TEST(Examples, ReportMissingService) {
@@ -75,20 +74,20 @@ TEST(Examples, PythonReceivesForceOnBox) {
 
   const Service service;
   for (const double height : {0.0, 0.1, 1.0}) {
-    ChildCommand ask =
+    ChildCommand command =
         command_of({PYTHON, kSources + "/client/examples/round_trip.py", "--height", std::to_string(height)});
-    ask.environment = {"PYTHONPATH=" + directory.path(""), "PYTHONDONTWRITEBYTECODE=1"};
-    const FinishedProcess asked = run_to_end(ask, kRunTimeout);
-    ASSERT_EQ(asked.exit_code, 0) << asked.standard_error;
+    command.environment = {"PYTHONPATH=" + directory.path(""), "PYTHONDONTWRITEBYTECODE=1"};
+    const FinishedProcess finished = run_to_end(command, kRunTimeout);
+    ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
     int status = -1;
     std::array<double, 3> force{};
     double volume = NAN;
-    ASSERT_EQ(
-        std::sscanf(asked.standard_output.c_str(), "status %d, force %lf %lf %lf N, submerged volume %lf m^3",
-                    &status, &force[0], &force[1], &force[2], &volume),
-        5)
-        << asked.standard_output;
-    const double expected_volume = std::fmax(0.25 - height, 0.0);  // of 1 x 1 x 0.5 m about its origin
+    ASSERT_EQ(std::sscanf(finished.standard_output.c_str(),
+                          "status %d, force %lf %lf %lf N, submerged volume %lf m^3", &status, &force[0],
+                          &force[1], &force[2], &volume),
+              5)
+        << finished.standard_output;
+    const double expected_volume = std::fmax(0.25 - height, 0.0);  // box of 1 x 1 x 0.5 m about its origin
     EXPECT_EQ(status, 0);
     EXPECT_NEAR(volume, expected_volume, 1e-9);
     EXPECT_NEAR(force[2], 1025.0 * 9.80665 * expected_volume, 1e-5);

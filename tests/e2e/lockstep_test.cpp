@@ -1,5 +1,5 @@
-// Lock-step and free running over UDP multicast, on a good network and on bad ones, each test in a network
-// namespace of its own: what the network does may cost time, and in lock-step nothing else.
+// Lock-step and free-running mode over UDP multicast, on good and bad networks, each test in its own network
+// namespace. In lock-step a bad network costs time but never changes a result.
 #include <chrono>
 
 #include <gtest/gtest.h>
@@ -58,8 +58,9 @@ TEST_F(Lockstep, ProducesSameBytesEmbeddedOverUdpAndOverLossyNetwork) {
   EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "4"}) == embedded);
 
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
-  const Options impatient = {"-l", kClientUrl, "--duration", "4", "--timeout", "0.005", "--retries", "10000"};
-  EXPECT_TRUE(csv_of_run("lossy.csv", impatient) == embedded);
+  const Options short_timeout = {"-l",        kClientUrl, "--duration", "4",
+                                 "--timeout", "0.005",    "--retries",  "10000"};
+  EXPECT_TRUE(csv_of_run("lossy.csv", short_timeout) == embedded);
   EXPECT_GT(relay.lost_requests(), 50);
   EXPECT_GT(relay.lost_responses(), 50);
   EXPECT_GE(summary_["retries"], relay.lost_requests() + relay.lost_responses());
@@ -69,7 +70,7 @@ TEST_F(Lockstep, ProducesSameBytesEmbeddedOverUdpAndOverLossyNetwork) {
 TEST_F(Lockstep, ProducesSameBytesAcrossServiceRestart) {
   auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("udp.csv");
-  // Without an end: however late this test gets the processor, the service dies in the middle of the run.
+  // The run does not end by itself, so that the service always dies in the middle of it.
   ChildProcess client(
       client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--step", "0.002", "--csv", csv,
                               "--timeout", "0.05", "--retries", "10000", "--json"}));
@@ -89,10 +90,10 @@ TEST_F(Lockstep, FailsWithoutServiceAndNamesEndpoint) {
       kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
-  for (const char* word :
+  for (const char* text :
        {"request 0", "no response", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
-    EXPECT_NE(finished.standard_error.find(word), std::string::npos)
-        << word << ": " << finished.standard_error;
+    EXPECT_NE(finished.standard_error.find(text), std::string::npos)
+        << text << ": " << finished.standard_error;
   }
 }
 
@@ -121,16 +122,15 @@ TEST_F(Lockstep, EndsOnSigintWithSummaryAndValidCsv) {
 TEST_F(Lockstep, EndsOnSigtermWhileWaitingForService) {
   Expected<LcmConnection> bus = LcmConnection::open(kServiceUrl);
   ASSERT_TRUE(bus) << bus.error().message();
-  bool requested = false;
-  ASSERT_TRUE(
-      bus->subscribe(std::string(kStatesChannel), [&](Bytes, std::string_view) { requested = true; }));
+  bool received = false;
+  ASSERT_TRUE(bus->subscribe(std::string(kStatesChannel), [&](Bytes, std::string_view) { received = true; }));
   ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--timeout", "1e6"}));
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
-  while (!requested && std::chrono::steady_clock::now() < limit) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (!received && std::chrono::steady_clock::now() < deadline) {
     pollfd waiting{bus->fileno(), POLLIN, 0};
     if (::poll(&waiting, 1, to_milliseconds(kWaitTimeout)) == 1) bus->handle_one();
   }
-  ASSERT_TRUE(requested) << client.standard_error();
+  ASSERT_TRUE(received) << client.standard_error();
   client.send_signal(SIGTERM);
   EXPECT_EQ(client.wait(kWaitTimeout), 1);
 }
@@ -140,7 +140,7 @@ using FreeRunning = Lockstep;
 TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
-  // Answers take eight intervals or more.
+  // Responses take eight intervals or more.
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
   const nlohmann::json summary =
       simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "200", "--duration", "1"});
@@ -152,9 +152,9 @@ TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
   EXPECT_GE(summary["max_lag"], 8);
   EXPECT_GE(summary["round_trip"]["p50"], 0.04);
   EXPECT_GE(summary["wall_time"], 0.9);
-  // The crate swings at 5 rad/s or more: a radian's fifth and more per delay.
+  // The crate has a natural frequency of at least 5 rad/s: w times the delay is at least 0.2.
   ASSERT_FALSE(summary["warnings"].empty());
-  EXPECT_NE(std::string(summary["warnings"][0]).find("delay of the responses"), std::string::npos)
+  EXPECT_NE(std::string(summary["warnings"][0]).find("response delay"), std::string::npos)
       << summary["warnings"];
 }
 
@@ -162,7 +162,7 @@ TEST_F(FreeRunning, ContinuesWithOlderResponseAfterLoss) {
   ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
-  // Warnings would be of the machine's load, not of this.
+  // Warnings may appear: they depend on the machine's load.
   const nlohmann::json summary =
       simulate_with_warnings(scene_, {"-l", kClientUrl, "--rate", "500", "--duration", "1"});
   ASSERT_TRUE(summary.is_object());

@@ -18,12 +18,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kReorderedBy{12};
+constexpr std::chrono::milliseconds kReorderingDelay{12};
 
-enum class Toward { kService, kClient };
+enum class Destination { kService, kClient };
 
 struct Delayed {
-  Toward toward;
+  Destination destination;
   std::vector<std::uint8_t> bytes;
 };
 using DelayedByTime = std::multimap<Clock::time_point, Delayed>;
@@ -42,62 +42,62 @@ LcmConnection open(const std::string& url) {
 
 }  // namespace
 
-struct LossyRelay::Carrier {
-  Carrier(const RelayOptions& given, LossyRelay& owner)
+struct LossyRelay::Forwarder {
+  Forwarder(const RelayOptions& given, LossyRelay& owner)
       : options(given),
         relay(owner),
         client_side(open(given.client_url)),
         service_side(open(given.service_url)),
         random(given.seed) {
     require(client_side.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
-      carry(Toward::kService, bytes, relay.lost_requests_);
+      forward(Destination::kService, bytes, relay.lost_requests_);
     }));
     require(service_side.subscribe(std::string(kWrenchesChannel), [this](Bytes bytes, std::string_view) {
-      carry(Toward::kClient, bytes, relay.lost_responses_);
+      forward(Destination::kClient, bytes, relay.lost_responses_);
     }));
   }
 
   void run() {
     while (!relay.stop_) {
-      // What is due is at most a millisecond late.
+      // With a timeout of 1 ms a delayed message is at most a millisecond late.
       std::array<pollfd, 2> waiting{pollfd{client_side.fileno(), POLLIN, 0},
                                     pollfd{service_side.fileno(), POLLIN, 0}};
       poll(waiting.data(), waiting.size(), delayed.empty() ? 20 : 1);
       if (waiting[0].revents != 0) client_side.handle_one();
       if (waiting[1].revents != 0) service_side.handle_one();
       while (!delayed.empty() && delayed.begin()->first <= Clock::now()) {
-        pass_on(delayed.begin()->second.toward, delayed.begin()->second.bytes);
+        send(delayed.begin()->second.destination, delayed.begin()->second.bytes);
         delayed.erase(delayed.begin());
       }
     }
   }
 
-  void carry(Toward toward, Bytes bytes, std::atomic<std::int64_t>& lost) {
+  void forward(Destination destination, Bytes bytes, std::atomic<std::int64_t>& lost) {
     if (happens(options.loss, lost)) return;
     Clock::duration delay{0};
-    if (toward == Toward::kClient) {
+    if (destination == Destination::kClient) {
       delay =
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.response_delay));
     }
-    if (happens(options.duplication, relay.duplicated_)) pass_on_after(delay, toward, bytes);
-    if (happens(options.reordering, relay.reordered_)) delay += kReorderedBy;
-    pass_on_after(delay, toward, bytes);
+    if (happens(options.duplication, relay.duplicated_)) send_after(delay, destination, bytes);
+    if (happens(options.reordering, relay.reordered_)) delay += kReorderingDelay;
+    send_after(delay, destination, bytes);
   }
 
   bool happens(double probability, std::atomic<std::int64_t>& counter) {
-    const bool does = probability > 0.0 && std::bernoulli_distribution(probability)(random);
-    if (does) ++counter;
-    return does;
+    const bool drawn = probability > 0.0 && std::bernoulli_distribution(probability)(random);
+    if (drawn) ++counter;
+    return drawn;
   }
 
-  void pass_on_after(Clock::duration delay, Toward toward, Bytes bytes) {
-    if (delay.count() == 0) return pass_on(toward, bytes);
-    delayed.emplace(Clock::now() + delay, Delayed{toward, {bytes.begin(), bytes.end()}});
+  void send_after(Clock::duration delay, Destination destination, Bytes bytes) {
+    if (delay.count() == 0) return send(destination, bytes);
+    delayed.emplace(Clock::now() + delay, Delayed{destination, {bytes.begin(), bytes.end()}});
   }
 
-  void pass_on(Toward toward, Bytes bytes) {
-    require(toward == Toward::kService ? service_side.publish(std::string(kStatesChannel), bytes)
-                                       : client_side.publish(std::string(kWrenchesChannel), bytes));
+  void send(Destination destination, Bytes bytes) {
+    require(destination == Destination::kService ? service_side.publish(std::string(kStatesChannel), bytes)
+                                                 : client_side.publish(std::string(kWrenchesChannel), bytes));
   }
 
   RelayOptions options;
@@ -109,8 +109,8 @@ struct LossyRelay::Carrier {
 };
 
 LossyRelay::LossyRelay(const RelayOptions& options) {
-  auto carrier = std::make_unique<Carrier>(options, *this);
-  thread_ = std::thread([carrier = std::move(carrier)] { carrier->run(); });
+  auto forwarder = std::make_unique<Forwarder>(options, *this);
+  thread_ = std::thread([forwarder = std::move(forwarder)] { forwarder->run(); });
 }
 
 LossyRelay::~LossyRelay() {

@@ -1,6 +1,6 @@
-// A bad network between client and service: carries the requests of one bus to another and the responses
-// back, loses some of each, sends some twice, has some overtaken by later ones, and can be slow with the
-// responses. Seeded: it loses the same messages of a sequence every time.
+// Simulates a bad network between client and service: forwards requests from one LCM network to another and
+// the responses back, with loss, duplication, reordering and a delay of the responses. The random generator
+// is seeded: the same messages of a sequence are lost every time.
 #pragma once
 
 #include <atomic>
@@ -13,16 +13,17 @@ namespace buoyancy {
 struct RelayOptions {
   std::string client_url;
   std::string service_url;
-  double loss = 0.0;            // probability, of requests and of responses
-  double response_delay = 0.0;  // s
+  double loss = 0.0;            // probability, for requests and responses
+  double response_delay = 0.0;  // [s]
   std::uint64_t seed = 1;
-  double duplication = 0.0;  // probability, of requests and of responses
-  double reordering = 0.0;   // the same: it arrives some milliseconds late, after a repeat or the next one
+  double duplication = 0.0;  // probability, for requests and responses
+  double reordering =
+      0.0;  // probability of an extra delay of some milliseconds, past a retry or the next message
 };
 
 class LossyRelay {
  public:
-  explicit LossyRelay(const RelayOptions& options);  // carries as soon as it is constructed
+  explicit LossyRelay(const RelayOptions& options);  // starts to forward
   LossyRelay(const LossyRelay&) = delete;
   LossyRelay& operator=(const LossyRelay&) = delete;
   ~LossyRelay();
@@ -33,7 +34,7 @@ class LossyRelay {
   std::int64_t reordered() const { return reordered_; }
 
  private:
-  struct Carrier;
+  struct Forwarder;
 
   std::atomic<bool> stop_{false};
   std::atomic<std::int64_t> lost_requests_{0};

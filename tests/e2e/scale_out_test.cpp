@@ -1,6 +1,5 @@
-// Several services, each with its share of the bodies, on one bus: every share has its own pair of channels
-// and, in the simulator, its own client. Together they say what one service with all the bodies says, bit for
-// bit.
+// Several services on one LCM network, each with a share of the bodies, its own pair of channels and its own
+// client in the simulator. Together they give the same wrenches, bit for bit, as one service with all bodies.
 #include <array>
 #include <cmath>
 #include <future>
@@ -45,7 +44,7 @@ std::vector<BodyState> states_of(std::initializer_list<int> ids, int step) {
   return states;
 }
 
-// A service and its client, who alone are on their channels.
+// A service and its client on channels of their own.
 class Share {
  public:
   Share(const TempDir& directory, const std::string& name, std::initializer_list<int> ids)
@@ -57,7 +56,7 @@ class Share {
     ClientOptions options;
     options.channel.states_channel = name + "_STATES";
     options.channel.wrenches_channel = name + "_WRENCHES";
-    options.retry_policy.max_retries = 10'000;  // as long as the test may take
+    options.retry_policy.max_retries = 10'000;  // effectively unlimited
     Expected<Client> client = Client::open(options);
     if (!client) throw std::runtime_error(client.error().message());
     client_.emplace(std::move(*client));
@@ -88,7 +87,7 @@ TEST(ScaleOut, TwoServicesMatchOneServiceBitForBit) {
   Share odd(directory, "ODD", {1, 3, 5});
   Share even(directory, "EVEN", {2, 4, 6});
   for (int step = 0; step < kSteps; ++step) {
-    // Both at once: the step takes as long as the slower of the two.
+    // Both requests run concurrently: the step takes as long as the slower one.
     auto of_odd = std::async(std::launch::async, [&] {
       return odd.request(step, states_of({1, 3, 5}, step));
     });

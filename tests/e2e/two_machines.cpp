@@ -8,7 +8,7 @@
 namespace buoyancy {
 namespace {
 
-// Holds a network namespace, empty but for a loopback that is down.
+// Holds a network namespace that contains only a loopback interface, which is down.
 ChildCommand empty_machine() {
   return command_of({"unshare", "-n", "sleep", "infinity"});
 }
@@ -18,17 +18,17 @@ std::string namespace_of(const std::string& process) {
   return std::filesystem::read_symlink("/proc/" + process + "/ns/net", gone);
 }
 
-// unshare has done its work and is on its way to become sleep.
+// Waits until unshare has created the namespace. False: it failed.
 bool has_own_namespace(ChildProcess& machine) {
   while (!machine.wait(0.005)) {
-    const std::string its = namespace_of(std::to_string(machine.pid()));
-    if (!its.empty() && its != namespace_of("self")) return true;
+    const std::string machine_namespace = namespace_of(std::to_string(machine.pid()));
+    if (!machine_namespace.empty() && machine_namespace != namespace_of("self")) return true;
   }
   return false;
 }
 
-// Cables from both machines to the switch. The first line fails, and nothing is changed, where this is not
-// the namespace that scripts/in_network_namespace makes.
+// Connects both machines to the switch. Outside the namespace that scripts/in_network_namespace creates, the
+// first line fails and nothing is changed.
 constexpr const char* kSetUp = R"(
 ip route del 224.0.0.0/4 dev lo
 ip link add buoyancy0 type veth peer name port0 netns $SWITCH
@@ -64,7 +64,7 @@ TwoMachines::~TwoMachines() {
   if (set_up_) run(kTakeDown);
 }
 
-ChildCommand TwoMachines::on_the_services(ChildCommand command) const {
+ChildCommand TwoMachines::on_service_machine(ChildCommand command) const {
   const std::string process = std::to_string(service_.pid());
   command.arguments.insert(command.arguments.begin(), {"nsenter", "-t", process, "-n"});
   return command;

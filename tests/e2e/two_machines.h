@@ -1,5 +1,5 @@
-// Two machines and the switch between them, as network namespaces: the test's own is the client's machine.
-// Nothing of it outlives the object but the client's end of the cable, which goes with the test's namespace.
+// Two machines and a switch between them, as network namespaces; the test's own namespace is the client's
+// machine. Only the client's end of the cable outlives the object, as long as the test's namespace.
 #pragma once
 
 #include <optional>
@@ -9,36 +9,37 @@
 
 namespace buoyancy {
 
-// LCM's default but for ttl=1: as far as the next machine. Between the two of these there is no other way.
+// LCM's default address with ttl=1, which reaches the next machine. The two machines have no other
+// connection.
 inline constexpr const char* kTwoMachinesUrl = "udpm://239.255.76.67:7667?ttl=1";
 
 class TwoMachines {
  public:
-  // Ends in trouble() where this machine cannot do it.
+  // Sets warning() if this machine does not support it.
   TwoMachines();
   TwoMachines(const TwoMachines&) = delete;
   TwoMachines& operator=(const TwoMachines&) = delete;
   ~TwoMachines();
 
-  // What kept it from being set up: no right to make namespaces, a kernel without veth or bridge. Later: a
-  // command of those below that failed.
+  // Why the setup failed: no permission to create namespaces, or a kernel without veth or bridge. Later: the
+  // error of a failed command below.
   const std::optional<std::string>& warning() const { return warning_; }
 
-  // The same command on the service's machine.
-  ChildCommand on_the_services(ChildCommand command) const;
+  // Returns the same command, run on the service's machine.
+  ChildCommand on_service_machine(ChildCommand command) const;
 
-  // Pulls the client's cable out of the switch, puts it back. Addresses and routes stay, as with a real one.
-  void pull_cable() { on_the_switch("ip link set port0 down"); }
-  void plug_cable() { on_the_switch("ip link set port0 up"); }
+  // Unplug and plug in the client's cable at the switch. Addresses and routes stay, as with a real cable.
+  void unplug_cable() { run_on_switch("ip link set port0 down"); }
+  void plug_in_cable() { run_on_switch("ip link set port0 up"); }
 
-  // The client's interface, administratively: its routes go with it, and sending is an error until they are
-  // back.
+  // Set the client's interface down and up. Its routes are removed meanwhile, and sending fails until they
+  // are restored.
   void take_interface_down() { run("ip link set buoyancy0 down"); }
   void bring_interface_up() { run("ip link set buoyancy0 up; ip route replace 224.0.0.0/4 dev buoyancy0"); }
 
  private:
   void run(const std::string& script);
-  void on_the_switch(const std::string& command) { run("nsenter -t $SWITCH -n " + command); }
+  void run_on_switch(const std::string& command) { run("nsenter -t $SWITCH -n " + command); }
 
   ChildProcess switch_;
   ChildProcess service_;

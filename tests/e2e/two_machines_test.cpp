@@ -1,7 +1,7 @@
-// Service and client on two machines, joined by a switch: real programs in network namespaces of their own,
-// ttl=1. What the way between them does costs time and changes no byte of a lock-step run.
+// Service and client on two machines connected by a switch: the real programs in network namespaces, with
+// ttl=1. The connection between them may cost time, but it never changes a byte of a lock-step run.
 //
-// BUOYANCY_CUT_SECONDS: how long the cable is out; 1 s where it is not set (scripts/two_machines takes 30).
+// BUOYANCY_CUT_SECONDS: how long the cable is unplugged [s]; 1 by default (scripts/two_machines sets 30).
 #include "tests/e2e/two_machines.h"
 
 #include <chrono>
@@ -20,8 +20,8 @@ namespace buoyancy {
 namespace {
 
 constexpr const char* kStep = "0.001";
-constexpr std::int64_t kSteps = 1000;   // of a run that ends by itself
-constexpr const char* kDuration = "1";  // s: of the same
+constexpr std::int64_t kSteps = 1000;   // length of a run that ends by itself
+constexpr const char* kDuration = "1";  // [s], of the same run
 constexpr const char* kScene = R"(
 [[body]]
 id = 1
@@ -34,35 +34,35 @@ orientation = [0.9, 0.3, 0.2, 0.1]
 
 double cut_seconds() {
   const char* const set =
-      std::getenv("BUOYANCY_CUT_SECONDS");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+      std::getenv("BUOYANCY_CUT_SECONDS");  // NOLINT(concurrency-mt-unsafe): no thread sets it
   return set != nullptr ? std::stod(set) : 1.0;
 }
 
 class TwoMachinesTest : public testing::Test {
  protected:
   void SetUp() override {
-    // Network namespaces are root's, and not every container's kernel lets even root make them.
+    // Network namespaces require root, and some containers do not allow even root to create them.
     if (machines_.warning()) GTEST_SKIP() << "network: " << *machines_.warning();
   }
 
   std::string embedded(std::int64_t steps) const { return embedded_csv(directory_, scene_, steps, kStep); }
 
   ChildCommand service() const {
-    return machines_.on_the_services(service_command(scene_, {"-l", kTwoMachinesUrl}));
+    return machines_.on_service_machine(service_command(scene_, {"-l", kTwoMachinesUrl}));
   }
 
-  // Goes on until it is interrupted, so that a test finds it in the middle however late that is.
+  // A run that lasts until it is interrupted, so that a test always finds it in progress.
   ChildCommand endless_run() const {
     return client_command(scene_, {"-l", kTwoMachinesUrl, "--duration", "1e6", "--csv", csv_, "--timeout",
                                    "0.05", "--retries", "1000000", "--json"});
   }
-  // The client gets on from where it is.
+  // Checks that the run makes progress.
   testing::AssertionResult advances(ChildProcess& client) const {
     if (grows_to(csv_, size_of(csv_) + 100'000, client)) return testing::AssertionSuccess();
-    return testing::AssertionFailure() << "the run does not go on: " << client.standard_error();
+    return testing::AssertionFailure() << "the run makes no progress: " << client.standard_error();
   }
-  // Interrupts it. What it did until then must be what a run in one process does.
-  nlohmann::json ends_with_the_bytes_of_an_embedded_run(ChildProcess& client) const {
+  // Interrupts the run and checks that its CSV equals that of an --embedded run of the same length.
+  nlohmann::json interrupt_and_compare(ChildProcess& client) const {
     nlohmann::json summary = interrupt(client);
     if (summary.is_object()) {
       EXPECT_TRUE(read_file(csv_) == embedded(summary["steps"]));
@@ -100,7 +100,7 @@ TEST_F(TwoMachinesTest, ProducesSameBytesDespiteLossAndReordering) {
   options.duplication = 0.1;
   options.reordering = 0.1;
   const LossyRelay relay(options);
-  const std::string csv = directory_.path("bad_way.csv");
+  const std::string csv = directory_.path("bad_network.csv");
   const nlohmann::json summary = simulate(scene_, {"-l", kClientUrl, "--duration", kDuration, "--csv", csv,
                                                    "--timeout", "0.005", "--retries", "10000"});
   EXPECT_TRUE(read_file(csv) == embedded(kSteps));
@@ -110,22 +110,22 @@ TEST_F(TwoMachinesTest, ProducesSameBytesDespiteLossAndReordering) {
   EXPECT_EQ(summary["unanswered"], 0);
 }
 
-// Waits until the same request has come so often that the client is known to wait for a response.
-bool repeats_its_request(LcmConnection& bus, int times) {
+// Waits until the same request was received so often that the client must be waiting for a response.
+bool wait_for_retries(LcmConnection& bus, int times) {
   std::int64_t seq = -1;
-  int heard = 0;
+  int received = 0;
   bus.subscribe(std::string(kStatesChannel), [&](Bytes bytes, std::string_view) {
     WrenchRequest request;
     if (decode(bytes, request)) return;
-    heard = request.key.seq == seq ? heard + 1 : 1;
+    received = request.key.seq == seq ? received + 1 : 1;
     seq = request.key.seq;
   });
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
-  while (heard < times && std::chrono::steady_clock::now() < limit) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (received < times && std::chrono::steady_clock::now() < deadline) {
     pollfd waiting{bus.fileno(), POLLIN, 0};
     if (::poll(&waiting, 1, to_milliseconds(kWaitTimeout)) == 1) bus.handle_one();
   }
-  return heard >= times;
+  return received >= times;
 }
 
 TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
@@ -133,19 +133,19 @@ TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
   ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
   ChildProcess client(endless_run());
   ASSERT_TRUE(advances(client));
-  machines_.pull_cable();
+  machines_.unplug_cable();
   {
     Expected<LcmConnection> bus = LcmConnection::open(kTwoMachinesUrl);
     ASSERT_TRUE(bus) << bus.error().message();
-    ASSERT_TRUE(repeats_its_request(*bus, 4)) << "the cable was not out";
+    ASSERT_TRUE(wait_for_retries(*bus, 4)) << "the cable was not unplugged";
   }
-  const auto at_the_cut = size_of(csv_);
+  const auto size_at_cut = size_of(csv_);
   ASSERT_EQ(client.wait(cut_seconds()), std::nullopt) << client.standard_error();
-  EXPECT_EQ(size_of(csv_), at_the_cut) << "the cable was not out";
-  machines_.plug_cable();
+  EXPECT_EQ(size_of(csv_), size_at_cut) << "the cable was not unplugged";
+  machines_.plug_in_cable();
   EXPECT_FALSE(machines_.warning()) << *machines_.warning();
   ASSERT_TRUE(advances(client));
-  const nlohmann::json summary = ends_with_the_bytes_of_an_embedded_run(client);
+  const nlohmann::json summary = interrupt_and_compare(client);
   ASSERT_TRUE(summary.is_object());
   EXPECT_GE(summary["round_trip"]["max"], cut_seconds());
   EXPECT_GE(summary["retries"], 3);
@@ -158,12 +158,12 @@ TEST_F(TwoMachinesTest, SurvivesClientInterfaceDown) {
   ChildProcess client(endless_run());
   ASSERT_TRUE(advances(client));
   machines_.take_interface_down();
-  // Ten timeouts in which no request can be sent. Nothing outside the client shows that it tries.
+  // Ten timeouts during which no request can be sent. The attempts are not visible outside the client.
   EXPECT_EQ(client.wait(0.5), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
   EXPECT_FALSE(machines_.warning()) << *machines_.warning();
   ASSERT_TRUE(advances(client));
-  ends_with_the_bytes_of_an_embedded_run(client);
+  interrupt_and_compare(client);
 }
 
 }  // namespace

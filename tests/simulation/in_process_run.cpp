@@ -18,15 +18,15 @@ Simulation simulation_of(const Scene& scene, const SimulationOptions& options) {
   return std::move(*simulation);
 }
 
-void run_embedded(const Scene& scene, Simulation& simulation, std::int64_t steps,
-                  const std::function<void(const Simulation&)>& see) {
+void run_in_process(const Scene& scene, Simulation& simulation, std::int64_t steps,
+                    const std::function<void(const Simulation&)>& observe) {
   const std::atomic<bool> never{false};
   RequestClient client{InProcessClient(scene)};
-  const Expected<RunOutcome> end = run(simulation, client, steps, never, [&](const Simulation& now) {
-    if (see) see(now);
+  const Expected<RunOutcome> outcome = run(simulation, client, steps, never, [&](const Simulation& now) {
+    if (observe) observe(now);
     return Expected<void>{};
   });
-  if (!end) throw std::runtime_error(end.error().message());
+  if (!outcome) throw std::runtime_error(outcome.error().message());
 }
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// The simulator in the test's own process, without files, options or network.
+// Runs the simulator in the test's own process, without files, options or a network.
 #pragma once
 
 #include <functional>
@@ -8,12 +8,13 @@
 
 namespace buoyancy {
 
-Scene scene_of(const std::string& text);  // throws what is wrong with it
+Scene scene_of(const std::string& text);  // throws for an invalid scene
 
-Simulation simulation_of(const Scene& scene, const SimulationOptions& options);  // likewise
+Simulation simulation_of(const Scene& scene, const SimulationOptions& options);  // throws
 
-// Moves the simulation this many steps on; `see` sees its start and every step. Throws what ends a run.
-void run_embedded(const Scene& scene, Simulation& simulation, std::int64_t steps,
-                  const std::function<void(const Simulation&)>& see = {});
+// Advances the simulation by `steps` steps and calls `observe` at its start and after every step. Throws if
+// the run fails.
+void run_in_process(const Scene& scene, Simulation& simulation, std::int64_t steps,
+                    const std::function<void(const Simulation&)>& observe = {});
 
 }  // namespace buoyancy

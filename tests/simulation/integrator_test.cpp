@@ -17,7 +17,7 @@ RigidBody body_with_inertia(const Vec3& ascending) {
   RigidBody body;
   body.mass = 1.5;
   body.principal_inertia = ascending;
-  // Axes that are none of B's own.
+  // Principal axes that differ from the axes of B.
   body.principal_axes_B = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   return body;
 }
@@ -33,14 +33,14 @@ double rotational_energy(const RigidBody& body, const RigidBodyState& state) {
   return 0.5 * state.angular_momentum_W.dot(angular_velocity_W(body, state));
 }
 
-// Angle between two attitudes, rad.
+// Angle between two attitudes [rad].
 double angle_between(const RigidBodyState& a, const RigidBodyState& b) {
   return a.q_WB.angularDistance(b.q_WB);
 }
 
-// Springs that pull the centre to W's origin and the body's x axis towards W's z axis; both have a potential.
-constexpr double kSpring = 7.0;  // N/m
-constexpr double kTwist = 1.3;   // N m
+// Springs that pull the centre to W's origin and the body's x axis towards W's z axis; both are conservative.
+constexpr double kSpring = 7.0;  // [N/m]
+constexpr double kTwist = 1.3;   // [N m]
 
 Vec3 pointer_W(const RigidBodyState& state) {
   return state.q_WB * Vec3::UnitX();
@@ -78,8 +78,8 @@ double distance(const RigidBodyState& a, const RigidBodyState& b) {
          (a.angular_momentum_W - b.angular_momentum_W).norm();
 }
 
-// The exponent of h in the error over one second, from three step sizes. Error over h^p + O(h^(p+1)): the
-// second pair's slope is within a few per cent of p.
+// Exponent p of h in the error over one second, from two step sizes. The error is C h^p + O(h^(p+1)), so that
+// the slope is within a few per cent of p.
 double observed_order(Integrator integrator, const RigidBody& body) {
   const RigidBodyState start = displaced();
   const RigidBodyState reference = after(1.0, 200000, Integrator::kVelocityVerlet, body, start);
@@ -91,24 +91,24 @@ double observed_order(Integrator integrator, const RigidBody& body) {
 TEST(FreeRotation, MatchesClosedFormForSymmetricTop) {
   for (const Vec3& inertia : {Vec3(1, 1, 1.8), Vec3(0.3, 2, 2), Vec3(1, 1, 1)}) {
     const RigidBody body = body_with_inertia(inertia);
-    const int odd = inertia[0] == inertia[1] ? 2 : 0;
-    const double across = inertia[1];
-    const Vec3 odd_axis_B = body.principal_axes_B.col(odd);
+    const int symmetry_axis = inertia[0] == inertia[1] ? 2 : 0;
+    const double transverse = inertia[1];
+    const Vec3 symmetry_axis_B = body.principal_axes_B.col(symmetry_axis);
     const RigidBodyState start = tumbling();
     const Vec3 momentum_W = start.angular_momentum_W;
 
     RigidBodyState state = start;
     for (int i = 0; i < 1000; ++i) integrate_free_rotation(body, 0.05, state);
 
-    // The axis of symmetry circles L at |L|/I_across; the body turns about it at L_axis (1/I_axis -
-    // 1/I_across).
+    // The symmetry axis precesses about L at |L|/I_transverse; the body spins about it at L_axis (1/I_axis -
+    // 1/I_transverse).
     const double time = 50.0;
-    const Eigen::Quaterniond circling(
-        Eigen::AngleAxisd(time * momentum_W.norm() / across, momentum_W.normalized()));
-    const double along = momentum_W.dot(start.q_WB * odd_axis_B);
-    const Eigen::Quaterniond spinning(
-        Eigen::AngleAxisd(time * along * (1.0 / inertia[odd] - 1.0 / across), odd_axis_B));
-    EXPECT_LT(state.q_WB.angularDistance(circling * start.q_WB * spinning), 1e-11) << inertia.transpose();
+    const Eigen::Quaterniond precession(
+        Eigen::AngleAxisd(time * momentum_W.norm() / transverse, momentum_W.normalized()));
+    const double axial = momentum_W.dot(start.q_WB * symmetry_axis_B);
+    const Eigen::Quaterniond spin(
+        Eigen::AngleAxisd(time * axial * (1.0 / inertia[symmetry_axis] - 1.0 / transverse), symmetry_axis_B));
+    EXPECT_LT(state.q_WB.angularDistance(precession * start.q_WB * spin), 1e-11) << inertia.transpose();
   }
 }
 
@@ -117,18 +117,18 @@ TEST(FreeRotation, ConservesMomentumAndEnergyOverOneMillionSteps) {
   RigidBodyState state = tumbling();
   const Vec3 momentum_W = state.angular_momentum_W;
   const double energy = rotational_energy(body, state);
-  double early = 0.0;
-  double ever = 0.0;
+  double early_error = 0.0;
+  double max_error = 0.0;
   for (int i = 0; i < 1000000; ++i) {
     integrate_free_rotation(body, 0.05, state);
-    ever = std::max(ever, std::abs(rotational_energy(body, state) / energy - 1.0));
-    if (i == 2000) early = ever;
+    max_error = std::max(max_error, std::abs(rotational_energy(body, state) / energy - 1.0));
+    if (i == 2000) early_error = max_error;
   }
   EXPECT_EQ(state.angular_momentum_W, momentum_W);
   EXPECT_NEAR(state.q_WB.norm(), 1.0, 1e-15);
-  EXPECT_GT(early, 0.0);
-  EXPECT_LT(early, 1e-3);
-  EXPECT_LT(ever, 1.05 * early);
+  EXPECT_GT(early_error, 0.0);
+  EXPECT_LT(early_error, 1e-3);
+  EXPECT_LT(max_error, 1.05 * early_error);
 }
 
 TEST(FreeRotation, ConvergesWithOrderTwoForAsymmetricBody) {
@@ -144,22 +144,22 @@ TEST(FreeRotation, ConvergesWithOrderTwoForAsymmetricBody) {
 }
 
 TEST(FreeRotation, FlipsBodyThatSpinsAboutIntermediateAxis) {
-  // The instability of the middle axis: a nearly pure spin about it flips over and over.
+  // Intermediate axis theorem: a nearly pure spin about this axis flips again and again.
   const RigidBody body = body_with_inertia({0.5, 1.0, 1.5});
   RigidBodyState state;
   const Vec3 middle_W = body.principal_axes_B.col(1);
   state.angular_momentum_W = middle_W + 1e-3 * body.principal_axes_B.col(0);
-  double least = 1.0;
+  double min_cosine = 1.0;
   for (int i = 0; i < 3000; ++i) {
     integrate_free_rotation(body, 0.01, state);
-    least = std::min(least, middle_W.dot(state.q_WB * body.principal_axes_B.col(1)));
+    min_cosine = std::min(min_cosine, middle_W.dot(state.q_WB * body.principal_axes_B.col(1)));
   }
-  EXPECT_LT(least, -0.99);
+  EXPECT_LT(min_cosine, -0.99);
 }
 
 TEST(Integrator, MatchesClosedFormOnHarmonicOscillator) {
-  // On x'' = -w^2 x both give x_n that satisfies x_(n+1) - 2 cos(phi) x_n + x_(n-1) = 0 with cos(phi) = 1 -
-  // (w h)^2 / 2; they differ in x_1. The rotation rests: the pointer is upright.
+  // For x'' = -w^2 x both integrators satisfy x_(n+1) - 2 cos(phi) x_n + x_(n-1) = 0 with cos(phi) = 1 -
+  // (w h)^2 / 2; they differ in x_1. The body does not rotate: the pointer is upright.
   RigidBody body = body_with_inertia({1, 2, 3});
   const double step = 0.2;
   const double wh = std::sqrt(kSpring / body.mass) * step;
@@ -223,16 +223,16 @@ TEST(Damping, MatchesClosedFormOfLinearAndQuadraticResistance) {
     apply_damping(body, time, state);
 
     // s' = -(a + b s) s: s = a s0 e^(-a t) / (a + b s0 (1 - e^(-a t))), s0 / (1 + b s0 t) for a = 0.
-    const auto speed_left = [&](double speed, double inertia) {
+    const auto final_speed = [&](double speed, double inertia) {
       const double a = damping.linear / inertia;
       const double b = damping.quadratic / inertia;
       if (a == 0.0) return speed / (1.0 + b * speed * time);
       return a * speed * std::exp(-a * time) / (a + b * speed * (1.0 - std::exp(-a * time)));
     };
-    const Vec3 velocity_W = start.velocity_W.normalized() * speed_left(13.0, body.mass);
+    const Vec3 velocity_W = start.velocity_W.normalized() * final_speed(13.0, body.mass);
     EXPECT_LT((state.velocity_W - velocity_W).norm(), 1e-13);
     const double spin = start.angular_momentum_W.norm() / 0.4;
-    const Vec3 momentum_W = start.angular_momentum_W.normalized() * 0.4 * speed_left(spin, 0.4);
+    const Vec3 momentum_W = start.angular_momentum_W.normalized() * 0.4 * final_speed(spin, 0.4);
     EXPECT_LT((state.angular_momentum_W - momentum_W).norm(), 1e-14);
   }
 }

@@ -12,22 +12,22 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kDensity = 1000.0;  // kg/m^3, the water's
+constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 
-struct Prepared {
+struct PreparedBody {
   Scene scene;
   RigidBody rigid;
   RigidBodyState state;
 
   const Body& body() const { return scene.bodies().front(); }
-  HighestNaturalFrequency fastest() const {
+  HighestNaturalFrequency highest() const {
     return highest_natural_frequency(body(), rigid, state, scene.water());
   }
   double bound() const { return natural_frequency_bound(body(), rigid, scene.water()); }
 };
 
-// One body with these lines, and these in its [body.client].
-Prepared prepared(const std::string& keys, const std::string& client) {
+// Prepares a scene of one body. keys: lines of [[body]]; client: lines of [body.client].
+PreparedBody prepared(const std::string& keys, const std::string& client) {
   Scene scene = scene_of("[water]\ndensity = 1000\nlevel = 3\n[[body]]\nid = 1\n" + keys +
                          "\n[body.client]\n" + client);
   const Simulation simulation = simulation_of(scene, {});
@@ -37,7 +37,7 @@ Prepared prepared(const std::string& keys, const std::string& client) {
   return {std::move(scene), rigid, state};
 }
 
-// A plate of 1 x 1 x 0.2 m at its draft.
+// A plate of 1 x 1 x 0.2 m at its equilibrium draft, raised by `above_rest` [m].
 std::string floating_plate(double relative_density, double above_rest = 0.0) {
   return "density = " + std::to_string(kDensity * relative_density) + "\nposition = [0, 0, " +
          std::to_string(3.0 + (0.5 - relative_density) * 0.2 + above_rest) + "]\n";
@@ -46,63 +46,62 @@ const std::string kPlate = R"(shape = { type = "box", size = [1, 1, 0.2] })";
 
 TEST(HighestNaturalFrequency, EqualsHeaveFrequencyOfFlatPlateAtRest) {
   for (const double s : {0.05, 0.3, 0.8}) {
-    const HighestNaturalFrequency fastest = prepared(kPlate, floating_plate(s)).fastest();
-    EXPECT_NEAR(fastest.frequency, std::sqrt(kStandardGravity / (0.2 * s)), 1e-9 * fastest.frequency) << s;
-    EXPECT_NEAR(fastest.draft, 0.2 * s, 1e-9) << s;
+    const HighestNaturalFrequency highest = prepared(kPlate, floating_plate(s)).highest();
+    EXPECT_NEAR(highest.frequency, std::sqrt(kStandardGravity / (0.2 * s)), 1e-9 * highest.frequency) << s;
+    EXPECT_NEAR(highest.draft, 0.2 * s, 1e-9) << s;
   }
 }
 
 TEST(HighestNaturalFrequency, EqualsRollFrequencyOfBodyWithLowInertia) {
-  // Mass on the axes: rho g (J + V (z_b - z_c)) / I with J = 1/12 and z_b - z_c = -0.1 (1 - s).
+  // Roll: w^2 = rho g (J + V (z_b - z_c)) / I with J = 1/12 and z_b - z_c = -0.1 (1 - s).
   const double s = 0.5;
   const double inertia = 0.2;
-  const Prepared plate = prepared(kPlate, floating_plate(s) + "inertia = [0.2, 0.2, 0.2]\n");
+  const PreparedBody plate = prepared(kPlate, floating_plate(s) + "inertia = [0.2, 0.2, 0.2]\n");
   const double stiffness = kDensity * kStandardGravity * (1.0 / 12.0 - 0.2 * s * 0.1 * (1.0 - s));
-  EXPECT_NEAR(plate.fastest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.fastest().frequency);
+  EXPECT_NEAR(plate.highest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.highest().frequency);
 }
 
 TEST(HighestNaturalFrequency, CoversWaterBelowDryBody) {
-  const Prepared plate = prepared(kPlate, floating_plate(0.1, 1.0));
-  EXPECT_GE(plate.fastest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));
+  const PreparedBody plate = prepared(kPlate, floating_plate(0.1, 1.0));
+  EXPECT_GE(plate.highest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));
 }
 
 TEST(HighestNaturalFrequency, CoversFlatSideOfBodyOnEdge) {
-  // A light plate on its edge has a small waterplane; lying flat it is stiff.
+  // A light plate on its edge has a small waterplane; flat on the water it is stiff.
   const double heave = std::sqrt(kStandardGravity / 0.02);
-  const Prepared on_edge = prepared(kPlate,
-                                    "density = 100\nposition = [0, 0, 3.4]\norientation = "
-                                    "[0.7071067811865476, 0.7071067811865475, 0, 0]\n");
-  EXPECT_GE(on_edge.fastest().frequency, heave * (1.0 - 1e-9));
+  const PreparedBody on_edge = prepared(kPlate,
+                                        "density = 100\nposition = [0, 0, 3.4]\norientation = "
+                                        "[0.7071067811865476, 0.7071067811865475, 0, 0]\n");
+  EXPECT_GE(on_edge.highest().frequency, heave * (1.0 - 1e-9));
 }
 
 TEST(HighestNaturalFrequency, IgnoresPosesBeyondAvailableEnergy) {
-  // An upright cone on its apex, at rest at half its height: the waterplane further up is wider, and stays
-  // dry.
-  const Prepared cone = prepared(
+  // A cone with its apex down, at rest at half its height: the wider sections further up stay dry.
+  const PreparedBody cone = prepared(
       R"(shape = { type = "cone", radius = 1, height = 1, segments = 64 })",
       "density = 125\ncenter_of_mass = [0, 0, 0.9]\nposition = [0, 0, 3.5]\norientation = [0, 1, 0, 0]\n");
-  // Heave: w^2 = rho g A / m = 3 g / draft for a cone at its draft.
-  EXPECT_NEAR(cone.fastest().frequency, std::sqrt(3.0 * kStandardGravity / 0.5), 0.01);
-  EXPECT_NEAR(cone.fastest().draft, 0.5, 1e-9);
+  // Heave: w^2 = rho g A / m = 3 g / draft for a cone at its equilibrium draft.
+  EXPECT_NEAR(cone.highest().frequency, std::sqrt(3.0 * kStandardGravity / 0.5), 0.01);
+  EXPECT_NEAR(cone.highest().draft, 0.5, 1e-9);
 }
 
 TEST(HighestNaturalFrequency, DoesNotDependOnMethod) {
-  const HighestNaturalFrequency expected = prepared(kPlate, floating_plate(0.3)).fastest();
+  const HighestNaturalFrequency expected = prepared(kPlate, floating_plate(0.3)).highest();
   for (const char* method : {R"(method = "exact")", R"(method = "fast_surface")"}) {
     std::string keys = kPlate + "\n";
     keys += method;
-    const HighestNaturalFrequency found = prepared(keys, floating_plate(0.3)).fastest();
-    EXPECT_EQ(found.frequency, expected.frequency) << method;
-    EXPECT_EQ(found.draft, expected.draft) << method;
+    const HighestNaturalFrequency actual = prepared(keys, floating_plate(0.3)).highest();
+    EXPECT_EQ(actual.frequency, expected.frequency) << method;
+    EXPECT_EQ(actual.draft, expected.draft) << method;
   }
 }
 
 TEST(HighestNaturalFrequency, IsZeroWithoutGravity) {
-  Prepared plate = prepared(kPlate, floating_plate(0.3));
-  Water none = plate.scene.water();
-  none.gravity = 0.0;
-  EXPECT_EQ(highest_natural_frequency(plate.body(), plate.rigid, plate.state, none).frequency, 0.0);
-  EXPECT_EQ(natural_frequency_bound(plate.body(), plate.rigid, none), 0.0);
+  PreparedBody plate = prepared(kPlate, floating_plate(0.3));
+  Water weightless = plate.scene.water();
+  weightless.gravity = 0.0;
+  EXPECT_EQ(highest_natural_frequency(plate.body(), plate.rigid, plate.state, weightless).frequency, 0.0);
+  EXPECT_EQ(natural_frequency_bound(plate.body(), plate.rigid, weightless), 0.0);
 }
 
 TEST(HighestNaturalFrequency, StaysBelowBound) {
@@ -111,10 +110,10 @@ TEST(HighestNaturalFrequency, StaysBelowBound) {
                             R"(shape = { type = "wigley" })", R"(shape = { type = "rock", frequency = 5 })",
                             R"(shape = { type = "box", size = [9, 0.01, 0.01] })"}) {
     for (const char* density : {"density = 5\n", "density = 300\n", "density = 950\n"}) {
-      const Prepared body = prepared(
+      const PreparedBody body = prepared(
           shape, std::string("position = [0, 0, 4]\norientation = [0.9, 0.3, 0.2, 0.1]\n") + density);
-      EXPECT_GT(body.fastest().frequency, 0.0) << shape << density;
-      EXPECT_GT(body.bound(), body.fastest().frequency) << shape << density;
+      EXPECT_GT(body.highest().frequency, 0.0) << shape << density;
+      EXPECT_GT(body.bound(), body.highest().frequency) << shape << density;
     }
   }
 }
@@ -129,14 +128,14 @@ TEST(HighestNaturalFrequency, SupportsOpenHullWithDryBoundary) {
   const std::string source = "mesh = \"" + path.string() + "\"\nopen = \"dry_boundary\"";
   const std::string mass = "mass = 100\ncenter_of_mass = [0.5, 0.5, 0.05]\ninertia = [100, 100, 100]\n";
   const double heave = std::sqrt(kDensity * kStandardGravity / 100.0);
-  // Afloat, and a metre over its draft.
+  // At its equilibrium draft, and one metre above it.
   for (const char* position : {"position = [0, 0, 2.9]\n", "position = [0, 0, 3.9]\n"}) {
-    const Prepared tray = prepared(source, mass + position);
-    EXPECT_NEAR(tray.fastest().frequency, heave, 1e-3 * heave) << position;
-    EXPECT_GT(tray.bound(), tray.fastest().frequency);
+    const PreparedBody tray = prepared(source, mass + position);
+    EXPECT_NEAR(tray.highest().frequency, heave, 1e-3 * heave) << position;
+    EXPECT_GT(tray.bound(), tray.highest().frequency);
   }
-  // At the start already: there is no energy to compare with.
-  EXPECT_EQ(prepared(source, mass + "position = [0, 0, 2]\n").fastest().frequency, 0.0);
+  // The boundary edge is wet at the start: there is no energy to compare with.
+  EXPECT_EQ(prepared(source, mass + "position = [0, 0, 2]\n").highest().frequency, 0.0);
 }
 
 }  // namespace

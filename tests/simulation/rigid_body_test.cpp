@@ -13,7 +13,7 @@
 namespace buoyancy {
 namespace {
 
-// A box of 1 x 2 x 3 m with these lines in its [body.client].
+// A box of 1 x 2 x 3 m. client: the lines of its [body.client].
 Scene box_with(const std::string& client) {
   return scene_of(
       "[water]\ndensity = 1000\nlevel = 2\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 2, 3] }\n"
@@ -84,17 +84,17 @@ TEST(RigidBody, TransfersTorqueToCentreOfMass) {
   const RigidBody body = rigid_body_of(scene);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-2.0, 2.0);
-  const auto any = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto random_vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
   for (int i = 0; i < 100; ++i) {
     RigidBodyState state;
-    state.center_W = any();
+    state.center_W = random_vector();
     state.q_WB = Eigen::Quaterniond(uniform(random), uniform(random), uniform(random), uniform(random));
     state.q_WB.normalize();
     const Pose pose = pose_of(body, state);
     const Vec3 reference_W = pose.p_WB + pose.q_WB * body.reference_B;
-    // A force that acts at a point.
-    const Vec3 force_W = any();
-    const Vec3 point_W = any();
+    // A force with its point of application.
+    const Vec3 force_W = random_vector();
+    const Vec3 point_W = random_vector();
     BodyWrench wrench;
     wrench.force = to_array(force_W);
     wrench.torque = to_array((point_W - reference_W).cross(force_W));
@@ -116,18 +116,18 @@ TEST(RigidBody, ComputesKineticEnergy) {
 }
 
 TEST(RigidBody, PotentialMatchesWorkOfForces) {
-  // -dE/ds along a small motion of the body at rest is the load's power, whatever the pose.
+  // For a body at rest -dE/ds along a small motion equals the power of the load, at every pose.
   const Scene scene = box_with("density = 700\ncenter_of_mass = [0.1, -0.4, 0.7]\n");
   const Body& described = scene.bodies().front();
   const RigidBody body = rigid_body_of(scene);
   const auto wrench_at = [&](const RigidBodyState& state) {
-    const BuoyancyResult response =
+    const BuoyancyResult result =
         buoyancy(described.solver, pose_of(body, state), scene.water(), described.reference_B);
     BodyWrench wrench;
-    wrench.force = to_array(response.force_W);
-    wrench.torque = to_array(response.torque_W);
-    wrench.submerged_volume = response.volume;
-    wrench.center_of_buoyancy = to_array(response.center_of_buoyancy_W);
+    wrench.force = to_array(result.force_W);
+    wrench.torque = to_array(result.torque_W);
+    wrench.submerged_volume = result.volume;
+    wrench.center_of_buoyancy = to_array(result.center_of_buoyancy_W);
     return wrench;
   };
   std::mt19937 random(2);

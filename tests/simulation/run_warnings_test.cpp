@@ -13,8 +13,8 @@ namespace {
 
 constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
 
-// A plate of 1 x 1 x 0.2 m that bobs by half its draft: an exact harmonic oscillator, and heave its fastest
-// swing.
+// A plate of 1 x 1 x 0.2 m that heaves by half its draft: an exact harmonic oscillator, with heave as its
+// highest natural frequency.
 std::string plate(int id, double relative_density) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(),
@@ -36,16 +36,16 @@ SimulationOptions options_of(Integrator integrator, double step) {
   return options;
 }
 
-bool contains(const std::optional<Error>& warning, const std::string& words) {
-  return warning && warning->message().find(words) != std::string::npos;
+bool contains(const std::optional<Error>& warning, const std::string& text) {
+  return warning && warning->message().find(text) != std::string::npos;
 }
 
 TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
   StressCase stress("1 kHz to 10 Hz steps, stiff light bodies", "w h; 2,000 steps of the body itself",
-                    "warned of exactly where w h > 0.5, as blowing up from 2 on");
-  int quiet = 0;
+                    "warning if and only if w h > 0.5; as unstable from 2 on");
+  int accurate = 0;
   int inaccurate = 0;
-  int blown_up = 0;
+  int unstable = 0;
   for (const double relative_density : {0.5, 0.1, 0.02, 0.004}) {
     const Scene scene = scene_of(kWater + plate(1, relative_density));
     for (const double step : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1}) {
@@ -54,29 +54,29 @@ TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
         const double wh = frequency_of_plate(relative_density) * step;
         SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(to_string(integrator)));
         const std::optional<Error> warning = step_warning(simulation);
-        run_embedded(scene, simulation, 2000);
+        run_in_process(scene, simulation, 2000);
         const EnergyStats& energy = simulation.bodies().front().energy;
         if (wh <= kAccuracyLimit) {
           EXPECT_FALSE(warning) << warning->message();
           EXPECT_FALSE(energy_warning(simulation));
-          const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : wh;
-          EXPECT_LT(energy.max - energy.min, 1.1 * swing * energy.max_kinetic);
-          ++quiet;
+          const double oscillation = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : wh;
+          EXPECT_LT(energy.max - energy.min, 1.1 * oscillation * energy.max_kinetic);
+          ++accurate;
         } else if (wh < kStabilityLimit) {
           EXPECT_TRUE(contains(warning, "stable but inaccurate"));
           ++inaccurate;
         } else {
-          EXPECT_TRUE(contains(warning, "blows up"));
+          EXPECT_TRUE(contains(warning, ", unstable"));
           EXPECT_TRUE(contains(energy_warning(simulation), "energy rose"));
-          ++blown_up;
+          ++unstable;
         }
         stress.require(warning.has_value() == (wh > kAccuracyLimit), "w h = " + std::to_string(wh));
       }
     }
   }
-  EXPECT_GE(quiet, 10);
+  EXPECT_GE(accurate, 10);
   EXPECT_GE(inaccurate, 10);
-  EXPECT_GE(blown_up, 4);
+  EXPECT_GE(unstable, 4);
 }
 
 TEST(StepWarning, RecommendsAcceptableStep) {
@@ -87,12 +87,13 @@ TEST(StepWarning, RecommendsAcceptableStep) {
       options.lead_time = lead_time;
       const std::optional<Error> warning = step_warning(simulation_of(scene, options));
       ASSERT_TRUE(warning);
-      double advised = 0.0;
-      ASSERT_EQ(std::sscanf(warning->hint.c_str(), "Take --step %lf or less", &advised), 1) << warning->hint;
-      options.step = advised;
-      EXPECT_FALSE(step_warning(simulation_of(scene, options))) << advised;
-      options.step = 1.15 * advised;
-      EXPECT_TRUE(step_warning(simulation_of(scene, options))) << advised;
+      double recommended = 0.0;
+      ASSERT_EQ(std::sscanf(warning->hint.c_str(), "Use --step %lf or less", &recommended), 1)
+          << warning->hint;
+      options.step = recommended;
+      EXPECT_FALSE(step_warning(simulation_of(scene, options))) << recommended;
+      options.step = 1.15 * recommended;
+      EXPECT_TRUE(step_warning(simulation_of(scene, options))) << recommended;
     }
   }
 }
@@ -114,7 +115,7 @@ TEST(StepWarning, AppliesToBodyAboveWater) {
 }
 
 TEST(StepWarning, IgnoresDamping) {
-  // The same plate at w h = 0.49, with a damping whose own rate is 1e6 per step.
+  // A plate at w h = 0.49, with a damping rate of 1e6 per step.
   const double step = 0.49 / frequency_of_plate(0.1);
   const Scene scene =
       scene_of(kWater + plate(1, 0.1) +
@@ -122,13 +123,13 @@ TEST(StepWarning, IgnoresDamping) {
   for (const Integrator integrator : kBoth) {
     Simulation simulation = simulation_of(scene, options_of(integrator, step));
     EXPECT_FALSE(step_warning(simulation));
-    run_embedded(scene, simulation, 2000);
+    run_in_process(scene, simulation, 2000);
     EXPECT_LE(simulation.bodies().front().energy.max, simulation.bodies().front().energy.initial);
   }
 }
 
 TEST(StepWarning, AccountsForExcessLeadTime) {
-  // h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
+  // Stability limits: h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
   const double w = frequency_of_plate(0.1);
   const Scene scene = scene_of(kWater + plate(1, 0.1));
   for (const Integrator integrator : kBoth) {
@@ -140,19 +141,19 @@ TEST(StepWarning, AccountsForExcessLeadTime) {
         options.lead_time = lead_time;
         Simulation simulation = simulation_of(scene, options);
         const std::optional<Error> warning = step_warning(simulation);
-        EXPECT_TRUE(contains(warning, factor < 1.0 ? "stable but inaccurate" : "blows up")) << factor;
+        EXPECT_TRUE(contains(warning, factor < 1.0 ? "stable but inaccurate" : ", unstable")) << factor;
         EXPECT_TRUE(contains(warning, "lead time"));
-        // Below, the lead time damps the motion away; beyond, it goes on as far as the water goes.
-        double lowest = 1.0;
-        double highest = -1.0;
-        run_embedded(scene, simulation, 3000, [&](const Simulation& now) {
+        // Below the limit the lead time damps the motion out; beyond it the motion continues.
+        double min_height = 1.0;
+        double max_height = -1.0;
+        run_in_process(scene, simulation, 3000, [&](const Simulation& now) {
           if (now.step_number() < 2900) return;
           const double height = now.bodies().front().state.center_W.z();
-          lowest = std::min(lowest, height);
-          highest = std::max(highest, height);
+          min_height = std::min(min_height, height);
+          max_height = std::max(max_height, height);
         });
-        EXPECT_EQ(highest - lowest > 1e-4, factor > 1.0)
-            << to_string(integrator) << " " << lead_time << " " << factor << ": " << highest - lowest;
+        EXPECT_EQ(max_height - min_height > 1e-4, factor > 1.0)
+            << to_string(integrator) << " " << lead_time << " " << factor << ": " << max_height - min_height;
       }
     }
   }
@@ -181,7 +182,7 @@ TEST(LatencyMonitor, WarnsOnceAboutMeanDelay) {
     LatencyMonitor monitor;
     int warnings = 0;
     double first = -1.0;
-    run_embedded(scene, simulation, 2000, [&](const Simulation& now) {
+    run_in_process(scene, simulation, 2000, [&](const Simulation& now) {
       if (!monitor.update(now)) return;
       if (++warnings == 1) first = now.time();
     });
@@ -193,14 +194,14 @@ TEST(LatencyMonitor, WarnsOnceAboutMeanDelay) {
 }
 
 TEST(EnergyWarning, IgnoresRoundingOfBodyAtRest) {
-  // A nanometre from rest: the energy's rounding is more than its kinetic energy.
+  // One nanometre from rest: the rounding error of the energy exceeds the kinetic energy.
   const Scene scene = scene_of(
       "[water]\ndensity = 1000\nlevel = 1e3\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 0.3] "
       "}\n"
       "[body.client]\ndensity = 300\nposition = [0, 0, 1000.060000001]\n");
   for (const Integrator integrator : kBoth) {
     Simulation simulation = simulation_of(scene, options_of(integrator, 0.01));
-    run_embedded(scene, simulation, 20'000);
+    run_in_process(scene, simulation, 20'000);
     EXPECT_FALSE(energy_warning(simulation));
   }
 }

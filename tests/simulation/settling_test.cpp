@@ -1,5 +1,5 @@
-// Damped bodies come to rest where closed forms say: at their drafts, and at a square bar's angle of loll.
-// Rows of the stress catalogue (docs/stability.md, "In time").
+// Damped bodies come to rest at the drafts and at the angle of loll that closed forms predict. The tests fill
+// rows of the stress catalogue (docs/stability.md, "In time").
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -16,16 +16,16 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// The only body, after this much time.
+// Summary of the only body after `time` [s].
 BodySummary settled(const Scene& scene, double time, double step) {
   SimulationOptions options;
   options.step = step;
   Simulation simulation = simulation_of(scene, options);
-  run_embedded(scene, simulation, std::llround(time / step));
+  run_in_process(scene, simulation, std::llround(time / step));
   return summarize(simulation.bodies().front(), scene.water());
 }
 
-// A bar of square section 1 x 1 along x, started with a roll of 0.3 rad; its roll at rest, rad.
+// Roll at rest [rad] of a bar of square section 1 x 1 m along x that starts with a roll of 0.3 rad.
 double roll_of_bar(double relative_density) {
   std::array<char, 32> density{};
   std::snprintf(density.data(), density.size(), "%.17g", 1000.0 * relative_density);
@@ -56,53 +56,54 @@ TEST(LongSquareBar, FloatsFlatBelowCriticalDensity) {
   }
 }
 
-struct Floater {
+struct FloatingBody {
   std::string shape;
-  double length;                   // m: L of its bounding box
-  double density;                  // kg/m^3
-  double center;                   // m: height of the centre of mass in B, low enough to float upright
-  double angular_damping = 800.0;  // N m/(rad/s)
+  double length;                   // [m], diagonal L of its bounding box
+  double density;                  // [kg/m^3]
+  double center;                   // [m], height of the centre of mass in B, low enough to float upright
+  double angular_damping = 800.0;  // [N m/(rad/s)]
   bool upside_down = false;
 };
 
-Scene scene_with(const Floater& floater) {
+Scene scene_with(const FloatingBody& floating) {
   std::array<char, 512> client{};
   std::snprintf(client.data(), client.size(),
                 "[body.client]\ndensity = %.17g\ncenter_of_mass = [0, 0, %.17g]\nposition = [0, 0, 0.1]\n"
                 "orientation = %s\nlinear_damping = 3000\nangular_damping = %.17g\n",
-                floater.density, floater.center,
-                floater.upside_down ? "[0.05, 0.998749, 0, 0]" : "[0.998749, 0.04, 0.03, 0]",
-                floater.angular_damping);
-  return scene_of("[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = " + floater.shape + "\n" +
+                floating.density, floating.center,
+                floating.upside_down ? "[0.05, 0.998749, 0, 0]" : "[0.998749, 0.04, 0.03, 0]",
+                floating.angular_damping);
+  return scene_of("[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = " + floating.shape + "\n" +
                   client.data());
 }
 
-double draft_of(const Floater& floater) {
-  const BodySummary body = settled(scene_with(floater), 40.0, 0.005);
-  EXPECT_NEAR(std::abs(std::sin(body.roll)), 0.0, 1e-6) << floater.shape;
-  EXPECT_NEAR(body.pitch, 0.0, 1e-6) << floater.shape;
+double draft_of(const FloatingBody& floating) {
+  const BodySummary body = settled(scene_with(floating), 40.0, 0.005);
+  EXPECT_NEAR(std::abs(std::sin(body.roll)), 0.0, 1e-6) << floating.shape;
+  EXPECT_NEAR(body.pitch, 0.0, 1e-6) << floating.shape;
   return body.draft;
 }
 
-constexpr const char* kDraftGate = "1e-6 L";
+constexpr const char* kDraftTolerance = "1e-6 L";
 
 TEST(EquilibriumDraft, IsProportionalToDensityForBoxAndCylinder) {
-  StressCase stress("draft of a box, a cylinder", "height times relative density", kDraftGate);
+  StressCase stress("draft of a box, a cylinder", "height times relative density", kDraftTolerance);
   for (const double density : {150.0, 500.0, 850.0}) {
-    const Floater box{R"({ type = "box", size = [1.2, 1, 0.5], segments = [3, 2, 2] })", 1.64, density, -0.1};
+    const FloatingBody box{R"({ type = "box", size = [1.2, 1, 0.5], segments = [3, 2, 2] })", 1.64, density,
+                           -0.1};
     stress.check(std::abs(draft_of(box) - 0.5 * density / 1000.0), 1e-6 * box.length, "box");
-    const Floater cylinder{R"({ type = "cylinder", radius = 0.5, height = 0.6, segments = 48 })", 1.54,
-                           density, -0.15};
+    const FloatingBody cylinder{R"({ type = "cylinder", radius = 0.5, height = 0.6, segments = 48 })", 1.54,
+                                density, -0.15};
     stress.check(std::abs(draft_of(cylinder) - 0.6 * density / 1000.0), 1e-6 * cylinder.length, "cylinder");
   }
 }
 
 TEST(EquilibriumDraft, FollowsCubeRootOfDensityForCone) {
-  StressCase stress("draft of a cone, either way up", "cube roots of the relative density", kDraftGate);
-  // What is cut off a cone, or off the pyramid that its mesh is, is similar to it.
+  StressCase stress("draft of a cone, either way up", "cube roots of the relative density", kDraftTolerance);
+  // The part cut off a cone, or off the pyramid of its mesh, is similar to the whole.
   for (const double s : {0.2, 0.5, 0.8}) {
-    Floater cone{R"({ type = "cone", radius = 0.5, height = 0.8, segments = 32 })", 1.63, 1000.0 * s, 0.1,
-                 100.0};
+    FloatingBody cone{R"({ type = "cone", radius = 0.5, height = 0.8, segments = 32 })", 1.63, 1000.0 * s,
+                      0.1, 100.0};
     stress.check(std::abs(draft_of(cone) - 0.8 * (1.0 - std::cbrt(1.0 - s))), 1e-6 * cone.length, "upright");
     cone.upside_down = true;
     cone.center = 0.7;
@@ -111,21 +112,21 @@ TEST(EquilibriumDraft, FollowsCubeRootOfDensityForCone) {
 }
 
 TEST(EquilibriumDraft, DisplacesMassOfWigleyHull) {
-  StressCase stress("draft of a Wigley hull", "bisection on the same mesh", kDraftGate);
+  StressCase stress("draft of a Wigley hull", "bisection on the same mesh", kDraftTolerance);
   for (const double density : {300.0, 450.0, 600.0}) {
-    const Floater hull{R"({ type = "wigley", length = 4, beam = 1, draft = 0.5, freeboard = 0.3 })", 4.2,
-                       density, -0.35};
+    const FloatingBody hull{R"({ type = "wigley", length = 4, beam = 1, draft = 0.5, freeboard = 0.3 })", 4.2,
+                            density, -0.35};
     const Scene scene = scene_with(hull);
     const Body& body = scene.bodies().front();
     const double displaced = density / 1000.0 * body.prepared_mesh->mass_properties.volume;
-    double deep = -0.3;
+    double low = -0.3;
     double high = 0.5;
     for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (deep + high);
+      const double middle = 0.5 * (low + high);
       const Pose pose{{0, 0, middle}, Eigen::Quaterniond::Identity()};
-      (buoyancy(body.solver, pose, scene.water(), Vec3::Zero()).volume > displaced ? deep : high) = middle;
+      (buoyancy(body.solver, pose, scene.water(), Vec3::Zero()).volume > displaced ? low : high) = middle;
     }
-    stress.check(std::abs(draft_of(hull) - (0.5 - deep)), 1e-6 * hull.length, "Wigley hull");
+    stress.check(std::abs(draft_of(hull) - (0.5 - low)), 1e-6 * hull.length, "Wigley hull");
   }
 }
 

@@ -1,9 +1,9 @@
-// The simulator against closed forms over long times: an undamped bob's energy, order and period, with
-// wrenches in time and late.
+// Compares the simulator with closed forms over long times: energy, order and period of an undamped heave,
+// with and without delayed responses.
 //
 // A wall-sided body that heaves within its sides is an exact harmonic oscillator, w^2 = rho g A_wp / m, and
-// both integrators have closed forms on it (integrator_test). Tests that are rows of the stress catalogue put
-// their largest figures into the report (docs/stability.md, "In time").
+// both integrators have closed forms for it (integrator_test). Tests with a StressCase fill rows of the
+// stress catalogue (docs/stability.md, "In time").
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,25 +21,27 @@ namespace buoyancy {
 namespace {
 
 constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
-constexpr double kDensity = 1000.0;  // kg/m^3, the water's
+constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 
-// A box of half the water's density, let go a quarter of its draft above its rest: 12 triangles.
-struct Bob {
-  double draft = 0.2;  // m: half its height
-  double width = 1.0;  // m, both ways
+// A box of 12 triangles and half the water's density, released a quarter of its draft above its equilibrium.
+struct HeavingBox {
+  double draft = 0.2;  // [m], half its height
+  double width = 1.0;  // [m], in both horizontal directions
 
-  double start() const { return 0.25 * draft; }                             // m
-  double frequency() const { return std::sqrt(kStandardGravity / draft); }  // rad/s
-  // J: of its motion.
-  double swing() const { return 0.5 * kDensity * kStandardGravity * width * width * start() * start(); }
+  double amplitude() const { return 0.25 * draft; }                         // [m]
+  double frequency() const { return std::sqrt(kStandardGravity / draft); }  // [rad/s]
+  // Energy of the motion [J].
+  double energy() const {
+    return 0.5 * kDensity * kStandardGravity * width * width * amplitude() * amplitude();
+  }
 
   Scene scene() const {
     std::array<char, 256> text{};
     std::snprintf(text.data(), text.size(),
-                  "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"bob\"\n"
+                  "[water]\ndensity = 1000\n[[body]]\nid = 1\nname = \"box\"\n"
                   "shape = { type = \"box\", size = [%g, %g, %g] }\n"
                   "[body.client]\ndensity = 500\nposition = [0, 0, %.17g]\n",
-                  width, width, 2.0 * draft, start());
+                  width, width, 2.0 * draft, amplitude());
     return scene_of(text.data());
   }
 };
@@ -56,14 +58,14 @@ double energy_error(const SimulatedBody& body) {
 }
 
 struct EnergyErrors {
-  double early = 0.0;  // J: largest of the first tenth of a run
-  double late = 0.0;   // J: of the last
+  double early = 0.0;  // [J], maximum over the first tenth of a run
+  double late = 0.0;   // [J], maximum over the last tenth
 };
 
 EnergyErrors energy_errors(const Scene& scene, Integrator integrator, double step, std::int64_t steps) {
   Simulation simulation = simulation_of(scene, options_of(integrator, step));
   EnergyErrors errors;
-  run_embedded(scene, simulation, steps, [&](const Simulation& now) {
+  run_in_process(scene, simulation, steps, [&](const Simulation& now) {
     const double error = energy_error(now.bodies().front());
     if (10 * now.step_number() < steps) errors.early = std::max(errors.early, error);
     if (10 * now.step_number() >= 9 * steps) errors.late = std::max(errors.late, error);
@@ -73,17 +75,17 @@ EnergyErrors energy_errors(const Scene& scene, Integrator integrator, double ste
 }
 
 TEST(UndampedHeave, BoundsEnergyErrorOverOneMillionSteps) {
-  const Bob bob;
-  const Scene scene = bob.scene();
+  const HeavingBox box;
+  const Scene scene = box.scene();
   const double step = 0.01;
-  const double wh = bob.frequency() * step;
-  StressCase stress("undamped bob, 1e6 steps: energy bounded", "the integrators' closed forms",
-                    "the integrator's swing + 5 %; in the last tenth that of the first + 5 %");
+  const double wh = box.frequency() * step;
+  StressCase stress("undamped heave, 1e6 steps: energy bounded", "the integrators' closed forms",
+                    "the integrator's oscillation + 5 %; in the last tenth that of the first + 5 %");
   for (const Integrator integrator : kBoth) {
     const EnergyErrors errors = energy_errors(scene, integrator, step, 1'000'000);
-    const double swing = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
+    const double oscillation = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
     const std::string at(to_string(integrator));
-    stress.check(errors.early, 1.05 * swing * bob.swing(), at + ", first tenth");
+    stress.check(errors.early, 1.05 * oscillation * box.energy(), at + ", first tenth");
     stress.check(errors.late, 1.05 * errors.early, at + ", last tenth");
   }
 }
@@ -98,21 +100,21 @@ TEST(UndampedHeave, BoundsEnergyErrorWithRollAndPitch) {
   }
 }
 
-// The slope of log(error) over log(step), by least squares, of the bob after one second.
+// Slope of log(error) over log(step), by least squares, for the heaving box after one second.
 double fitted_order(Integrator integrator) {
-  const Bob bob;
-  const Scene scene = bob.scene();
+  const HeavingBox box;
+  const Scene scene = box.scene();
   std::vector<double> x;
   std::vector<double> y;
   for (const int steps : {200, 400, 800, 1600, 3200}) {
     Simulation simulation = simulation_of(scene, options_of(integrator, 1.0 / steps));
-    run_embedded(scene, simulation, steps);
+    run_in_process(scene, simulation, steps);
     const RigidBodyState& state = simulation.bodies().front().state;
-    const double height = bob.start() * std::cos(bob.frequency());
-    const double speed = -bob.start() * bob.frequency() * std::sin(bob.frequency());
+    const double height = box.amplitude() * std::cos(box.frequency());
+    const double speed = -box.amplitude() * box.frequency() * std::sin(box.frequency());
     x.push_back(-std::log(steps));
     y.push_back(
-        std::log(std::hypot(state.center_W.z() - height, (state.velocity_W.z() - speed) / bob.frequency())));
+        std::log(std::hypot(state.center_W.z() - height, (state.velocity_W.z() - speed) / box.frequency())));
   }
   const auto n = static_cast<double>(x.size());
   double sx = 0.0;
@@ -129,7 +131,7 @@ double fitted_order(Integrator integrator) {
 }
 
 TEST(UndampedHeave, ConvergesWithOrderOneOrTwo) {
-  StressCase stress("undamped bob: order in the step", "closed form; steps of 1/200 to 1/3200 s",
+  StressCase stress("undamped heave: order in the step", "closed form; steps of 1/200 to 1/3200 s",
                     "order 1 (semi-implicit Euler), 2 (Verlet), +- 0.05");
   const auto check = [&](Integrator integrator, double order) {
     stress.check(std::abs(fitted_order(integrator) - order), 0.05, std::string(to_string(integrator)));
@@ -138,10 +140,10 @@ TEST(UndampedHeave, ConvergesWithOrderOneOrTwo) {
   check(Integrator::kVelocityVerlet, 2.0);
 }
 
-// From the first to the last upward crossing of the rest position.
+// Measures the mean period from the first to the last upward crossing of the rest position.
 class PeriodMeter {
  public:
-  void see(double height, double time, double step) {
+  void update(double height, double time, double step) {
     if (last_height_ < 0.0 && height >= 0.0) {
       last_ = time - step * height / (height - last_height_);
       if (++periods_ == 0) first_ = last_;
@@ -160,20 +162,20 @@ class PeriodMeter {
 TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
   struct {
     std::string shape;
-    double area;    // m^2
-    double height;  // m
+    double area;    // [m^2]
+    double height;  // [m]
   } const shapes[] = {
       {R"({ type = "box", size = [1, 1, 0.4] })", 1.0, 0.4},
       {R"({ type = "box", size = [3, 0.7, 0.3], segments = [4, 3, 2] })", 2.1, 0.3},
-      // A prism of 24 sides, as the mesh has it.
+      // The mesh is a prism of 24 sides.
       {R"({ type = "cylinder", radius = 0.5, height = 0.4, segments = 24, stacks = 2 })",
        12.0 * 0.25 * std::sin(2.0 * std::numbers::pi / 24.0), 0.4},
   };
-  StressCase stress("bob period: wall-sided bodies", "2 pi sqrt(m / (rho g A_wp)), less Verlet's own share",
+  StressCase stress("heave period: wall-sided bodies", "2 pi sqrt(m / (rho g A_wp)), corrected for Verlet",
                     "1e-6 of the period");
   for (const auto& shape : shapes) {
     for (const double relative_density : {0.2, 0.5, 0.9}) {
-      // Centre of mass and rest: the body's centre is (1/2 - s) H over the level.
+      // At rest the body's centre is (1/2 - s) H above the level.
       const double amplitude = 1e-3;
       const double rest = (0.5 - relative_density) * shape.height;
       const Scene scene = scene_of("[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = " + shape.shape +
@@ -186,10 +188,10 @@ TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
       const double step = 2e-3;
       Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, step));
       PeriodMeter meter;
-      run_embedded(scene, simulation, 20'000, [&](const Simulation& now) {
-        meter.see(now.bodies().front().state.center_W.z() - rest, now.time(), step);
+      run_in_process(scene, simulation, 20'000, [&](const Simulation& now) {
+        meter.update(now.bodies().front().state.center_W.z() - rest, now.time(), step);
       });
-      // Verlet's own period is T (1 - (w h)^2 / 24).
+      // The period of velocity Verlet is T (1 - (w h)^2 / 24).
       const double wh = 2.0 * std::numbers::pi / period * step;
       stress.check(std::abs(meter.mean() - period * (1.0 - wh * wh / 24.0)), 1e-6 * period,
                    shape.shape + ", relative density " + std::to_string(relative_density));
@@ -198,67 +200,67 @@ TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
   }
 }
 
-struct LateRun {
-  double largest_error = 0.0;  // of the energy, of the bob's swing
-  double final_growth = 0.0;   // energy of the motion at the end / at the start
+struct DelayedRun {
+  double max_error = 0.0;     // energy error / initial energy of the motion
+  double final_growth = 0.0;  // final / initial energy of the motion
   bool warned = false;
 };
 
-// A minute of the bob with wrenches late by so many steps, `delay` in all.
-LateRun late_run(const Bob& bob, Integrator integrator, std::int64_t delay_steps, double delay,
-                 bool with_lead_time) {
+// Simulates one minute with wrenches that are `delay_steps` steps, together `delay` [s], late.
+DelayedRun delayed_run(const HeavingBox& box, Integrator integrator, std::int64_t delay_steps, double delay,
+                       bool with_lead_time) {
   SimulationOptions options = options_of(integrator, delay / static_cast<double>(delay_steps));
   options.delay_steps = delay_steps;
   options.lead_time = with_lead_time ? delay : 0.0;
-  const Scene scene = bob.scene();
+  const Scene scene = box.scene();
   Simulation simulation = simulation_of(scene, options);
-  LateRun run;
-  run_embedded(scene, simulation, std::llround(60.0 / options.step), [&](const Simulation& now) {
-    run.largest_error = std::max(run.largest_error, energy_error(now.bodies().front()) / bob.swing());
+  DelayedRun run;
+  run_in_process(scene, simulation, std::llround(60.0 / options.step), [&](const Simulation& now) {
+    run.max_error = std::max(run.max_error, energy_error(now.bodies().front()) / box.energy());
   });
   const EnergyStats& energy = simulation.bodies().front().energy;
-  run.final_growth = 1.0 + (energy.current - energy.initial) / bob.swing();
+  run.final_growth = 1.0 + (energy.current - energy.initial) / box.energy();
   run.warned = energy_warning(simulation).has_value();
   EXPECT_NEAR(simulation.delay(), delay, 1e-12);
   return run;
 }
 
 TEST(DelayedResponse, KeepsEnergyWithinOnePercentWithLeadTime) {
-  const Bob bob;
+  const HeavingBox box;
   StressCase stress("wrench one and five steps late, `lead_time` set, alpha = w delay <= 0.02",
-                    "the energy at the start, over 60 s", "1 % (Euler: and its own swing)");
+                    "the energy at the start, over 60 s", "1 % (Euler: plus its own oscillation)");
   for (const std::int64_t delay_steps : {1, 5}) {
     for (const double alpha : {0.02, 0.01}) {
       const std::string at =
           ", " + std::to_string(delay_steps) + " late, alpha " + (alpha == 0.02 ? "0.02" : "0.01");
-      const LateRun verlet =
-          late_run(bob, Integrator::kVelocityVerlet, delay_steps, alpha / bob.frequency(), true);
-      stress.check(verlet.largest_error, 0.01, "Verlet" + at);
-      // Beside what this integrator's energy swings by on its own.
-      const LateRun euler =
-          late_run(bob, Integrator::kSemiImplicitEuler, delay_steps, alpha / bob.frequency(), true);
-      stress.check(euler.largest_error, 0.01 + 0.5 * alpha / static_cast<double>(delay_steps), "Euler" + at);
+      const DelayedRun verlet =
+          delayed_run(box, Integrator::kVelocityVerlet, delay_steps, alpha / box.frequency(), true);
+      stress.check(verlet.max_error, 0.01, "Verlet" + at);
+      // The limit adds the energy oscillation of this integrator itself.
+      const DelayedRun euler =
+          delayed_run(box, Integrator::kSemiImplicitEuler, delay_steps, alpha / box.frequency(), true);
+      stress.check(euler.max_error, 0.01 + 0.5 * alpha / static_cast<double>(delay_steps), "Euler" + at);
       EXPECT_FALSE(verlet.warned || euler.warned);
     }
   }
 }
 
 TEST(DelayedResponse, AddsEnergyWithoutLeadTime) {
-  // At the rate w^2 delay: threefold in a minute. A large, slow bob: a delay that is worth as much is few
-  // steps.
-  const Bob bob{5.0, 20.0};
-  const double delay = std::log(3.0) / (60.0 * bob.frequency() * bob.frequency());
-  StressCase stress("the same delay without and with `lead_time`: threefold energy in 60 s, or as it was",
-                    "exp(w^2 delay t)", "+- 0.05; +- 0.01; warned of without");
+  // The energy grows at the rate w^2 delay: threefold in a minute. The box is large and slow, so that this
+  // delay is only a few steps.
+  const HeavingBox box{5.0, 20.0};
+  const double delay = std::log(3.0) / (60.0 * box.frequency() * box.frequency());
+  StressCase stress("same delay without and with `lead_time`: energy threefold in 60 s, or unchanged",
+                    "exp(w^2 delay t)", "+- 0.05; +- 0.01; a warning without");
   for (const Integrator integrator : kBoth) {
     for (const std::int64_t delay_steps : {1, 5}) {
-      const LateRun late = late_run(bob, integrator, delay_steps, delay, false);
+      const DelayedRun without_lead = delayed_run(box, integrator, delay_steps, delay, false);
       const std::string at =
           std::string(to_string(integrator)) + ", " + std::to_string(delay_steps) + " late";
-      stress.check(std::abs(late.final_growth - 3.0), 0.05, at);
-      stress.require(late.warned, at + ", warning");
-      const LateRun led = late_run(bob, integrator, delay_steps, delay, true);
-      stress.check(std::abs(led.final_growth - 1.0), 0.01, at + ", led");
+      stress.check(std::abs(without_lead.final_growth - 3.0), 0.05, at);
+      stress.require(without_lead.warned, at + ", warning");
+      const DelayedRun with_lead = delayed_run(box, integrator, delay_steps, delay, true);
+      stress.check(std::abs(with_lead.final_growth - 1.0), 0.01, at + ", with lead time");
     }
   }
 }
@@ -266,34 +268,34 @@ TEST(DelayedResponse, AddsEnergyWithoutLeadTime) {
 TEST(DelayedResponse, UsesFirstResponseUntilDelayHasPassed) {
   SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
   options.delay_steps = 3;
-  const Bob bob;
-  const Scene scene = bob.scene();
+  const HeavingBox box;
+  const Scene scene = box.scene();
   Simulation simulation = simulation_of(scene, options);
   std::vector<double> heights;
-  run_embedded(scene, simulation, 20, [&](const Simulation& now) {
+  run_in_process(scene, simulation, 20, [&](const Simulation& now) {
     const SimulatedBody& body = now.bodies().front();
     heights.push_back(body.state.center_W.z());
-    const std::size_t asked = heights.size() > 3 ? heights.size() - 4 : 0;
-    ASSERT_NEAR(body.wrench.submerged_volume, bob.draft - heights[asked], 1e-14) << heights.size();
-    ASSERT_NEAR(now.delay(), 0.01 * static_cast<double>(heights.size() - 1 - asked), 1e-15);
+    const std::size_t requested = heights.size() > 3 ? heights.size() - 4 : 0;
+    ASSERT_NEAR(body.wrench.submerged_volume, box.draft - heights[requested], 1e-14) << heights.size();
+    ASSERT_NEAR(now.delay(), 0.01 * static_cast<double>(heights.size() - 1 - requested), 1e-15);
   });
 }
 
 TEST(DelayedResponse, ReportsEnergyOfCurrentPose) {
-  const Bob bob;
-  const Scene scene = bob.scene();
+  const HeavingBox box;
+  const Scene scene = box.scene();
   for (const std::int64_t delay_steps : {0, 3}) {
     for (const double lead_time : {0.0, 0.03}) {
       SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
       options.delay_steps = delay_steps;
       options.lead_time = lead_time;
       Simulation simulation = simulation_of(scene, options);
-      run_embedded(scene, simulation, 50, [&](const Simulation& now) {
+      run_in_process(scene, simulation, 50, [&](const Simulation& now) {
         const SimulatedBody& body = now.bodies().front();
-        const double mass = kDensity * bob.draft;
+        const double mass = kDensity * box.draft;
         const double height = body.state.center_W.z();
-        const double depth = bob.draft - height;
-        // Of a prism of 1 m^2 the centre of buoyancy is at half its depth.
+        const double depth = box.draft - height;
+        // The centre of buoyancy of a prism of 1 m^2 is at half its depth.
         const double energy = 0.5 * mass * body.state.velocity_W.squaredNorm() +
                               mass * kStandardGravity * height +
                               0.5 * kDensity * kStandardGravity * depth * depth;
