@@ -20,8 +20,8 @@ BenchmarkMesh from_shape(const std::string& name, const Shape& shape) {
 
 std::filesystem::path mesh_directory() {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): read once, before any thread is started
-  const char* const named = std::getenv("BUOYANCY_MESHES");
-  return named != nullptr ? named : BUOYANCY_SOURCE_DIR "/../shared/meshes";
+  const char* const directory = std::getenv("BUOYANCY_MESHES");
+  return directory != nullptr ? directory : BUOYANCY_SOURCE_DIR "/../shared/meshes";
 }
 
 }  // namespace
@@ -45,15 +45,15 @@ BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, in
       }
     }
   }
-  BenchmarkMesh stand_in = rock(frequency);
-  stand_in.name += " for " + name;
-  return stand_in;
+  BenchmarkMesh substitute = rock(frequency);
+  substitute.name += " for " + name;
+  return substitute;
 }
 
 BenchmarkMesh shuffled(const BenchmarkMesh& model) {
   TriangleMesh source = model.source;
-  // Fisher and Yates by hand: std::shuffle may differ from one standard library to the next. The bias of the
-  // remainder, 1e6 of 2^64, moves nothing.
+  // Fisher-Yates shuffle, because std::shuffle may differ between standard libraries. The modulo bias, 1e6 of
+  // 2^64, is negligible.
   std::mt19937_64 generator(1);
   for (std::size_t i = source.triangles.size(); i > 1; --i) {
     std::swap(source.triangles[i - 1], source.triangles[generator() % i]);

@@ -1,4 +1,4 @@
-// The meshes that times and errors are measured on: the paper's three models and rocks of growing size.
+// The meshes of the benchmarks: the paper's three models and rocks of increasing size.
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 namespace buoyancy::bench {
 
 struct BenchmarkMesh {
-  std::string name;  // "bunny", or "rock for bunny" where the model was not at hand
+  std::string name;  // "bunny", or "rock for bunny" if the model is not available
   TriangleMesh source;
   HydrostaticMesh mesh;
 };
 
 // The paper's torus knot of 1,760 triangles, the bunny of 5,002 and the armadillo of 30,000. The two scanned
-// models are read from $BUOYANCY_MESHES (bunny_5002.ply, armadillo_30000.ply); where they are absent rocks of
-// about that size stand in, and their name says so.
+// models are read from $BUOYANCY_MESHES (bunny_5002.ply, armadillo_30000.ply); a missing model is replaced by
+// a rock of about that size, whose name names the model.
 std::vector<BenchmarkMesh> paper_meshes();
 
-// A mesh file of $BUOYANCY_MESHES; where it is absent a rock of 20 frequency^2 triangles.
+// A mesh file of $BUOYANCY_MESHES, or a rock of 20 frequency^2 triangles if it is missing.
 BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, int frequency);
 
 BenchmarkMesh torus_knot();
 BenchmarkMesh rock(int frequency);
 
-// The same mesh with its triangles in an order that has nothing to do with where they lie: the same on every
-// machine. Its name says "shuffled".
+// The same mesh with its triangles in a random order that is the same on every machine. Its name ends with
+// "shuffled".
 BenchmarkMesh shuffled(const BenchmarkMesh& model);
 
 }  // namespace buoyancy::bench

@@ -1,10 +1,9 @@
-// How wrong each method is where numbers are put under stress: over tilt, level, scale, the mesh's place in
-// its own frame, and what little is wet. CSV on standard output, one row per sweep, step and method: the
-// force's largest error over a few poses, relative to the whole displacement.
+// Error of each method under numerical stress: sweeps over tilt, water level, scale, the position of the mesh
+// in its own frame, and the wet share. CSV on standard output, one row per sweep, step and method: the
+// largest error of the force over a few poses, relative to the whole displacement.
 //
-// Beside the six methods stands what many simulators do: everything in single precision, in the world's
-// frame. It is here for comparison and nowhere else. The truth is enclosed by the tests' oracle in ball
-// arithmetic.
+// The six methods are compared with what many simulators do: single precision in the world's frame. That
+// method exists only here. The tests' oracle encloses the true value in ball arithmetic.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +29,7 @@ struct Sample {
   Water water = kUnitWater;
 };
 
-// Pressure on the wet parts of the triangles, summed one after another: m^3, W.
+// Pressure force on the wet parts of the triangles, summed sequentially [m^3], in W.
 Vec3 float32_force(const TriangleMesh& mesh, const Pose& pose, const Water& water) {
   using Vec3f = Vec3T<float>;
   const Mat3T<float> R_WB = pose.q_WB.normalized().toRotationMatrix().cast<float>();
@@ -58,15 +57,15 @@ Vec3 float32_force(const TriangleMesh& mesh, const Pose& pose, const Water& wate
   return force.cast<double>();
 }
 
-double distance(const Ball& truth, double found) {
-  return static_cast<double>(truth.distance(found));
+double distance(const Ball& truth, double value) {
+  return static_cast<double>(truth.distance(value));
 }
-double distance(const Rational& truth, double found) {
-  return std::abs(Rational(truth - Rational(found)).convert_to<double>());
+double distance(const Rational& truth, double value) {
+  return std::abs(Rational(truth - Rational(value)).convert_to<double>());
 }
 
-// A row for every method: the largest error over the samples. x: what the sweep runs over. Number: what the
-// truth is computed in.
+// Prints a row per method with the largest error over the samples. x: the swept quantity. Number: arithmetic
+// of the true values.
 template <typename Number = Ball>
 void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
                 const std::vector<Sample>& samples) {
@@ -76,13 +75,13 @@ void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
   for (const Sample& sample : samples)
     truth.push_back(exact_displacement<Number>(source, sample.pose, sample.water).volume);
   const auto print = [&](const std::string& method, const auto& force_of) {
-    double largest = 0.0;
+    double max_error = 0.0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const Vec3 force_W = force_of(samples[i]);
       const double error = std::hypot(distance(truth[i], force_W.z()), force_W.head<2>().norm());
-      largest = std::max(largest, error / mesh.volume);
+      max_error = std::max(max_error, error / mesh.volume);
     }
-    std::printf("%s,%.6g,%s,%.6g\n", sweep.c_str(), x, method.c_str(), largest);
+    std::printf("%s,%.6g,%s,%.6g\n", sweep.c_str(), x, method.c_str(), max_error);
   };
   for (const Method method : kAllMethods) {
     const Solver solver(mesh, method);
@@ -94,19 +93,19 @@ void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
         [&](const Sample& sample) { return float32_force(source, sample.pose, sample.water); });
 }
 
-// Rotations that are the same in every sweep.
+// Random rotations, the same ones in every sweep.
 std::vector<Eigen::Quaterniond> rotations(int count) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
-  std::vector<Eigen::Quaterniond> found;
+  std::vector<Eigen::Quaterniond> result;
   for (int i = 0; i < count; ++i) {
-    found.emplace_back(normal(generator), normal(generator), normal(generator), normal(generator));
-    found.back().normalize();
+    result.emplace_back(normal(generator), normal(generator), normal(generator), normal(generator));
+    result.back().normalize();
   }
-  return found;
+  return result;
 }
 
-// Heights of the body's middle over the water, in radii: a little, half and most of it wet.
+// Heights of the body's centre over the water, in radii: slightly, half and mostly submerged.
 constexpr std::array kHeights{0.6, 0.05, -0.4};
 constexpr int kPerDecade = 4;
 
@@ -128,7 +127,7 @@ TriangleMesh moved(TriangleMesh mesh, const Vec3& by_B, double scale) {
   return mesh;
 }
 
-// A box of 1,200 triangles, tilted a little more at every step.
+// A box of 1,200 triangles with an increasing tilt.
 void sweep_tilt() {
   const TriangleMesh box = make_shape(BoxShape{.size = {2, 2, 1}, .segments = {10, 10, 10}});
   for (const double tilt : decades(-12, 0)) {
@@ -141,7 +140,7 @@ void sweep_tilt() {
   }
 }
 
-// The water's level and the body's position rise together.
+// The water level and the body's position rise together.
 void sweep_level() {
   const TriangleMesh mesh = rock();
   for (const double level : decades(0, 9)) {
@@ -167,7 +166,7 @@ void sweep_scale() {
   }
 }
 
-// The mesh lies ever farther from B's origin, and B's origin the same way from the world's.
+// The mesh moves away from B's origin, and B's origin the same distance from W's origin.
 void sweep_origin() {
   for (const double distance : decades(0, 7)) {
     const Vec3 offset_B = distance * Vec3(0.6, -0.48, 0.64);

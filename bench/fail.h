@@ -1,4 +1,4 @@
-// How a benchmark ends that could not measure.
+// Error handling of the benchmarks: report the error and exit with status 1.
 #pragma once
 
 #include <cstdio>
@@ -11,16 +11,17 @@
 
 namespace buoyancy::bench {
 
-// What could not be measured, or was answered wrongly, ends the program.
+// Returns the value, or prints the error and exits with status 1.
 template <typename T>
 T value_or_exit(Expected<T> expected) {
   if (!expected) {
     std::fprintf(stderr, "%s\n", expected.error().message().c_str());
-    std::exit(1);  // NOLINT(concurrency-mt-unsafe): one thread of ours
+    std::exit(1);  // NOLINT(concurrency-mt-unsafe): one thread only
   }
   if constexpr (!std::is_void_v<T>) return std::move(*expected);
 }
 
+// Reports a wrong result and exits with status 1.
 [[noreturn]] inline void fail(const std::string& reason) {
   value_or_exit<void>(make_error({"benchmark", reason, "right results", "", ""}));
   std::abort();

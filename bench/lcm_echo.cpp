@@ -1,10 +1,10 @@
-// What LCM itself costs: a process that does nothing but answer. It subscribes to the channel of the
-// requests and publishes for each as many bytes as the service would, made beforehand but for the key.
+// Baseline for the cost of LCM itself: publishes, for each request, a prepared response of the size that the
+// service would send, and copies only the request id into it.
 //
 //   lcm_echo URL BODIES
 //
-// BODIES: how many bodies a response has, with the ids 1 to BODIES. Says "ready" on standard error, then
-// echoes until it is killed.
+// BODIES: number of bodies of a response, with the ids 1 to BODIES. Prints "ready" on standard error, then
+// runs until it is killed.
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -19,11 +19,11 @@
 
 namespace {
 
-// utime, session_id and seq stand behind the fingerprint in requests and answers alike.
-constexpr std::size_t kKeyStart = 8;
-constexpr std::size_t kKeySize = 24;
+// utime, session_id and seq follow the fingerprint in both requests and responses.
+constexpr std::size_t kIdOffset = 8;
+constexpr std::size_t kIdSize = 24;
 
-std::vector<std::uint8_t> response_of(std::int32_t bodies) {
+std::vector<std::uint8_t> make_response(std::int32_t bodies) {
   buoyancy::WrenchResponse response;
   for (std::int32_t id = 1; id <= bodies; ++id) response.bodies.push_back({.body_id = id});
   std::vector<std::uint8_t> bytes;
@@ -33,9 +33,8 @@ std::vector<std::uint8_t> response_of(std::int32_t bodies) {
 
 extern "C" void echo_request(const lcm_recv_buf_t* request, const char* /*channel*/, void* response) {
   auto& bytes = *static_cast<std::vector<std::uint8_t>*>(response);
-  if (request->data_size < kKeyStart + kKeySize) return;
-  std::memcpy(bytes.data() + kKeyStart, static_cast<const std::uint8_t*>(request->data) + kKeyStart,
-              kKeySize);
+  if (request->data_size < kIdOffset + kIdSize) return;
+  std::memcpy(bytes.data() + kIdOffset, static_cast<const std::uint8_t*>(request->data) + kIdOffset, kIdSize);
   lcm_publish(request->lcm, std::string(buoyancy::kWrenchesChannel).c_str(), bytes.data(),
               static_cast<unsigned>(bytes.size()));
 }
@@ -48,7 +47,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: lcm_echo URL BODIES\n");
     return 2;
   }
-  std::vector<std::uint8_t> response = response_of(bodies);
+  std::vector<std::uint8_t> response = make_response(bodies);
   lcm_t* lcm = lcm_create(argv[1]);
   if (lcm == nullptr || lcm_get_fileno(lcm) < 0) return 1;
   lcm_subscribe(lcm, std::string(buoyancy::kStatesChannel).c_str(), echo_request, &response);

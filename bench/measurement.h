@@ -1,17 +1,16 @@
-// What was measured: a row per mesh, method, tolerance, instruction set and regime, and their CSV.
+// Measurements, one per mesh, method, tolerance, instruction set and regime, and their CSV format.
 //
 //   mesh,triangles,method,tolerance,target,regime,median_ns,force_error,torque_error,bound
 //
 // method      one of the six, or `read`: the time to read vertices and indices once
-// tolerance   of the solver; 0: exact, or a method that knows no tolerance
-// target      the instruction set of `hierarchical`; -: a method without SIMD of its own
+// tolerance   of the solver; 0: exact, or a method without a tolerance
+// target      the instruction set of `hierarchical`; -: a method without SIMD code of its own
 // regime      independent: 100 poses from almost dry to almost submerged with random rotations;
 //             coherent: 100 steps of a floating body's trajectory
-// median_ns   of the whole query, over the poses
-// *_error     the largest over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
+// median_ns   median time of a whole query over the poses
+// *_error     largest error over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
 //             V_T L; nan for `read`
-// bound       the largest force error bound that the results came with, over rho g V_T; nan for
-//             `read`
+// bound       largest published force error bound over rho g V_T; nan for `read`
 #pragma once
 
 #include <cstdio>
@@ -36,11 +35,11 @@ struct Measurement {
   SolverErrors errors;
 };
 
-void write_csv(std::FILE* file, const std::vector<Measurement>& rows);
+void write_csv(std::FILE* file, const std::vector<Measurement>& measurements);
 
-// The row that answers to all of it; nullptr: not measured. target "": the first, which is the best.
-const Measurement* find_measurement(const std::vector<Measurement>& rows, const std::string& mesh,
-                            std::size_t triangles, const std::string& method, double tolerance,
-                            const std::string& target, const std::string& regime);
+// Returns the matching measurement, or nullptr. target "": the first one, which is the best instruction set.
+const Measurement* find_measurement(const std::vector<Measurement>& measurements, const std::string& mesh,
+                                    std::size_t triangles, const std::string& method, double tolerance,
+                                    const std::string& target, const std::string& regime);
 
 }  // namespace buoyancy::bench

@@ -1,4 +1,4 @@
-// The middle of a set of numbers, and its other percentiles.
+// Median and other percentiles of a set of numbers.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,15 @@
 
 namespace buoyancy::bench {
 
-// Of an even count the mean of the two in the middle. At least one value, none of them NaN.
+// For an even count the mean of the two middle values. Precondition: at least one value, no NaN.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// The least value that `share` of all do not exceed; 0 < share <= 1. At least one value, none of them NaN.
+// Smallest value that is not exceeded by the fraction `share` of all values, 0 < share <= 1. Precondition: at
+// least one value, no NaN.
 inline double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double rank = std::ceil(share * static_cast<double>(values.size()));

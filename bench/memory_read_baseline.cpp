@@ -7,23 +7,23 @@
 namespace buoyancy::bench {
 namespace {
 
-// Not under AddressSanitizer, here and below: on the stack that it moves variables to, GCC 12 does not align
-// those of 64 bytes that AVX-512 needs aligned.
+// No AddressSanitizer here and below: on its own stack GCC 12 does not align variables of 64 bytes as AVX-512
+// requires.
 [[gnu::always_inline, gnu::no_sanitize_address]] inline std::uint64_t read_lines(const void* array,
                                                                                  std::size_t bytes) {
-  std::array<std::uint64_t, 8> seen{};
+  std::array<std::uint64_t, 8> lanes{};
   for (std::size_t i = 0; i + sizeof(seen) <= bytes; i += sizeof(seen)) {
     std::array<std::uint64_t, 8> line;
     std::memcpy(line.data(), static_cast<const unsigned char*>(array) + i, sizeof(line));
-    for (std::size_t lane = 0; lane < line.size(); ++lane) seen[lane] ^= line[lane];
+    for (std::size_t lane = 0; lane < line.size(); ++lane) lanes[lane] ^= line[lane];
   }
-  std::uint64_t all = 0;
-  for (const std::uint64_t lane : seen) all ^= lane;
-  return all;
+  std::uint64_t combined = 0;
+  for (const std::uint64_t lane : lanes) combined ^= lane;
+  return combined;
 }
 
-// The same loop for each width of registers. Chosen by hand: what target_clones makes the loader choose
-// crashes under ThreadSanitizer, which is not yet awake then.
+// The same loop for each register width. The choice is explicit, because the resolvers of target_clones run
+// in the loader, before ThreadSanitizer is initialised, and crash.
 #if defined(__x86_64__)
 [[gnu::target("avx512f"), gnu::no_sanitize_address]] std::uint64_t read_512(const void* array,
                                                                             std::size_t bytes) {
@@ -46,11 +46,11 @@ namespace {
 }  // namespace
 
 std::uint64_t read_vertices_and_indices(const TriangleMesh& mesh) {
-  std::uint64_t seen = 0;
+  std::uint64_t combined = 0;
   for (const std::vector<double>* coordinate : {&mesh.x, &mesh.y, &mesh.z}) {
-    seen ^= read_once(coordinate->data(), coordinate->size() * sizeof(double));
+    combined ^= read_once(coordinate->data(), coordinate->size() * sizeof(double));
   }
-  return seen ^ read_once(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+  return combined ^ read_once(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
 }
 
 }  // namespace buoyancy::bench

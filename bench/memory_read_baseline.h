@@ -1,5 +1,5 @@
-// The yardstick beside every time: reading a mesh's vertices and indices once, which any method that looks at
-// every triangle must spend.
+// Baseline for all times: one read of a mesh's vertices and indices, a lower bound for any method that visits
+// every triangle.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace buoyancy::bench {
 
-// Reads every coordinate and every index, 64 bytes at a time, with the widest registers that this processor
-// has; what is left of an array after its last 64 bytes is not read. Returns the exclusive or of all, so that
-// nothing can be left out.
+// Reads all coordinates and indices in blocks of 64 bytes with the widest registers of this processor; an
+// incomplete block at the end of an array is not read. Returns the exclusive or of all blocks, so that the
+// compiler cannot omit a read.
 std::uint64_t read_vertices_and_indices(const TriangleMesh& mesh);
 
 }  // namespace buoyancy::bench

@@ -1,6 +1,6 @@
-// The paper's figure 4: a unit cube and a unit sphere lowered into the water with rho g = 1, the force of all
-// five algorithms against the closed forms of section 5. CSV on standard output, one row per mesh, method and
-// height.
+// Reproduces the paper's figure 4: a unit cube and a unit sphere are lowered into the water with rho g = 1,
+// and the force of every method is compared with the closed forms of section 5. CSV on standard output, one
+// row per mesh, method and height.
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -18,8 +18,8 @@ namespace {
 struct Case {
   std::string name;
   Shape shape;
-  double reach;  // m: h runs from -reach to reach
-  double whole;  // m^3: the closed form at h = -reach
+  double reach;  // [m], h runs from -reach to reach
+  double whole;  // [m^3], closed form at h = -reach
   std::function<double(double)> force;
 };
 

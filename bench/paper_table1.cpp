@@ -1,8 +1,9 @@
-// The paper's table 1: time of the five algorithms on its three models, with the error beside the time.
+// Reproduces the paper's table 1: time of the five algorithms on its three models, together with their
+// errors.
 //
-// One iteration answers 100 poses from almost dry to almost submerged. Errors are the largest over those
-// poses against extended precision, relative to the whole: force by rho g V_T, torque by rho g V_T L. They
-// are computed, and for the exact methods checked, before anything is timed.
+// The iterations cycle through 100 poses from almost dry to almost submerged. The errors are the largest ones
+// over these poses against extended precision, relative to the whole: force to rho g V_T, torque to rho g V_T
+// L. They are computed, and checked for the exact methods, before anything is timed.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +25,7 @@ struct Errors {
   double force = 0.0, torque = 0.0;
 };
 
-Errors largest_errors(const BenchmarkMesh& model, const Solver& solver, const std::vector<Pose>& poses) {
+Errors max_errors(const BenchmarkMesh& model, const Solver& solver, const std::vector<Pose>& poses) {
   Errors errors;
   const double volume = model.mesh.volume;
   for (const Pose& pose : poses) {
@@ -39,8 +40,8 @@ Errors largest_errors(const BenchmarkMesh& model, const Solver& solver, const st
   return errors;
 }
 
-// The same counters for every row: the library's CSV has one header.
-void count(benchmark::State& state, const HydrostaticMesh& mesh, const Errors& errors) {
+// Sets the same counters for every row, since the library's CSV has one header.
+void set_counters(benchmark::State& state, const HydrostaticMesh& mesh, const Errors& errors) {
   state.counters["per_triangle"] =
       benchmark::Counter(static_cast<double>(mesh.surface.triangles.size()),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -48,20 +49,20 @@ void count(benchmark::State& state, const HydrostaticMesh& mesh, const Errors& e
   state.counters["torque_error"] = errors.torque;
 }
 
-// What any method that looks at every triangle must spend.
+// Lower bound for any method that visits every triangle.
 void read_mesh(benchmark::State& state, const HydrostaticMesh& mesh) {
   for (auto _ : state) benchmark::DoNotOptimize(read_vertices_and_indices(mesh.surface));
-  count(state, mesh, {});
+  set_counters(state, mesh, {});
 }
 
-void result_sweep(benchmark::State& state, const Solver& solver, const std::vector<Pose>& poses,
-                  const Errors& errors) {
+void query_sweep(benchmark::State& state, const Solver& solver, const std::vector<Pose>& poses,
+                 const Errors& errors) {
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(buoyancy(solver, poses[i], kUnitWater, Vec3::Zero()));
     i = i + 1 == poses.size() ? 0 : i + 1;
   }
-  count(state, solver.mesh(), errors);
+  set_counters(state, solver.mesh(), errors);
 }
 
 int run(int argc, char** argv) {
@@ -80,7 +81,7 @@ int run(int argc, char** argv) {
                                  [&, m](benchmark::State& state) { read_mesh(state, models[m].mesh); });
     for (std::size_t i = 0; i < kAllMethods.size(); ++i) {
       const Solver& solver = solvers[m * kAllMethods.size() + i];
-      const Errors errors = largest_errors(models[m], solver, sweeps[m]);
+      const Errors errors = max_errors(models[m], solver, sweeps[m]);
       if (is_exact(solver.method()) && !(errors.force < 1e-12 && errors.torque < 1e-12)) {
         std::fprintf(stderr, "%s on %s: error %g of the whole in force, %g in torque; expected below 1e-12\n",
                      std::string(to_string(solver.method())).c_str(), model.c_str(), errors.force,
@@ -89,7 +90,7 @@ int run(int argc, char** argv) {
       }
       benchmark::RegisterBenchmark(
           (model + "/" + std::string(to_string(solver.method()))).c_str(),
-          [&, m, errors](benchmark::State& state) { result_sweep(state, solver, sweeps[m], errors); });
+          [&, m, errors](benchmark::State& state) { query_sweep(state, solver, sweeps[m], errors); });
     }
   }
   benchmark::Initialize(&argc, argv);

@@ -1,5 +1,4 @@
-// Poses for measurements: as in the paper's table 1, a body lowered from almost dry to almost submerged in
-// 100 steps.
+// Poses of the paper's table 1: a body is lowered from almost dry to almost submerged in 100 steps.
 #pragma once
 
 #include <random>
@@ -10,8 +9,8 @@
 
 namespace buoyancy::bench {
 
-// `count` poses with random rotations from `seed`, the water at level 0 with up +z: in the first all but 1 %
-// of the body's height in its attitude is out of the water, in the last all but 1 % is in it.
+// Returns `count` poses with random rotations from `seed`, for water at level 0 with up +z. In the first pose
+// all but 1 % of the body's height in its attitude is above the water, in the last pose all but 1 % is below.
 inline std::vector<Pose> sweep_of_poses(const TriangleMesh& mesh, int count = 100, std::uint64_t seed = 1) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -22,15 +21,15 @@ inline std::vector<Pose> sweep_of_poses(const TriangleMesh& mesh, int count = 10
         Eigen::Quaterniond(normal(generator), normal(generator), normal(generator), normal(generator));
     pose.q_WB.normalize();
     const Vec3 up_B = pose.q_WB.conjugate() * Vec3::UnitZ();
-    double lowest = 1e300;
-    double highest = -1e300;
+    double min_height = 1e300;
+    double max_height = -1e300;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
       const double height = up_B.dot(mesh.vertex(static_cast<std::int32_t>(v)));
-      lowest = std::min(lowest, height);
-      highest = std::max(highest, height);
+      min_height = std::min(min_height, height);
+      max_height = std::max(max_height, height);
     }
     const double wet_share = 0.01 + 0.98 * i / (count - 1);
-    pose.p_WB.z() = -(lowest + wet_share * (highest - lowest));
+    pose.p_WB.z() = -(min_height + wet_share * (max_height - min_height));
     poses.push_back(pose);
   }
   return poses;

@@ -1,4 +1,4 @@
-// The command line of a benchmark that has --quick and nothing else.
+// Command line of a benchmark whose only option is --quick.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace buoyancy::bench {
 
-// For main() to return: 0, or 2 where the arguments are wrong. quick_help: what --quick changes.
+// Parses the arguments and calls run(). Returns the exit code for main(): 0, or 2 for invalid arguments.
+// quick_help: the effect of --quick.
 inline int run_with_quick_option(int argc, char** argv, const std::string& description,
                                  const std::string& quick_help, void (*run)(bool quick)) {
   ToolCommandLine command_line(description);

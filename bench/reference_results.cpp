@@ -13,7 +13,7 @@
 namespace buoyancy::bench {
 namespace {
 
-ReferenceResult true_result(const TriangleMesh& source, const Pose& pose) {
+ReferenceResult reference_result(const TriangleMesh& source, const Pose& pose) {
   const auto oracle = exact_displacement<long double>(source, pose, kUnitWater);
   return {static_cast<double>(oracle.volume) * kUnitWater.up_W,
           pose.q_WB.normalized() * oracle.torque(Vec3::Zero()).cast<double>()};
@@ -51,20 +51,20 @@ PoseSet with_reference_results(std::string regime, std::vector<Pose> poses, cons
   for (std::size_t worker = 0; worker < workers; ++worker) {
     threads.emplace_back([&, worker] {
       for (std::size_t i = worker; i < set.poses.size(); i += workers)
-        set.truth[i] = true_result(source, set.poses[i]);
+        set.truth[i] = reference_result(source, set.poses[i]);
     });
   }
-  threads.clear();  // waits for them
+  threads.clear();  // joins them
   return set;
 }
 
 Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set) {
   const double whole = model.mesh.volume;  // rho g V_T
   const double whole_moment = whole * model.mesh.diagonal;
-  constexpr double kExactEnough = 1e-11;
-  const double largest_bound = solver.method() == Method::kHierarchical
-                                   ? std::max(solver.tolerance(), 4.0 * model.mesh.volume_tolerance() / whole)
-                                   : kExactEnough;
+  constexpr double kMaxPaperBound = 1e-11;
+  const double max_bound = solver.method() == Method::kHierarchical
+                               ? std::max(solver.tolerance(), 4.0 * model.mesh.volume_tolerance() / whole)
+                               : kMaxPaperBound;
   SolverErrors errors;
   std::vector<double> force_errors;
   std::vector<double> bounds;
@@ -74,19 +74,19 @@ Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& 
     const double torque_error = (result.torque_W - set.truth[i].torque_W).norm() / whole_moment;
     const double force_bound = result.force_error_bound / whole;
     const double torque_bound = result.torque_error_bound / whole_moment;
-    const auto refuse = [&](const std::string& found, const std::string& expectation) {
-      return make_error({subject(model, solver, set, i), found, expectation + " of the whole", "", ""});
+    const auto violation = [&](const std::string& actual, const std::string& expected) {
+      return make_error({subject(model, solver, set, i), actual, expected + " of the whole", "", ""});
     };
-    // Written so that NaN is refused.
+    // The conditions are negated so that NaN is an error.
     if (!(force_error <= force_bound))
-      return refuse("force is off by " + format_shortest(force_error),
-                    "at most " + format_shortest(force_bound));
+      return violation("force is off by " + format_shortest(force_error),
+                       "at most " + format_shortest(force_bound));
     if (!(torque_error <= torque_bound))
-      return refuse("torque is off by " + format_shortest(torque_error),
-                    "at most " + format_shortest(torque_bound));
-    if (is_exact(solver.method()) && !(force_bound <= largest_bound))
-      return refuse("the bound of force is " + format_shortest(force_bound),
-                    "at most " + format_shortest(largest_bound));
+      return violation("torque is off by " + format_shortest(torque_error),
+                       "at most " + format_shortest(torque_bound));
+    if (is_exact(solver.method()) && !(force_bound <= max_bound))
+      return violation("the force bound is " + format_shortest(force_bound),
+                       "at most " + format_shortest(max_bound));
     force_errors.push_back(force_error);
     bounds.push_back(force_bound);
     errors.force = std::max(errors.force, force_error);

@@ -1,11 +1,12 @@
-// A replay beside reading, decoding, encoding and writing the same log with no solver in between: with LCM's
-// own log files and types, and with what the replay itself reads and writes with. One simple body, a box that
-// crosses the water. Markdown on standard output.
+// Speed of a replay compared with reading, decoding, encoding and writing the same log without a solver: with
+// LCM's own log files and types, and with the replay's own reader and writer. The log holds one body, a box
+// that crosses the water surface. Markdown on standard output.
 //
 //   replay_speed DIRECTORY [LARGE_LOG_MB]
 //
-// The responses are checked before anything is timed. The last table replays a log of LARGE_LOG_MB (default
-// 2048) and says what the process's memory grew by. Exit 1 where a response is wrong or the disk is full.
+// The responses are checked before anything is timed. Finally a log of LARGE_LOG_MB (default 2048) is
+// replayed to measure the growth of the process's memory. Exits with 1 if a response is wrong or the disk is
+// full.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -79,7 +80,7 @@ void read_and_write(const std::string& input, const std::string& output) {
   value_or_exit(file.flush());
 }
 
-// As somebody would write it with what LCM itself offers.
+// The same with LCM's own log files and generated types.
 void read_and_write_with_lcm(const std::string& input, const std::string& output) {
   lcm::LogFile reader(input, "r");
   lcm::LogFile writer(output, "w");
@@ -139,13 +140,13 @@ void check_responses(const std::string& path) {
     if (recorded == nullptr || decode(recorded->bytes, response)) fail("a response is missing");
     const double volume = 2.0 * 3.0 * (1.0 - height_at(i));
     if (!(std::abs(response.bodies.at(0).submerged_volume - volume) < 1e-12)) {
-      fail("answer " + std::to_string(i) + " is wrong");
+      fail("response " + std::to_string(i) + " is wrong");
     }
   }
 }
 
 struct Seconds {
-  double wall, processor;  // of all threads
+  double wall, processor;  // processor: sum over all threads
 };
 
 Seconds seconds_of(const std::function<void()>& task) {
@@ -157,7 +158,7 @@ Seconds seconds_of(const std::function<void()>& task) {
           static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
 }
 
-// Of the same task, several times.
+// Times of several runs of the same task [s].
 struct Times {
   std::vector<double> wall, processor;
 
@@ -184,43 +185,43 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
   check_responses(output);
 
   Times with_lcm;
-  Times bare;
-  Times one;
-  Times all;
+  Times no_solver;
+  Times one_job;
+  Times all_jobs;
   for (int i = 0; i < kRuns; ++i) {
     with_lcm.add(seconds_of([&] { read_and_write_with_lcm(input, output); }));
-    bare.add(seconds_of([&] { read_and_write(input, output); }));
-    one.add(seconds_of([&] { replay_log(scene, input, output, 1); }));
-    all.add(seconds_of([&] { replay_log(scene, input, output, 0); }));
+    no_solver.add(seconds_of([&] { read_and_write(input, output); }));
+    one_job.add(seconds_of([&] { replay_log(scene, input, output, 1); }));
+    all_jobs.add(seconds_of([&] { replay_log(scene, input, output, 0); }));
   }
   std::printf(
-      "| %lld requests about a box | per second | processor time each, us | of the first row's speed | of "
-      "the "
-      "second's |  |\n",
+      "| %lld requests about a box | per second | processor time each, us | speed / first row | speed / "
+      "second "
+      "row |  |\n",
       static_cast<long long>(kEvents));
   std::printf("|---|---:|---:|---:|---:|---|\n");
-  const auto row = [&](const char* what, const Times& times, bool held) {
+  const auto print_row = [&](const char* name, const Times& times, bool has_limit) {
     const double events = static_cast<double>(kEvents);
-    const double of_lcm = median(with_lcm.wall) / median(times.wall);
-    const double of_bare = median(bare.wall) / median(times.wall);
+    const double relative_to_lcm = median(with_lcm.wall) / median(times.wall);
+    const double relative_to_no_solver = median(no_solver.wall) / median(times.wall);
     const char* verdict = "";
-    if (held && of_bare >= kMinSpeedRatio) verdict = "at least 0.5 of both: met";
-    if (held && of_bare < kMinSpeedRatio) verdict = "at least 0.5 of the first: met; of the second: MISSED";
-    if (held && of_lcm < kMinSpeedRatio) verdict = "at least 0.5: MISSED";
-    std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %s |\n", what, events / median(times.wall),
-                1e6 * median(times.processor) / events, of_lcm, median(bare.wall) / median(times.wall),
-                verdict);
+    if (has_limit && relative_to_no_solver >= kMinSpeedRatio) verdict = "at least 0.5 of both: met";
+    if (has_limit && relative_to_no_solver < kMinSpeedRatio)
+      verdict = "at least 0.5 of the first: met; of the second: MISSED";
+    if (has_limit && relative_to_lcm < kMinSpeedRatio) verdict = "at least 0.5: MISSED";
+    std::printf("| %s | %.0f | %.2f | %.2f | %.2f | %s |\n", name, events / median(times.wall),
+                1e6 * median(times.processor) / events, relative_to_lcm, relative_to_no_solver, verdict);
   };
-  row("read, decode, encode and write with LCM's own log files and types; no solver", with_lcm, false);
-  row("the same with the replay's reader and writer; no solver", bare, false);
-  row("replay, one job", one, true);
-  row("replay, all processors", all, true);
+  print_row("read, decode, encode and write with LCM's own log files and types; no solver", with_lcm, false);
+  print_row("the same with the replay's reader and writer; no solver", no_solver, false);
+  print_row("replay, one job", one_job, true);
+  print_row("replay, all processors", all_jobs, true);
 
   const double before = peak_megabytes();
-  constexpr std::int64_t kBytesPerEvent = 207;  // of write_log()
+  constexpr std::int64_t kBytesPerEvent = 207;  // written by write_log()
   write_log(input, large_megabytes * 1'048'576 / kBytesPerEvent);
   const double large = seconds_of([&] { replay_log(scene, input, output, 0); }).wall;
-  std::printf("\nA log of %lld MB took %.0f s; the most memory in use grew from %.1f to %.1f MB.\n",
+  std::printf("\nA log of %lld MB took %.0f s; the peak memory use grew from %.1f to %.1f MB.\n",
               static_cast<long long>(large_megabytes), large, before, peak_megabytes());
 }
 

@@ -14,24 +14,24 @@ namespace {
 
 constexpr const char* kRock = "rock";
 
-// What the ratio of the times of exact and hierarchical has to be, by the number of triangles.
-struct RatioGoal {
+// Limits and goals of the speedup of hierarchical over exact, by the number of triangles.
+struct SpeedupGoal {
   std::size_t triangles;
-  double must, aim;  // on the best instruction set
-  double any_must;   // on every one
+  double required, goal;       // on the best instruction set
+  double required_on_slowest;  // on every instruction set
 };
-constexpr std::array kRatioGoals{RatioGoal{5'120, 6, 10, 3}, RatioGoal{30'420, 13, 20, 6},
-                                 RatioGoal{297'680, 25, 45, 12}, RatioGoal{1'003'520, 35, 80, 20}};
+constexpr std::array kSpeedupGoals{SpeedupGoal{5'120, 6, 10, 3}, SpeedupGoal{30'420, 13, 20, 6},
+                                   SpeedupGoal{297'680, 25, 45, 12}, SpeedupGoal{1'003'520, 35, 80, 20}};
 
-constexpr double kExponentMust = 0.70;
-constexpr double kExponentAim = 0.60;
-constexpr std::size_t kReadGoalTriangles = 30'000;  // from here on a query takes less time than reading
+constexpr double kMaxExponent = 0.70;
+constexpr double kExponentGoal = 0.60;
+constexpr std::size_t kReadGoalTriangles = 30'000;  // from this size on a query must be faster than one read
 constexpr double kToleranceGoal = 1e-3;
-constexpr double kToleranceGrowth = 3.0;  // at most, of its time from the smallest rock to the largest
-constexpr double kBuildNs = 1000.0;       // per triangle, at most
-constexpr double kTreeBytes = 250.0;      // likewise
+constexpr double kMaxToleranceGrowth = 3.0;  // of the query time from the smallest to the largest rock
+constexpr double kMaxBuildNs = 1000.0;       // per triangle
+constexpr double kMaxTreeBytes = 250.0;      // per triangle
 
-// Three digits that count, without an exponent.
+// Three significant digits without an exponent.
 std::string microseconds(double ns) {
   const double us = 1e-3 * ns;
   return format_cell(us < 9.995 ? "%.2f" : us < 99.95 ? "%.1f" : "%.0f", us);
@@ -44,10 +44,6 @@ std::string error(double value) {
 // "0", "1e-6".
 std::string power_of_ten(double value) {
   return value == 0.0 ? "0" : format_cell("1e%g", std::round(std::log10(value)));
-}
-
-std::string pass_or_fail(bool met) {
-  return met ? "met" : "MISSED";
 }
 
 struct MeshName {
@@ -68,8 +64,11 @@ std::vector<MeshName> meshes_of(const std::vector<Measurement>& rows) {
 
 class Report {
  public:
-  Report(std::FILE* file, const BenchmarkResults& measured)
-      : file_(file), rows_(measured.rows), trees_(measured.trees), meshes_(meshes_of(measured.rows)) {}
+  Report(std::FILE* file, const BenchmarkResults& results)
+      : file_(file),
+        measurements_(results.measurements),
+        trees_(results.trees),
+        meshes_(meshes_of(results.measurements)) {}
 
   void times(const std::string& regime, const char* heading) const {
     std::fprintf(file_, "### %s\n\nMedian time per query, us.\n\n", heading);
@@ -81,16 +80,16 @@ class Report {
     std::fprintf(file_, "Of force, over the poses of both regimes, relative to the whole.\n\n");
     by_method("independent", false, [&](const Measurement& row) {
       const Measurement* coherent =
-          find_measurement(rows_, row.mesh, row.triangles, row.method, row.tolerance, "", "coherent");
+          find_measurement(measurements_, row.mesh, row.triangles, row.method, row.tolerance, "", "coherent");
       return error(std::max(row.errors.force, coherent->errors.force));
     });
   }
 
   void ratios() const {
-    std::fprintf(file_, "### How many times faster than `exact`\n\n");
+    std::fprintf(file_, "### Speedup over `exact`\n\n");
     std::fprintf(file_, "Time of `exact` over time of `hierarchical` at tolerance 0, poses far apart.\n\n");
-    MarkdownTable table({"mesh", "triangles", "exact, us", "hierarchical, us", "target", "ratio", "must",
-                         "aim", "slowest target", "ratio", "must", ""});
+    MarkdownTable table({"mesh", "triangles", "exact, us", "hierarchical, us", "target", "ratio", "required",
+                         "goal", "slowest target", "ratio", "required", ""});
     for (const MeshName& mesh : meshes_) {
       const Measurement* const exact = find(mesh, "exact", 0.0);
       const Measurement* const best = find(mesh, "hierarchical", 0.0);
@@ -109,24 +108,24 @@ class Report {
                                      format_cell("%.1f", slowest_ratio),
                                      "",
                                      ""};
-      const auto goal = std::find_if(kRatioGoals.begin(), kRatioGoals.end(),
-                                     [&](const RatioGoal& g) { return g.triangles == mesh.triangles; });
-      if (goal != kRatioGoals.end() && mesh.name.starts_with(kRock)) {
-        cells[6] = format_cell("%g", goal->must);
-        cells[7] = format_cell("%g", goal->aim);
-        cells[10] = format_cell("%g", goal->any_must);
-        cells[11] = pass_or_fail(ratio >= goal->must && slowest_ratio >= goal->any_must);
-        if (ratio >= goal->aim) cells[11] += ", aim too";
+      const auto goal = std::find_if(kSpeedupGoals.begin(), kSpeedupGoals.end(),
+                                     [&](const SpeedupGoal& g) { return g.triangles == mesh.triangles; });
+      if (goal != kSpeedupGoals.end() && mesh.name.starts_with(kRock)) {
+        cells[6] = format_cell("%g", goal->required);
+        cells[7] = format_cell("%g", goal->goal);
+        cells[10] = format_cell("%g", goal->required_on_slowest);
+        cells[11] = pass_or_fail(ratio >= goal->required && slowest_ratio >= goal->required_on_slowest);
+        if (ratio >= goal->goal) cells[11] += ", goal too";
       }
       table.add(std::move(cells));
     }
     table.print(file_, 1);
   }
 
-  void against_reading() const {
-    std::fprintf(file_, "### Less time than reading the mesh once\n\n");
-    std::fprintf(
-        file_, "Vertices and indices are read again and again, from the nearest cache that holds them.\n\n");
+  void read_comparison() const {
+    std::fprintf(file_, "### Query time compared with reading the mesh\n\n");
+    std::fprintf(file_,
+                 "Vertices and indices are read repeatedly, from the nearest cache that holds them.\n\n");
     MarkdownTable table({"mesh", "triangles", "read, us", "hierarchical, us", "query / read", ""});
     for (const MeshName& mesh : meshes_) {
       const double reading = find(mesh, kMemoryReadRow, 0.0)->median_ns;
@@ -143,7 +142,7 @@ class Report {
     std::fprintf(file_, "Median time of `hierarchical` at tolerance 0, us, poses far apart.\n\n");
     std::vector<std::string> header{"mesh", "triangles"};
     std::vector<std::string> names;
-    for (const Measurement& row : rows_) {
+    for (const Measurement& row : measurements_) {
       if (row.target != kNoTarget && std::find(names.begin(), names.end(), row.target) == names.end())
         names.push_back(row.target);
     }
@@ -152,9 +151,9 @@ class Report {
     for (const MeshName& mesh : meshes_) {
       std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
       for (const std::string& target : names) {
-        cells.push_back(microseconds(
-            find_measurement(rows_, mesh.name, mesh.triangles, "hierarchical", 0.0, target, "independent")
-                ->median_ns));
+        cells.push_back(microseconds(find_measurement(measurements_, mesh.name, mesh.triangles,
+                                                      "hierarchical", 0.0, target, "independent")
+                                         ->median_ns));
       }
       table.add(std::move(cells));
     }
@@ -171,15 +170,13 @@ class Report {
     std::fprintf(
         file_,
         "### Growth\n\nThe time of `hierarchical` at tolerance 0 grows as triangles^%.2f, fitted to the "
-        "%zu rocks, poses far apart\n(at most %.2f: %s; aim %.2f: %s).\n\n",
-        exponent, hierarchical.size(), kExponentMust, pass_or_fail(exponent <= kExponentMust).c_str(),
-        kExponentAim, pass_or_fail(exponent <= kExponentAim).c_str());
+        "%zu rocks, poses far apart\n(at most %.2f: %s; goal %.2f: %s).\n\n",
+        exponent, hierarchical.size(), kMaxExponent, pass_or_fail(exponent <= kMaxExponent).c_str(),
+        kExponentGoal, pass_or_fail(exponent <= kExponentGoal).c_str());
   }
 
   void tolerances() const {
-    std::fprintf(file_,
-                 "### Tolerance\n\nTrue error of force beside the bound that came with the result, poses far "
-                 "apart.\n\n");
+    std::fprintf(file_, "### Tolerance\n\nTrue error of force and the published bound, poses far apart.\n\n");
     MarkdownTable table({"mesh", "triangles", "tolerance", "time, us", "error, median", "error, largest",
                          "bound, median", "bound, largest"});
     for (const MeshName& mesh : meshes_) {
@@ -192,7 +189,7 @@ class Report {
       }
     }
     table.print(file_, 1);
-    tolerance_verdicts();
+    tolerance_goals();
   }
 
   void trees() const {
@@ -200,21 +197,22 @@ class Report {
     MarkdownTable table({"mesh", "triangles", "build, ns per triangle", "at most",
                          "memory, bytes per triangle", "at most", ""});
     for (const TreeCost& tree : trees_) {
-      table.add({tree.mesh, std::to_string(tree.triangles), format_cell("%.0f", tree.build_ns), format_cell("%g", kBuildNs),
-                 format_cell("%.0f", tree.bytes), format_cell("%g", kTreeBytes),
-                 pass_or_fail(tree.build_ns <= kBuildNs && tree.bytes <= kTreeBytes)});
+      table.add({tree.mesh, std::to_string(tree.triangles), format_cell("%.0f", tree.build_ns),
+                 format_cell("%g", kMaxBuildNs), format_cell("%.0f", tree.bytes),
+                 format_cell("%g", kMaxTreeBytes),
+                 pass_or_fail(tree.build_ns <= kMaxBuildNs && tree.bytes <= kMaxTreeBytes)});
     }
     table.print(file_, 1);
   }
 
  private:
   const Measurement* find(const MeshName& mesh, const std::string& method, double tolerance) const {
-    return find_measurement(rows_, mesh.name, mesh.triangles, method, tolerance, "", "independent");
+    return find_measurement(measurements_, mesh.name, mesh.triangles, method, tolerance, "", "independent");
   }
 
   const Measurement* slowest_target(const MeshName& mesh) const {
     const Measurement* slowest = find(mesh, "hierarchical", 0.0);
-    for (const Measurement& row : rows_) {
+    for (const Measurement& row : measurements_) {
       if (row.mesh == mesh.name && row.triangles == mesh.triangles && row.method == "hierarchical" &&
           row.tolerance == 0.0 && row.regime == "independent" && row.median_ns > slowest->median_ns)
         slowest = &row;
@@ -222,7 +220,7 @@ class Report {
     return slowest;
   }
 
-  // A row per mesh, a column per method and tolerance, all on the best instruction set.
+  // Prints a row per mesh and a column per method and tolerance, all on the best instruction set.
   template <typename Cell>
   void by_method(const std::string& regime, bool with_read, const Cell& cell) const {
     std::vector<std::string> header{"mesh", "triangles"};
@@ -238,20 +236,21 @@ class Report {
     for (const MeshName& mesh : meshes_) {
       std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
       for (const auto& [method, tolerance] : columns)
-        cells.push_back(cell(*find_measurement(rows_, mesh.name, mesh.triangles, method, tolerance, "", regime)));
+        cells.push_back(
+            cell(*find_measurement(measurements_, mesh.name, mesh.triangles, method, tolerance, "", regime)));
       table.add(std::move(cells));
     }
     table.print(file_, 1);
   }
 
-  void tolerance_verdicts() const {
+  void tolerance_goals() const {
     const Measurement* smallest = nullptr;
     const Measurement* largest = nullptr;
-    std::string dearer;
+    std::string slower;
     for (const MeshName& mesh : meshes_) {
       const Measurement* const row = find(mesh, "hierarchical", kToleranceGoal);
       if (mesh.triangles > 5'000 && row->median_ns >= find(mesh, "hierarchical", 0.0)->median_ns) {
-        dearer += (dearer.empty() ? "" : ", ") + mesh.name + " " + std::to_string(mesh.triangles);
+        slower += (slower.empty() ? "" : ", ") + mesh.name + " " + std::to_string(mesh.triangles);
       }
       if (mesh.name != kRock) continue;
       if (smallest == nullptr) smallest = row;
@@ -262,15 +261,15 @@ class Report {
     std::fprintf(file_,
                  "- Tolerance %s takes %.2f times as long at %zu triangles as at %zu (at most %g: %s).\n",
                  power_of_ten(kToleranceGoal).c_str(), growth, largest->triangles, smallest->triangles,
-                 kToleranceGrowth, pass_or_fail(growth <= kToleranceGrowth).c_str());
+                 kMaxToleranceGrowth, pass_or_fail(growth <= kMaxToleranceGrowth).c_str());
     std::fprintf(
         file_,
         "- It takes less time than tolerance 0 on every mesh of more than 5,000 triangles: %s%s%s.\n\n",
-        pass_or_fail(dearer.empty()).c_str(), dearer.empty() ? "" : ", not on ", dearer.c_str());
+        pass_or_fail(slower.empty()).c_str(), slower.empty() ? "" : ", not on ", slower.c_str());
   }
 
   std::FILE* file_;
-  const std::vector<Measurement>& rows_;
+  const std::vector<Measurement>& measurements_;
   const std::vector<TreeCost>& trees_;
   std::vector<MeshName> meshes_;
 };
@@ -295,13 +294,13 @@ double fitted_exponent(const std::vector<const Measurement*>& rows) {
   return xy / xx;
 }
 
-void print_report(std::FILE* file, const BenchmarkResults& measured) {
-  const Report report(file, measured);
+void print_report(std::FILE* file, const BenchmarkResults& results) {
+  const Report report(file, results);
   report.times("independent", "Time, poses far apart");
   report.times("coherent", "Time, a floating body's trajectory");
   report.errors();
   report.ratios();
-  report.against_reading();
+  report.read_comparison();
   report.targets();
   report.growth();
   report.tolerances();

@@ -1,7 +1,8 @@
-// What a person reads of the measurements: tables of time and error, and each thing that was promised of
-// `hierarchical` beside what came out.
+// Report of the measurements: tables of time and error, and the goals of `hierarchical` with the measured
+// values.
 //
-// A heading, a table and a few sentences per request, as Markdown: the same text stands in the documents.
+// Each section has a heading, a table and a few sentences, as Markdown. The documentation contains the same
+// text.
 #pragma once
 
 #include <cstdio>
@@ -12,7 +13,7 @@
 
 namespace buoyancy::bench {
 
-// What the moment tree of a mesh costs.
+// Build time and memory of the moment tree of a mesh.
 struct TreeCost {
   std::string mesh;
   std::size_t triangles = 0;
@@ -21,14 +22,14 @@ struct TreeCost {
 };
 
 struct BenchmarkResults {
-  std::vector<Measurement> rows;
+  std::vector<Measurement> measurements;
   std::vector<TreeCost> trees;
 };
 
-// The exponent e of time = c triangles^e that fits best in the least squares of the logarithms. At least two
+// Exponent e of time = c triangles^e by a least-squares fit of the logarithms. Precondition: at least two
 // different numbers of triangles.
-double fitted_exponent(const std::vector<const Measurement*>& rows);
+double fitted_exponent(const std::vector<const Measurement*>& measurements);
 
-void print_report(std::FILE* file, const BenchmarkResults& measured);
+void print_report(std::FILE* file, const BenchmarkResults& results);
 
 }  // namespace buoyancy::bench

@@ -1,10 +1,10 @@
-// What buoyancy-report makes of long logs: how long it takes, how large the page gets, how soon a browser
-// shows it. Markdown on standard output.
+// Scalability of buoyancy-report for long logs: processing time, memory, page size, and time until a browser
+// shows the page. Markdown on standard output.
 //
 //   report_page_size DIRECTORY [LOG_MB]
 //
-// Logs of LOG_MB (default 2048) with requests and answers, of one body and of a hundred that bob in the
-// water. Exit 1 where a page cannot be made or does not open.
+// The logs of LOG_MB (default 2048) hold requests and responses about one body and about a hundred bodies
+// that move in the water. Exits with 1 if a page cannot be made or does not open.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -25,7 +25,7 @@
 namespace buoyancy::bench {
 namespace {
 
-constexpr double kLongest = 3'600.0;  // s
+constexpr double kReportTimeout = 3'600.0;  // [s]
 constexpr double kMegabyte = 1e6;
 
 using Clock = std::chrono::steady_clock;
@@ -47,13 +47,13 @@ std::string write_scene(const std::string& directory, int bodies) {
   return path;
 }
 
-// A thousand requests a second of simulated time, and their responses. Returns the number of rows.
+// Writes a thousand requests per second of simulated time, with their responses. Returns the number of rows.
 std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t bytes) {
   RecordWriter file = value_or_exit(RecordWriter::create(path));
   RequestHandler handler(scene);
   WrenchRequest request;
   request.bodies.resize(scene.bodies().size());
-  std::vector<std::uint8_t> asked;
+  std::vector<std::uint8_t> request_bytes;
   std::vector<std::uint8_t> event;
   std::int64_t written = 0;
   std::int64_t seq = 0;
@@ -68,9 +68,9 @@ std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t
                                         0.4 * std::sin(seconds + place)},
                            .quaternion_wxyz = {std::cos(half_angle), std::sin(half_angle), 0.0, 0.0}};
     }
-    encode(request, asked);
-    const Bytes response = handler.handle(asked);
-    encode_event(2 * seq, 1'000 * seq, kStatesChannel, asked, event);
+    encode(request, request_bytes);
+    const Bytes response = handler.handle(request_bytes);
+    encode_event(2 * seq, 1'000 * seq, kStatesChannel, request_bytes, event);
     value_or_exit(file.append(event));
     written += static_cast<std::int64_t>(event.size());
     encode_event(2 * seq + 1, 1'000 * seq + 40, kWrenchesChannel, response, event);
@@ -81,57 +81,57 @@ std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t
   return seq * static_cast<std::int64_t>(scene.bodies().size());
 }
 
-// MB, of any program that has run to its end.
+// Peak memory of all programs that have ended so far [MB].
 double max_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_CHILDREN, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1'024.0 / kMegabyte;
 }
 
-struct Made {
+struct ReportRun {
   int bodies = 0;
   std::int64_t rows = 0;
   double log_megabytes = 0.0;
   double seconds = 0.0;
-  double memory = 0.0;  // MB, of this report or a smaller one before
+  double memory = 0.0;  // [MB], maximum of this report and the smaller ones before
   std::string page;
 };
 
-Made make_page(const std::string& directory, int bodies, std::int64_t megabytes) {
+ReportRun make_page(const std::string& directory, int bodies, std::int64_t megabytes) {
   const std::string scene = write_scene(directory, bodies);
   const std::string log = directory + "/run.lcmlog";
-  Made made{.bodies = bodies, .page = directory + "/" + std::to_string(bodies) + ".html"};
-  made.rows = write_log(value_or_exit(Scene::load(scene)), log, megabytes << 20U);
-  made.log_megabytes = static_cast<double>(std::filesystem::file_size(log)) / kMegabyte;
+  ReportRun result{.bodies = bodies, .page = directory + "/" + std::to_string(bodies) + ".html"};
+  result.rows = write_log(value_or_exit(Scene::load(scene)), log, megabytes << 20U);
+  result.log_megabytes = static_cast<double>(std::filesystem::file_size(log)) / kMegabyte;
   const Clock::time_point start = Clock::now();
   const FinishedProcess finished =
-      run_to_end(command_of({BUOYANCY_REPORT, "--scene", scene, log, made.page}), kLongest);
-  made.seconds = seconds_since(start);
-  made.memory = max_memory();
+      run_to_end(command_of({BUOYANCY_REPORT, "--scene", scene, log, result.page}), kReportTimeout);
+  result.seconds = seconds_since(start);
+  result.memory = max_memory();
   std::filesystem::remove(log);
   if (finished.exit_code != 0) fail(finished.standard_error);
-  return made;
+  return result;
 }
 
-// s, from the start of loading to the first picture, by the page's own clock.
+// Time from the start of loading to the first frame, by the page's own clock [s].
 double opening_time(view::Browser& browser, const std::string& page) {
   browser.open_file(page);
   return 1e-3 * browser.wait_until("window.buoyancy_report && buoyancy_report.shown_after").get<double>();
 }
 
 void run(const std::string& directory, std::int64_t megabytes) {
-  std::vector<Made> pages;
-  for (const int bodies : {1, 100}) pages.push_back(make_page(directory, bodies, megabytes));
+  std::vector<ReportRun> reports;
+  for (const int bodies : {1, 100}) reports.push_back(make_page(directory, bodies, megabytes));
   view::Browser browser;
   std::printf(
-      "| log | rows | made in | memory | page | shown in a browser after "
+      "| log | rows | processing | memory | page | time to display "
       "|\n|---|---:|---:|---:|---:|---:|\n");
-  for (const Made& made : pages) {
-    std::printf("| %.0f MB, %d %s | %lld | %.0f s | %.0f MB | %.1f MB | %.1f s |\n", made.log_megabytes,
-                made.bodies, made.bodies == 1 ? "body" : "bodies", static_cast<long long>(made.rows),
-                made.seconds, made.memory,
-                static_cast<double>(std::filesystem::file_size(made.page)) / kMegabyte,
-                opening_time(browser, made.page));
+  for (const ReportRun& report : reports) {
+    std::printf("| %.0f MB, %d %s | %lld | %.0f s | %.0f MB | %.1f MB | %.1f s |\n", report.log_megabytes,
+                report.bodies, report.bodies == 1 ? "body" : "bodies", static_cast<long long>(report.rows),
+                report.seconds, report.memory,
+                static_cast<double>(std::filesystem::file_size(report.page)) / kMegabyte,
+                opening_time(browser, report.page));
   }
 }
 

@@ -1,5 +1,5 @@
-// The processes that the network benchmarks measure: buoyancyd and its echo, each alone on a port of its own,
-// so that nobody is woken by what concerns him not.
+// The processes that the network benchmarks measure: buoyancyd and the echo, each alone on its own port, so
+// that no process is woken by messages for another one.
 #pragma once
 
 #include <memory>
@@ -20,14 +20,14 @@ inline Scene scene_of(const std::string& text) {
   return value_or_exit(Scene::prepare(value_or_exit(parse_scene(text, "benchmark", {}))));
 }
 
-// `count` bodies of the same shape or mesh file, with the ids 1 to count.
-inline std::string bodies_of(int count, const std::string& what) {
+// Scene text of `count` bodies with the ids 1 to count. source: their shape or mesh line.
+inline std::string bodies_of(int count, const std::string& source) {
   std::string text;
-  for (int id = 1; id <= count; ++id) text += "[[body]]\nid = " + std::to_string(id) + "\n" + what + "\n";
+  for (int id = 1; id <= count; ++id) text += "[[body]]\nid = " + std::to_string(id) + "\n" + source + "\n";
   return text;
 }
 
-// A program that says "ready", and has said so when this is constructed. Killed by the destructor.
+// A program that prints "ready"; the constructor waits for that line. The destructor kills the program.
 class ReadyProcess {
  public:
   explicit ReadyProcess(std::vector<std::string> command) : child_(command_of(std::move(command))) {
@@ -46,8 +46,9 @@ inline std::string url_of_port(int port) {
 inline constexpr int kServicePort = 7667;
 inline constexpr int kEchoPort = 7668;
 
-// While it lives, everything that is started has one processor for all of it: a round trip then wakes no
-// other one, which is dear on a virtual machine, and happens or not as the kernel's scheduler likes.
+// Pins this thread, and every process that it starts, to one processor during the object's lifetime. A round
+// trip then never wakes another processor, which is expensive on a virtual machine and depends on the
+// kernel's scheduler.
 class PinToOneCpu {
  public:
   PinToOneCpu() {

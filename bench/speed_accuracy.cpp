@@ -1,11 +1,11 @@
-// Time beside error: every method of ours on meshes of 1,760 to 1,003,520 triangles, in two regimes.
+// Time and error of every method on meshes of 1,760 to 1,003,520 triangles, in two regimes.
 //
 //   speed_accuracy [--quick | --smoke] [--csv FILE]
 //
-// Prints tables and what was promised beside what came out (report.h); --csv writes a row per measurement
-// (measurement.h). Exit codes: 0 measured; 1 a result was farther from the truth than its own bound, or the
-// file could not be written; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
-// times depend on the machine and on what else it does.
+// Prints tables and the goals with the measured values (report.h); --csv writes a row per measurement
+// (measurement.h). Exit codes: 0 measured; 1 the error of a result exceeds its own bound, or the file cannot
+// be written; 2 invalid arguments. A missed goal is printed and does not change the exit code: times depend
+// on the machine and its load.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -29,11 +29,11 @@ namespace {
 
 enum class Extent { kFull, kQuick, kSmoke };
 
-// A mesh of the plan; its poses and true results are shared with the same mesh in shuffled order.
+// A mesh of the plan. Its poses and reference results are shared with the same mesh in shuffled order.
 struct PlannedMesh {
   BenchmarkMesh (*make)();
   bool with_shuffled;
-  bool full, quick, smoke;  // which runs it is part of
+  bool full, quick, smoke;  // runs that include the mesh
 };
 
 constexpr std::array kPlan{
@@ -67,7 +67,7 @@ int poses_of(Extent extent) {
   return extent == Extent::kSmoke ? 8 : 100;
 }
 
-// Enough for the least of them to be undisturbed, and no more than some seconds for the methods that look at
+// Number of sweeps: enough for an undisturbed minimum, and at most some seconds for the methods that visit
 // every triangle.
 int sweeps_of(Extent extent, std::size_t triangles) {
   if (extent == Extent::kSmoke) return 1;
@@ -89,21 +89,21 @@ TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
 }
 
 Expected<void> measure(const BenchmarkMesh& model, const std::vector<PoseSet>& sets, Extent extent,
-                       BenchmarkResults& measured) {
+                       BenchmarkResults& results) {
   for (const PoseSet& set : sets) {
     const int sweeps = sweeps_of(extent, model.source.triangles.size());
     std::fprintf(stderr, "%s of %zu triangles, %s: %zu poses, %d sweeps\n", model.name.c_str(),
                  model.source.triangles.size(), set.regime.c_str(), set.poses.size(), sweeps);
     auto rows = time_queries(model, set, sweeps);
     if (!rows) return tl::unexpected(rows.error());
-    std::move(rows->begin(), rows->end(), std::back_inserter(measured.rows));
+    std::move(rows->begin(), rows->end(), std::back_inserter(results.measurements));
   }
-  measured.trees.push_back(tree_cost(model, extent));
+  results.trees.push_back(tree_cost(model, extent));
   return {};
 }
 
 Expected<BenchmarkResults> measure_all(Extent extent) {
-  BenchmarkResults measured;
+  BenchmarkResults results;
   for (const PlannedMesh& planned : kPlan) {
     if (!is_part_of(planned, extent)) continue;
     const BenchmarkMesh model = planned.make();
@@ -112,26 +112,26 @@ Expected<BenchmarkResults> measure_all(Extent extent) {
     const std::vector<PoseSet> sets{
         with_reference_results("independent", sweep_of_poses(model.source, poses), model.source),
         with_reference_results("coherent", coherent_poses(model.mesh, floating, poses), model.source)};
-    if (const auto done = measure(model, sets, extent, measured); !done) return tl::unexpected(done.error());
+    if (const auto done = measure(model, sets, extent, results); !done) return tl::unexpected(done.error());
     if (!planned.with_shuffled) continue;
-    if (const auto done = measure(shuffled(model), sets, extent, measured); !done)
+    if (const auto done = measure(shuffled(model), sets, extent, results); !done)
       return tl::unexpected(done.error());
   }
-  return measured;
+  return results;
 }
 
 int run(int argc, char** argv) {
-  ToolCommandLine command_line("Time beside error of every method, in two regimes");
+  ToolCommandLine command_line("Measure time and error of every method in two regimes");
   bool quick = false;
   bool smoke = false;
   std::string csv_path;
-  command_line.add_flag("--quick", quick, "fewer meshes and sweeps: under a minute");
-  command_line.add_flag("--smoke", smoke, "two small meshes, 8 poses, one sweep: says nothing about time",
-                        "--quick");
-  command_line.add_option("--csv", csv_path, "write a row per measurement to this file");
+  command_line.add_flag("--quick", quick, "Use fewer meshes and sweeps: under a minute");
+  command_line.add_flag("--smoke", smoke,
+                        "Use two small meshes, 8 poses and one sweep: times are meaningless", "--quick");
+  command_line.add_option("--csv", csv_path, "Write a row per measurement to this file");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
 
-  // Opened first: nobody wants to hear after minutes that the file cannot be written.
+  // The file is opened first, so that an error is reported before the measurements.
   std::FILE* csv = nullptr;
   if (!csv_path.empty()) {
     csv = std::fopen(csv_path.c_str(), "w");
@@ -140,14 +140,14 @@ int run(int argc, char** argv) {
       return EXIT_FAILURE;
     }
   }
-  const auto measured = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kQuick : Extent::kFull);
-  if (!measured) {
-    std::fprintf(stderr, "%s\n", measured.error().message().c_str());
+  const auto results = measure_all(smoke ? Extent::kSmoke : quick ? Extent::kQuick : Extent::kFull);
+  if (!results) {
+    std::fprintf(stderr, "%s\n", results.error().message().c_str());
     return EXIT_FAILURE;
   }
-  print_report(stdout, *measured);
+  print_report(stdout, *results);
   if (csv != nullptr) {
-    write_csv(csv, measured->rows);
+    write_csv(csv, results->measurements);
     const bool failed = std::ferror(csv) != 0;
     if (std::fclose(csv) != 0 || failed) {
       std::perror(csv_path.c_str());

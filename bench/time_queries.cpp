@@ -20,50 +20,49 @@ double nanoseconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double, std::nano>(to - from).count();
 }
 
-// What two readings of the clock with nothing between them are apart.
+// Minimum difference between two consecutive readings of the clock.
 double clock_cost_ns() {
-  double least = std::numeric_limits<double>::max();
+  double min_ns = std::numeric_limits<double>::max();
   for (int i = 0; i < 10'000; ++i) {
     const auto start = Clock::now();
-    least = std::min(least, nanoseconds(start, Clock::now()));
+    min_ns = std::min(min_ns, nanoseconds(start, Clock::now()));
   }
-  return least;
+  return min_ns;
 }
 
-// Where results go, so that no query can be left out.
-volatile double kept_result;
-volatile std::uint64_t kept_reading;
+// Sinks for the results, so that the compiler cannot omit a query.
+volatile double result_sink;
+volatile std::uint64_t read_sink;
 
-// One row and what it takes to time it.
-struct Contender {
+// One row of the results and the data needed to time it.
+struct TimedQuery {
   Measurement row;
-  const Solver* solver = nullptr;  // nullptr: reads the mesh
-  std::string forced_target;       // "": the best
-  std::vector<double> min_ns;      // of each pose
+  const Solver* solver = nullptr;  // nullptr: memory read baseline
+  std::string forced_target;       // "": the best instruction set
+  std::vector<double> min_ns;      // per pose
 };
 
-void run_query(const Contender& contender, const TriangleMesh& surface, const Pose& pose) {
-  if (contender.solver == nullptr) {
-    kept_reading = read_vertices_and_indices(surface);
+void run_query(const TimedQuery& query, const TriangleMesh& surface, const Pose& pose) {
+  if (query.solver == nullptr) {
+    read_sink = read_vertices_and_indices(surface);
   } else {
-    kept_result = buoyancy(*contender.solver, pose, kUnitWater, Vec3::Zero()).volume;
+    result_sink = buoyancy(*query.solver, pose, kUnitWater, Vec3::Zero()).volume;
   }
 }
 
-// One untimed sweep, or as much of it as kWarmUpNs allow, then a timed one.
-void sweep(Contender& contender, const TriangleMesh& surface, const std::vector<Pose>& poses,
-           double clock_ns) {
-  force_simd_target(contender.forced_target);
+// One untimed sweep, limited to kWarmUpNs, then a timed one.
+void sweep(TimedQuery& query, const TriangleMesh& surface, const std::vector<Pose>& poses, double clock_ns) {
+  force_simd_target(query.forced_target);
   const auto start_of_turn = Clock::now();
   for (const Pose& pose : poses) {
-    run_query(contender, surface, pose);
+    run_query(query, surface, pose);
     if (nanoseconds(start_of_turn, Clock::now()) > kWarmUpNs) break;
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto start = Clock::now();
-    run_query(contender, surface, poses[i]);
+    run_query(query, surface, poses[i]);
     const double time = std::max(0.0, nanoseconds(start, Clock::now()) - clock_ns);
-    contender.min_ns[i] = std::min(contender.min_ns[i], time);
+    query.min_ns[i] = std::min(query.min_ns[i], time);
   }
 }
 
@@ -78,56 +77,57 @@ Expected<std::vector<Measurement>> time_queries(const BenchmarkMesh& model, cons
   for (const double tolerance : kMeasuredTolerances)
     solvers.emplace_back(model.mesh, Method::kHierarchical, tolerance);
 
-  std::vector<Contender> contenders;
-  const auto enter = [&](const Solver* solver, const std::string& forced_target) {
-    Contender contender;
-    contender.row.mesh = model.name;
-    contender.row.triangles = model.source.triangles.size();
-    contender.row.regime = set.regime;
-    contender.row.method = solver == nullptr ? kMemoryReadRow : to_string(solver->method());
-    contender.solver = solver;
-    contender.forced_target = forced_target;
-    contender.min_ns.assign(set.poses.size(), std::numeric_limits<double>::max());
+  std::vector<TimedQuery> queries;
+  const auto add_query = [&](const Solver* solver, const std::string& forced_target) {
+    TimedQuery query;
+    query.row.mesh = model.name;
+    query.row.triangles = model.source.triangles.size();
+    query.row.regime = set.regime;
+    query.row.method = solver == nullptr ? kMemoryReadRow : to_string(solver->method());
+    query.solver = solver;
+    query.forced_target = forced_target;
+    query.min_ns.assign(set.poses.size(), std::numeric_limits<double>::max());
     if (solver != nullptr && solver->method() == Method::kHierarchical) {
       force_simd_target(forced_target);
-      contender.row.target = simd_target();
-      contender.row.tolerance = solver->tolerance();
+      query.row.target = simd_target();
+      query.row.tolerance = solver->tolerance();
     }
-    contenders.push_back(std::move(contender));
+    queries.push_back(std::move(query));
   };
-  enter(nullptr, "");
-  for (const Solver& solver : solvers) enter(&solver, "");
+  add_query(nullptr, "");
+  for (const Solver& solver : solvers) add_query(&solver, "");
   const std::vector<std::string> targets = simd_targets();
   const auto exact_hierarchical = std::find_if(
       solvers.begin(), solvers.end(), [](const Solver& s) { return s.method() == Method::kHierarchical; });
-  for (std::size_t i = 1; i < targets.size(); ++i) enter(&*exact_hierarchical, targets[i]);
+  for (std::size_t i = 1; i < targets.size(); ++i) add_query(&*exact_hierarchical, targets[i]);
 
-  for (Contender& contender : contenders) {
+  for (TimedQuery& query : queries) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    contender.row.errors = {kNone, kNone, kNone, kNone, kNone};
-    if (contender.solver == nullptr) continue;
-    force_simd_target(contender.forced_target);
-    const auto errors = measure_errors(model, *contender.solver, set);
+    query.row.errors = {kNone, kNone, kNone, kNone, kNone};
+    if (query.solver == nullptr) continue;
+    force_simd_target(query.forced_target);
+    const auto errors = measure_errors(model, *query.solver, set);
     force_simd_target("");
     if (!errors) return tl::unexpected(errors.error());
-    contender.row.errors = *errors;
+    query.row.errors = *errors;
   }
 
   const double clock_ns = clock_cost_ns();
   for (int i = 0; i < sweeps; ++i) {
-    // To and fro: a branch predictor learns from the method before, and each has both neighbours before it.
-    for (std::size_t n = 0; n < contenders.size(); ++n) {
-      Contender& contender = contenders[i % 2 == 0 ? n : contenders.size() - 1 - n];
-      sweep(contender, model.mesh.surface, set.poses, clock_ns);
+    // The order alternates, because a branch predictor learns from the preceding method: each method follows
+    // both of its neighbours.
+    for (std::size_t n = 0; n < queries.size(); ++n) {
+      TimedQuery& query = queries[i % 2 == 0 ? n : queries.size() - 1 - n];
+      sweep(query, model.mesh.surface, set.poses, clock_ns);
     }
   }
   force_simd_target("");
 
   std::vector<Measurement> rows;
-  rows.reserve(contenders.size());
-  for (Contender& contender : contenders) {
-    contender.row.median_ns = median(std::move(contender.min_ns));
-    rows.push_back(std::move(contender.row));
+  rows.reserve(queries.size());
+  for (TimedQuery& query : queries) {
+    query.row.median_ns = median(std::move(query.min_ns));
+    rows.push_back(std::move(query.row));
   }
   return rows;
 }

@@ -1,4 +1,4 @@
-// The water of all measurements: density times gravity is 1, so that a force is the displaced volume.
+// The water of all measurements: density times gravity is 1, so that force equals displaced volume.
 #pragma once
 
 #include "hydrostatics/water_plane.h"

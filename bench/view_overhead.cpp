@@ -1,12 +1,12 @@
-// What the live view costs the service that it looks at: round trips of a client that asks a thousand times a
-// second about a hundred bodies, with and without a view that a page is connected to, in turns, over UDP.
-// Markdown on standard output.
+// Overhead of the live view for the observed service: round trips of a client that sends a thousand requests
+// per second about a hundred bodies, with and without a view that serves a connected page, in turns, over
+// UDP. Markdown on standard output.
 //
 //   view_overhead [--quick]
 //
-// To be run in a network namespace with a multicast route (scripts/measure_view). Exit codes: 0 measured; 1 a
-// wrong response or no network; 2 wrong arguments. A goal that is missed is printed and changes no exit code:
-// times depend on the machine and on what else it does.
+// Must run in a network namespace with a multicast route (scripts/measure_view). Exit codes: 0 measured; 1 a
+// wrong response or no network; 2 invalid arguments. A missed goal is printed and does not change the exit
+// code: times depend on the machine and its load.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -32,17 +32,17 @@
 namespace buoyancy::bench {
 namespace {
 
-using Times = std::vector<double>;  // us
+using Times = std::vector<double>;  // [us]
 
 constexpr int kBodies = 100;
-constexpr double kRate = 1000.0;  // Hz
+constexpr double kRate = 1000.0;  // [Hz]
 constexpr double kMaxChange = 0.05;
-constexpr double kMinUpdates = 20.0;  // Hz
+constexpr double kMinUpdates = 20.0;  // [Hz]
 
 // A box of 1,200 triangles.
 const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
 
-// s of processor time that a process has used, all its threads.
+// Processor time of all threads of a process [s].
 double processor_time(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string field;
@@ -54,22 +54,22 @@ double processor_time(pid_t process) {
   return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
-// A view with a page connected to it, which takes every snapshot.
-class WatchedView {
+// A view with a connected page that receives every snapshot.
+class ConnectedView {
  public:
-  explicit WatchedView(const std::string& scene)
+  explicit ConnectedView(const std::string& scene)
       : process_({BUOYANCY_VIEW, "--scene", directory_.write("scene.toml", scene), "-l",
                   url_of_port(kServicePort), "--port", "0"}),
         reader_(view::port_from_ready_line(process_.child().standard_output())),
         thread_([this] {
-          while (!ended_) {
+          while (!stopped_) {
             if (reader_.next(0.5)) ++snapshots_;
           }
         }) {}
-  WatchedView(const WatchedView&) = delete;
-  WatchedView& operator=(const WatchedView&) = delete;
-  ~WatchedView() {
-    ended_ = true;
+  ConnectedView(const ConnectedView&) = delete;
+  ConnectedView& operator=(const ConnectedView&) = delete;
+  ~ConnectedView() {
+    stopped_ = true;
     thread_.join();
   }
   std::int64_t snapshots() const { return snapshots_; }
@@ -80,7 +80,7 @@ class WatchedView {
   ReadyProcess process_;
   view::EventReader reader_;
   std::atomic<std::int64_t> snapshots_{0};
-  std::atomic<bool> ended_{false};
+  std::atomic<bool> stopped_{false};
   std::thread thread_;
 };
 
@@ -88,7 +88,7 @@ class PacedClient {
  public:
   PacedClient() : client_(open()) {}
 
-  // Round trips of requests asked at kRate.
+  // Sends `requests` requests at kRate and returns their round trips.
   Times request(std::size_t requests) {
     Times times;
     times.reserve(requests);
@@ -100,7 +100,7 @@ class PacedClient {
       const auto response = client_.request(++step_, states_);
       times.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
       if (!response) fail(response.error().message());
-      if ((*response)->bodies.back().force[2] <= 0.0) fail("a body in the water is not borne");
+      if ((*response)->bodies.back().force[2] <= 0.0) fail("a body in the water has no buoyant force");
       due = std::max(due + std::chrono::microseconds(static_cast<int>(1e6 / kRate)), Clock::now());
     }
     return times;
@@ -113,7 +113,7 @@ class PacedClient {
     return value_or_exit(Client::open(options));
   }
 
-  // Every body crosses the water and turns, so that none is answered from memory.
+  // Every body crosses the water surface and turns, so that no result is cached.
   void move() {
     for (int i = 0; i < kBodies; ++i) {
       const double angle = 0.1 * i + 1e-3 * static_cast<double>(step_);
@@ -131,7 +131,7 @@ class PacedClient {
 };
 
 void run(bool quick) {
-  constexpr std::size_t kRequests = 1'000;  // a second: what else the machine does is the same for both
+  constexpr std::size_t kRequests = 1'000;  // for one second, so that both see the same load of the machine
   constexpr std::size_t kWarmUp = 300;
   const std::size_t rounds = quick ? 20 : 100;
   const std::string scene = bodies_of(kBodies, kCrate);
@@ -141,8 +141,8 @@ void run(bool quick) {
   Times without_p50, with_p50, without_p99, with_p99, changes, updates, processor;
   for (std::size_t round = 0; round < rounds; ++round) {
     const auto with = [&] {
-      WatchedView view(scene);
-      client.request(kWarmUp);  // until the view is past its start
+      ConnectedView view(scene);
+      client.request(kWarmUp);  // until the view has started up
       const std::int64_t snapshots = view.snapshots();
       const double used = view.processor_time();
       const auto start = Clock::now();
@@ -170,23 +170,23 @@ void run(bool quick) {
   }
   const double change = median(changes);
   std::printf(
-      "### What a live view costs\n\n"
-      "%d bodies of 1,200 triangles that cross the water, asked about %.0f times a second in lock-step, with "
-      "and "
-      "without a\n`buoyancy-view` that a reader of its events is connected to, in turns: medians of %zu "
-      "rounds of %zu "
+      "### Overhead of a live view\n\n"
+      "%d surface-piercing bodies of 1,200 triangles, %.0f requests per second in lock-step, with and\n"
+      "without a `buoyancy-view` whose events a client reads, in turns: medians of %zu rounds of %zu\n"
       "requests each.\n\n",
       kBodies, kRate, rounds, kRequests);
-  MarkdownTable table({"", "without", "with", "change", "must", ""});
-  table.add({"round trip, p50, us", format_cell("%.1f", median(without_p50)), format_cell("%.1f", median(with_p50)),
-             format_cell("%+.1f %%", 100.0 * change), "below 5 %", pass_or_fail(change < kMaxChange)});
-  table.add({"round trip, p99, us", format_cell("%.1f", median(without_p99)), format_cell("%.1f", median(with_p99)),
+  MarkdownTable table({"", "without", "with", "change", "required", ""});
+  table.add({"round trip, p50, us", format_cell("%.1f", median(without_p50)),
+             format_cell("%.1f", median(with_p50)), format_cell("%+.1f %%", 100.0 * change), "below 5 %",
+             pass_or_fail(change < kMaxChange)});
+  table.add({"round trip, p99, us", format_cell("%.1f", median(without_p99)),
+             format_cell("%.1f", median(with_p99)),
              format_cell("%+.1f %%", 100.0 * (median(with_p99) / median(without_p99) - 1.0)), "", ""});
   const double mean_updates =
       std::accumulate(updates.begin(), updates.end(), 0.0) / static_cast<double>(updates.size());
-  table.add({"snapshots a second, mean", "", format_cell("%.1f", mean_updates), "", "20 or more",
+  table.add({"snapshots per second, mean", "", format_cell("%.1f", mean_updates), "", "20 or more",
              pass_or_fail(mean_updates >= kMinUpdates)});
-  table.add({"snapshots a second, the fewest of a round", "",
+  table.add({"snapshots per second, minimum of a round", "",
              format_cell("%.1f", *std::min_element(updates.begin(), updates.end())), "", "", ""});
   table.add({"processor time of the view, % of one", "", format_cell("%.1f", median(processor)), "", "", ""});
   table.print(stdout, 1);
@@ -196,6 +196,7 @@ void run(bool quick) {
 }  // namespace buoyancy::bench
 
 int main(int argc, char** argv) {
-  return buoyancy::bench::run_with_quick_option(argc, argv, "What a live view costs the service that it looks at",
-                                         "Fewer requests and rounds", buoyancy::bench::run);
+  return buoyancy::bench::run_with_quick_option(
+      argc, argv, "Measure the overhead of a live view for the observed service",
+      "Use fewer requests and rounds", buoyancy::bench::run);
 }

@@ -1,4 +1,4 @@
-// The meshes and poses that are measured: what the tables say they are.
+// Tests the meshes and poses of the benchmarks.
 #include <algorithm>
 #include <cmath>
 
@@ -23,19 +23,19 @@ TEST(ShuffledMesh, PermutesTrianglesReproducibly) {
   EXPECT_EQ(first.name, "rock shuffled");
   EXPECT_EQ(first.source.triangles, shuffled(model).source.triangles);
   std::vector<Triangle> triangles = model.source.triangles;
-  std::vector<Triangle> others = first.source.triangles;
-  std::size_t in_place = 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) in_place += triangles[i] == others[i] ? 1 : 0;
-  EXPECT_LT(in_place, 10U);  // about one of a random order stays
+  std::vector<Triangle> permuted = first.source.triangles;
+  std::size_t fixed_points = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) fixed_points += triangles[i] == permuted[i] ? 1 : 0;
+  EXPECT_LT(fixed_points, 10U);  // a random permutation has about one
   std::sort(triangles.begin(), triangles.end());
-  std::sort(others.begin(), others.end());
-  EXPECT_EQ(triangles, others);
+  std::sort(permuted.begin(), permuted.end());
+  EXPECT_EQ(triangles, permuted);
 }
 
 TEST(BenchmarkMesh, SubstitutesNamedRockForMissingModel) {
-  const BenchmarkMesh stand_in = model_or_rock("bunny", "no such file.ply", 5);
-  EXPECT_EQ(stand_in.name, "rock for bunny");
-  EXPECT_EQ(stand_in.source.triangles.size(), 500U);
+  const BenchmarkMesh substitute = model_or_rock("bunny", "no such file.ply", 5);
+  EXPECT_EQ(substitute.name, "rock for bunny");
+  EXPECT_EQ(substitute.source.triangles.size(), 500U);
 }
 
 TEST(PoseSweep, RunsFromAlmostDryToAlmostSubmerged) {
@@ -56,9 +56,9 @@ TEST(TrajectoryPoses, StartsInEquilibrium) {
   for (const BenchmarkMesh& model : {rock(16), torus_knot()}) {
     const Solver solver(model.mesh, Method::kExact);
     const Vec3 centroid_B = model.mesh.center_B + model.mesh.centroid;
-    const BuoyancyResult response = buoyancy(solver, floating_pose(solver), kUnitWater, centroid_B);
-    EXPECT_NEAR(response.force_W.z() / model.mesh.volume, 0.5, 1e-9) << model.name;
-    EXPECT_LE(response.torque_W.norm(), 1e-8 * model.mesh.volume * model.mesh.diagonal) << model.name;
+    const BuoyancyResult result = buoyancy(solver, floating_pose(solver), kUnitWater, centroid_B);
+    EXPECT_NEAR(result.force_W.z() / model.mesh.volume, 0.5, 1e-9) << model.name;
+    EXPECT_LE(result.torque_W.norm(), 1e-8 * model.mesh.volume * model.mesh.diagonal) << model.name;
   }
 }
 

@@ -1,4 +1,4 @@
-// The program behind the plots of docs/stability.md: what they show is there.
+// Tests the program that produces the data of the plots in docs/stability.md.
 #include <map>
 #include <set>
 #include <sstream>
@@ -23,7 +23,7 @@ TEST(ErrorUnderStress, AffectsSinglePrecisionButNotExactMethods) {
   std::getline(lines, line);
   EXPECT_EQ(line, "sweep,x,method,error_of_whole");
   std::map<std::string, std::set<std::string>> methods_of_step;
-  std::map<std::string, std::map<std::string, double>> last;  // of a sweep, by method
+  std::map<std::string, std::map<std::string, double>> last;  // last error of each sweep, by method
   while (std::getline(lines, line)) {
     std::istringstream fields(line);
     std::string sweep;

@@ -1,4 +1,4 @@
-// The check before the timing, and what the report computes from rows.
+// Tests the check of the results before the timing, and the computations of the report.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kPoses = 12;
 
-PoseSet sweep_with_truth(const BenchmarkMesh& model) {
+PoseSet sweep_with_reference(const BenchmarkMesh& model) {
   return with_reference_results("independent", sweep_of_poses(model.source, kPoses), model.source);
 }
 
 TEST(MeasureErrors, StaysWithinPublishedBounds) {
   const BenchmarkMesh model = rock(8);
-  const PoseSet set = sweep_with_truth(model);
+  const PoseSet set = sweep_with_reference(model);
   for (const Method method : kAllMethods) {
     const auto errors = measure_errors(model, Solver(model.mesh, method), set);
     ASSERT_TRUE(errors) << errors.error().message();
@@ -35,7 +35,7 @@ TEST(MeasureErrors, StaysWithinPublishedBounds) {
 
 TEST(MeasureErrors, NamesMeshMethodAndPoseOfViolatedBound) {
   const BenchmarkMesh model = rock(8);
-  PoseSet set = sweep_with_truth(model);
+  PoseSet set = sweep_with_reference(model);
   set.truth[7].force_W.z() += 2e-13 * model.mesh.volume;
   const auto force = measure_errors(model, Solver(model.mesh, Method::kExact), set);
   ASSERT_FALSE(force);
@@ -44,7 +44,7 @@ TEST(MeasureErrors, NamesMeshMethodAndPoseOfViolatedBound) {
       << force.error().message();
   EXPECT_NE(force.error().actual.find("force is off by"), std::string::npos);
 
-  set = sweep_with_truth(model);
+  set = sweep_with_reference(model);
   set.truth[3].torque_W.x() += 2e-13 * model.mesh.volume * model.mesh.diagonal;
   const auto torque = measure_errors(model, Solver(model.mesh, Method::kHierarchical), set);
   ASSERT_FALSE(torque);
@@ -81,12 +81,12 @@ TEST(Median, AveragesTwoMiddleValuesOfEvenCount) {
 }
 
 TEST(FittedExponent, RecoversPowerLaw) {
-  std::vector<Measurement> rows(3);
+  std::vector<Measurement> measurements(3);
   std::vector<const Measurement*> pointers;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].triangles = 1000 << (3 * i);
-    rows[i].median_ns = 7.0 * std::pow(static_cast<double>(rows[i].triangles), 0.6);
-    pointers.push_back(&rows[i]);
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    measurements[i].triangles = 1000 << (3 * i);
+    measurements[i].median_ns = 7.0 * std::pow(static_cast<double>(measurements[i].triangles), 0.6);
+    pointers.push_back(&measurements[i]);
   }
   EXPECT_NEAR(fitted_exponent(pointers), 0.6, 1e-12);
 }
