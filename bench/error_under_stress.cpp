@@ -178,8 +178,8 @@ void sweep_origin() {
   }
 }
 
-// Ever less of the body is in the water: each pose is lowered until the share is what was asked for. The
-// errors are less than what ball arithmetic leaves open.
+// The wet share decreases: each pose is lowered until the requested share is submerged. The true values are
+// exact rationals, because the errors are smaller than the radii of ball arithmetic.
 void sweep_wet_share() {
   const TriangleMesh mesh = rock();
   const HydrostaticMesh prepared = make_hydrostatic_mesh({mesh, {}});

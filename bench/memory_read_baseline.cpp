@@ -12,7 +12,7 @@ namespace {
 [[gnu::always_inline, gnu::no_sanitize_address]] inline std::uint64_t read_lines(const void* array,
                                                                                  std::size_t bytes) {
   std::array<std::uint64_t, 8> lanes{};
-  for (std::size_t i = 0; i + sizeof(seen) <= bytes; i += sizeof(seen)) {
+  for (std::size_t i = 0; i + sizeof(lanes) <= bytes; i += sizeof(lanes)) {
     std::array<std::uint64_t, 8> line;
     std::memcpy(line.data(), static_cast<const unsigned char*>(array) + i, sizeof(line));
     for (std::size_t lane = 0; lane < line.size(); ++lane) lanes[lane] ^= line[lane];

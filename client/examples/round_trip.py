@@ -90,7 +90,8 @@ class Client:
 def main():
     parser = argparse.ArgumentParser(description="Send one request to buoyancyd and print the force on a body.")
     parser.add_argument("--body", type=int, default=1, help="body id in the scene (default: %(default)s)")
-    parser.add_argument("--height", type=float, default=0.0, help="height of the body's origin in metres (default: %(default)s)")
+    parser.add_argument("--height", type=float, default=0.0,
+                        help="height of the body's origin in metres (default: %(default)s)")
     arguments = parser.parse_args()
 
     state = buoyancy.body_state_t()
