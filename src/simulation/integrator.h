@@ -7,8 +7,8 @@
 //   X(t), drift: C += t v, and the rotation of a free body with L constant in W: a symmetric splitting of the
 //                kinetic energy into that of a ball, which gives an exact rotation about L, and the
 //                deviations of two principal inertias from the third, which give exact rotations about their
-//                axes (after Dullweber,
-//                Leimkuhler and McLachlan, J. Chem. Phys. 107, 1997, and Fasso, J. Comput. Phys. 189, 2003).
+//                axes (after Dullweber, Leimkuhler and McLachlan, J. Chem. Phys. 107, 1997, and Fasso,
+//                J. Comput. Phys. 189, 2003).
 //                Exact for bodies with two equal principal inertias, order 2 for others.
 //   D(t), damping: dv/dt = -(c + d |v|) v / m: exact. dw_i/dt = -(c + d |w|) w_i / I_i in principal axes with
 //                the path of |w| taken from the scalar equation: exact for equal inertias, order 2 for
