@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <signal.h>
 
+#include "cli/channel_options.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
 #include "client/client.h"
@@ -71,9 +72,8 @@ CLI::Validator number_in(double low, double high, const std::string& unit) {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-client " BUOYANCY_VERSION);
-  app.add_option("--scene", arguments.scene, "Scene file")->required();
-  auto* url = app.add_option("-l,--lcm-url", arguments.channel.lcm_url,
-                             "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
+  app.add_option("--scene", arguments.scene, "Scene file (TOML): water and bodies")->required();
+  auto* url = add_lcm_url_option(app, arguments.channel.lcm_url);
   auto* embedded = app.add_flag("--embedded", arguments.embedded,
                                 "Compute wrenches in this process, without a network or buoyancyd");
   embedded->excludes(url);
@@ -98,10 +98,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({std::string(to_string(Integrator::kSemiImplicitEuler)),
                              std::string(to_string(Integrator::kVelocityVerlet))}))
       ->capture_default_str();
-  app.add_option("--lead-time", arguments.lead_time,
-                 "Have the wrench evaluated at the pose extrapolated by this many seconds")
-      ->check(number_in(-1e3, 1e3, "S"))
-      ->capture_default_str();
+  add_lead_time_option(app, arguments.lead_time, "the poses sent")->check(number_in(-1e3, 1e3, "S"));
   const CLI::Range delay_range(std::int64_t{0}, kMaxDelaySteps, "STEPS");
   auto* delay = app.add_option("--delay-steps", arguments.delay_steps,
                                "Use every response this many steps late, reproducibly, to simulate a "
@@ -121,10 +118,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Maximum number of resends of a request before the run fails")
       ->check(CLI::Range(std::int64_t{0}, kMaxCount, "N"))
       ->capture_default_str();
-  app.add_option("--states-channel", arguments.channel.states_channel, "Channel of the requests")
-      ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.channel.wrenches_channel, "Channel of the responses")
-      ->capture_default_str();
+  add_states_channel_option(app, arguments.channel.states_channel);
+  add_wrenches_channel_option(app, arguments.channel.wrenches_channel);
   app.add_flag("--no-spin", arguments.no_spin,
                "Block immediately while waiting for a response instead of spinning for up to 50 us first: "
                "uses less processor time, but each step takes longer")
@@ -183,7 +178,7 @@ int simulate(Arguments arguments) {
   if (!simulation) return report(simulation.error(), kUsageError);
   std::optional<RunCsvWriter> csv;
   if (!arguments.csv.empty()) {
-    const Expected<void> distinct = check_output_is_its_own(arguments.csv, {arguments.scene});
+    const Expected<void> distinct = check_output_not_input(arguments.csv, {arguments.scene});
     if (!distinct) return report(distinct.error(), kUsageError);
     Expected<RunCsvWriter> created = RunCsvWriter::create(arguments.csv, arguments.csv_every);
     if (!created) return report(created.error(), kFailure);
@@ -247,12 +242,12 @@ int client_main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 
-  CLI::App app(
-      "Simulate the bodies of a scene that have a [body.client], with wrenches from buoyancyd.\n"
-      "Exit codes: 0 done, 1 it ran and failed or was interrupted (SIGINT, SIGTERM: the table and the CSV "
-      "are of\n"
-      "the steps done), 2 wrong arguments, scene or mesh.",
-      "buoyancy-client");
+  CLI::App app("Simulate the bodies of a scene that have a [body.client], with wrenches from buoyancyd.\n" +
+                   exit_status_help(
+                       {.success = "if the run is complete",
+                        .failure = "on a runtime error or an interruption by SIGINT or SIGTERM (the summary "
+                                   "and the CSV then cover the completed steps)"}),
+               "buoyancy-client");
   Arguments arguments;
   add_options(app, arguments);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;

@@ -7,13 +7,13 @@
 #include <CLI/App.hpp>
 
 #include "cli/command_line.h"
+#include "cli/logging.h"
 #include "cli/signal_fd.h"
 #include "cli/termination_signals.h"
 #include "scene/scene.h"
 #include "scene/scene_report.h"
 #include "service/daemon/daemon.h"
 #include "service/daemon/daemon_options.h"
-#include "service/daemon/logging.h"
 
 namespace buoyancy::service {
 namespace {
@@ -58,7 +58,7 @@ int run(int argc, char** argv) {
     return kUsageError;
   }
   const ChannelNames& channels = options.channels;
-  Expected<PoseChannels> poses = pose_channels(
+  Expected<PoseChannels> poses = resolve_pose_channels(
       options.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
   if (!poses) {
     print_error(app, poses.error());

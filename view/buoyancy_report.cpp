@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "base/format.h"
+#include "cli/channel_options.h"
 #include "cli/command_line.h"
 #include "cli/pose_options.h"
 #include "cli/progress_bar.h"
@@ -38,19 +39,15 @@ void add_options(CLI::App& app, ReportArguments& arguments) {
 the bodies in the water, plots, and which evaluations were skipped. RUN is a CSV file of
 buoyancy-client, a CSV file of poses (see buoyancy-replay), or a log of lcm-logger. A long run is
 decimated; its extremes are kept.
-Exit status: 0 on success; 1 on a runtime error, or if parts of RUN could not be read; 2 on invalid
-arguments, scene, mesh or RUN.)");
+)" + exit_status_help({.success = "on success",
+                       .failure = "on a runtime error, an interruption by SIGINT or SIGTERM, or if parts of "
+                                  "RUN could not be read",
+                       .usage_error = "on invalid arguments, scene, mesh or RUN"}));
   app.set_version_flag("--version", "buoyancy-report " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "Scene file (TOML): water and bodies")->required();
-  app.add_option("--states-channel", arguments.file.states_channel,
-                 "LCM channel for requests (body_states_t)")
-      ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.file.wrenches_channel,
-                 "LCM channel for responses (body_wrenches_t)")
-      ->capture_default_str();
-  app.add_option("--status-channel", arguments.file.status_channel,
-                 "LCM channel for the service's status (service_status_t)")
-      ->capture_default_str();
+  add_states_channel_option(app, arguments.file.states_channel);
+  add_wrenches_channel_option(app, arguments.file.wrenches_channel);
+  add_status_channel_option(app, arguments.file.status_channel);
   add_options(app, arguments.poses);
   app.add_option(
       "--bodies", arguments.bodies,
@@ -99,13 +96,13 @@ int report_main(int argc, char** argv) {
     print_error(app, error);
     return exit_code;
   };
-  const Expected<void> separate = check_output_is_its_own(arguments.output, {arguments.run, arguments.scene});
+  const Expected<void> separate = check_output_not_input(arguments.output, {arguments.run, arguments.scene});
   if (!separate) return fail(separate.error(), kUsageError);
   const Expected<std::string> three = three_js(arguments.three);
   if (!three) return fail(three.error(), kFailure);
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  Expected<PoseChannels> poses = pose_channels(
+  Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene,
       {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.status_channel});
   if (!poses) return fail(poses.error(), kUsageError);

@@ -8,6 +8,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "cli/channel_options.h"
 #include "cli/command_line.h"
 #include "cli/pose_options.h"
 #include "cli/termination_signals.h"
@@ -35,7 +36,7 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-view " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "Scene file (TOML) that the service has loaded")->required();
-  app.add_option("-l,--lcm-url", arguments.lcm_url, "LCM URL (default: $LCM_DEFAULT_URL, else LCM's own)");
+  add_lcm_url_option(app, arguments.lcm_url);
   app.add_option("--port", arguments.port, "TCP port of the page (0 = any free port)")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
@@ -51,17 +52,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "programs, for a machine that is never idle")
       ->check(CLI::IsMember({"idle", "normal"}))
       ->capture_default_str();
-  app.add_option("--states-channel", arguments.channels.states, "LCM channel for requests (body_states_t)")
-      ->capture_default_str();
-  app.add_option("--wrenches-channel", arguments.channels.wrenches,
-                 "LCM channel for responses (body_wrenches_t)")
-      ->capture_default_str();
-  app.add_option("--hydrostatics-channel", arguments.channels.hydrostatics,
-                 "LCM channel for hydrostatics (bodies_hydrostatics_t)")
-      ->capture_default_str();
-  app.add_option("--status-channel", arguments.channels.status,
-                 "LCM channel for the service's status (service_status_t)")
-      ->capture_default_str();
+  add_states_channel_option(app, arguments.channels.states);
+  add_wrenches_channel_option(app, arguments.channels.wrenches);
+  add_hydrostatics_channel_option(app, arguments.channels.hydrostatics);
+  add_status_channel_option(app, arguments.channels.status);
   add_pose_channel_options(app, arguments.poses);
 }
 
@@ -89,7 +83,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kUsageError);
   ObservedChannels channels = arguments.channels;
-  Expected<PoseChannels> poses = pose_channels(
+  Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
   if (!poses) return report(app, poses.error(), kUsageError);
   channels.poses = *std::move(poses);
@@ -118,8 +112,7 @@ int view_main(int argc, char** argv) {
   CLI::App app(
       R"(Shows live LCM traffic between a buoyancy service and its clients in a browser: the bodies in
 the water, latency, counters and losses. Publishes nothing on LCM.
-Exit status: 0 on success, including termination by SIGINT or SIGTERM; 1 on a runtime error; 2 on
-invalid arguments, scene or mesh.)",
+)" + exit_status_help(),
       "buoyancy-view");
   Arguments arguments;
   add_options(app, arguments);

@@ -5,19 +5,19 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "cli/channel_options.h"
+#include "cli/command_line.h"
+
 namespace buoyancy::service {
 
 void add_options(CLI::App& app, DaemonOptions& options) {
   app.description(
       "Receive body poses over LCM and publish the buoyant force and torque on each body.\n"
-      "SIGHUP reloads the scene and keeps all sessions.\n"
-      "Exit codes: 0 done (SIGINT and SIGTERM end it), 1 it ran and failed, 2 wrong arguments, scene or "
-      "mesh.");
+      "SIGHUP reloads the scene and keeps all sessions.\n" +
+      exit_status_help());
   app.set_version_flag("--version", "buoyancyd " BUOYANCY_VERSION);
   app.add_option("--scene", options.scene, "Scene file (TOML): water and bodies")->required();
-  app.add_option(
-      "-l,--lcm-url", options.lcm_url,
-      "LCM URL, for example udpm://239.255.76.67:7667?ttl=0; default: $LCM_DEFAULT_URL, then LCM's own");
+  add_lcm_url_option(app, options.lcm_url);
   app.add_option_function<std::string>(
          "--mode",
          [&options](const std::string& mode) {
@@ -29,15 +29,10 @@ void add_options(CLI::App& app, DaemonOptions& options) {
       ->check(CLI::IsMember(
           {std::string(to_string(ServiceMode::kLockstep)), std::string(to_string(ServiceMode::kLatest))}))
       ->default_str(std::string(to_string(options.mode)));
-  app.add_option("--states-channel", options.channels.states, "Channel of the requests")
-      ->capture_default_str();
-  app.add_option("--wrenches-channel", options.channels.wrenches, "Channel of the responses")
-      ->capture_default_str();
-  app.add_option("--hydrostatics-channel", options.channels.hydrostatics,
-                 "Channel of the hydrostatics of bodies whose outputs in the scene name them")
-      ->capture_default_str();
-  app.add_option("--status-channel", options.channels.status, "Channel of the status, once a second")
-      ->capture_default_str();
+  add_states_channel_option(app, options.channels.states);
+  add_wrenches_channel_option(app, options.channels.wrenches);
+  add_hydrostatics_channel_option(app, options.channels.hydrostatics);
+  add_status_channel_option(app, options.channels.status);
   add_options(app, options.poses);
   app.add_option("--threads", options.threads,
                  "Worker threads per request (0 = number of hardware threads). Results do not depend on this "

@@ -7,6 +7,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "cli/channel_options.h"
 #include "cli/command_line.h"
 #include "hydrostatics/solver.h"
 #include "transport/lcm_connection.h"
@@ -65,11 +66,11 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       "CSV input: utime,body_id,px,py,pz,qw,qx,qy,qz[,vx,vy,vz,wx,wy,wz]; rows with equal utime are one\n"
       "request; writes one row per input row. LCM log input: requests on one channel, poses of single\n"
       "bodies on others (--pose); responses keep the timestamps of their requests; --copy copies other\n"
-      "channels.\n"
-      "Exit codes: 0 every request of INPUT has its response in OUTPUT, 1 it ran and some have not, or they "
-      "do "
-      "not\n"
-      "agree with those compared with, 2 wrong arguments, scene, mesh or INPUT.");
+      "channels.\n" +
+      exit_status_help({.success = "if every request of INPUT has its response in OUTPUT",
+                        .failure = "on a runtime error, or if some requests have no response or --compare "
+                                   "found differences",
+                        .usage_error = "on invalid arguments, scene, mesh or INPUT"}));
   app.set_version_flag("--version", "buoyancy-replay " BUOYANCY_VERSION);
   auto* from = app.add_option_group("scene", "Input geometry (exactly one)");
   from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
@@ -94,15 +95,9 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
       ->option_text("refuse|dry_boundary [refuse]");
-  app.add_option("--states-channel", options.states_channel, "Channel of the requests in an LCM log")
-      ->capture_default_str();
-  app.add_option("--wrenches-channel", options.wrenches_channel, "Channel of the responses in an LCM log")
-      ->capture_default_str();
-  app.add_option(
-         "--hydrostatics-channel", options.hydrostatics_channel,
-         "Channel of the hydrostatics in an LCM log, of bodies whose outputs in the scene name them; a CSV "
-         "file holds wrenches alone")
-      ->capture_default_str();
+  add_states_channel_option(app, options.states_channel);
+  add_wrenches_channel_option(app, options.wrenches_channel);
+  add_hydrostatics_channel_option(app, options.hydrostatics_channel);
   add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
@@ -137,7 +132,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   if (const Expected<void> checked = check_formats(options, plan); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (const Expected<void> checked = check_output_is_its_own(
+  if (const Expected<void> checked = check_output_not_input(
           options.output, {options.input, options.scene, options.mesh, options.baseline});
       !checked) {
     return tl::unexpected(checked.error());
@@ -160,7 +155,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
 
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {
   std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel};
-  Expected<PoseChannels> poses = pose_channels(
+  Expected<PoseChannels> poses = resolve_pose_channels(
       options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
   if (!poses) return tl::unexpected(poses.error());
   // Session ids follow the order of the channels: sorting makes them independent of the order of the options.

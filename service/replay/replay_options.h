@@ -56,7 +56,7 @@ struct ReplayRoutes {
   ReplayChannels channels;
 };
 
-// Errors: see pose_channels() and ReplayChannels::make().
+// Errors: see resolve_pose_channels() and ReplayChannels::make().
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
 
 }  // namespace buoyancy::service

@@ -9,9 +9,13 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "cli/journal.h"
+#include "cli/logging.h"
 
 namespace buoyancy {
+
+std::string exit_status_help(const ExitStatusHelp& help) {
+  return "Exit status: 0 " + help.success + ";\n1 " + help.failure + ";\n2 " + help.usage_error + ".";
+}
 
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   try {
@@ -27,13 +31,13 @@ std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* 
   }
 }
 
-Expected<void> check_output_is_its_own(const std::filesystem::path& output,
-                                       std::initializer_list<std::filesystem::path> read) {
-  for (const std::filesystem::path& file : read) {
+Expected<void> check_output_not_input(const std::filesystem::path& output,
+                                      std::initializer_list<std::filesystem::path> inputs) {
+  for (const std::filesystem::path& file : inputs) {
     std::error_code no_such_file;
     if (std::filesystem::equivalent(file, output, no_such_file)) {
-      return make_error({output.string(), "the same file as " + file.string(), "an output of its own",
-                         "it would overwrite what is read", ""});
+      return make_error({output.string(), "the same file as " + file.string(), "a separate output file",
+                         "writing it would overwrite the input", ""});
     }
   }
   return {};

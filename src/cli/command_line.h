@@ -1,10 +1,11 @@
-// What every program does alike with its command line: exit codes, and CLI11's many ways of
-// failing turned into one line on stderr and exit code 2.
+// Command-line behaviour common to all programs: exit codes, and one line on standard error with exit code 2
+// for every way in which CLI11 can reject the arguments.
 #pragma once
 
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
+#include <string>
 
 #include <CLI/App.hpp>
 
@@ -14,23 +15,34 @@ namespace buoyancy {
 
 enum ExitCode : int {
   kSuccess = 0,
-  kFailure = 1,     // it ran and failed
-  kUsageError = 2,  // wrong arguments, scene or mesh
+  kFailure = 1,     // runtime error
+  kUsageError = 2,  // invalid arguments, scene or mesh
 };
 
-// nullopt: parsed, go on. Else the exit code: kSuccess after --help and --version, kUsageError after one line
-// on stderr.
+// The meaning of each exit code in a program's description; the defaults are what most programs share.
+struct ExitStatusHelp {
+  std::string success = "on success, including termination by SIGINT or SIGTERM";
+  std::string failure = "on a runtime error";
+  std::string usage_error = "on invalid arguments, scene or mesh";
+};
+
+// Returns "Exit status: 0 on success, ...; 1 ...; 2 ....", the end of every program's description.
+std::string exit_status_help(const ExitStatusHelp& help = {});
+
+// Returns nullopt if the program should continue, else its exit code: kSuccess after --help or --version,
+// kUsageError after one line on standard error.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-// Errors: output, there already, is one of the files that are read. An empty path is none.
-Expected<void> check_output_is_its_own(const std::filesystem::path& output,
-                                       std::initializer_list<std::filesystem::path> read);
+// Errors: output exists and is one of the input files. Empty paths are ignored.
+Expected<void> check_output_not_input(const std::filesystem::path& output,
+                                      std::initializer_list<std::filesystem::path> inputs);
 
-// One line on stderr: "<program>: <message>"; for the journal with its level in front (journal.h).
+// Prints "<program>: <message>" on standard error, after the log level if that is the journal (logging.h).
 void print_error(const CLI::App& app, const std::string& message);
 void print_error(const CLI::App& app, const Error& error);
 
-// Writes text to stdout. False, after one line on stderr: it could not be written, a full disk for instance.
+// Writes text to standard output. Returns false, after one line on standard error, if that fails, for
+// instance because the disk is full.
 bool print_output(const CLI::App& app, const std::string& text);
 
 }  // namespace buoyancy
