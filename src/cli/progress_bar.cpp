@@ -25,13 +25,13 @@ void ProgressBar::update(std::int64_t done, std::int64_t total, std::int64_t cou
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = now + kInterval;
-  const double part =
+  const double fraction =
       total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 1.0;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  const double left = part > 0.0 ? seconds * (1.0 - part) / part : 0.0;
-  const std::string bar(static_cast<std::size_t>(part * kWidth), '#');
+  const double left = fraction > 0.0 ? seconds * (1.0 - fraction) / fraction : 0.0;
+  const std::string bar(static_cast<std::size_t>(fraction * kWidth), '#');
   std::fprintf(stderr, "\r[%-*s] %3.0f %%  %lld %s  %.0f/s  %.0f s left\x1b[K", kWidth, bar.c_str(),
-               100.0 * part, static_cast<long long>(count), unit_.c_str(),
+               100.0 * fraction, static_cast<long long>(count), unit_.c_str(),
                static_cast<double>(count) / seconds, left);
   std::fflush(stderr);
   drawn_ = true;

@@ -1,4 +1,4 @@
-// A progress bar on standard error, where that is a terminal; elsewhere nothing at all.
+// A progress bar on standard error. It draws nothing if standard error is not a terminal.
 #pragma once
 
 #include <chrono>
@@ -9,14 +9,14 @@ namespace buoyancy {
 
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string unit);  // of what is counted beside the bar: "steps"
+  explicit ProgressBar(std::string unit);  // the unit of the count beside the bar, such as "steps"
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { clear(); }
 
-  // Draws at most ten times a second. done <= total, in any unit; count: in the bar's.
+  // Draws at most ten times per second. done <= total, in any unit; count is in the bar's unit.
   void update(std::int64_t done, std::int64_t total, std::int64_t count);
-  void clear();  // so that other text may be written
+  void clear();  // removes the bar, so that other text can be written
 
  private:
   std::string unit_;

@@ -1,4 +1,4 @@
-// Signals as something to wait for, instead of something that strikes in the middle of a message.
+// Delivers signals through a file descriptor (signalfd), so that an event loop can poll for them.
 #pragma once
 
 #include <csignal>
@@ -11,15 +11,17 @@ namespace buoyancy {
 
 class SignalFd {
  public:
-  // Blocks them from here on, in this thread and in those it starts: construct it before anything that starts
-  // threads (a Daemon does).
+  // Blocks the signals in this thread and in those that it starts from here on: construct it before anything
+  // that starts threads (Daemon does).
   explicit SignalFd(std::initializer_list<int> signals);
 
-  int fileno() const { return descriptor_.value(); }  // readable once one of them has come
-  bool pending() const;                               // has one come?
-  std::optional<int> consume();  // its number; nullopt: none has come. The same one several times comes once
+  int fileno() const { return descriptor_.value(); }  // readable once a signal is pending
+  bool pending() const;
+  // Takes one pending signal and returns its number, or nullopt if none is pending. Repeated arrivals of one
+  // signal are merged.
+  std::optional<int> consume();
 
-  // Drops those that have come; from here on they do again in this thread what they did before.
+  // Discards pending signals and restores their usual effect in this thread.
   void unblock();
 
  private:

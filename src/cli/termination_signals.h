@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM, which end a program between two messages.
+// Lets SIGINT and SIGTERM end a program between two messages.
 #pragma once
 
 #include <csignal>
@@ -9,12 +9,12 @@ namespace buoyancy {
 
 class TerminationSignals {
  public:
-  TerminationSignals() : signals_({SIGINT, SIGTERM}) {}  // as SignalFd
+  TerminationSignals() : signals_({SIGINT, SIGTERM}) {}  // see SignalFd
 
-  int fileno() const { return signals_.fileno(); }  // readable once a signal has come
+  int fileno() const { return signals_.fileno(); }  // readable once a signal is pending
   bool pending() const { return signals_.pending(); }
-  const char* consume();                  // its name; nullptr: none has come
-  void unblock() { signals_.unblock(); }  // as SignalFd: they end the program at once again
+  const char* consume();                  // the signal's name, or nullptr if none is pending
+  void unblock() { signals_.unblock(); }  // see SignalFd: the signals end the program at once again
 
  private:
   SignalFd signals_;

@@ -25,9 +25,9 @@ void ToolCommandLine::add_option(const std::string& name, Value& value, const st
 }
 
 template <typename Number>
-void ToolCommandLine::add_number(const std::string& name, Number& value, Number least, Number most,
+void ToolCommandLine::add_number(const std::string& name, Number& value, Number min, Number max,
                                  const std::string& description, bool show_default) {
-  CLI::Option* number = app_->add_option(name, value, description)->check(CLI::Range(least, most));
+  CLI::Option* number = app_->add_option(name, value, description)->check(CLI::Range(min, max));
   if (show_default) number->capture_default_str();
 }
 

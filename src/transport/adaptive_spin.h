@@ -1,19 +1,20 @@
-// Whether whoever waits for a message should look for it for a moment before going to sleep: it pays while
-// messages come quickly, as in lock-step. On a virtual machine a sleeper is woken some 30 us after its
-// message came; somebody who looks has it after one. Looking gives the processor away at each look, to
-// whoever wants it.
+// Decides how long a thread that waits for a message spins (polls) before it blocks. Spinning pays while
+// messages arrive in quick succession, as in lock-step: on a virtual machine a blocked thread wakes some 30
+// us after its message arrived, a spinning thread after 1 us. The spinning thread yields the processor at
+// each poll to any other thread that wants it.
 //
-// The law:
-//   - A wait looks, for kSpinTime, if the messages of the two before it came within kSpinTime. That holds of
-//   those
-//     that slept too, by the kernel's stamp of arrival.
-//   - Two ends that both sleep keep each other waiting for so long that neither looks. So after kProbeEvery
-//     waits without a look, and at first, the next kProbeWaits look for kProbeTime, longer than it takes to
-//     wake the other end, which then sees messages that come quickly. The first that finds nothing ends the
-//     trial.
-//   - Where processors are busy with others, one that is given away comes back after milliseconds: after a
-//     look that took longer than kPreemptedAfter no wait looks for 1, 8, 64, ... kMaxSkipped waits; each look
-//     that finds its message halves what comes next.
+// Rules:
+//   - A wait spins for kSpinTime if the messages of the two previous waits arrived within kSpinTime. For a
+//   wait
+//     that blocked, the kernel's time stamp of the arrival counts.
+//   - Two ends that both block delay each other so much that neither would ever spin again. So at first, and
+//     after kProbeEvery waits without a spin, the next kProbeWaits waits spin for kProbeTime, which is longer
+//     than the other end takes to wake up; the other end then observes messages in quick succession. The
+//     first probe that finds nothing ends the probing.
+//   - On a loaded machine a yielded processor comes back only after milliseconds: after a spin that took
+//   longer
+//     than kPreemptedAfter, no wait spins for the next 1, 8, 64, ... kMaxSkipped waits. Each spin that finds
+//     its message halves the next such number.
 #pragma once
 
 #include <algorithm>
@@ -32,46 +33,46 @@ class AdaptiveSpin {
   static constexpr int kProbeWaits = 8;
   static constexpr std::int64_t kMaxSkipped = 4096;
 
-  // At the beginning of each wait: for how long it should look. 0: not at all.
+  // Called at the beginning of each wait. Returns for how long it should spin; 0: block at once.
   Duration begin() {
-    if (to_skip_ > 0) {
-      --to_skip_;
+    if (waits_to_skip_ > 0) {
+      --waits_to_skip_;
       return Duration::zero();
     }
-    if (quick_in_a_row_ >= 2) {
-      without_look_ = 0;
+    if (consecutive_fast_ >= 2) {
+      waits_since_spin_ = 0;
       return kSpinTime;
     }
-    if (trial_left_ == 0 && ++without_look_ < kProbeEvery) return Duration::zero();
-    if (trial_left_ == 0) trial_left_ = kProbeWaits;
-    --trial_left_;
-    without_look_ = 0;
+    if (probes_left_ == 0 && ++waits_since_spin_ < kProbeEvery) return Duration::zero();
+    if (probes_left_ == 0) probes_left_ = kProbeWaits;
+    --probes_left_;
+    waits_since_spin_ = 0;
     return kProbeTime;
   }
 
-  // After a wait that looked for so long, until it found a message or gave up.
-  void record_spin(Duration took, bool found) {
-    if (took > kPreemptedAfter) {
-      to_skip_ = next_skip_;
-      next_skip_ = std::min(8 * next_skip_, kMaxSkipped);
+  // Called after a wait that spun. elapsed: until a message was found or the spin ended.
+  void record_spin(Duration elapsed, bool found) {
+    if (elapsed > kPreemptedAfter) {
+      waits_to_skip_ = next_skip_count_;
+      next_skip_count_ = std::min(8 * next_skip_count_, kMaxSkipped);
     } else if (found) {
-      next_skip_ = std::max<std::int64_t>(next_skip_ / 2, 1);
+      next_skip_count_ = std::max<std::int64_t>(next_skip_count_ / 2, 1);
     }
-    if (!found) trial_left_ = 0;
-    note(found && took <= kSpinTime);
+    if (!found) probes_left_ = 0;
+    record_arrival(found && elapsed <= kSpinTime);
   }
 
-  // After one that slept: how long after its beginning the message arrived.
-  void record_sleep(Duration arrived_after) { note(arrived_after <= kSpinTime); }
+  // Called after a wait that blocked. arrived_after: from its beginning to the arrival of the message.
+  void record_sleep(Duration arrived_after) { record_arrival(arrived_after <= kSpinTime); }
 
  private:
-  void note(bool quick) { quick_in_a_row_ = quick ? std::min(quick_in_a_row_ + 1, 2) : 0; }
+  void record_arrival(bool fast) { consecutive_fast_ = fast ? std::min(consecutive_fast_ + 1, 2) : 0; }
 
-  int quick_in_a_row_ = 0;
-  int trial_left_ = kProbeWaits;
-  int without_look_ = 0;  // waits since the last that looked
-  std::int64_t to_skip_ = 0;
-  std::int64_t next_skip_ = 1;
+  int consecutive_fast_ = 0;
+  int probes_left_ = kProbeWaits;
+  int waits_since_spin_ = 0;  // waits since the last spin
+  std::int64_t waits_to_skip_ = 0;
+  std::int64_t next_skip_count_ = 1;
 };
 
 }  // namespace buoyancy

@@ -23,18 +23,18 @@ namespace buoyancy {
 namespace {
 
 constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
-constexpr std::size_t kLongestChannel = 63;                // LCM's own limit
-constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's own, for messages that mean nothing
+constexpr std::size_t kMaxChannelLength = 63;              // LCM's own limit
+constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's own, for messages without meaning
 
-// Looked at by one handle_one(), so that a flood on other channels cannot hold up whoever calls it.
+// Packets that one handle_one() reads at most, so that a flood on other channels cannot block its caller.
 constexpr int kMaxForeignPackets = 1'000;
 
 bool is_memq(const std::string& url) {
   return url.starts_with("memq://");
 }
 
-// liblcm reads a channel as a regular expression between ^ and $.
-std::string literal(const std::string& channel) {
+// Escapes a channel name, which liblcm interprets as a regular expression between ^ and $.
+std::string escape_regex(const std::string& channel) {
   std::string escaped;
   for (const char c : channel) {
     if (std::string_view(R"(\^$.|?*+()[]{}-)").find(c) != std::string_view::npos) escaped += '\\';
@@ -49,18 +49,19 @@ struct Subscription {
   std::int64_t* received_utime;
 };
 
-// Has the receiver leave out what lcm sends. liblcm does not say which port it sends from, so that a message
-// with bytes that nobody else draws has to come back first. Where it does not come, all is received.
-void leave_out_own(lcm_t* lcm, UdpmReceiver& receiver) {
+// Makes the receiver ignore what lcm sends. liblcm does not expose the port that it sends from: a message
+// with random bytes is sent and its sender is identified when it comes back. If it does not, nothing is
+// ignored.
+void ignore_own_packets(lcm_t* lcm, UdpmReceiver& receiver) {
   constexpr std::chrono::milliseconds kTimeout{200};
   std::random_device device;
-  std::array<std::uint8_t, 16> drawn{};
-  std::ranges::generate(drawn, [&device] { return static_cast<std::uint8_t>(device()); });
-  if (lcm_publish(lcm, kSelfTestChannel, drawn.data(), static_cast<unsigned>(drawn.size())) != 0) return;
-  if (const auto own = receiver.find_sender(drawn, kTimeout)) receiver.empty_packets_of(*own);
+  std::array<std::uint8_t, 16> token{};
+  std::ranges::generate(token, [&device] { return static_cast<std::uint8_t>(device()); });
+  if (lcm_publish(lcm, kSelfTestChannel, token.data(), static_cast<unsigned>(token.size())) != 0) return;
+  if (const auto own = receiver.find_sender(token, kTimeout)) receiver.truncate_packets_of(*own);
 }
 
-// Of memq://.
+// Dispatches messages of memq://.
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
                                       void* subscription) noexcept {
   const auto* to = static_cast<Subscription*>(subscription);
@@ -84,17 +85,17 @@ std::string resolve_lcm_url(const std::string& url) {
 }
 
 Expected<void> check_lcm_url(const std::string& url) {
-  const std::string shown = resolve_lcm_url(url);
-  if (is_memq(shown)) return {};
-  const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+  const std::string resolved = resolve_lcm_url(url);
+  if (is_memq(resolved)) return {};
+  const Expected<UdpmUrl> parsed = parse_udpm_url(resolved);
   if (!parsed) return tl::unexpected(parsed.error());
   return {};
 }
 
 Expected<void> check_channel(const std::string& channel) {
-  if (channel.empty() || channel.size() > kLongestChannel) {
+  if (channel.empty() || channel.size() > kMaxChannelLength) {
     return make_error({"LCM channel '" + channel + "'", std::to_string(channel.size()) + " characters",
-                       "1 to " + std::to_string(kLongestChannel) + " characters", "", ""});
+                       "1 to " + std::to_string(kMaxChannelLength) + " characters", "", ""});
   }
   return {};
 }
@@ -106,23 +107,23 @@ Expected<void> check_channels_distinct(const std::vector<std::string>& channels)
     names += (names.empty() ? "" : ", ") + channel;
   }
   if (std::set<std::string>(channels.begin(), channels.end()).size() == channels.size()) return {};
-  return make_error({"channels " + names, "two are the same", "different names", "", ""});
+  return make_error({"channels " + names, "two are equal", "different names", "", ""});
 }
 
 struct LcmConnection::Impl {
-  Impl(lcm_t* connection, std::optional<UdpmReceiver> its_receiver, bool spins)
-      : lcm(connection), receiver(std::move(its_receiver)), spin(spins) {}
+  Impl(lcm_t* connection, std::optional<UdpmReceiver> udpm_receiver, bool may_spin)
+      : lcm(connection), receiver(std::move(udpm_receiver)), spin(may_spin) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() { lcm_destroy(lcm); }
 
-  lcm_t* lcm;                            // sends, and is all of memq://
-  std::optional<UdpmReceiver> receiver;  // not with memq://
+  lcm_t* lcm;                            // sends, and receives with memq://
+  std::optional<UdpmReceiver> receiver;  // none with memq://
   bool spin;
   AdaptiveSpin spin_policy;
-  std::int64_t asleep_since = 0;  // us since 1970: when a wait found nothing that has not ended. 0: none
+  std::int64_t blocked_since = 0;  // when the current wait stopped spinning [us since 1970]; 0: no wait
   std::int64_t received_utime = 0;
-  // By the receiver's numbers of the channels. With memq:// liblcm holds their addresses.
+  // Indexed by the receiver's channel numbers. With memq:// liblcm holds the addresses.
   std::vector<std::unique_ptr<Subscription>> subscriptions;
 
   void dispatch(const UdpmReceiver::Message& message) noexcept {
@@ -139,24 +140,24 @@ LcmConnection& LcmConnection::operator=(LcmConnection&&) noexcept = default;
 LcmConnection::~LcmConnection() = default;
 
 Expected<LcmConnection> LcmConnection::open(const std::string& url, const ConnectionOptions& options) {
-  std::string shown = resolve_lcm_url(url);
+  std::string resolved = resolve_lcm_url(url);
   std::optional<UdpmReceiver> receiver;
-  if (!is_memq(shown)) {
-    const Expected<UdpmUrl> parsed = parse_udpm_url(shown);
+  if (!is_memq(resolved)) {
+    const Expected<UdpmUrl> parsed = parse_udpm_url(resolved);
     if (!parsed) return tl::unexpected(parsed.error());
     if (Expected<void> probed = probe_multicast(*parsed); !probed) return tl::unexpected(probed.error());
-    shown = to_string(*parsed);
+    resolved = to_string(*parsed);
     Expected<UdpmReceiver> opened = UdpmReceiver::open(*parsed);
     if (!opened) return tl::unexpected(opened.error());
     receiver = std::move(*opened);
   }
-  lcm_t* lcm = lcm_create(shown.c_str());
+  lcm_t* lcm = lcm_create(resolved.c_str());
   if (lcm == nullptr) {
-    return make_error({"LCM URL '" + shown + "'", "LCM could not open it", "a working LCM connection",
-                       "what LCM itself printed above", ""});
+    return make_error({"LCM URL '" + resolved + "'", "LCM could not open it", "a working LCM connection",
+                       "see the message that LCM printed above", ""});
   }
-  if (receiver && !options.receive_own) leave_out_own(lcm, *receiver);
-  return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver), options.spin), shown);
+  if (receiver && !options.receive_own) ignore_own_packets(lcm, *receiver);
+  return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver), options.spin), resolved);
 }
 
 Expected<void> LcmConnection::subscribe(const std::string& channel, Handler handler) {
@@ -168,12 +169,12 @@ Expected<void> LcmConnection::subscribe(const std::string& channel, Handler hand
   const auto& subscription = impl_->subscriptions.emplace_back(
       std::make_unique<Subscription>(Subscription{std::move(handler), channel, &impl_->received_utime}));
   if (impl_->receiver) return {};
-  lcm_subscription_t* made =
-      lcm_subscribe(impl_->lcm, literal(channel).c_str(), buoyancy_lcm_dispatch, subscription.get());
+  lcm_subscription_t* lcm_subscription =
+      lcm_subscribe(impl_->lcm, escape_regex(channel).c_str(), buoyancy_lcm_dispatch, subscription.get());
   constexpr int kUnbounded = 0;
-  if (made == nullptr || lcm_subscription_set_queue_capacity(made, kUnbounded) != 0) {
+  if (lcm_subscription == nullptr || lcm_subscription_set_queue_capacity(lcm_subscription, kUnbounded) != 0) {
     return make_error(
-        {"LCM channel '" + channel + "'", "LCM refused the subscription", "a channel's name", "", ""});
+        {"LCM channel '" + channel + "'", "LCM rejected the subscription", "a valid channel name", "", ""});
   }
   return {};
 }
@@ -185,7 +186,7 @@ Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
     return make_error({"LCM channel '" + channel + "'",
                        "a message of " + std::to_string(bytes.size()) + " bytes was not sent (" +
                            std::generic_category().message(errno) + ")",
-                       "the network to take it", "the multicast route is gone", ""});
+                       "a network that accepts it", "the multicast route is gone", ""});
   }
   return {};
 }
@@ -209,34 +210,34 @@ bool LcmConnection::handle_one() {
   }
   const auto message = impl_->receiver->receive(kMaxForeignPackets);
   if (!message) return false;
-  if (const std::int64_t asleep_since = std::exchange(impl_->asleep_since, 0); asleep_since != 0) {
-    impl_->spin_policy.record_sleep(std::chrono::microseconds(message->arrived - asleep_since));
+  if (const std::int64_t blocked_since = std::exchange(impl_->blocked_since, 0); blocked_since != 0) {
+    impl_->spin_policy.record_sleep(std::chrono::microseconds(message->arrived - blocked_since));
   }
   impl_->dispatch(*message);
   return true;
 }
 
-bool LcmConnection::handle_one_spinning(std::chrono::nanoseconds most) {
+bool LcmConnection::handle_one_spinning(std::chrono::nanoseconds max_spin) {
   using Clock = std::chrono::steady_clock;
   if (handle_one()) return true;
-  if (!impl_->spin || !impl_->receiver || impl_->asleep_since != 0) return false;
-  const AdaptiveSpin::Duration longest = std::min(most, impl_->spin_policy.begin());
-  if (longest > AdaptiveSpin::Duration::zero()) {
+  if (!impl_->spin || !impl_->receiver || impl_->blocked_since != 0) return false;
+  const AdaptiveSpin::Duration limit = std::min(max_spin, impl_->spin_policy.begin());
+  if (limit > AdaptiveSpin::Duration::zero()) {
     const Clock::time_point start = Clock::now();
-    AdaptiveSpin::Duration took{0};
-    while (took < longest) {
-      // Where sender and receiver share a processor, it is the sender's turn.
+    AdaptiveSpin::Duration elapsed{0};
+    while (elapsed < limit) {
+      // If sender and receiver share a processor, the sender must run.
       ::sched_yield();
       const auto message = impl_->receiver->receive(kMaxForeignPackets);
-      took = Clock::now() - start;
+      elapsed = Clock::now() - start;
       if (!message) continue;
-      impl_->spin_policy.record_spin(took, true);
+      impl_->spin_policy.record_spin(elapsed, true);
       impl_->dispatch(*message);
       return true;
     }
-    impl_->spin_policy.record_spin(took, false);
+    impl_->spin_policy.record_spin(elapsed, false);
   }
-  impl_->asleep_since = utime_now();
+  impl_->blocked_since = utime_now();
   return false;
 }
 

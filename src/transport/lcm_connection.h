@@ -1,10 +1,10 @@
-// An LCM connection that says what is wrong instead of blocking or aborting, and that delivers bytes, not
-// decoded messages: service, client and tests all talk through it.
+// An LCM connection that returns errors instead of blocking or aborting, and that delivers bytes instead of
+// decoded messages. The service, the client and the tests all use it.
 //
-// Sends through liblcm and receives, over UDP, through UdpmReceiver, which says why. liblcm's traps that this
-// file keeps in one place: a machine without a multicast route (one Error, with the command that mends it),
-// subscribe() hiding that failure, handle() asserting after an exception, select() and EINTR. One thread at a
-// time, and none is started but for memq://.
+// It sends through liblcm and receives, over UDP, through UdpmReceiver (which documents why). This file works
+// around these defects of liblcm: a machine without a multicast route (one Error, with the command that fixes
+// it), subscribe() hiding that failure, handle() asserting after an exception, select() and EINTR. Use from
+// one thread at a time; only memq:// starts a thread.
 #pragma once
 
 #include <chrono>
@@ -21,61 +21,62 @@
 
 namespace buoyancy {
 
-// The URL that LCM's own tools would use: url if not empty, else $LCM_DEFAULT_URL, else LCM's default.
+// Returns the URL that LCM's own tools would use: url if not empty, else $LCM_DEFAULT_URL, else LCM's
+// default.
 std::string resolve_lcm_url(const std::string& url);
 
-// Is url (after resolve_lcm_url) one that LcmConnection::open takes? Opens nothing.
+// Checks that LcmConnection::open accepts url (after resolve_lcm_url), without opening anything.
 Expected<void> check_lcm_url(const std::string& url);
 
-// Is channel a name that LCM can carry: 1 to 63 characters?
+// Checks that LCM can carry the channel name: 1 to 63 characters.
 Expected<void> check_channel(const std::string& channel);
 
-// The same of each, and that no two are the same.
+// Checks each channel name with check_channel(), and that no two are equal.
 Expected<void> check_channels_distinct(const std::vector<std::string>& channels);
 
-// us since 1970, by the clock that messages are stamped with.
+// The current time [us since 1970], from the clock that stamps messages.
 std::int64_t utime_now();
 
 struct ConnectionOptions {
-  // Over UDP: are this connection's own messages received on the channels that it subscribes to? Without,
-  // they take next to no room in its receive buffer, which those of others then have for themselves. Other
-  // connections, of this process too, receive them in any case.
+  // Over UDP: whether the connection receives its own messages on the channels that it subscribes to. If not,
+  // they take almost no space in its receive buffer, which is then left to other senders. Other connections,
+  // including those of this process, receive them in any case.
   bool receive_own = true;
-  // May handle_one_spinning() look for a message for a moment, which costs processor time?
+  // Whether handle_one_spinning() may poll for a message for a moment, which costs processor time.
   bool spin = true;
 };
 
 class LcmConnection {
  public:
-  // Called for every message: bytes are valid during the call only. Must not throw.
+  // Called for every message. The bytes are valid during the call only. Must not throw.
   using Handler = std::function<void(Bytes bytes, std::string_view channel)>;
 
   // url: "" for the default, "udpm://239.255.76.67:7667?ttl=1", or "memq://" (within this connection only, no
-  // network). LCM's other providers are refused: the death of a tcpq server aborts its clients. Asks the
-  // kernel for a receive buffer of 4 MB where the URL does not say. Errors: not such a URL, no multicast
-  // route (at once) or one that brings nothing back (after 2 s).
+  // network). LCM's other providers are rejected: the death of a tcpq server aborts its clients. Requests a
+  // receive buffer of 4 MB from the kernel unless the URL gives a size. Errors: an invalid URL, no multicast
+  // route (at once), or a route that does not loop packets back (after 2 s).
   static Expected<LcmConnection> open(const std::string& url, const ConnectionOptions& options = {});
 
   LcmConnection(LcmConnection&&) noexcept;
   LcmConnection& operator=(LcmConnection&&) noexcept;
   ~LcmConnection();
 
-  // channel: exactly this name, and once (regular-expression characters are taken literally).
+  // channel: an exact name (regular-expression characters are literal) that is not yet subscribed to.
   Expected<void> subscribe(const std::string& channel, Handler handler);
 
-  // Errors: the transport refused (message too large, route gone).
+  // Errors: the transport rejected the message (too large, route gone).
   Expected<void> publish(const std::string& channel, Bytes bytes);
 
-  int fileno() const;  // for poll(): readable when something waits, though perhaps of other channels
-  bool handle_one();   // dispatches one message that has come; false: none was there
-  // The same, but looks for it for a moment (AdaptiveSpin), up to `most`, where that pays and the options
-  // allow it: for whoever goes to sleep where it says false.
-  bool handle_one_spinning(std::chrono::nanoseconds most = std::chrono::nanoseconds::max());
+  int fileno() const;  // for poll(): readable when a packet is pending, perhaps of another channel
+  bool handle_one();   // dispatches one pending message; false: there was none
+  // Like handle_one(), but polls for a message for a moment first, for max_spin at most, if AdaptiveSpin and
+  // the options allow it. For callers that block after it returned false.
+  bool handle_one_spinning(std::chrono::nanoseconds max_spin = std::chrono::nanoseconds::max());
 
-  // us since 1970: when the message came in that was handled last; what lies between is the time that it
-  // waited for handle_one(). 0: none has been handled.
+  // When the message that was handled last arrived [us since 1970]; 0: none has been handled yet. The time
+  // from then to its handling is the time that it was queued.
   std::int64_t received_utime() const;
-  // What did not become a message; of memq:// nothing.
+  // Counts packets and fragments that were lost; always 0 with memq://.
   DropCounts drop_counts() const;
   const std::string& url() const { return url_; }
 

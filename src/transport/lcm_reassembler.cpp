@@ -7,11 +7,11 @@ namespace buoyancy {
 namespace {
 
 constexpr std::uint32_t kWhole = 0x4c433032;     // "LC02", the sender's number, the channel, the payload
-constexpr std::uint32_t kFragment = 0x4c433033;  // "LC03", the number, and what take_fragment() reads
+constexpr std::uint32_t kFragment = 0x4c433033;  // "LC03", the number, and what push_fragment() reads
 
-// Takes a big-endian number off the front of bytes that are long enough.
+// Consumes a big-endian number. Requires that bytes are long enough.
 template <typename Number>
-Number take_number(Bytes& bytes) {
+Number read_number(Bytes& bytes) {
   Number value = 0;
   for (std::size_t i = 0; i < sizeof(Number); ++i) value = static_cast<Number>(value << 8U | bytes[i]);
   bytes = bytes.subspan(sizeof(Number));
@@ -21,24 +21,24 @@ Number take_number(Bytes& bytes) {
 }  // namespace
 
 std::optional<std::size_t> LcmReassembler::add_channel(const std::string& name) {
-  const auto [place, is_new] = channels_.emplace(name, channels_.size());
-  return is_new ? std::optional(place->second) : std::nullopt;
+  const auto [entry, is_new] = channels_.emplace(name, channels_.size());
+  return is_new ? std::optional(entry->second) : std::nullopt;
 }
 
 std::optional<LcmReassembler::Message> LcmReassembler::push(Bytes packet, std::uint64_t sender) {
-  constexpr std::size_t kHead = 8;
-  if (packet.size() < kHead) return std::nullopt;
+  constexpr std::size_t kHeaderSize = 8;
+  if (packet.size() < kHeaderSize) return std::nullopt;
   Bytes rest = packet;
-  const auto magic = take_number<std::uint32_t>(rest);
-  if (magic == kFragment) return take_fragment(rest, sender);
+  const auto magic = read_number<std::uint32_t>(rest);
+  if (magic == kFragment) return push_fragment(rest, sender);
   if (magic != kWhole) return std::nullopt;
-  take_number<std::uint32_t>(rest);
-  const std::optional<std::size_t> channel = take_channel(rest);
+  read_number<std::uint32_t>(rest);
+  const std::optional<std::size_t> channel = read_channel(rest);
   if (!channel) return std::nullopt;
   return Message{*channel, rest};
 }
 
-std::optional<std::size_t> LcmReassembler::take_channel(Bytes& rest) const {
+std::optional<std::size_t> LcmReassembler::read_channel(Bytes& rest) const {
   const auto end = std::ranges::find(rest, std::uint8_t{0});
   if (end == rest.end()) return std::nullopt;
   const std::string_view name(reinterpret_cast<const char*>(rest.data()),
@@ -49,21 +49,21 @@ std::optional<std::size_t> LcmReassembler::take_channel(Bytes& rest) const {
   return found->second;
 }
 
-std::optional<LcmReassembler::Message> LcmReassembler::take_fragment(Bytes rest, std::uint64_t sender) {
-  constexpr std::size_t kHead = 16;
-  if (rest.size() < kHead) return std::nullopt;
-  const auto number = take_number<std::uint32_t>(rest);
-  const std::size_t size = take_number<std::uint32_t>(rest);
-  const std::size_t offset = take_number<std::uint32_t>(rest);
-  const auto fragment = take_number<std::uint16_t>(rest);
-  const auto fragments = take_number<std::uint16_t>(rest);
+std::optional<LcmReassembler::Message> LcmReassembler::push_fragment(Bytes rest, std::uint64_t sender) {
+  constexpr std::size_t kHeaderSize = 16;
+  if (rest.size() < kHeaderSize) return std::nullopt;
+  const auto number = read_number<std::uint32_t>(rest);
+  const std::size_t size = read_number<std::uint32_t>(rest);
+  const std::size_t offset = read_number<std::uint32_t>(rest);
+  const auto fragment = read_number<std::uint16_t>(rest);
+  const auto fragment_count = read_number<std::uint16_t>(rest);
 
-  const auto found = std::ranges::find_if(incomplete_, [&](const Incomplete& one) {
-    return one.received > 0 && one.sender == sender && one.number == number;
+  const auto found = std::ranges::find_if(partial_, [&](const PartialMessage& partial) {
+    return partial.received > 0 && partial.sender == sender && partial.number == number;
   });
-  Incomplete* message = found == incomplete_.end() ? nullptr : &*found;
+  PartialMessage* message = found == partial_.end() ? nullptr : &*found;
   if (fragment == 0) {
-    const std::optional<std::size_t> channel = take_channel(rest);
+    const std::optional<std::size_t> channel = read_channel(rest);
     if (!channel) return std::nullopt;
     if (size > kMaxMessageBytes) {
       ++fragments_dropped_;
@@ -75,24 +75,24 @@ std::optional<LcmReassembler::Message> LcmReassembler::take_fragment(Bytes rest,
       message->number = number;
       message->channel = *channel;
       message->size = size;
-      message->parts.assign(fragments, Part{});
+      message->fragments.assign(fragment_count, Fragment{});
       message->payload.resize(size);
     }
   }
-  if (message == nullptr) return std::nullopt;  // of another channel, or of what was given up
+  if (message == nullptr) return std::nullopt;  // of another channel or of a discarded message
 
-  const bool contradicts = fragments != message->parts.size() || fragment >= fragments ||
-                           size != message->size || offset > size || rest.size() > size - offset;
-  if (contradicts) {
+  const bool inconsistent = fragment_count != message->fragments.size() || fragment >= fragment_count ||
+                            size != message->size || offset > size || rest.size() > size - offset;
+  if (inconsistent) {
     ++fragments_dropped_;
     discard(*message);
     return std::nullopt;
   }
-  Part& part = message->parts[fragment];
-  if (part.received) return std::nullopt;  // the network doubled it
+  Fragment& part = message->fragments[fragment];
+  if (part.received) return std::nullopt;  // duplicated by the network
   part = {offset, offset + rest.size(), true};
   std::ranges::copy(rest, message->payload.begin() + static_cast<std::ptrdiff_t>(offset));
-  if (++message->received < message->parts.size()) return std::nullopt;
+  if (++message->received < message->fragments.size()) return std::nullopt;
   if (!message->is_consistent()) {
     discard(*message);
     return std::nullopt;
@@ -101,31 +101,33 @@ std::optional<LcmReassembler::Message> LcmReassembler::take_fragment(Bytes rest,
   return Message{message->channel, message->payload};
 }
 
-// One fragment begins where the one before it ends: no byte is left over from an older message.
-bool LcmReassembler::Incomplete::is_consistent() const {
+// Each fragment must begin where the previous one ends, so that no byte is left over from an older message.
+bool LcmReassembler::PartialMessage::is_consistent() const {
   std::size_t end = 0;
-  for (const Part& part : parts) {
+  for (const Fragment& part : fragments) {
     if (part.begin != end) return false;
     end = part.end;
   }
   return end == size;
 }
 
-LcmReassembler::Incomplete& LcmReassembler::claim_slot(std::uint64_t sender) {
-  // Who sends another message has sent the last one: what is missing of it, is lost.
-  auto place = std::ranges::find_if(incomplete_, [&](const Incomplete& one) { return one.sender == sender; });
-  if (place == incomplete_.end()) {
-    place = std::ranges::find_if(incomplete_, [](const Incomplete& one) { return one.received == 0; });
+LcmReassembler::PartialMessage& LcmReassembler::claim_slot(std::uint64_t sender) {
+  // A new message from the same sender means that the rest of the previous one is lost.
+  auto slot =
+      std::ranges::find_if(partial_, [&](const PartialMessage& partial) { return partial.sender == sender; });
+  if (slot == partial_.end()) {
+    slot =
+        std::ranges::find_if(partial_, [](const PartialMessage& partial) { return partial.received == 0; });
   }
-  if (place == incomplete_.end()) {
-    place = incomplete_.begin() +
-            static_cast<std::ptrdiff_t>(std::exchange(oldest_, (oldest_ + 1) % kMaxPartialMessages));
+  if (slot == partial_.end()) {
+    slot = partial_.begin() +
+           static_cast<std::ptrdiff_t>(std::exchange(oldest_, (oldest_ + 1) % kMaxPartialMessages));
   }
-  discard(*place);
-  return *place;
+  discard(*slot);
+  return *slot;
 }
 
-void LcmReassembler::discard(Incomplete& message) {
+void LcmReassembler::discard(PartialMessage& message) {
   fragments_dropped_ += static_cast<std::int64_t>(std::exchange(message.received, 0));
 }
 

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kResendMilliseconds = 100;
 
-// As in LCM's documentation of a machine that is not on a network, in iproute2's words.
-constexpr const char* kRemedy =
+// From LCM's documentation for a machine without a network, as iproute2 commands.
+constexpr const char* kHint =
     "To keep LCM on this machine, run as root: "
     "ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo";
 
@@ -52,17 +52,17 @@ std::string subject(const UdpmUrl& url) {
 
 tl::unexpected<Error> socket_failed(const UdpmUrl& url, const std::string& what, int error) {
   return make_error({subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
-                     "another program holds the port alone, or sockets are forbidden to this one", ""});
+                     "another program uses the port exclusively, or this one may not open sockets", ""});
 }
 
-// An LCM message that no other probe sends: "LC02", a sequence number, the channel, the payload.
+// Returns an LCM message that no other probe sends: "LC02", a sequence number, the channel, the payload.
 std::string self_test_packet() {
   using namespace std::string_literals;
   const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
   return "LC02\0\0\0\0LCM_SELF_TEST\0buoyancy "s + std::to_string(::getpid()) + " " + std::to_string(now);
 }
 
-bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in& group) {
+bool is_looped_back(const Socket& sender, const Socket& receiver, const sockaddr_in& group) {
   const std::string packet = self_test_packet();
   std::array<char, 256> received{};
   const auto start = std::chrono::steady_clock::now();
@@ -90,7 +90,7 @@ bool comes_back(const Socket& sender, const Socket& receiver, const sockaddr_in&
 tl::unexpected<Error> no_multicast_route(const UdpmUrl& url, int error) {
   return make_error({subject(url), "no multicast route (" + reason(error) + ")",
                      "a network interface that LCM's UDP multicast can use",
-                     "this machine is on no network, or on none that has a route for multicast", kRemedy});
+                     "this machine has no network, or none with a route for multicast", kHint});
 }
 
 Expected<void> probe_multicast(const UdpmUrl& url) {
@@ -120,12 +120,12 @@ Expected<void> probe_multicast(const UdpmUrl& url) {
     return socket_failed(url, "IP_MULTICAST_TTL", errno);
   }
 
-  if (!comes_back(sender, receiver, group)) {
+  if (!is_looped_back(sender, receiver, group)) {
     return make_error(
         {subject(url),
-         "packets sent do not come back within " + std::to_string(kMulticastProbeMilliseconds) + " ms",
-         "multicast packets to be looped back on this machine",
-         "a firewall, or a multicast route through an interface without multicast", kRemedy});
+         "packets are not looped back within " + std::to_string(kMulticastProbeMilliseconds) + " ms",
+         "multicast packets that are looped back on this machine",
+         "a firewall, or a multicast route through an interface without multicast", kHint});
   }
   return {};
 }

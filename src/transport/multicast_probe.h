@@ -1,8 +1,8 @@
-// Does UDP multicast work on this machine? Asked before liblcm is, because liblcm answers a missing route
-// with a page on stderr, and packets that do not come back with ten seconds of silence and a later abort.
+// Checks that UDP multicast works on this machine, before liblcm is used: liblcm prints a page on standard
+// error if there is no route, and if packets are not looped back it blocks for ten seconds and aborts later.
 //
-// The probe does what liblcm's own self-test does, with a bound on time: it joins the group, sends one LCM
-// message on LCM_SELF_TEST that stays on this machine (ttl 0), and waits until it comes back.
+// The probe does what liblcm's own self-test does, with a time limit: it joins the group, sends one LCM
+// message on LCM_SELF_TEST that stays on this machine (ttl 0), and waits until it is looped back.
 #pragma once
 
 #include "base/error.h"
@@ -12,10 +12,10 @@ namespace buoyancy {
 
 inline constexpr int kMulticastProbeMilliseconds = 2000;
 
-// Errors: no route to the group, port taken, packets that do not come back.
+// Errors: no route to the group, port in use, packets that are not looped back.
 Expected<void> probe_multicast(const UdpmUrl& url);
 
-// What is told where the group could not be joined. error: errno.
+// The error for a group that could not be joined. error: errno.
 tl::unexpected<Error> no_multicast_route(const UdpmUrl& url, int error);
 
 }  // namespace buoyancy

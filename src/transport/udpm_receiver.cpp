@@ -58,19 +58,19 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   const std::int32_t buffer = url.recv_buf_size.value_or(kReceiveBufferBytes);
-  // Root gets what it asks for, others up to net.core.rmem_max. Bound to the group's address: what comes to
-  // the port by another one is not ours; nor, with IP_MULTICAST_ALL, what comes by an interface on which
-  // another program has joined the group.
-  const bool listens =
+  // Root gets the requested buffer size, others at most net.core.rmem_max. The socket is bound to the group's
+  // address to exclude packets that were sent to the port at another address; IP_MULTICAST_ALL = 0 excludes
+  // those from interfaces on which only another program has joined the group.
+  const bool ready =
       socket.valid() && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
       (set(socket, SOL_SOCKET, SO_RCVBUFFORCE, buffer) || set(socket, SOL_SOCKET, SO_RCVBUF, buffer)) &&
       set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
       set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
-  if (!listens) {
+  if (!ready) {
     return make_error({to_string(url), std::generic_category().message(errno),
-                       "a UDP socket that may listen to the group",
-                       "another program holds the port alone, or sockets are forbidden to this one", ""});
+                       "a UDP socket bound to the group",
+                       "another program uses the port exclusively, or this one may not open sockets", ""});
   }
   if (!set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
   return UdpmReceiver(std::move(socket));
@@ -80,8 +80,8 @@ Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
   if (Expected<void> checked = check_channel(channel); !checked) return tl::unexpected(checked.error());
   const std::optional<std::size_t> number = reassembler_.add_channel(channel);
   if (!number) {
-    return make_error(
-        {"LCM channel '" + channel + "'", "is subscribed to twice", "one subscription", "", ""});
+    return make_error({"LCM channel '" + channel + "'", "is already subscribed to",
+                       "one subscription per channel", "", ""});
   }
   return *number;
 }
@@ -101,11 +101,11 @@ std::optional<UdpmReceiver::Packet> UdpmReceiver::read_packet() {
   const ssize_t size = ::recvmsg(socket_.value(), &packet, MSG_DONTWAIT);
   if (size < 0) return std::nullopt;
   timespec arrived{};
-  for (cmsghdr* one = CMSG_FIRSTHDR(&packet); one != nullptr; one = CMSG_NXTHDR(&packet, one)) {
-    if (one->cmsg_level != SOL_SOCKET) continue;
-    if (one->cmsg_type == SCM_TIMESTAMPNS) arrived = data_of<timespec>(one);
-    if (one->cmsg_type == SO_RXQ_OVFL) {
-      const auto drops = data_of<std::uint32_t>(one);
+  for (cmsghdr* header = CMSG_FIRSTHDR(&packet); header != nullptr; header = CMSG_NXTHDR(&packet, header)) {
+    if (header->cmsg_level != SOL_SOCKET) continue;
+    if (header->cmsg_type == SCM_TIMESTAMPNS) arrived = data_of<timespec>(header);
+    if (header->cmsg_type == SO_RXQ_OVFL) {
+      const auto drops = data_of<std::uint32_t>(header);
       packets_dropped_ += drops - std::exchange(kernel_drops_, drops);
     }
   }
@@ -147,19 +147,19 @@ std::optional<UdpmReceiver::Sender> UdpmReceiver::find_sender(Bytes ending,
   return std::nullopt;
 }
 
-bool UdpmReceiver::empty_packets_of(const Sender& sender) {
-  // Classic BPF sees a datagram from its UDP header on, and the IP header at kIpHeader. What it returns is
-  // the number of bytes to keep, of which the kernel makes the header's 8 at least.
+bool UdpmReceiver::truncate_packets_of(const Sender& sender) {
+  // Classic BPF addresses a datagram from its UDP header on, and the IP header at kIpHeader. It returns the
+  // number of bytes to keep; the kernel keeps at least the 8 bytes of the UDP header.
   constexpr std::uint32_t kIpHeader = static_cast<std::uint32_t>(SKF_NET_OFF);
   constexpr std::uint32_t kSourceAddress = kIpHeader + 12;
   constexpr std::uint32_t kSourcePort = 0;
-  constexpr std::uint32_t kHeaderAlone = 1;
+  constexpr std::uint32_t kHeaderOnly = 1;
   constexpr std::uint32_t kWholePacket = 0xffffffff;
   std::array<sock_filter, 6> program{{BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
                                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohs(sender.port), 0, 3),
                                       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kSourceAddress),
                                       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ntohl(sender.address), 0, 1),
-                                      BPF_STMT(BPF_RET | BPF_K, kHeaderAlone),
+                                      BPF_STMT(BPF_RET | BPF_K, kHeaderOnly),
                                       BPF_STMT(BPF_RET | BPF_K, kWholePacket)}};
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   return set(socket_, SOL_SOCKET, SO_ATTACH_FILTER, filter);

@@ -1,7 +1,7 @@
-// The URL of LCM's UDP multicast provider, read strictly: liblcm itself takes a misspelt address for 0.0.0.0
-// and a misspelt option for none.
+// The URL of LCM's UDP multicast provider, parsed strictly: liblcm itself interprets a misspelt address as
+// 0.0.0.0 and ignores a misspelt option.
 //
-//   udpm://[address][:port][?ttl=N][&recv_buf_size=N]      address 239.255.76.67, port 7667 where left out
+//   udpm://[address][:port][?ttl=N][&recv_buf_size=N]      defaults: address 239.255.76.67, port 7667
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,14 @@ struct UdpmUrl {
   std::string group = "239.255.76.67";        // an IPv4 multicast address: 224.0.0.0 to 239.255.255.255
   std::uint16_t port = 7667;                  // >= 1
   int ttl = 0;                                // 0: packets stay on this machine; limits sending only
-  std::optional<std::int32_t> recv_buf_size;  // bytes
+  std::optional<std::int32_t> recv_buf_size;  // [bytes]
 };
 
-// Errors: not udpm, a group that is no multicast address, a port or an option out of range or unknown.
+// Errors: another scheme, a group that is not an IPv4 multicast address, a port or option out of range, an
+// unknown option.
 Expected<UdpmUrl> parse_udpm_url(const std::string& url);
 
-// As liblcm has to be told, which takes port 0 where a URL names none.
+// Returns the URL with every part written out, since liblcm uses port 0 if a URL has none.
 std::string to_string(const UdpmUrl& url);
 
 }  // namespace buoyancy
