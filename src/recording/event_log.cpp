@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::size_t kHeaderSize = 28;
-constexpr std::int32_t kLongestChannel = 999;              // liblcm's own bound for logs
-constexpr std::int32_t kMaxMessageBytes = 64 * 1'048'576;  // bytes; LCM itself delivers 16 MB at most
+constexpr std::int32_t kMaxChannelLength = 999;            // liblcm's own limit for logs
+constexpr std::int32_t kMaxMessageBytes = 64 * 1'048'576;  // LCM itself delivers at most 16 MB
 
 bool starts_with_magic(Bytes bytes) {
   return bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
@@ -22,13 +22,13 @@ std::string_view as_text(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Whole by itself, whatever follows it.
+// Returns whether data is complete by itself, whatever follows it.
 bool is_request_or_pose(Bytes data) {
   return peek_request_id(data).has_value() || decode_bot_pose(data).has_value();
 }
 
-// A message that lost bytes may have its length all the same, filled with the next event's beginning.
-bool is_torn(Bytes data) {
+// A message that lost bytes can still have its full length if the next event's beginning follows.
+bool is_truncated(Bytes data) {
   return std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
 }
 
@@ -50,20 +50,20 @@ EventLogReader::EventLogReader(FileWindow file, ChannelFilter wanted)
 LogItem EventLogReader::next() {
   while (offset_ < size()) {
     const tl::expected<Frame, std::string> frame = frame_at(offset_);
-    if (!frame) return skip_damage(frame.error());
+    if (!frame) return skip_corrupt_section(frame.error());
     const std::int64_t start = offset_;
     if (!frame->wanted) {
-      if (!header_or_end_at(frame->next)) return skip_damage("no event follows where one should");
+      if (!header_or_end_at(frame->next)) return skip_corrupt_section("no event follows");
       offset_ = frame->next;
       continue;
     }
     const std::size_t event_size = frame->data_start + frame->data_size;
-    const Bytes event = file_.at(start, event_size + kMagic.size());
+    const Bytes event = file_.read_at(start, event_size + kMagic.size());
     if (event.size() < event_size) break;  // a read error
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
-    if (!followed && (is_torn(data) || !is_request_or_pose(data))) {
-      return skip_damage("no event follows where one should");
+    if (!followed && (is_truncated(data) || !is_request_or_pose(data))) {
+      return skip_corrupt_section("no event follows");
     }
     offset_ = frame->next;
     const Bytes channel = event.subspan(kHeaderSize, frame->data_start - kHeaderSize);
@@ -71,25 +71,25 @@ LogItem EventLogReader::next() {
   }
   if (file_.read_error()) {
     offset_ = size();
-    const CorruptSection damage{file_.read_error()->message()};
-    return damage;
+    const CorruptSection unreadable{file_.read_error()->message()};
+    return unreadable;
   }
   return EndOfLog{};
 }
 
 tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::int64_t offset) {
   using Reason = tl::unexpected<std::string>;
-  const Bytes header = file_.at(offset, kHeaderSize + kLongestChannel);
-  if (!starts_with_magic(header)) return Reason("no event's header");
-  if (header.size() < kHeaderSize) return Reason("the file ends within an event's header");
+  const Bytes header = file_.read_at(offset, kHeaderSize + kMaxChannelLength);
+  if (!starts_with_magic(header)) return Reason("no event header");
+  if (header.size() < kHeaderSize) return Reason("the file ends within an event header");
   std::int64_t number = 0;
   std::int32_t channel_size = 0;
   std::int32_t data_size = 0;
   Frame frame;
   BigEndianReader reader(header.data() + kMagic.size());
   reader(number, frame.timestamp, channel_size, data_size);
-  if (channel_size <= 0 || channel_size > kLongestChannel) {
-    return Reason("a channel's length of " + std::to_string(channel_size));
+  if (channel_size <= 0 || channel_size > kMaxChannelLength) {
+    return Reason("a channel length of " + std::to_string(channel_size));
   }
   if (data_size < 0) return Reason("a data length of " + std::to_string(data_size));
   frame.data_start = kHeaderSize + static_cast<std::size_t>(channel_size);
@@ -107,22 +107,22 @@ tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::i
 }
 
 bool EventLogReader::header_or_end_at(std::int64_t offset) {
-  return offset == size() || starts_with_magic(file_.at(offset, kMagic.size()));
+  return offset == size() || starts_with_magic(file_.read_at(offset, kMagic.size()));
 }
 
-CorruptSection EventLogReader::skip_damage(const std::string& reason) {
+CorruptSection EventLogReader::skip_corrupt_section(const std::string& reason) {
   const std::int64_t start = offset_;
   for (++offset_; offset_ < size();) {
-    const Bytes window = file_.at(offset_, kMagic.size());
+    const Bytes window = file_.read_at(offset_, kMagic.size());
     const auto found = std::search(window.begin(), window.end(), kMagic.begin(), kMagic.end());
     offset_ += found - window.begin();
     if (found != window.end()) break;
-    // The window may end within a header's first bytes: look at those again. It is shorter than them at the
-    // end of the file only, or where reading failed.
+    // The window may end within the first bytes of a header, which are then searched again. It is shorter
+    // than those only at the end of the file or after a read error.
     const bool more = offset_ < size() && window.size() >= kMagic.size();
     offset_ = more ? offset_ - static_cast<std::int64_t>(kMagic.size()) + 1 : size();
   }
-  return {"damaged at byte " + std::to_string(start) + ": " + reason + "; " +
+  return {"corrupt at byte " + std::to_string(start) + ": " + reason + "; " +
           std::to_string(offset_ - start) + " bytes skipped"};
 }
 

@@ -34,7 +34,7 @@ Expected<FileWindow> FileWindow::open(const std::filesystem::path& path) {
 FileWindow::FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size)
     : path_(std::move(path)), file_(std::move(file)), size_(size) {}
 
-Bytes FileWindow::at(std::int64_t offset, std::size_t count) {
+Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
   assert(offset >= 0);
   if (offset >= size_) return {};
   const auto left = static_cast<std::uint64_t>(size_ - offset);

@@ -1,4 +1,4 @@
-// One thing that a reader of recorded messages found.
+// What a reader of recorded messages returns: an event, a corrupt section or the end.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 namespace buoyancy {
 
 struct RecordedEvent {
-  std::int64_t timestamp = 0;  // us: of the log's event; of CSV the rows' utime
-  std::string_view channel;    // of the log's event; of CSV empty: a request
+  std::int64_t timestamp = 0;  // log: of the event; CSV: utime of the rows [us]
+  std::string_view channel;    // log: of the event; CSV: empty, the event is a request
   Bytes bytes;                 // not yet validated
-  // Both views are valid until the reader is asked again.
+  // Both views are valid until the reader's next call.
 };
 struct CorruptSection {
-  std::string description;  // what could not be read, where, and how much of it was skipped
+  std::string description;  // what could not be read, where, and how much was skipped
 };
 struct EndOfLog {};
 

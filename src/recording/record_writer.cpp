@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kBufferBytes = 1'048'576;
 constexpr unsigned kPermissions = 0666;  // before the umask
 
-tl::unexpected<Error> not_written(const std::filesystem::path& path, int error) {
+tl::unexpected<Error> write_error(const std::filesystem::path& path, int error) {
   std::string cause;
   if (error == ENOSPC || error == EDQUOT) cause = "the disk is full";
   if (error == ENOENT) cause = "the directory does not exist";
@@ -24,22 +24,22 @@ tl::unexpected<Error> not_written(const std::filesystem::path& path, int error) 
                      "a writable file", std::move(cause), ""});
 }
 
-tl::unexpected<Error> given_up(const std::filesystem::path& path) {
-  return make_error({path.string(), "is full, and nobody has read from it since the signal to end",
-                     "a reader that makes room", "", ""});
+tl::unexpected<Error> stalled_reader(const std::filesystem::path& path) {
+  return make_error({path.string(), "is full, and its reader has stalled since the termination signal",
+                     "a reader that keeps reading", "", ""});
 }
 
 }  // namespace
 
 Expected<RecordWriter> RecordWriter::create(const std::filesystem::path& path) {
   UniqueFd file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kPermissions));
-  if (!file.valid()) return not_written(path, errno);
+  if (!file.valid()) return write_error(path, errno);
   struct stat status {};
-  if (::fstat(file.value(), &status) != 0) return not_written(path, errno);
-  // What may wait for a reader waits in poll() instead of write(), where a signal can end it. The flag is of
-  // this opening alone, not of others of the same pipe.
+  if (::fstat(file.value(), &status) != 0) return write_error(path, errno);
+  // Pipes and terminals block in poll() instead of write(), so that a signal can end the wait. The flag
+  // applies to this open file description only, not to other openings of the same pipe.
   if (!S_ISREG(status.st_mode) && ::fcntl(file.value(), F_SETFL, O_NONBLOCK) != 0) {
-    return not_written(path, errno);
+    return write_error(path, errno);
   }
   return RecordWriter(path, std::move(file), S_ISFIFO(status.st_mode));
 }
@@ -63,15 +63,15 @@ Expected<void> RecordWriter::flush() {
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote < 0) {
       const int error = errno;
-      if (error == EAGAIN && wait_for_room()) continue;
+      if (error == EAGAIN && wait_until_writable()) continue;
       const auto past = std::upper_bound(record_ends_.begin(), record_ends_.end(), done);
       const std::size_t whole = past == record_ends_.begin() ? 0 : *(past - 1);
-      // Fails for devices and pipes, which cannot be cut back: the error below is what counts.
-      [[maybe_unused]] const int cut =
+      // Fails for devices and pipes, which cannot be truncated; the error below is reported instead.
+      [[maybe_unused]] const int truncated =
           ::ftruncate(file_.value(), written_ + static_cast<std::int64_t>(whole));
       buffer_.clear();
       record_ends_.clear();
-      return error == EAGAIN ? given_up(path_) : not_written(path_, error);
+      return error == EAGAIN ? stalled_reader(path_) : write_error(path_, error);
     }
     done += static_cast<std::size_t>(wrote);
   }
@@ -81,8 +81,8 @@ Expected<void> RecordWriter::flush() {
   return {};
 }
 
-// A pipe takes up to PIPE_BUF bytes whole or not at all: so many whole records are written at once, and of a
-// larger one as much as there is room for.
+// A write of up to PIPE_BUF bytes to a pipe is atomic: as many complete records as fit are written at once,
+// and of a larger record as much as there is room for.
 std::size_t RecordWriter::end_of_write(std::size_t begin) const {
   if (!is_pipe_) return buffer_.size();
   const auto too_far = std::upper_bound(record_ends_.begin(), record_ends_.end(), begin + PIPE_BUF);
@@ -90,13 +90,13 @@ std::size_t RecordWriter::end_of_write(std::size_t begin) const {
   return whole > begin ? whole : *too_far;
 }
 
-// False: given up.
-bool RecordWriter::wait_for_room() {
+// Returns false if the reader stalled.
+bool RecordWriter::wait_until_writable() {
   while (true) {
     std::array<pollfd, 2> waiting{pollfd{file_.value(), POLLOUT, 0}, pollfd{signal_, POLLIN, 0}};
     int timeout_ms = -1;
     if (deadline_) {
-      waiting[1].fd = -1;  // seen: it stays readable
+      waiting[1].fd = -1;  // already observed: it stays readable
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline_ - Clock::now());
       timeout_ms = static_cast<int>(std::max<std::int64_t>(left.count(), 0));
     }

@@ -12,23 +12,24 @@ constexpr std::string_view kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz";
 constexpr std::string_view kTwistHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz";
 constexpr std::size_t kPoseColumns = 9;
 constexpr std::size_t kTwistColumns = 15;
-constexpr std::size_t kLongestLine = 4096;
-constexpr std::size_t kShownOfALine = 60;
+constexpr std::size_t kMaxLineLength = 4096;
+constexpr std::size_t kMaxShownLength = 60;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trim(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r";
   const std::size_t first = text.find_first_not_of(kSpace);
   if (first == text.npos) return {};
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
-std::string shown(std::string_view text) {
-  std::string copy(text.substr(0, kShownOfALine));
+// Quotes a text for a message, shortened and without control characters.
+std::string quote(std::string_view text) {
+  std::string copy(text.substr(0, kMaxShownLength));
   for (char& c : copy) {
     if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7F) c = '?';
   }
-  return "'" + copy + (text.size() > kShownOfALine ? "...'" : "'");
+  return "'" + copy + (text.size() > kMaxShownLength ? "...'" : "'");
 }
 
 template <typename Number>
@@ -44,7 +45,7 @@ Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path)
   Expected<FileWindow> file = FileWindow::open(path);
   if (!file) return tl::unexpected(file.error());
   StateCsvReader reader(std::move(*file));
-  const std::optional<std::string_view> header = reader.line();
+  const std::optional<std::string_view> header = reader.read_line();
   if (!header) return reader;
   const Expected<std::size_t> columns = reader.parse_header(*header, path);
   if (!columns) return tl::unexpected(columns.error());
@@ -54,51 +55,51 @@ Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path)
 
 Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const std::filesystem::path& path) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  std::string names;  // without the spaces around them
+  std::string names;  // without spaces
   for (const char c : text) {
     if (c != ' ' && c != '\t' && c != '\r') names += c;
   }
   if (names == kPoseHeader) return kPoseColumns;
   if (names == kTwistHeader) return kTwistColumns;
-  return make_error({path.string() + ":1", "header " + shown(text),
-                     "'" + std::string(kPoseHeader) + "', where ',vx,vy,vz,wx,wy,wz' may follow",
+  return make_error({path.string() + ":1", "header " + quote(text),
+                     "'" + std::string(kPoseHeader) + "', optionally followed by ',vx,vy,vz,wx,wy,wz'",
                      "the file has no header, or its columns are in another order", ""});
 }
 
 LogItem StateCsvReader::next() {
-  if (damage_) {
-    CorruptSection damage = std::move(*damage_);
-    damage_.reset();
-    return damage;
+  if (corrupt_line_) {
+    CorruptSection corrupt = std::move(*corrupt_line_);
+    corrupt_line_.reset();
+    return corrupt;
   }
   request_.bodies.clear();
-  const auto take = [this](const Row& row) {
+  const auto append = [this](const Row& row) {
     request_.key.utime = row.utime;
     request_.bodies.push_back(row.state);
   };
-  if (pending_) take(*pending_);
+  if (pending_) append(*pending_);
   pending_.reset();
   while (request_.bodies.size() < kMaxRowsPerRequest) {
-    const std::optional<std::string_view> text = line();
+    const std::optional<std::string_view> text = read_line();
     if (!text) break;
-    if (trimmed(*text).empty() && !line_too_long_) continue;
+    if (trim(*text).empty() && !line_too_long_) continue;
     const tl::expected<Row, std::string> row = parse_row(*text);
     if (!row) {
-      damage_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; left out"};
+      corrupt_line_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; skipped"};
       break;
     }
     if (!request_.bodies.empty() && row->utime != request_.key.utime) {
       pending_ = *row;
       break;
     }
-    take(*row);
+    append(*row);
   }
   if (!request_.bodies.empty()) {
     encode(request_, bytes_);
     ++request_.key.seq;
     return RecordedEvent{request_.key.utime, {}, bytes_};
   }
-  if (damage_) return next();
+  if (corrupt_line_) return next();
   if (file_.read_error() && offset_ < size()) {
     offset_ = size();
     return CorruptSection{file_.read_error()->message()};
@@ -106,15 +107,15 @@ LogItem StateCsvReader::next() {
   return EndOfLog{};
 }
 
-std::optional<std::string_view> StateCsvReader::line() {
-  const Bytes window = file_.at(offset_, kLongestLine + 1);
+std::optional<std::string_view> StateCsvReader::read_line() {
+  const Bytes window = file_.read_at(offset_, kMaxLineLength + 1);
   if (window.empty()) return std::nullopt;
   ++line_number_;
-  const auto longest = window.subspan(0, std::min(window.size(), kLongestLine + 1));
+  const auto longest = window.subspan(0, std::min(window.size(), kMaxLineLength + 1));
   const auto newline = std::find(longest.begin(), longest.end(), '\n');
   const std::string_view text(reinterpret_cast<const char*>(window.data()),
                               static_cast<std::size_t>(newline - longest.begin()));
-  line_too_long_ = text.size() > kLongestLine;
+  line_too_long_ = text.size() > kMaxLineLength;
   offset_ += static_cast<std::int64_t>(text.size());
   if (line_too_long_) {
     skip_to_newline();
@@ -126,7 +127,7 @@ std::optional<std::string_view> StateCsvReader::line() {
 
 void StateCsvReader::skip_to_newline() {
   while (true) {
-    const Bytes window = file_.at(offset_, 1);
+    const Bytes window = file_.read_at(offset_, 1);
     if (window.empty()) return;
     const auto newline = std::find(window.begin(), window.end(), '\n');
     offset_ += newline - window.begin();
@@ -138,13 +139,13 @@ void StateCsvReader::skip_to_newline() {
 }
 
 tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::string_view text) const {
-  if (line_too_long_) return tl::unexpected("more than " + std::to_string(kLongestLine) + " characters");
+  if (line_too_long_) return tl::unexpected("more than " + std::to_string(kMaxLineLength) + " characters");
   Row row;
   std::array<double, kTwistColumns - 2> numbers{};
   std::size_t column = 0;
   for (std::string_view rest = text;; ++column) {
     const std::size_t comma = rest.find(',');
-    const std::string_view field = trimmed(rest.substr(0, comma));
+    const std::string_view field = trim(rest.substr(0, comma));
     bool good = true;
     if (column == 0) {
       good = parse_number(field, row.utime);
@@ -154,8 +155,8 @@ tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::st
       good = parse_number(field, numbers[column - 2]);
     }
     if (!good) {
-      return tl::unexpected(shown(field) + " in column " + std::to_string(column + 1) + " is not a " +
-                            (column < 2 ? "whole number" : "number") + " in range");
+      return tl::unexpected(quote(field) + " in column " + std::to_string(column + 1) + " is not " +
+                            (column < 2 ? "an integer" : "a number") + " in range");
     }
     if (comma == rest.npos) break;
     rest.remove_prefix(comma + 1);

@@ -149,7 +149,7 @@ TEST_F(ReplayPoses, HandlesPosesAroundACorruptSectionAndReportsIt) {
   write("in.lcmlog", before + "garbage" + log_of_poses(10));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("damaged at byte " + std::to_string(before.size())),
+  EXPECT_NE(finished.standard_error.find("corrupt at byte " + std::to_string(before.size())),
             std::string::npos)
       << finished.standard_error;
   EXPECT_EQ(responses_in(path("out.lcmlog")).size(), 20U);

@@ -226,7 +226,7 @@ TEST_F(Replay, HandlesIntactEventsOfACorruptLogAndFails) {
   log.resize(log.size() - 3);
   const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"));
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("damaged at byte " + std::to_string(middle)), std::string::npos)
+  EXPECT_NE(finished.standard_error.find("corrupt at byte " + std::to_string(middle)), std::string::npos)
       << finished.standard_error;
   EXPECT_NE(finished.standard_error.find("the file ends within an event"), std::string::npos)
       << finished.standard_error;
@@ -386,7 +386,7 @@ TEST_F(Replay, StopsOnASignalIfItsPipeHasNoActiveReader) {
     }
     child.send_signal(signal);
     EXPECT_EQ(child.wait(kWaitTimeout), 1);
-    EXPECT_NE(child.standard_error().find("nobody has read from it"), std::string::npos)
+    EXPECT_NE(child.standard_error().find("its reader has stalled"), std::string::npos)
         << child.standard_error();
     std::string csv(static_cast<std::size_t>(waiting()), ' ');
     ASSERT_EQ(::read(reader.value(), csv.data(), csv.size()), static_cast<ssize_t>(csv.size()));
