@@ -156,7 +156,7 @@ tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::st
     }
     if (!good) {
       return tl::unexpected(quote(field) + " in column " + std::to_string(column + 1) + " is not " +
-                            (column < 2 ? "an integer" : "a number") + " in range");
+                            (column < 2 ? "a whole number" : "a number") + " in range");
     }
     if (comma == rest.npos) break;
     rest.remove_prefix(comma + 1);

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> request(std::int64_t seq, std::size_t bodies = 1) {
   return bytes;
 }
 
-// Events as bytes, and where each starts.
+// A log of encoded events and the offset of each.
 struct Log {
   std::string bytes;
   std::vector<std::size_t> starts;
@@ -44,33 +44,33 @@ Log log_of_requests(int count) {
   return log;
 }
 
-struct Found {
+struct LogContents {
   std::vector<std::int64_t> seqs;
   std::vector<std::string> corrupt_sections;
 };
 
-Found read_all(const std::string& contents) {
+LogContents read_all(const std::string& bytes) {
   const TempDir directory;
-  auto reader = EventLogReader::open(directory.write("x.lcmlog", contents), only_channel("BUOYANCY_STATES"));
+  auto reader = EventLogReader::open(directory.write("x.lcmlog", bytes), only_channel("BUOYANCY_STATES"));
   if (!reader) throw std::runtime_error(reader.error().message());
-  Found found;
+  LogContents contents;
   while (true) {
     const LogItem item = reader->next();
     if (std::holds_alternative<EndOfLog>(item)) break;
-    if (const auto* damage = std::get_if<CorruptSection>(&item)) {
-      found.corrupt_sections.push_back(damage->description);
+    if (const auto* corrupt = std::get_if<CorruptSection>(&item)) {
+      contents.corrupt_sections.push_back(corrupt->description);
     } else {
       const auto key = peek_request_id(std::get<RecordedEvent>(item).bytes);
-      found.seqs.push_back(key ? key->seq : -1);
+      contents.seqs.push_back(key ? key->seq : -1);
     }
   }
   EXPECT_EQ(reader->offset(), reader->size());
-  return found;
+  return contents;
 }
 
 using Seqs = std::vector<std::int64_t>;
 
-TEST(EventLog, WritesWhatLcmReads) {
+TEST(EventLog, WritesEventsThatLiblcmReads) {
   const TempDir directory;
   const std::string path = directory.write("x.lcmlog", log_of_requests(2).bytes);
   lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "r");
@@ -89,7 +89,7 @@ TEST(EventLog, WritesWhatLcmReads) {
   lcm_eventlog_destroy(log);
 }
 
-TEST(EventLog, ReadsWhatLcmWrites) {
+TEST(EventLog, ReadsEventsThatLiblcmWrote) {
   const TempDir directory;
   const std::string path = directory.path("x.lcmlog");
   lcm_eventlog_t* log = lcm_eventlog_create(path.c_str(), "w");
@@ -108,13 +108,13 @@ TEST(EventLog, ReadsWhatLcmWrites) {
   auto reader = EventLogReader::open(path, only_channel("BUOYANCY_STATES"));
   ASSERT_TRUE(reader);
   const LogItem item = reader->next();
-  const auto& found = std::get<RecordedEvent>(item);
-  EXPECT_EQ(found.timestamp, 77);
-  EXPECT_EQ(std::vector<std::uint8_t>(found.bytes.begin(), found.bytes.end()), data);
+  const auto& read = std::get<RecordedEvent>(item);
+  EXPECT_EQ(read.timestamp, 77);
+  EXPECT_EQ(std::vector<std::uint8_t>(read.bytes.begin(), read.bytes.end()), data);
   EXPECT_TRUE(std::holds_alternative<EndOfLog>(reader->next()));
 }
 
-TEST(EventLog, PassesOverOtherChannelsWhateverTheirSize) {
+TEST(EventLog, SkipsOtherChannelsOfAnySize) {
   Log log;
   log.add("OTHER", std::vector<std::uint8_t>(5'000'000, 0xED));
   log.add("BUOYANCY_STATES", request(1));
@@ -122,38 +122,39 @@ TEST(EventLog, PassesOverOtherChannelsWhateverTheirSize) {
   log.add("BUOYANCY_STATE", request(3));
   log.add("BUOYANCY_STATES", request(4, 100'000));
   log.add("OTHER", {});
-  const Found found = read_all(log.bytes);
-  EXPECT_EQ(found.seqs, (Seqs{1, 4}));
-  EXPECT_TRUE(found.corrupt_sections.empty());
+  const LogContents contents = read_all(log.bytes);
+  EXPECT_EQ(contents.seqs, (Seqs{1, 4}));
+  EXPECT_TRUE(contents.corrupt_sections.empty());
 }
 
-TEST(EventLog, FindsNothingInAnEmptyFile) {
-  const Found found = read_all("");
-  EXPECT_TRUE(found.seqs.empty());
-  EXPECT_TRUE(found.corrupt_sections.empty());
+TEST(EventLog, ReturnsNothingForEmptyFile) {
+  const LogContents contents = read_all("");
+  EXPECT_TRUE(contents.seqs.empty());
+  EXPECT_TRUE(contents.corrupt_sections.empty());
 }
 
-TEST(EventLog, AnswersEveryGoodEventAroundGarbage) {
+TEST(EventLog, ReturnsEveryIntactEventAroundGarbage) {
   Log log = log_of_requests(4);
-  // The last three: the header behind the garbage lies across the end of the first megabyte, which is read at
-  // once.
+  // In the last three cases the header after the garbage crosses the end of the first megabyte, which is read
+  // at once.
   const std::size_t megabyte_left = 1'048'576 - log.starts[2];
   for (const std::size_t length :
        {std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{27}, std::size_t{100'000},
         std::size_t{3'000'000}, megabyte_left - 1, megabyte_left - 2, megabyte_left - 3}) {
     std::string bytes = log.bytes;
     bytes.insert(log.starts[2], std::string(length, '\xED'));
-    const Found found = read_all(bytes);
-    EXPECT_EQ(found.seqs, (Seqs{0, 1, 2, 3})) << length;
-    ASSERT_EQ(found.corrupt_sections.size(), 1U) << length;
-    EXPECT_NE(found.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
-        << found.corrupt_sections[0];
-    EXPECT_NE(found.corrupt_sections[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
-        << found.corrupt_sections[0];
+    const LogContents contents = read_all(bytes);
+    EXPECT_EQ(contents.seqs, (Seqs{0, 1, 2, 3})) << length;
+    ASSERT_EQ(contents.corrupt_sections.size(), 1U) << length;
+    EXPECT_NE(contents.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])),
+              std::string::npos)
+        << contents.corrupt_sections[0];
+    EXPECT_NE(contents.corrupt_sections[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
+        << contents.corrupt_sections[0];
   }
 }
 
-TEST(EventLog, LosesOnlyTheEventWhoseHeaderIsDamaged) {
+TEST(EventLog, LosesOnlyEventsWithCorruptHeader) {
   constexpr std::size_t kChannelLength = 20;
   constexpr std::size_t kDataLength = 24;
   const Log log = log_of_requests(4);
@@ -164,26 +165,27 @@ TEST(EventLog, LosesOnlyTheEventWhoseHeaderIsDamaged) {
         char& changed = bytes[log.starts[1] + field + byte];
         if (changed == value) continue;
         changed = value;
-        const Found found = read_all(bytes);
-        EXPECT_EQ(found.seqs, (Seqs{0, 2, 3})) << field + byte << " = " << int{value};
-        EXPECT_EQ(found.corrupt_sections.size(), 1U) << field + byte << " = " << int{value};
+        const LogContents contents = read_all(bytes);
+        EXPECT_EQ(contents.seqs, (Seqs{0, 2, 3})) << field + byte << " = " << int{value};
+        EXPECT_EQ(contents.corrupt_sections.size(), 1U) << field + byte << " = " << int{value};
       }
     }
   }
 }
 
-TEST(EventLog, ReportsATailThatWasCutOffAndKeepsWhatStandsBeforeIt) {
+TEST(EventLog, ReportsTruncatedTailAndKeepsEarlierEvents) {
   const Log log = log_of_requests(3);
   for (std::size_t length = log.starts[2] + 1; length < log.bytes.size(); ++length) {
-    const Found found = read_all(log.bytes.substr(0, length));
-    EXPECT_EQ(found.seqs, (Seqs{0, 1})) << length;
-    ASSERT_EQ(found.corrupt_sections.size(), 1U) << length;
-    EXPECT_NE(found.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])), std::string::npos)
-        << found.corrupt_sections[0];
+    const LogContents contents = read_all(log.bytes.substr(0, length));
+    EXPECT_EQ(contents.seqs, (Seqs{0, 1})) << length;
+    ASSERT_EQ(contents.corrupt_sections.size(), 1U) << length;
+    EXPECT_NE(contents.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])),
+              std::string::npos)
+        << contents.corrupt_sections[0];
   }
 }
 
-TEST(EventLog, IsNotMisledByHeadersWithinTheData) {
+TEST(EventLog, IgnoresEventHeadersInsideData) {
   Log log;
   Log inner = log_of_requests(1);
   std::vector<std::uint8_t> data(inner.bytes.begin(), inner.bytes.end());
@@ -192,14 +194,14 @@ TEST(EventLog, IsNotMisledByHeadersWithinTheData) {
   EXPECT_EQ(read_all(log.bytes).seqs, Seqs{9});
 }
 
-TEST(EventLog, HandsOnBytesThatAreNoQuestionForTheExchangeToReject) {
+TEST(EventLog, PassesInvalidRequestsToCaller) {
   Log log;
   log.add("BUOYANCY_STATES", {1, 2, 3});
   log.add("BUOYANCY_STATES", request(1));
   EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 1}));
 }
 
-TEST(EventLog, RefusesWhatIsNoRegularFile) {
+TEST(EventLog, RejectsPathsThatAreNotRegularFiles) {
   const TempDir directory;
   EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), only_channel("A")));
   EXPECT_FALSE(EventLogReader::open(directory.path("."), only_channel("A")));

@@ -23,7 +23,7 @@ Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// While it lives, no file of this process grows beyond `bytes`: what a full disk does, without one.
+// While it lives, no file of this process grows beyond `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -46,7 +46,7 @@ class FileSizeLimit {
 
 TEST(RecordWriter, WritesRecordsInOrder) {
   const TempDir directory;
-  const std::string path = directory.write("x", "what was there before, which goes");
+  const std::string path = directory.write("x", "earlier contents");
   auto file = RecordWriter::create(path);
   ASSERT_TRUE(file);
   std::string expected;
@@ -61,7 +61,7 @@ TEST(RecordWriter, WritesRecordsInOrder) {
   EXPECT_EQ(read_file(path), expected);
 }
 
-TEST(RecordWriter, EndsAtARecordsEndWhereTheDiskIsFull) {
+TEST(RecordWriter, EndsWithCompleteRecordOnFullDisk) {
   const TempDir directory;
   for (const rlim_t limit : {1'000'000U, 1'048'576U, 1'500'007U, 5U}) {
     auto file = RecordWriter::create(directory.path("x"));
@@ -77,7 +77,7 @@ TEST(RecordWriter, EndsAtARecordsEndWhereTheDiskIsFull) {
   }
 }
 
-// A named pipe whose reader reads when it is told to.
+// A named pipe whose reader reads only in read_all().
 class UnreadPipe {
  public:
   UnreadPipe() : path_(directory_.path("pipe")) {
@@ -87,9 +87,9 @@ class UnreadPipe {
   const std::string& path() const { return path_; }
   std::string read_all() const {
     std::string all;
-    std::array<char, 65'536> part{};
-    for (ssize_t got = 0; (got = ::read(reader_.value(), part.data(), part.size())) > 0;) {
-      all.append(part.data(), static_cast<std::size_t>(got));
+    std::array<char, 65'536> buffer{};
+    for (ssize_t size = 0; (size = ::read(reader_.value(), buffer.data(), buffer.size())) > 0;) {
+      all.append(buffer.data(), static_cast<std::size_t>(size));
     }
     return all;
   }
@@ -100,7 +100,7 @@ class UnreadPipe {
   UniqueFd reader_;
 };
 
-TEST(RecordWriter, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
+TEST(RecordWriter, FailsOnStalledPipeReaderAfterSignal) {
   const UnreadPipe pipe;
   auto file = RecordWriter::create(pipe.path());
   ASSERT_TRUE(file);
@@ -117,7 +117,7 @@ TEST(RecordWriter, GivesUpOnAPipeThatNobodyReadsAfterASignal) {
   EXPECT_EQ(written.size() % record.size(), 0U) << "the pipe ends within a record";
 }
 
-TEST(RecordWriter, WritesAllToAPipeThatIsReadAfterASignal) {
+TEST(RecordWriter, WritesEverythingToActivePipeReaderAfterSignal) {
   const UnreadPipe pipe;
   auto file = RecordWriter::create(pipe.path());
   ASSERT_TRUE(file);
@@ -138,7 +138,7 @@ TEST(RecordWriter, WritesAllToAPipeThatIsReadAfterASignal) {
   EXPECT_TRUE(written == expected) << written.size();
 }
 
-TEST(RecordWriter, SaysWhatIsWrongWithTheDisk) {
+TEST(RecordWriter, ReportsFullDiskAndMissingDirectory) {
   auto file = RecordWriter::create("/dev/full");
   ASSERT_TRUE(file);
   ASSERT_TRUE(file->append(bytes_of("x")));

@@ -13,45 +13,45 @@ namespace {
 
 const std::string kHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
 
-struct Found {
+struct CsvContents {
   std::vector<WrenchRequest> requests;
   std::vector<std::string> corrupt_sections;
 };
 
-Found read_all(const std::string& contents) {
+CsvContents read_all(const std::string& contents) {
   const TempDir directory;
   auto reader = StateCsvReader::open(directory.write("x.csv", contents));
   if (!reader) throw std::runtime_error(reader.error().message());
-  Found found;
+  CsvContents read;
   while (true) {
     const LogItem item = reader->next();
     if (std::holds_alternative<EndOfLog>(item)) break;
-    if (const auto* damage = std::get_if<CorruptSection>(&item)) {
-      found.corrupt_sections.push_back(damage->description);
+    if (const auto* corrupt = std::get_if<CorruptSection>(&item)) {
+      read.corrupt_sections.push_back(corrupt->description);
     } else {
       const auto& recorded = std::get<RecordedEvent>(item);
       WrenchRequest request;
       EXPECT_FALSE(decode(recorded.bytes, request));
       EXPECT_EQ(recorded.timestamp, request.key.utime);
-      found.requests.push_back(request);
+      read.requests.push_back(request);
     }
   }
   EXPECT_EQ(reader->offset(), reader->size());
-  return found;
+  return read;
 }
 
-std::string refusal(const std::string& contents) {
+std::string open_error(const std::string& contents) {
   const TempDir directory;
   const auto reader = StateCsvReader::open(directory.write("x.csv", contents));
   return reader ? "" : reader.error().message();
 }
 
-TEST(StateCsv, ReadsEveryColumnExactly) {
-  const Found found = read_all(
+TEST(StateCsv, ParsesEveryColumnExactly) {
+  const CsvContents read = read_all(
       "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
       "-9223372036854775808,-2147483648,0.1,-2e-308,3,0.5,+.5,-0.5,5e-1,1,2,3,4,5,1.7976931348623157e308\n");
-  ASSERT_EQ(found.requests.size(), 1U);
-  const WrenchRequest& request = found.requests[0];
+  ASSERT_EQ(read.requests.size(), 1U);
+  const WrenchRequest& request = read.requests[0];
   EXPECT_EQ(request.key.utime, INT64_MIN);
   EXPECT_EQ(request.lead_time, 0.0);
   ASSERT_EQ(request.bodies.size(), 1U);
@@ -63,46 +63,46 @@ TEST(StateCsv, ReadsEveryColumnExactly) {
   EXPECT_EQ(state.angular_velocity, (std::array{4.0, 5.0, 1.7976931348623157e308}));
 }
 
-TEST(StateCsv, TakesRowsOfOneUtimeAsOneQuestion) {
-  const Found found = read_all(kHeader +
-                               "10,1,0,0,0,1,0,0,0\n"
-                               "10,2,0,0,0,1,0,0,0\n"
-                               "20,1,0,0,0,1,0,0,0\n"
-                               "10,1,0,0,0,1,0,0,0\n");
-  ASSERT_EQ(found.requests.size(), 3U);
-  EXPECT_EQ(found.requests[0].bodies.size(), 2U);
-  EXPECT_EQ(found.requests[1].bodies.size(), 1U);
-  EXPECT_EQ(found.requests[2].key.utime, 10);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.requests[i].key.seq, static_cast<std::int64_t>(i));
+TEST(StateCsv, GroupsRowsWithEqualUtimeIntoOneRequest) {
+  const CsvContents read = read_all(kHeader +
+                                    "10,1,0,0,0,1,0,0,0\n"
+                                    "10,2,0,0,0,1,0,0,0\n"
+                                    "20,1,0,0,0,1,0,0,0\n"
+                                    "10,1,0,0,0,1,0,0,0\n");
+  ASSERT_EQ(read.requests.size(), 3U);
+  EXPECT_EQ(read.requests[0].bodies.size(), 2U);
+  EXPECT_EQ(read.requests[1].bodies.size(), 1U);
+  EXPECT_EQ(read.requests[2].key.utime, 10);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(read.requests[i].key.seq, static_cast<std::int64_t>(i));
 }
 
-TEST(StateCsv, BoundsTheRowsOfOneQuestion) {
+TEST(StateCsv, LimitsRowsPerRequest) {
   std::string contents = kHeader;
   for (std::size_t i = 0; i < kMaxRowsPerRequest + 1; ++i) contents += "1,1,0,0,0,1,0,0,0\n";
-  const Found found = read_all(contents);
-  ASSERT_EQ(found.requests.size(), 2U);
-  EXPECT_EQ(found.requests[0].bodies.size(), kMaxRowsPerRequest);
-  EXPECT_EQ(found.requests[1].bodies.size(), 1U);
+  const CsvContents read = read_all(contents);
+  ASSERT_EQ(read.requests.size(), 2U);
+  EXPECT_EQ(read.requests[0].bodies.size(), kMaxRowsPerRequest);
+  EXPECT_EQ(read.requests[1].bodies.size(), 1U);
 }
 
-TEST(StateCsv, TakesNanAndInfinityAsNumbers) {
-  const Found found = read_all(kHeader + "1,1,nan,inf,-inf,1,0,0,0\n");
-  ASSERT_EQ(found.requests.size(), 1U);
-  const auto& position = found.requests[0].bodies[0].position;
+TEST(StateCsv, AcceptsNanAndInfinity) {
+  const CsvContents read = read_all(kHeader + "1,1,nan,inf,-inf,1,0,0,0\n");
+  ASSERT_EQ(read.requests.size(), 1U);
+  const auto& position = read.requests[0].bodies[0].position;
   EXPECT_TRUE(std::isnan(position[0]));
   EXPECT_EQ(position[1], HUGE_VAL);
   EXPECT_EQ(position[2], -HUGE_VAL);
 }
 
-TEST(StateCsv, BearsSpacesBlankLinesCarriageReturnsAMarkInFrontAndNoNewlineAtTheEnd) {
-  const Found found = read_all(
+TEST(StateCsv, ToleratesWhitespaceBomAndMissingFinalNewline) {
+  const CsvContents read = read_all(
       "\xEF\xBB\xBFutime, body_id, px, py, pz, qw, qx, qy, qz\r\n\r\n 1 , 1,0,0,0, "
       "1,0,0,0\r\n\n2,1,0,0,0,1,0,0,0");
-  EXPECT_EQ(found.requests.size(), 2U);
-  EXPECT_TRUE(found.corrupt_sections.empty());
+  EXPECT_EQ(read.requests.size(), 2U);
+  EXPECT_TRUE(read.corrupt_sections.empty());
 }
 
-TEST(StateCsv, ReportsMalformedRowsWithTheirLineAndReadsOn) {
+TEST(StateCsv, ReportsMalformedRowsWithLineNumberAndContinues) {
   const std::string good = "1,1,0,0,0,1,0,0,0\n";
   for (const std::string bad :
        {"x,1,0,0,0,1,0,0,0", "1.5,1,0,0,0,1,0,0,0", "9223372036854775808,1,0,0,0,1,0,0,0",
@@ -113,38 +113,38 @@ TEST(StateCsv, ReportsMalformedRowsWithTheirLineAndReadsOn) {
     rows += bad;
     rows += "\n";
     rows += good;
-    const Found found = read_all(rows);
-    EXPECT_EQ(found.requests.size(), 2U) << bad;
-    ASSERT_EQ(found.corrupt_sections.size(), 1U) << bad;
-    EXPECT_EQ(found.corrupt_sections[0].rfind("line 3: ", 0), 0U) << found.corrupt_sections[0];
+    const CsvContents read = read_all(rows);
+    EXPECT_EQ(read.requests.size(), 2U) << bad;
+    ASSERT_EQ(read.corrupt_sections.size(), 1U) << bad;
+    EXPECT_EQ(read.corrupt_sections[0].rfind("line 3: ", 0), 0U) << read.corrupt_sections[0];
   }
 }
 
-TEST(StateCsv, ReportsALineWithoutEndOnce) {
+TEST(StateCsv, ReportsOverlongLineOnce) {
   const std::string good = "1,1,0,0,0,1,0,0,0\n";
-  const Found found =
+  const CsvContents read =
       read_all(kHeader + good + std::string(3'000'000, '7') + "\n" + good + std::string(5000, ' '));
-  EXPECT_EQ(found.requests.size(), 2U);
-  ASSERT_EQ(found.corrupt_sections.size(), 2U);
-  EXPECT_EQ(found.corrupt_sections[0].rfind("line 3: ", 0), 0U) << found.corrupt_sections[0];
-  EXPECT_EQ(found.corrupt_sections[1].rfind("line 5: ", 0), 0U) << found.corrupt_sections[1];
+  EXPECT_EQ(read.requests.size(), 2U);
+  ASSERT_EQ(read.corrupt_sections.size(), 2U);
+  EXPECT_EQ(read.corrupt_sections[0].rfind("line 3: ", 0), 0U) << read.corrupt_sections[0];
+  EXPECT_EQ(read.corrupt_sections[1].rfind("line 5: ", 0), 0U) << read.corrupt_sections[1];
 }
 
-TEST(StateCsv, NamesTheHeaderItWantsWhereThereIsAnother) {
+TEST(StateCsv, NamesExpectedHeaderIfItIsWrong) {
   for (const std::string& contents :
        {std::string("1,1,0,0,0,1,0,0,0\n"), std::string("\n"),
         std::string("utime,body_id,px,py,pz,qx,qy,qz,qw\n"), kHeader.substr(0, kHeader.size() - 1) + ",vx\n",
         std::string(10'000, 'a'), std::string(100, '\0')}) {
-    EXPECT_NE(refusal(contents).find("utime,body_id,px,py,pz,qw,qx,qy,qz"), std::string::npos)
-        << refusal(contents);
+    EXPECT_NE(open_error(contents).find("utime,body_id,px,py,pz,qw,qx,qy,qz"), std::string::npos)
+        << open_error(contents);
   }
 }
 
-TEST(StateCsv, FindsNothingInAnEmptyFileOrBehindTheHeader) {
+TEST(StateCsv, ReturnsNothingForFileWithoutRows) {
   for (const std::string& contents : {std::string(), kHeader}) {
-    const Found found = read_all(contents);
-    EXPECT_TRUE(found.requests.empty());
-    EXPECT_TRUE(found.corrupt_sections.empty());
+    const CsvContents read = read_all(contents);
+    EXPECT_TRUE(read.requests.empty());
+    EXPECT_TRUE(read.corrupt_sections.empty());
   }
 }
 
