@@ -10,58 +10,58 @@ namespace {
 using Duration = AdaptiveSpin::Duration;
 using std::chrono::microseconds;
 
-// A wait for a message that comes after `after`. Did it look and find it?
-bool finds(AdaptiveSpin& wait, Duration after) {
-  const Duration longest = wait.begin();
-  if (longest > Duration::zero()) wait.record_spin(std::min(after, longest), after <= longest);
-  if (after <= longest) return true;
-  wait.record_sleep(after);
+// Simulates a wait for a message that arrives after `delay`. Returns whether a spin found it.
+bool finds(AdaptiveSpin& wait, Duration delay) {
+  const Duration limit = wait.begin();
+  if (limit > Duration::zero()) wait.record_spin(std::min(delay, limit), delay <= limit);
+  if (delay <= limit) return true;
+  wait.record_sleep(delay);
   return false;
 }
 
-int found_in(AdaptiveSpin& wait, int waits, Duration after) {
+int count_found(AdaptiveSpin& wait, int waits, Duration delay) {
   int found = 0;
-  for (int i = 0; i < waits; ++i) found += finds(wait, after) ? 1 : 0;
+  for (int i = 0; i < waits; ++i) found += finds(wait, delay) ? 1 : 0;
   return found;
 }
 
-TEST(AdaptiveSpin, LooksEachTimeWhileMessagesComeQuickly) {
+TEST(AdaptiveSpin, SpinsOnEveryWaitWhileMessagesArriveQuickly) {
   AdaptiveSpin wait;
-  EXPECT_EQ(found_in(wait, 1'000, microseconds(5)), 1'000);
+  EXPECT_EQ(count_found(wait, 1'000, microseconds(5)), 1'000);
 }
 
-TEST(AdaptiveSpin, HardlyEverLooksWhereMessagesAreFarApart) {
+TEST(AdaptiveSpin, RarelySpinsIfMessagesAreFarApart) {
   AdaptiveSpin wait;
   constexpr int kWaits = 100'000;
-  int looks = 0;
+  int spins = 0;
   for (int i = 0; i < kWaits; ++i) {
-    const Duration longest = wait.begin();
-    if (longest > Duration::zero()) {
-      ++looks;
-      wait.record_spin(longest, false);
+    const Duration limit = wait.begin();
+    if (limit > Duration::zero()) {
+      ++spins;
+      wait.record_spin(limit, false);
     }
     wait.record_sleep(microseconds(1'000));
   }
-  EXPECT_LE(looks, kWaits / AdaptiveSpin::kProbeEvery + 1);
+  EXPECT_LE(spins, kWaits / AdaptiveSpin::kProbeEvery + 1);
 }
 
-TEST(AdaptiveSpin, LooksAgainAfterTwoMessagesThatCameQuickly) {
+TEST(AdaptiveSpin, SpinsAgainAfterTwoQuickMessages) {
   AdaptiveSpin wait;
-  found_in(wait, 1'000, microseconds(1'000));
-  EXPECT_GE(found_in(wait, 1'000, microseconds(5)), 1'000 - 2);
+  count_found(wait, 1'000, microseconds(1'000));
+  EXPECT_GE(count_found(wait, 1'000, microseconds(5)), 1'000 - 2);
 }
 
-TEST(AdaptiveSpin, TwoEndsThatSleepWakeEachOther) {
+TEST(AdaptiveSpin, RecoversWhenBothEndsBlock) {
   constexpr Duration kWakeUp = microseconds(60);
   constexpr Duration kWork = microseconds(5);
   AdaptiveSpin here;
   AdaptiveSpin there;
-  found_in(here, 1'000, microseconds(1'000));
-  found_in(there, 10'000, microseconds(1'000));
-  // Each responses after its work, and after its wake-up where it slept.
+  count_found(here, 1'000, microseconds(1'000));
+  count_found(there, 10'000, microseconds(1'000));
+  // Each end responds after its work, and after its wake-up if it blocked.
   bool here_awake = false;
   bool there_awake = false;
-  for (int handler = 0; handler < 2 * AdaptiveSpin::kProbeEvery; ++handler) {
+  for (int exchange = 0; exchange < 2 * AdaptiveSpin::kProbeEvery; ++exchange) {
     here_awake = finds(here, kWork + (there_awake ? Duration::zero() : kWakeUp));
     there_awake = finds(there, kWork + (here_awake ? Duration::zero() : kWakeUp));
   }
@@ -69,19 +69,19 @@ TEST(AdaptiveSpin, TwoEndsThatSleepWakeEachOther) {
   EXPECT_TRUE(there_awake);
 }
 
-TEST(AdaptiveSpin, LooksRarelyWhereTheProcessorDoesNotComeBackForLong) {
+TEST(AdaptiveSpin, RarelySpinsIfPreempted) {
   AdaptiveSpin wait;
   constexpr int kWaits = 100'000;
-  int given_away = 0;
+  int preempted = 0;
   for (int i = 0; i < kWaits; ++i) {
     if (wait.begin() > Duration::zero()) {
-      ++given_away;
+      ++preempted;
       wait.record_spin(microseconds(4'000), true);
     } else {
       wait.record_sleep(microseconds(5));
     }
   }
-  EXPECT_LE(given_away, kWaits / AdaptiveSpin::kMaxSkipped + 5);
+  EXPECT_LE(preempted, kWaits / AdaptiveSpin::kMaxSkipped + 5);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Over real UDP multicast, in a network namespace of each test's own (see tests/CMakeLists.txt).
+// Runs over real UDP multicast; every test has its own network namespace (see tests/CMakeLists.txt).
 #include "transport/lcm_connection.h"
 
 #include <chrono>
@@ -26,7 +26,7 @@
 namespace buoyancy {
 namespace {
 
-// While it lives, this thread's network is one with a loopback that is up, and no route.
+// While it lives, this thread is in a network namespace whose loopback is up and which has no routes.
 class NetworkWithoutRoutes {
  public:
   NetworkWithoutRoutes() : outside_(::open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC)) {
@@ -51,7 +51,7 @@ class NetworkWithoutRoutes {
   bool entered_ = false;
 };
 
-LcmConnection open_or_die(const std::string& url = "", const ConnectionOptions& options = {}) {
+LcmConnection open_or_abort(const std::string& url = "", const ConnectionOptions& options = {}) {
   Expected<LcmConnection> connection = LcmConnection::open(url, options);
   if (!connection) {
     ADD_FAILURE() << connection.error().message();
@@ -65,16 +65,16 @@ bool becomes_readable(int descriptor, double seconds = kWaitTimeout) {
   return ::poll(&waiting, 1, to_milliseconds(seconds)) == 1;
 }
 
-// The next message, of which the kernel may deliver one fragment now and the next one later.
+// Handles the next message, whose fragments the kernel may deliver at different times.
 bool wait_and_handle(LcmConnection& connection) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
-  while (std::chrono::steady_clock::now() < limit && becomes_readable(connection.fileno())) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (std::chrono::steady_clock::now() < deadline && becomes_readable(connection.fileno())) {
     if (connection.handle_one()) return true;
   }
   return false;
 }
 
-// How many UDP packets this network namespace has sent; -1 where the kernel does not say.
+// Returns how many UDP packets this network namespace has sent; -1 if the kernel does not report it.
 std::int64_t packets_sent() {
   std::ifstream table("/proc/thread-self/net/snmp");
   std::string line;
@@ -95,15 +95,15 @@ std::vector<std::uint8_t> pattern(std::size_t size) {
 TEST(UdpmReceiver, SendsNothing) {
   const std::int64_t before = packets_sent();
   ASSERT_GE(before, 0);
-  const Expected<UdpmReceiver> onlooker = UdpmReceiver::open("");
-  ASSERT_TRUE(onlooker) << onlooker.error().message();
+  const Expected<UdpmReceiver> receiver = UdpmReceiver::open("");
+  ASSERT_TRUE(receiver) << receiver.error().message();
   EXPECT_EQ(packets_sent(), before);
-  open_or_die();
-  EXPECT_GT(packets_sent(), before) << "a connection that means to send tries that first";
-  EXPECT_TRUE(becomes_readable(onlooker->fileno()));
+  open_or_abort();
+  EXPECT_GT(packets_sent(), before) << "a connection that can send probes the network first";
+  EXPECT_TRUE(becomes_readable(receiver->fileno()));
 }
 
-TEST(UdpmReceiver, SaysThatThereIsNoRoute) {
+TEST(UdpmReceiver, ReportsMissingMulticastRoute) {
   const NetworkWithoutRoutes network;
   ASSERT_TRUE(network.entered());
   const Expected<UdpmReceiver> refused = UdpmReceiver::open("");
@@ -112,20 +112,20 @@ TEST(UdpmReceiver, SaysThatThereIsNoRoute) {
       << refused.error().message();
 }
 
-TEST(LcmConnection, SendsWhereTheUrlNamesNoPort) {
-  LcmConnection sender = open_or_die("udpm://239.255.76.67");
-  LcmConnection receiver = open_or_die("udpm://:7667");
-  bool heard = false;
-  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { heard = true; }));
+TEST(LcmConnection, SendsIfUrlHasNoPort) {
+  LcmConnection sender = open_or_abort("udpm://239.255.76.67");
+  LcmConnection receiver = open_or_abort("udpm://:7667");
+  bool received = false;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { received = true; }));
   const Expected<void> published = sender.publish("A", pattern(10));
   ASSERT_TRUE(published) << published.error().message();
   EXPECT_TRUE(wait_and_handle(receiver));
-  EXPECT_TRUE(heard);
+  EXPECT_TRUE(received);
 }
 
-TEST(LcmConnection, CarriesBytesUnchangedWhateverTheirLength) {
-  LcmConnection sender = open_or_die();
-  LcmConnection receiver = open_or_die();
+TEST(LcmConnection, TransmitsMessagesOfAnyLengthUnchanged) {
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort();
   std::vector<std::uint8_t> received;
   ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view channel) {
     EXPECT_EQ(channel, "A");
@@ -140,8 +140,8 @@ TEST(LcmConnection, CarriesBytesUnchangedWhateverTheirLength) {
 }
 
 TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {
-  LcmConnection sender = open_or_die();
-  LcmConnection receiver = open_or_die();
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort();
   std::vector<int> received;
   ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view) { received.push_back(bytes[0]); }));
   std::vector<int> sent;
@@ -156,8 +156,8 @@ TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {
   EXPECT_FALSE(receiver.handle_one()) << "nothing is left";
 }
 
-TEST(LcmConnection, TakesNothingFromTheHeapForAMessageNoLargerThanTheLargestYet) {
-  LcmConnection connection = open_or_die();
+TEST(LcmConnection, DoesNotAllocateForMessagesNoLargerThanEarlierOnes) {
+  LcmConnection connection = open_or_abort();
   int received = 0;
   ASSERT_TRUE(connection.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
   const std::string channel = "A";
@@ -176,45 +176,45 @@ TEST(LcmConnection, TakesNothingFromTheHeapForAMessageNoLargerThanTheLargestYet)
   EXPECT_EQ(done, 2 * kEach);
 }
 
-TEST(LcmConnection, FindsAMessageThatComesSoonWithoutSleeping) {
-  LcmConnection sender = open_or_die();
-  LcmConnection receiver = open_or_die();
+TEST(LcmConnection, HandlesQuickMessageWithoutBlocking) {
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort();
   int received = 0;
   ASSERT_TRUE(receiver.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
   EXPECT_FALSE(receiver.handle_one_spinning()) << "nothing was sent";
   const std::uint8_t byte = 7;
   ASSERT_TRUE(sender.publish("A", {&byte, 1}));
-  // On a busy machine the kernel delivers later than the receiver looks for a message.
+  // On a busy machine the kernel may deliver the message after the spin has ended.
   ASSERT_TRUE(becomes_readable(receiver.fileno()));
   EXPECT_TRUE(receiver.handle_one_spinning());
   EXPECT_EQ(received, 1);
 }
 
-TEST(LcmConnection, SleepsAtOnceWhereItMustNotSpin) {
-  const auto looks_for = [](LcmConnection connection) {
+TEST(LcmConnection, DoesNotSpinIfDisabled) {
+  const auto spin_time = [](LcmConnection connection) {
     EXPECT_TRUE(connection.subscribe("A", [](Bytes, std::string_view) {}));
     const auto start = std::chrono::steady_clock::now();
     EXPECT_FALSE(connection.handle_one_spinning());
     return std::chrono::steady_clock::now() - start;
   };
-  EXPECT_GE(looks_for(open_or_die()), AdaptiveSpin::kProbeTime);
-  const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
-  bool slept_at_once = false;
-  while (!slept_at_once && std::chrono::steady_clock::now() < give_up_at) {
-    slept_at_once = looks_for(open_or_die("", {.spin = false})) < AdaptiveSpin::kProbeTime;
+  EXPECT_GE(spin_time(open_or_abort()), AdaptiveSpin::kProbeTime);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  bool returned_at_once = false;
+  while (!returned_at_once && std::chrono::steady_clock::now() < deadline) {
+    returned_at_once = spin_time(open_or_abort("", {.spin = false})) < AdaptiveSpin::kProbeTime;
   }
-  EXPECT_TRUE(slept_at_once);
+  EXPECT_TRUE(returned_at_once);
 }
 
-TEST(LcmConnection, LosesNothingToItsOwnMessages) {
+TEST(LcmConnection, OwnMessagesDoNotFillReceiveBuffer) {
   const char* const small_buffer = "udpm://239.255.76.67:7667?recv_buf_size=106496";
-  LcmConnection connection = open_or_die(small_buffer, {.receive_own = false});
-  LcmConnection other = open_or_die();
-  int of_own = 0;
-  std::size_t of_other = 0;
-  ASSERT_TRUE(connection.subscribe("OWN", [&](Bytes, std::string_view) { ++of_own; }));
+  LcmConnection connection = open_or_abort(small_buffer, {.receive_own = false});
+  LcmConnection other = open_or_abort();
+  int own_messages = 0;
+  std::size_t other_bytes = 0;
+  ASSERT_TRUE(connection.subscribe("OWN", [&](Bytes, std::string_view) { ++own_messages; }));
   ASSERT_TRUE(
-      connection.subscribe("OTHER", [&](Bytes bytes, std::string_view) { of_other += bytes.size(); }));
+      connection.subscribe("OTHER", [&](Bytes bytes, std::string_view) { other_bytes += bytes.size(); }));
   bool other_received = false;
   ASSERT_TRUE(other.subscribe("OWN", [&](Bytes, std::string_view) { other_received = true; }));
 
@@ -223,18 +223,18 @@ TEST(LcmConnection, LosesNothingToItsOwnMessages) {
   ASSERT_TRUE(connection.publish("OWN", own));
   const auto foreign = pattern(30'000);
   ASSERT_TRUE(other.publish("OTHER", foreign));
-  while (of_other == 0 && wait_and_handle(connection)) {
+  while (other_bytes == 0 && wait_and_handle(connection)) {
   }
-  EXPECT_EQ(of_other, foreign.size()) << "there was room for it";
-  EXPECT_EQ(of_own, 0);
+  EXPECT_EQ(other_bytes, foreign.size()) << "the receive buffer had no space for it";
+  EXPECT_EQ(own_messages, 0);
   EXPECT_EQ(connection.drop_counts().packets, 0);
   EXPECT_TRUE(wait_and_handle(other));
   EXPECT_TRUE(other_received);
 }
 
-TEST(LcmConnection, CountsWhatTheKernelHadNoRoomFor) {
-  LcmConnection sender = open_or_die();
-  LcmConnection receiver = open_or_die("udpm://239.255.76.67:7667?recv_buf_size=20000");
+TEST(LcmConnection, CountsPacketsDroppedByKernel) {
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort("udpm://239.255.76.67:7667?recv_buf_size=20000");
   std::int64_t received = 0;
   std::int64_t newest = -1;
   ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view) {
@@ -256,43 +256,43 @@ TEST(LcmConnection, CountsWhatTheKernelHadNoRoomFor) {
   drain();
   EXPECT_LT(received, kBurst);
   EXPECT_GT(received, 0);
-  // The kernel says what it dropped with the next packet that it has room for.
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  // The kernel reports drops with the next packet that it has space for.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   do {
     ASSERT_TRUE(send_next());
     drain();
-  } while (newest != sent - 1 && std::chrono::steady_clock::now() < limit);
+  } while (newest != sent - 1 && std::chrono::steady_clock::now() < deadline);
   ASSERT_EQ(newest, sent - 1);
   EXPECT_EQ(received + receiver.drop_counts().packets, sent);
 }
 
-TEST(LcmConnection, HearsNothingThatWasSentToThePortByAnotherAddress) {
-  LcmConnection receiver = open_or_die();
+TEST(LcmConnection, IgnoresPacketsToSamePortAtAnotherAddress) {
+  LcmConnection receiver = open_or_abort();
   ASSERT_TRUE(receiver.subscribe("A", [](Bytes, std::string_view) { ADD_FAILURE(); }));
   bool later = false;
   ASSERT_TRUE(receiver.subscribe("LATER", [&](Bytes, std::string_view) { later = true; }));
-  LcmConnection neighbour = open_or_die("udpm://239.255.76.68:7667");
-  bool heard = false;
-  ASSERT_TRUE(neighbour.subscribe("A", [&](Bytes, std::string_view) { heard = true; }));
+  LcmConnection neighbour = open_or_abort("udpm://239.255.76.68:7667");
+  bool received = false;
+  ASSERT_TRUE(neighbour.subscribe("A", [&](Bytes, std::string_view) { received = true; }));
   const std::uint8_t byte = 7;
   ASSERT_TRUE(neighbour.publish("A", {&byte, 1}));
   ASSERT_TRUE(wait_and_handle(neighbour));
-  EXPECT_TRUE(heard);
-  // Packets arrive in order: one to the other address would come before this one.
+  EXPECT_TRUE(received);
+  // Packets arrive in order: one to the other address would precede this one.
   ASSERT_TRUE(receiver.publish("LATER", {&byte, 1}));
   ASSERT_TRUE(wait_and_handle(receiver));
   EXPECT_TRUE(later);
 }
 
-TEST(LcmConnection, SubscribesToAChannelOnce) {
-  LcmConnection connection = open_or_die();
+TEST(LcmConnection, RejectsSecondSubscriptionToChannel) {
+  LcmConnection connection = open_or_abort();
   const auto ignore = [](Bytes, std::string_view) {};
   EXPECT_TRUE(connection.subscribe("A", ignore));
   EXPECT_FALSE(connection.subscribe("A", ignore));
 }
 
-TEST(LcmConnection, TakesChannelNamesLiterally) {
-  LcmConnection connection = open_or_die();
+TEST(LcmConnection, TreatsChannelNamesLiterally) {
+  LcmConnection connection = open_or_abort();
   const std::string name = R"(A.*(b|c)[d]^$+?{1}\-)";
   int matching = 0;
   ASSERT_TRUE(connection.subscribe(name, [&](Bytes, std::string_view channel) {
@@ -314,8 +314,8 @@ TEST(LcmConnection, TakesChannelNamesLiterally) {
   EXPECT_EQ(dotted, 0);
 }
 
-TEST(LcmConnection, RefusesChannelNamesThatLcmCannotCarry) {
-  LcmConnection connection = open_or_die("memq://");
+TEST(LcmConnection, RejectsInvalidChannelNames) {
+  LcmConnection connection = open_or_abort("memq://");
   const auto ignore = [](Bytes, std::string_view) {};
   const std::uint8_t byte = 7;
   for (const std::string& name : {std::string(), std::string(64, 'a')}) {
@@ -326,8 +326,8 @@ TEST(LcmConnection, RefusesChannelNamesThatLcmCannotCarry) {
   EXPECT_TRUE(connection.publish(std::string(63, 'a'), {&byte, 1}));
 }
 
-TEST(LcmConnection, WorksWithinOneProcessWithoutANetwork) {
-  LcmConnection connection = open_or_die("memq://");
+TEST(LcmConnection, DeliversWithinProcessWithMemq) {
+  LcmConnection connection = open_or_abort("memq://");
   int received = 0;
   ASSERT_TRUE(connection.subscribe("A", [&](Bytes bytes, std::string_view) { received = bytes[0]; }));
   const std::uint8_t byte = 7;
@@ -336,8 +336,8 @@ TEST(LcmConnection, WorksWithinOneProcessWithoutANetwork) {
   EXPECT_EQ(received, 7);
 }
 
-TEST(LcmConnection, KeepsItsHandlersWhenMoved) {
-  LcmConnection first = open_or_die("memq://");
+TEST(LcmConnection, KeepsHandlersWhenMoved) {
+  LcmConnection first = open_or_abort("memq://");
   int received = 0;
   ASSERT_TRUE(first.subscribe("A", [&](Bytes, std::string_view) { ++received; }));
   LcmConnection second = std::move(first);
@@ -347,7 +347,7 @@ TEST(LcmConnection, KeepsItsHandlersWhenMoved) {
   EXPECT_EQ(received, 1);
 }
 
-TEST(LcmConnection, NamesTheCommandThatMendsAMissingMulticastRoute) {
+TEST(LcmConnection, NamesCommandThatAddsMissingMulticastRoute) {
   const NetworkWithoutRoutes network;
   if (!network.entered()) GTEST_SKIP() << "this machine permits no network namespace";
   const Expected<LcmConnection> connection = LcmConnection::open("");
@@ -357,7 +357,7 @@ TEST(LcmConnection, NamesTheCommandThatMendsAMissingMulticastRoute) {
   EXPECT_NE(message.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << message;
 }
 
-TEST(LcmConnection, RefusesUrlsItDoesNotKnow) {
+TEST(LcmConnection, RejectsUnsupportedUrls) {
   for (const char* url : {"nonsense", "tcpq://127.0.0.1:7700", "udpm://1.2.3.4:5"}) {
     const Expected<LcmConnection> connection = LcmConnection::open(url);
     ASSERT_FALSE(connection) << url;
@@ -365,12 +365,12 @@ TEST(LcmConnection, RefusesUrlsItDoesNotKnow) {
   }
 }
 
-TEST(LcmConnection, TakesItsUrlFromTheEnvironmentAsLcmsOwnToolsDo) {
+TEST(LcmConnection, ReadsDefaultUrlFromEnvironment) {
   // NOLINTBEGIN(concurrency-mt-unsafe): no other thread lives yet, or lives any more
   ASSERT_EQ(::setenv("LCM_DEFAULT_URL", "memq://", 1), 0);
   EXPECT_EQ(resolve_lcm_url(""), "memq://");
-  EXPECT_EQ(open_or_die("").url(), "memq://");
-  EXPECT_EQ(resolve_lcm_url("udpm://:7700"), "udpm://:7700") << "an explicit URL wins";
+  EXPECT_EQ(open_or_abort("").url(), "memq://");
+  EXPECT_EQ(resolve_lcm_url("udpm://:7700"), "udpm://:7700") << "an explicit URL has precedence";
   ASSERT_EQ(::unsetenv("LCM_DEFAULT_URL"), 0);
   // NOLINTEND(concurrency-mt-unsafe)
   EXPECT_EQ(resolve_lcm_url(""), "udpm://239.255.76.67:7667?ttl=0");

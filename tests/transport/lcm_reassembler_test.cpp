@@ -21,7 +21,7 @@ void append(RawBytes& bytes, const std::string& channel) {
   bytes.push_back(0);
 }
 
-RawBytes whole(const std::string& channel, const RawBytes& payload) {
+RawBytes unfragmented(const std::string& channel, const RawBytes& payload) {
   RawBytes packet;
   append(packet, kWhole, 4);
   append(packet, 1, 4);
@@ -30,22 +30,22 @@ RawBytes whole(const std::string& channel, const RawBytes& payload) {
   return packet;
 }
 
-std::vector<RawBytes> fragments(const std::string& channel, const RawBytes& payload, std::size_t part,
+std::vector<RawBytes> fragments(const std::string& channel, const RawBytes& payload, std::size_t size,
                                 int number) {
   std::vector<RawBytes> packets;
-  const std::size_t count = (payload.size() + part - 1) / part;
+  const std::size_t count = (payload.size() + size - 1) / size;
   for (std::size_t i = 0; i < count; ++i) {
     RawBytes packet;
     append(packet, kFragment, 4);
     append(packet, static_cast<std::uint64_t>(number), 4);
     append(packet, payload.size(), 4);
-    append(packet, i * part, 4);
+    append(packet, i * size, 4);
     append(packet, i, 2);
     append(packet, count, 2);
     if (i == 0) append(packet, channel);
-    const auto begin = payload.begin() + static_cast<std::ptrdiff_t>(i * part);
+    const auto begin = payload.begin() + static_cast<std::ptrdiff_t>(i * size);
     packet.insert(packet.end(), begin,
-                  begin + static_cast<std::ptrdiff_t>(std::min(part, payload.size() - i * part)));
+                  begin + static_cast<std::ptrdiff_t>(std::min(size, payload.size() - i * size)));
     packets.push_back(packet);
   }
   return packets;
@@ -57,10 +57,10 @@ RawBytes counting(std::size_t size) {
   return payload;
 }
 
-LcmReassembler listening_to(const std::vector<std::string>& channels) {
-  LcmReassembler packets;
-  for (std::size_t i = 0; i < channels.size(); ++i) EXPECT_EQ(packets.add_channel(channels[i]), i);
-  return packets;
+LcmReassembler subscribed_to(const std::vector<std::string>& channels) {
+  LcmReassembler reassembler;
+  for (std::size_t i = 0; i < channels.size(); ++i) EXPECT_EQ(reassembler.add_channel(channels[i]), i);
+  return reassembler;
 }
 
 bool holds(const std::optional<LcmReassembler::Message>& message, std::size_t channel,
@@ -69,116 +69,117 @@ bool holds(const std::optional<LcmReassembler::Message>& message, std::size_t ch
          RawBytes(message->payload.begin(), message->payload.end()) == payload;
 }
 
-TEST(LcmReassembler, GivesWhatIsOnTheChannelsThatAreNamedAndNothingElse) {
-  LcmReassembler packets = listening_to({"A", "BB"});
-  EXPECT_TRUE(holds(packets.push(whole("BB", {1, 2, 3}), 1), 1, {1, 2, 3}));
-  EXPECT_TRUE(holds(packets.push(whole("A", {}), 1), 0, {}));
-  for (const char* other : {"", "B", "BBB", "a"}) EXPECT_FALSE(packets.push(whole(other, {1}), 1)) << other;
+TEST(LcmReassembler, ReturnsMessagesOfAddedChannelsOnly) {
+  LcmReassembler reassembler = subscribed_to({"A", "BB"});
+  EXPECT_TRUE(holds(reassembler.push(unfragmented("BB", {1, 2, 3}), 1), 1, {1, 2, 3}));
+  EXPECT_TRUE(holds(reassembler.push(unfragmented("A", {}), 1), 0, {}));
+  for (const char* other : {"", "B", "BBB", "a"})
+    EXPECT_FALSE(reassembler.push(unfragmented(other, {1}), 1)) << other;
 }
 
-TEST(LcmReassembler, PutsFragmentsTogetherOfSeveralSendersAtATime) {
-  LcmReassembler packets = listening_to({"A"});
+TEST(LcmReassembler, ReassemblesInterleavedFragmentsOfSeveralSenders) {
+  LcmReassembler reassembler = subscribed_to({"A"});
   const RawBytes one = counting(1'000);
   const RawBytes other = counting(900);
   const auto of_one = fragments("A", one, 300, 5);
   const auto of_other = fragments("A", other, 300, 5);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_FALSE(packets.push(of_one[i], 1));
-    const auto message = packets.push(of_other[i], 2);
+    EXPECT_FALSE(reassembler.push(of_one[i], 1));
+    const auto message = reassembler.push(of_other[i], 2);
     EXPECT_EQ(message.has_value(), i == 2);
     if (i == 2) {
       EXPECT_TRUE(holds(message, 0, other));
     }
   }
-  EXPECT_TRUE(holds(packets.push(of_one[3], 1), 0, one));
-  EXPECT_EQ(packets.fragments_dropped(), 0);
+  EXPECT_TRUE(holds(reassembler.push(of_one[3], 1), 0, one));
+  EXPECT_EQ(reassembler.fragments_dropped(), 0);
 }
 
-TEST(LcmReassembler, TakesAChannelOnce) {
-  LcmReassembler packets = listening_to({"A"});
-  EXPECT_FALSE(packets.add_channel("A"));
-  EXPECT_EQ(packets.add_channel("B"), 1U);
+TEST(LcmReassembler, AddsEachChannelOnce) {
+  LcmReassembler reassembler = subscribed_to({"A"});
+  EXPECT_FALSE(reassembler.add_channel("A"));
+  EXPECT_EQ(reassembler.add_channel("B"), 1U);
 }
 
-TEST(LcmReassembler, LosesAMessageWholeThatLostAFragmentAndTakesTheNext) {
-  LcmReassembler packets = listening_to({"A"});
+TEST(LcmReassembler, DropsMessagesThatLostAFragment) {
+  LcmReassembler reassembler = subscribed_to({"A"});
   const auto lost = fragments("A", counting(1'000), 300, 5);
-  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(packets.push(lost[i], 1));
+  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(reassembler.push(lost[i], 1));
   const RawBytes payload = counting(1'000);
   const auto next = fragments("A", payload, 300, 6);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(packets.push(next[i], 1));
-  EXPECT_TRUE(holds(packets.push(next[3], 1), 0, payload));
-  EXPECT_EQ(packets.fragments_dropped(), 3);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(reassembler.push(next[i], 1));
+  EXPECT_TRUE(holds(reassembler.push(next[3], 1), 0, payload));
+  EXPECT_EQ(reassembler.fragments_dropped(), 3);
 }
 
-RC_GTEST_PROP(LcmReassembler, TakesFragmentsInAnyOrderBehindTheFirstAndAnyOfThemTwice, ()) {
-  LcmReassembler packets = listening_to({"A"});
-  for (int number = 0; number < 3; ++number) {  // what an earlier message left behind is in none
+RC_GTEST_PROP(LcmReassembler, AcceptsReorderedAndDuplicatedFragments, ()) {
+  LcmReassembler reassembler = subscribed_to({"A"});
+  for (int number = 0; number < 3; ++number) {  // bytes of an earlier message must not appear
     const RawBytes payload = counting(static_cast<std::size_t>(*rc::gen::inRange(301, 3'000)));
-    auto packets_of_it = fragments("A", payload, 300, number);
-    for (std::size_t i = packets_of_it.size() - 1; i > 1; --i) {
-      std::swap(packets_of_it[i], packets_of_it[*rc::gen::inRange<std::size_t>(1, i + 1)]);
+    auto shuffled = fragments("A", payload, 300, number);
+    for (std::size_t i = shuffled.size() - 1; i > 1; --i) {
+      std::swap(shuffled[i], shuffled[*rc::gen::inRange<std::size_t>(1, i + 1)]);
     }
-    const RawBytes last = packets_of_it.back();
-    packets_of_it.pop_back();
-    for (const RawBytes& packet : packets_of_it) {
-      RC_ASSERT(!packets.push(packet, 1));
-      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!packets.push(packet, 1));
+    const RawBytes last = shuffled.back();
+    shuffled.pop_back();
+    for (const RawBytes& packet : shuffled) {
+      RC_ASSERT(!reassembler.push(packet, 1));
+      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!reassembler.push(packet, 1));
     }
-    RC_ASSERT(holds(packets.push(last, 1), 0, payload));
+    RC_ASSERT(holds(reassembler.push(last, 1), 0, payload));
   }
-  RC_ASSERT(packets.fragments_dropped() == 0);
+  RC_ASSERT(reassembler.fragments_dropped() == 0);
 }
 
-TEST(LcmReassembler, DropsFragmentsThatLeaveAGapOrLieOnEachOther) {
+TEST(LcmReassembler, DropsFragmentsWithGapsOrOverlaps) {
   constexpr std::size_t kOffsetsLowByte = 15;
-  LcmReassembler packets = listening_to({"A"});
+  LcmReassembler reassembler = subscribed_to({"A"});
   int number = 0;
   for (const int moved : {-1, 1}) {
     auto some = fragments("A", counting(1'000), 400, ++number);
     some[1][kOffsetsLowByte] = static_cast<std::uint8_t>(some[1][kOffsetsLowByte] + moved);
-    for (const RawBytes& packet : some) EXPECT_FALSE(packets.push(packet, 1)) << moved;
-    EXPECT_EQ(packets.fragments_dropped(), 3 * number);
+    for (const RawBytes& packet : some) EXPECT_FALSE(reassembler.push(packet, 1)) << moved;
+    EXPECT_EQ(reassembler.fragments_dropped(), 3 * number);
   }
 }
 
-TEST(LcmReassembler, GivesUpTheOldestOfMoreThanItHasRoomFor) {
-  LcmReassembler packets = listening_to({"A"});
+TEST(LcmReassembler, DiscardsOldestPartialMessageIfFull) {
+  LcmReassembler reassembler = subscribed_to({"A"});
   for (std::uint64_t sender = 0; sender < 100; ++sender) {
-    EXPECT_FALSE(packets.push(fragments("A", counting(1'000), 600, 1)[0], sender));
+    EXPECT_FALSE(reassembler.push(fragments("A", counting(1'000), 600, 1)[0], sender));
   }
-  EXPECT_EQ(packets.fragments_dropped(),
+  EXPECT_EQ(reassembler.fragments_dropped(),
             100 - static_cast<std::int64_t>(LcmReassembler::kMaxPartialMessages));
-  EXPECT_FALSE(packets.push(fragments("A", counting(1'000), 600, 1)[1], 0));
-  EXPECT_TRUE(holds(packets.push(fragments("A", counting(1'000), 600, 1)[1], 99), 0, counting(1'000)));
+  EXPECT_FALSE(reassembler.push(fragments("A", counting(1'000), 600, 1)[1], 0));
+  EXPECT_TRUE(holds(reassembler.push(fragments("A", counting(1'000), 600, 1)[1], 99), 0, counting(1'000)));
 }
 
-TEST(LcmReassembler, BeginsNoMessageThatIsLargerThanItTakes) {
-  LcmReassembler packets = listening_to({"A"});
+TEST(LcmReassembler, RejectsOversizedMessages) {
+  LcmReassembler reassembler = subscribed_to({"A"});
   RawBytes first = fragments("A", counting(1'000), 600, 1)[0];
-  for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // its size
-  EXPECT_FALSE(packets.push(first, 1));
-  EXPECT_EQ(packets.fragments_dropped(), 1);
+  for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // the size field
+  EXPECT_FALSE(reassembler.push(first, 1));
+  EXPECT_EQ(reassembler.fragments_dropped(), 1);
 }
 
-RC_GTEST_PROP(LcmReassembler, TakesAnyBytesAndEveryWholeMessageAfterThem, ()) {
-  LcmReassembler packets = listening_to({"A"});
+RC_GTEST_PROP(LcmReassembler, RecoversAfterCorruptPackets, ()) {
+  LcmReassembler reassembler = subscribed_to({"A"});
   const RawBytes payload = counting(1'000);
-  const int corrupt_sections = *rc::gen::inRange(0, 30);
-  for (int i = 0; i < corrupt_sections; ++i) {
+  const int corrupt_packets = *rc::gen::inRange(0, 30);
+  for (int i = 0; i < corrupt_packets; ++i) {
     auto some = fragments("A", payload, 400, *rc::gen::inRange(0, 3));
-    some.push_back(whole("A", payload));
+    some.push_back(unfragmented("A", payload));
     RawBytes packet = *rc::gen::elementOf(some);
     const auto place = *rc::gen::inRange<std::size_t>(0, 30);
     packet[place] = *rc::gen::arbitrary<std::uint8_t>();
     if (*rc::gen::inRange(0, 4) == 0) packet.resize(place);
-    const auto message = packets.push(packet, *rc::gen::inRange<std::uint64_t>(0, 3));
+    const auto message = reassembler.push(packet, *rc::gen::inRange<std::uint64_t>(0, 3));
     RC_ASSERT(!message || message->payload.size() <= payload.size() + 30);
   }
   const auto next = fragments("A", payload, 400, 77);
-  RC_ASSERT(!packets.push(next[0], 9));
-  RC_ASSERT(!packets.push(next[1], 9));
-  RC_ASSERT(holds(packets.push(next[2], 9), 0, payload));
+  RC_ASSERT(!reassembler.push(next[0], 9));
+  RC_ASSERT(!reassembler.push(next[1], 9));
+  RC_ASSERT(holds(reassembler.push(next[2], 9), 0, payload));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace buoyancy {
 namespace {
 
-TEST(UdpmUrl, ReadsAddressPortAndOptions) {
+TEST(UdpmUrl, ParsesAddressPortAndOptions) {
   const auto url = parse_udpm_url("udpm://239.1.2.3:7700?ttl=1&recv_buf_size=65536");
   ASSERT_TRUE(url) << url.error().message();
   EXPECT_EQ(url->group, "239.1.2.3");
@@ -14,7 +14,7 @@ TEST(UdpmUrl, ReadsAddressPortAndOptions) {
   EXPECT_EQ(url->recv_buf_size, 65536);
 }
 
-TEST(UdpmUrl, TakesWhatIsLeftOutFromLcm) {
+TEST(UdpmUrl, UsesDefaultsOfLcm) {
   for (const char* text : {"udpm://", "udpm://?", "udpm://:7667", "udpm://239.255.76.67", "udpm://?ttl=0"}) {
     const auto url = parse_udpm_url(text);
     ASSERT_TRUE(url) << text << ": " << url.error().message();
@@ -25,13 +25,13 @@ TEST(UdpmUrl, TakesWhatIsLeftOutFromLcm) {
   }
 }
 
-TEST(UdpmUrl, IsToldWhole) {
+TEST(UdpmUrl, ConvertsToStringWithEveryPart) {
   EXPECT_EQ(to_string(parse_udpm_url("udpm://239.1.2.3").value()), "udpm://239.1.2.3:7667?ttl=0");
   const std::string whole = "udpm://239.1.2.3:7700?ttl=1&recv_buf_size=65536";
   EXPECT_EQ(to_string(parse_udpm_url(whole).value()), whole);
 }
 
-TEST(UdpmUrl, RefusesWhatLiblcmWouldMisread) {
+TEST(UdpmUrl, RejectsUrlsThatLiblcmMisreads) {
   for (const char* text :
        {"", "239.255.76.67:7667", "udpm:/239.255.76.67", "tcpq://127.0.0.1:7700", "file:///tmp/log",
         "udpm://10.0.0.1:7667", "udpm://239.255.76:7667", "udpm://localhost:7667", "udpm://[ff02::1]:7667",
