@@ -13,8 +13,8 @@ std::atomic<std::int64_t> allocations{0};
 
 void* allocate_or_null(std::size_t size, std::size_t alignment = kUsualAlignment) noexcept {
   allocations.fetch_add(1, std::memory_order_relaxed);
-  const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  return std::aligned_alloc(alignment, whole == 0 ? alignment : whole);
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  return std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
 }
 
 void* allocate(std::size_t size, std::size_t alignment = kUsualAlignment) {
@@ -29,8 +29,8 @@ std::size_t as_size(std::align_val_t alignment) {
 
 }  // namespace
 
-// Every form is replaced: under a sanitizer the forms that are not do not end in those that are, and memory
-// would be taken by one and given back by the other.
+// Every form is replaced: under a sanitizer the original forms do not call the replaced ones, so that memory
+// would be allocated by one implementation and released by the other.
 void* operator new(std::size_t size) {
   return allocate(size);
 }

@@ -1,6 +1,6 @@
-// Counts what a test program takes from the heap through operator new, on all threads: the proof of "no heap
-// after warm-up". A program that links buoyancy_allocation_count has its global operator new replaced. What
-// calls malloc itself is not seen.
+// Counts the heap allocations of a test program through operator new, on all threads, to verify that code
+// does not allocate after warm-up. Linking buoyancy_allocation_count replaces the global operator new. Direct
+// calls of malloc are not counted.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace buoyancy {
 class AllocationCount {
  public:
   AllocationCount() : before_(total()) {}
-  // Calls of operator new since construction.
+  // The number of calls of operator new since construction.
   std::int64_t count() const { return total() - before_; }
 
  private:

@@ -34,7 +34,7 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return result;
 }
 
-// An entry that is given replaces an inherited one of the same name.
+// Returns the inherited environment, in which given entries replace those of the same name.
 std::vector<std::string> merged_environment(const std::vector<std::string>& given) {
   std::vector<std::string> merged = given;
   for (char** entry = environ; *entry != nullptr; ++entry) {
@@ -71,7 +71,8 @@ int open_process(pid_t pid) {
   return static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
 }
 
-// What the child of fork() needs. Between fork and exec the child of a threaded test may not allocate.
+// The data that the child of fork() needs. Between fork and exec the child of a threaded test may not
+// allocate.
 struct Program {
   const ChildCommand& command;
   const std::vector<char*>& argv;
@@ -101,7 +102,7 @@ void kill_children() {
   const ssize_t size = read(list, text.data(), text.size() - 1);
   close(list);
   if (size < 0) _exit(126);
-  // "PID PID ", the last one cut off where there are more than fit: those are killed when these are gone.
+  // "PID PID ", with the last one truncated if the list is too long; the rest is killed in the next round.
   pid_t pid = 0;
   for (ssize_t i = 0; i < size; ++i) {
     const char c = text[static_cast<std::size_t>(i)];
@@ -114,10 +115,11 @@ void kill_children() {
   }
 }
 
-// The supervisor's main program. Children are killed, not descendants: a killed child's children become ours.
-// No process can be taken for another one, since the kernel gives no identifier away before we reap it.
+// The supervisor's main program. It kills its children only: the children of a killed child become its own. A
+// process id cannot refer to another process, since the kernel does not reuse it before the child is reaped.
 [[noreturn]] void supervise(const Program& program, int commands) {
-  // A keyboard's SIGINT goes to the test, whose end is seen at the other end of `commands`.
+  // In a session of its own the supervisor does not get the terminal's SIGINT; it observes the end of the
+  // test as end-of-file on `commands`.
   setsid();
   prctl(PR_SET_PDEATHSIG, 0);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -127,7 +129,8 @@ void kill_children() {
   if (pid == 0) execute(program, self);
   const int process = open_process(pid);
   if (process < 0) _exit(126);
-  // What the test holds open, other supervisors' `commands` among it, must end with the test.
+  // Close all other inherited descriptors, such as other supervisors' `commands`, which must end with the
+  // test.
   const int keep[] = {commands, process};
   const int nothing = open("/dev/null", O_RDWR);
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, fd);
@@ -154,14 +157,14 @@ void kill_children() {
       if (ended == pid) exit_code = exit_code_of(status);
     }
     if (ended < 0 && errno == ECHILD) _exit(exit_code);
-    poll(nullptr, 0, 1);  // some are still ending
+    poll(nullptr, 0, 1);  // some children are still terminating
   }
 }
 
 }  // namespace
 
 ChildProcess::ChildProcess(const ChildCommand& command) {
-  // All that allocates happens before fork: between fork and exec the child of a threaded test may not.
+  // Everything is allocated before fork: between fork and exec the child of a threaded test may not allocate.
   std::vector<std::string> arguments = command.arguments;
   std::vector<std::string> environment = merged_environment(command.environment);
   const std::vector<char*> argv = pointers(arguments);
@@ -208,7 +211,7 @@ void ChildProcess::send_signal(int signal) const {
     return;
   }
   const auto byte = static_cast<char>(signal);
-  send(supervisor_fd_, &byte, 1, MSG_NOSIGNAL);  // fails where the supervisor has just ended
+  send(supervisor_fd_, &byte, 1, MSG_NOSIGNAL);  // fails if the supervisor has just ended
 }
 
 std::optional<int> ChildProcess::wait(double seconds) {
@@ -232,7 +235,7 @@ bool ChildProcess::wait_for_text(const std::string& text, double seconds) {
            standard_error().find(text) != std::string::npos;
   };
   while (!written()) {
-    // Looks once more after the end: the last words may have come in between.
+    // Check once more after the end: the last output may have been written in between.
     if (wait(0.002)) return written();
     if (std::chrono::steady_clock::now() >= deadline) return false;
   }

@@ -1,13 +1,15 @@
-// A program of ours run by a test as its own process: started, listened to, and never left behind.
+// Runs a program as a child process of a test, captures its output and guarantees that it does not outlive
+// the test.
 //
 // The child's standard output and error go into memory files, so that a child never blocks on a full pipe and
-// what it wrote can be read while it runs and after it died. The destructor kills and reaps a child that
-// still runs; the kernel kills it if the thread that started it dies first. Linux only. One thread at a time.
+// its output can be read while it runs and after it ended. The destructor kills and reaps a child that still
+// runs; the kernel kills it if the thread that started it dies first. Linux only. Use from one thread at a
+// time.
 //
-// A program that starts others, such as a browser, is run with_descendants: between the test and the program
-// there is then a supervisor, a process that inherits every descendant that loses its parent, whatever
-// session or group it moved to. When the program ends or the test dies, even by SIGKILL, the supervisor kills
-// all descendants, and it ends when none is left: so wait() returns, and the destructor too.
+// with_descendants is for programs that start others, such as a browser. It puts a supervisor process between
+// the test and the program, which inherits every descendant that loses its parent, in any session or group.
+// When the program ends or the test dies, even by SIGKILL, the supervisor kills all descendants, and it ends
+// when none is left; wait() and the destructor return then.
 #pragma once
 
 #include <optional>
@@ -36,20 +38,20 @@ inline ChildCommand command_of(std::vector<std::string> arguments) {
 
 class ChildProcess {
  public:
-  // A program that cannot be started exits with 127 and says so on its standard error.
+  // A program that cannot be started exits with 127 and reports that on its standard error.
   explicit ChildProcess(const ChildCommand& command);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();
 
   pid_t pid() const { return pid_; }   // with descendants: the supervisor's
-  void send_signal(int signal) const;  // nothing if it has been waited for
+  void send_signal(int signal) const;  // no effect after the child has been reaped
 
-  // The exit code, or 128 + the signal that ended it; nullopt: still running after `seconds`.
+  // Returns the exit code, or 128 + the signal that ended it; nullopt: still running after `seconds`.
   std::optional<int> wait(double seconds);
 
-  // Waits until standard output or standard error holds `text`. False: not within `seconds`, or the
-  // child ended without writing it.
+  // Waits until standard output or standard error contains `text`. Returns false if that does not happen
+  // within `seconds` or before the child ends.
   bool wait_for_text(const std::string& text, double seconds);
 
   std::string standard_output() const;  // so far
@@ -60,17 +62,17 @@ class ChildProcess {
   int process_fd_ = -1;  // readable when the child has ended
   int output_fd_ = -1;
   int error_fd_ = -1;
-  int supervisor_fd_ = -1;  // takes a byte per signal; -1 without a supervisor
+  int supervisor_fd_ = -1;  // receives one byte per signal; -1 without a supervisor
   std::optional<int> exit_code_;
 };
 
 struct FinishedProcess {
-  std::optional<int> exit_code;  // nullopt: did not end in time, killed
+  std::optional<int> exit_code;  // nullopt: killed because it did not end in time
   std::string standard_output;
   std::string standard_error;
 };
 
-// Starts, waits at most `seconds`, kills if need be.
+// Starts a program, waits at most `seconds` for its end and kills it otherwise.
 FinishedProcess run_to_end(const ChildCommand& command, double seconds);
 
 }  // namespace buoyancy

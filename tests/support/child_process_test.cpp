@@ -17,20 +17,20 @@ ChildCommand shell(const std::string& script) {
   return command;
 }
 
-TEST(ChildProcess, CapturesBothStreamsAndTheExitCode) {
+TEST(ChildProcess, CapturesBothStreamsAndExitCode) {
   const FinishedProcess finished = run_to_end(shell("echo out; echo error >&2; exit 3"), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 3);
   EXPECT_EQ(finished.standard_output, "out\n");
   EXPECT_EQ(finished.standard_error, "error\n");
 }
 
-TEST(ChildProcess, DoesNotBlockOnMoreOutputThanAPipeHolds) {
+TEST(ChildProcess, DoesNotBlockOnLargeOutput) {
   const FinishedProcess finished = run_to_end(shell("head -c 1000000 /dev/zero"), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 0);
   EXPECT_EQ(finished.standard_output.size(), 1000000U);
 }
 
-TEST(ChildProcess, IsReadableWhileItRunsAndEndsBySignal) {
+TEST(ChildProcess, IsReadableWhileRunningAndEndsBySignal) {
   ChildProcess child(shell("echo ready; exec sleep 600"));
   EXPECT_TRUE(child.wait_for_text("ready\n", kWaitTimeout));
   EXPECT_EQ(child.wait(0.0), std::nullopt);
@@ -38,13 +38,13 @@ TEST(ChildProcess, IsReadableWhileItRunsAndEndsBySignal) {
   EXPECT_EQ(child.wait(kWaitTimeout), 128 + SIGTERM);
 }
 
-TEST(ChildProcess, StopsWaitingForTextThatNeverCame) {
+TEST(ChildProcess, StopsWaitingForTextWhenChildEnds) {
   ChildProcess child(shell("echo something else"));
   EXPECT_FALSE(child.wait_for_text("ready", kWaitTimeout));
   EXPECT_EQ(child.wait(0.0), 0);
 }
 
-TEST(ChildProcess, IsGoneAfterItsDestructor) {
+TEST(ChildProcess, KillsChildInDestructor) {
   pid_t pid = 0;
   {
     const ChildProcess child(shell("exec sleep 600"));
@@ -59,22 +59,22 @@ ChildCommand with_descendants(const std::string& script) {
   return command;
 }
 
-// Starts two processes in sessions of their own, one of which has lost its parent, and says who they are.
-const std::string kStartsOthers =
+// Starts two processes in sessions of their own, one of which has lost its parent, and prints their ids.
+const std::string kStartDescendants =
     "setsid sh -c 'echo $$; exec sleep 600' & (setsid sh -c 'echo $$; exec sleep 600' &); "
     "while [ $(wc -l <out) -lt 2 ]; do sleep 0.01; done; ";
 
-class Descendants : public testing::Test {
+class ChildProcessDescendants : public testing::Test {
  protected:
-  // A command whose output goes to the file that kStartsOthers counts lines in.
+  // A command whose output goes to the file whose lines kStartDescendants counts.
   ChildCommand command(const std::string& script) const {
-    ChildCommand whole = with_descendants(kStartsOthers + script);
+    ChildCommand whole = with_descendants(kStartDescendants + script);
     whole.directory = directory_.path("");
     whole.standard_output = directory_.path("out");
     return whole;
   }
-  // How many of the processes that the program named are there.
-  int left() const {
+  // The number of running processes among those that the program printed.
+  int count_running() const {
     std::ifstream file(directory_.path("out"));
     int count = 0;
     for (pid_t pid = 0; file >> pid;) count += kill(pid, 0) == 0 ? 1 : 0;
@@ -85,31 +85,31 @@ class Descendants : public testing::Test {
   TempDir directory_;
 };
 
-TEST_F(Descendants, AreGoneWhenTheProgramHasEnded) {
+TEST_F(ChildProcessDescendants, AreKilledWhenProgramEnds) {
   ChildProcess child(command("exit 3"));
   EXPECT_EQ(child.wait(kWaitTimeout), 3);
-  EXPECT_EQ(left(), 0);
+  EXPECT_EQ(count_running(), 0);
 }
 
-TEST_F(Descendants, AreGoneAfterTheDestructor) {
+TEST_F(ChildProcessDescendants, AreKilledInDestructor) {
   {
     ChildProcess child(command("echo started >&2; exec sleep 600"));
     EXPECT_TRUE(child.wait_for_text("started", kWaitTimeout));
-    EXPECT_EQ(left(), 2);
+    EXPECT_EQ(count_running(), 2);
   }
-  EXPECT_EQ(left(), 0);
+  EXPECT_EQ(count_running(), 0);
 }
 
-TEST_F(Descendants, EndWithAProgramThatHandlesASignal) {
+TEST_F(ChildProcessDescendants, AreKilledWhenProgramHandlesSignal) {
   ChildProcess child(command("trap 'exit 5' TERM; echo started >&2; while :; do sleep 0.01; done"));
   EXPECT_TRUE(child.wait_for_text("started", kWaitTimeout));
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 5);
-  EXPECT_EQ(left(), 0);
+  EXPECT_EQ(count_running(), 0);
   child.send_signal(SIGTERM);
 }
 
-TEST(ChildProcess, GivesEnvironmentDirectoryAndOutputFile) {
+TEST(ChildProcess, SetsEnvironmentDirectoryAndOutputFile) {
   ChildCommand command = shell("echo $GREETING $(pwd); test -e /dev/full");
   command.environment = {"GREETING=hello"};
   command.directory = std::string("/");
@@ -118,7 +118,7 @@ TEST(ChildProcess, GivesEnvironmentDirectoryAndOutputFile) {
   EXPECT_EQ(run_to_end(command, kWaitTimeout).standard_output, "");
 }
 
-TEST(ChildProcess, ExitsWith127WhereTheProgramIsMissing) {
+TEST(ChildProcess, ExitsWith127IfProgramIsMissing) {
   ChildCommand command;
   command.arguments = {"/no/such/program"};
   const FinishedProcess finished = run_to_end(command, kWaitTimeout);

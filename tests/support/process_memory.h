@@ -1,4 +1,4 @@
-// What a process occupies, as the kernel sees it.
+// The memory of a process as the kernel reports it.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace buoyancy {
 
-// VmRSS, kB. Throws where there is no such process.
+// Returns VmRSS [kB]. Throws if there is no such process.
 inline std::int64_t resident_kb(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   std::string word;

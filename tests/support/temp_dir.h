@@ -1,6 +1,6 @@
-// A temporary directory, removed with all it holds by the destructor. A directory that cannot be removed ends
-// the program with SIGABRT, since programs without GoogleTest use this too: a process that still writes into
-// it was left behind.
+// A temporary directory that the destructor removes with its contents. If it cannot be removed, a process
+// that still writes into it was left behind, and the program is aborted (programs without GoogleTest use this
+// too).
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ class TempDir {
  public:
   TempDir() {
     std::string pattern = (std::filesystem::temp_directory_path() / "buoyancy_test_XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no directory " + pattern);
+    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot create directory " + pattern);
     path_ = pattern;
   }
   TempDir(const TempDir&) = delete;
@@ -31,7 +31,7 @@ class TempDir {
   ~TempDir() {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
     std::error_code error;
-    // A file that appears while the directory is emptied makes the removal fail.
+    // The removal fails if a file is created meanwhile.
     while (std::filesystem::remove_all(path_, error), error) {
       if (std::chrono::steady_clock::now() >= deadline) {
         std::fprintf(stderr, "temporary directory %s cannot be removed: %s\n", path_.c_str(),

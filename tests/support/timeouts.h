@@ -1,9 +1,8 @@
-// How long a test waits for a condition before it fails, in seconds. A timeout is never what a test measures:
-// on an idle machine every wait ends after milliseconds, and the limit only has to tell "slow" from "never".
+// How long a test waits for a condition before it fails [s]. Tests never measure these limits: on an idle
+// machine every wait ends after milliseconds, and a limit only distinguishes "slow" from "never".
 //
-// BUOYANCY_TEST_TIMEOUT_FACTOR in the environment multiplies all of them, for sanitizers, emulators and
-// machines that are busy with other things. CTest's own limit is the cache variable BUOYANCY_TEST_TIMEOUT
-// (tests/CMakeLists.txt).
+// The environment variable BUOYANCY_TEST_TIMEOUT_FACTOR multiplies all of them, for sanitizers, emulators and
+// loaded machines. CTest's own limit is the cache variable BUOYANCY_TEST_TIMEOUT (tests/CMakeLists.txt).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 
 namespace buoyancy {
 
-// At least 1; 1 also where the variable is not a number.
+// At least 1; also 1 if the variable is not a number.
 inline double timeout_factor() {
   static const double factor = [] {
     const char* const text = std::getenv("BUOYANCY_TEST_TIMEOUT_FACTOR");  // NOLINT(concurrency-mt-unsafe)
@@ -22,13 +21,13 @@ inline double timeout_factor() {
   return factor;
 }
 
-// For one condition: a process is ready or has ended, a message has come, a page shows something.
+// For one condition: a process is ready or has ended, a message has arrived, a page shows something.
 inline const double kWaitTimeout = 60.0 * timeout_factor();
 
-// For a program to do all of its work and end.
+// For a program to complete its work and end.
 inline const double kRunTimeout = 250.0 * timeout_factor();
 
-// As poll(2) takes it.
+// Converts to the argument of poll(2).
 inline int to_milliseconds(double seconds) {
   return static_cast<int>(std::ceil(seconds * 1e3));
 }
