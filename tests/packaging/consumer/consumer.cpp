@@ -1,6 +1,6 @@
-// Asks the installed libraries for the buoyancy of a half-submerged cube, through the core and through the
-// handler, with a request encoded by the installed message types; and opens a client of a service that
-// cannot be. Exit code 0 if both answers are right and the client says what is wrong.
+// Computes the buoyancy of a half-submerged cube with the installed libraries, through the solver and through
+// the request handler, whose request is encoded by the installed message types. It also opens a client with
+// an invalid URL. Exits with 0 if both results are correct and the client returns an error.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -26,7 +26,7 @@ shape = { type = "box", size = [1, 1, 1], segments = [2, 2, 2] }
 
 constexpr double kExpected = 1000.0 * buoyancy::kStandardGravity * 0.5;  // N
 
-bool right(const char* path, double force) {
+bool is_correct(const char* path, double force) {
   std::printf("%s: %.17g N, expected %.17g N\n", path, force, kExpected);
   return std::abs(force - kExpected) <= 1e-12 * kExpected;
 }
@@ -59,11 +59,12 @@ int main() {
   if (wrenches.decode(response.data(), 0, static_cast<int>(response.size())) < 0) return 1;
   if (wrenches.num_bodies != 1) return 1;
 
-  const bool both = right("core", direct.force_W.z()) & right("handler", wrenches.bodies[0].force[2]);
+  const bool both =
+      is_correct("solver", direct.force_W.z()) & is_correct("handler", wrenches.bodies[0].force[2]);
 
-  buoyancy::ClientOptions nowhere;
-  nowhere.channel.lcm_url = "nowhere://";
-  const auto client = buoyancy::Client::open(nowhere);
+  buoyancy::ClientOptions invalid;
+  invalid.channel.lcm_url = "nowhere://";
+  const auto client = buoyancy::Client::open(invalid);
   if (client) return 1;
   std::printf("client: %s\n", client.error().message().c_str());
   return both ? 0 : 1;

@@ -1,6 +1,6 @@
-// Reads a log of lcm-logger with the types that lcm-spy finds on its class path, in lcm-spy's own way, and prints every
-// event: "<channel> <type>", and for each body of a response "wrench <utime> <body_id> <fx> <fy> <fz>". Exit code 1: a
-// message whose type is not on the class path.
+// Reads a log of lcm-logger with the types on the class path, which it finds the same way as lcm-spy, and prints every
+// event as "<channel> <type>" and each body of a response as "wrench <utime> <body_id> <fx> <fy> <fz>". Exits with 1
+// if the type of a message is not on the class path.
 import java.io.DataInput;
 import java.io.EOFException;
 import java.nio.ByteBuffer;
@@ -28,10 +28,10 @@ public class PrintLog {
       System.out.println(event.channel + " " + type.getName());
       Object message = type.getConstructor(DataInput.class).newInstance(new LCMDataInputStream(event.data));
       if (!(message instanceof buoyancy.body_wrenches_t)) continue;
-      buoyancy.body_wrenches_t answer = (buoyancy.body_wrenches_t) message;
-      for (buoyancy.body_wrench_t body : answer.bodies) {
+      buoyancy.body_wrenches_t response = (buoyancy.body_wrenches_t) message;
+      for (buoyancy.body_wrench_t body : response.bodies) {
         System.out.println(
-            "wrench " + answer.utime + " " + body.body_id
+            "wrench " + response.utime + " " + body.body_id
                 + " " + body.force[0] + " " + body.force[1] + " " + body.force[2]);
       }
     }
