@@ -1,5 +1,5 @@
-# CPack runs this when the files of every package lie below CPACK_TEMPORARY_DIRECTORY/<component> and before it packs
-# them: what debhelper would do to them.
+# CPack runs this after it has copied the files of every package to CPACK_TEMPORARY_DIRECTORY/<component> and before it
+# packs them. It applies what debhelper would.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result ERROR_VARIABLE error)
   if(result)
@@ -13,7 +13,7 @@ set(programs "${CPACK_TEMPORARY_DIRECTORY}/programs")
 
 file(MAKE_DIRECTORY "${programs}/etc/buoyancy")
 file(COPY "${packaging}/scene.toml" DESTINATION "${programs}/etc/buoyancy")
-# Below the prefix in an installation by hand, in the root in a package.
+# Units are below the prefix in a manual installation, but below the root in a package.
 if(EXISTS "${programs}/usr/lib/systemd")
   file(MAKE_DIRECTORY "${programs}/lib")
   file(RENAME "${programs}/usr/lib/systemd" "${programs}/lib/systemd")
@@ -23,8 +23,8 @@ foreach(unit IN LISTS units)
   file(STRINGS "${unit}" commands REGEX "^Exec[A-Za-z]*=")
   foreach(command IN LISTS commands)
     if(command MATCHES "^[^=]*=[-@:+!]*\"?(/[^\" ]*buoyancy[^\" ]*)" AND NOT EXISTS "${programs}${CMAKE_MATCH_1}")
-      message(FATAL_ERROR "${unit}: ${command}: the package has no ${CMAKE_MATCH_1}. Was the unit written for another "
-                          "prefix than CPACK_INSTALL_PREFIX?")
+      message(FATAL_ERROR "${unit}: ${command}: the package does not contain ${CMAKE_MATCH_1}. Was the unit generated "
+                          "for a prefix other than CPACK_INSTALL_PREFIX?")
     endif()
   endforeach()
 endforeach()
@@ -42,14 +42,14 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   file(GLOB_RECURSE pages "${root}/usr/share/man/*")
   run(gzip -9n "${doc}/changelog.Debian" "${doc}/changelog" ${pages})
 
-  # Sent to whoever has the package, not uploaded to Debian: there is no bug that asked for it.
+  # The package is not uploaded to Debian, so that there is no bug that it could close.
   file(WRITE "${root}/usr/share/lintian/overrides/${package}"
-       "# Not uploaded to Debian, so that no bug asked for it.\n${package}: initial-upload-closes-no-bugs *\n")
+       "# Not uploaded to Debian, so that there is no bug to close.\n${package}: initial-upload-closes-no-bugs *\n")
 
   file(GLOB binaries "${root}/usr/bin/*")
   foreach(binary IN LISTS binaries)
     file(READ "${binary}" magic LIMIT 4 HEX)
-    if(magic STREQUAL "7f454c46")  # ELF; the rest are scripts
+    if(magic STREQUAL "7f454c46")  # ELF; other files are scripts
       run(strip --remove-section=.comment --remove-section=.note "${binary}")
     endif()
   endforeach()
