@@ -1,6 +1,7 @@
-# Draws heave, roll, pitch and buoyant force over time of one body's run, as buoyancy-client --csv writes it.
+# Plots heave, roll, pitch and buoyant force over time for a run of one body. CSV is the output of buoyancy-client
+# --csv.
 #
-#   gnuplot -c plot_run.gnuplot CSV OUTPUT TITLE UP        OUTPUT ends in .svg or .png; UP: the mesh's own up axis, y or z
+#   gnuplot -c plot_run.gnuplot CSV OUTPUT TITLE UP        OUTPUT ends in .svg or .png; UP: up axis of the mesh, y or z
 csv = ARG1
 output_file = ARG2
 
@@ -12,15 +13,15 @@ if (output_file[strlen(output_file)-3:] eq ".svg") {
 set output output_file
 set datafile separator ","
 
-# No more points than a reader can see.
+# Limit the number of points.
 stats csv using (column("utime")) nooutput
 stride = STATS_records > 2000 ? int(STATS_records / 2000) : 1
 
 seconds(utime) = utime * 1e-6
 degrees(angle) = angle * 180.0 / pi
 
-# Angles are from upright: a mesh whose own up axis is y stands upright when it is turned by 90 degrees about its x axis,
-# and that turn is taken out first.
+# Angles are relative to the upright attitude. A mesh with up axis y is upright when it is rotated by 90 degrees about
+# its x axis, so that this rotation is removed first.
 c = ARG4 eq "y" ? sqrt(0.5) : 1.0
 s = ARG4 eq "y" ? sqrt(0.5) : 0.0
 roll_z_up(w, x, y, z)  = degrees(atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)))
@@ -42,7 +43,7 @@ set format x ""
 set ylabel "heave of the mesh's origin (m)" textcolor "#222222"
 plot csv every stride using (seconds(column("utime"))):(column("pz")) with lines linestyle 1
 
-set ylabel "from upright (degrees)"
+set ylabel "angle from upright (degrees)"
 set key top right Left reverse textcolor "#222222" samplen 2
 plot csv every stride using (seconds(column("utime"))):(roll(column("qw"), column("qx"), column("qy"), column("qz"))) \
        with lines linestyle 1 title "roll", \

@@ -1,7 +1,7 @@
-"""The pictures of the results page and of the docs, from the rows that the measuring programs write.
+"""The figures of the results page and of the docs, drawn from the rows that the measuring programs write.
 
-Each is drawn for a wide page and for a narrow one. What a picture shows is computed from its rows, its text alternative
-included.
+Each figure has a wide and a narrow form. Everything in a figure, including its text alternative, is computed from its
+rows.
 """
 import csv
 from dataclasses import dataclass
@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from plot import METHODS, Figure, Panel, Scale, Style, heading, legend, marker, note, text, tolerance_style
 
 METHOD_ORDER = ["fast", "improved", "fast_surface", "exact", "exact_surface", "hierarchical"]
-# A double knows no error of less than this beside the whole; and 0 has no logarithm.
+# Lower limit of plotted errors: below the resolution of a double relative to the whole, and 0 has no logarithm.
 SMALLEST_ERROR = 1.2e-17
 
 
 class Unusable(Exception):
-    """A file that is not what the measuring program writes; its text says which and why."""
+    """An input file that the measuring program did not write; the text names the file and the reason."""
 
 
 def read_rows(path, columns):
-    """A CSV file's rows as dictionaries. columns: those that it has to have."""
+    """Returns the rows of a CSV file as dictionaries. columns: the required columns."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             reader = csv.DictReader(file)
@@ -27,15 +27,15 @@ def read_rows(path, columns):
     except (OSError, UnicodeDecodeError) as error:
         raise Unusable(f"{path}: {error}") from error
     if missing:
-        raise Unusable(f"{path}: no column '{missing[0]}' in its first line; expected what the measuring program "
-                       "writes. Is it of another version? Measure again.")
+        raise Unusable(f"{path}: no column '{missing[0]}' in its first line; expected the output of the measuring "
+                       "program. Another version may have written it; measure again.")
     if not rows or any(None in row or None in row.values() for row in rows):
-        raise Unusable(f"{path}: no rows, or rows that end early. Was the run cut short? Measure again.")
+        raise Unusable(f"{path}: no rows, or incomplete rows. The run may have been interrupted; measure again.")
     return rows
 
 
 def significant(value, digits=2):
-    """As the tables of this project print errors: 4.2e-16, 0.00053."""
+    """Formats a number like the errors in the project's tables: 4.2e-16, 0.00053."""
     return f"{value:.{digits}g}"
 
 
@@ -61,7 +61,7 @@ SPEED_ACCURACY_COLUMNS = ["mesh", "triangles", "method", "tolerance", "target", 
 
 
 def best_rows(rows, regime):
-    """A row per mesh, size, method and tolerance: the first, which is on the best instruction set."""
+    """Returns the first row, that of the best instruction set, per mesh, size, method and tolerance."""
     best = {}
     for row in rows:
         if row["regime"] == regime:
@@ -71,7 +71,7 @@ def best_rows(rows, regime):
 
 @dataclass
 class Point:
-    """A method's responses on a mesh."""
+    """Time and error of a method on a mesh."""
     us: float
     error: float
     triangles: int
@@ -82,7 +82,7 @@ class Point:
 
 
 def series(best, meshes):
-    """Pairs of style and points: the methods, then hierarchical at its tolerances."""
+    """Returns pairs of style and points: the methods, then hierarchical with its tolerances."""
     tolerances = sorted({t for (_, _, m, t) in best if m == "hierarchical" and float(t) > 0}, key=float)
     kinds = [(m, "0", METHODS[m]) for m in METHOD_ORDER]
     kinds += [("hierarchical", t, tolerance_style(t, i)) for i, t in enumerate(tolerances)]
@@ -99,9 +99,9 @@ def series(best, meshes):
 
 
 def name_beside(panel, style, points):
-    """A method's name next to its line: on the left of where the fast ones begin, over the end of the others."""
+    """Labels a line with its method: left of the first point of the fast ones, above the last point of the others."""
     if style.css == "m-tolerance":
-        # At its fastest point where it is at work: on small meshes a small tolerance leaves nothing out.
+        # At the fastest point at which it has an effect: on small meshes a small tolerance changes nothing.
         active = [point.shown() for point in points if point.error > 1e-12]
         if not active:
             return []
@@ -111,14 +111,14 @@ def name_beside(panel, style, points):
         x, y = panel.at(points[0].shown())
         return [text(x - 28, y + 4, style.label, css=style.css, anchor="end", weight="600", colour=style.colour,
                      halo=True)]
-    # exact and exact_surface lie on each other: one is named below, one above.
+    # The lines of exact and exact_surface coincide: one label is below, one above.
     x, y = panel.at(points[-1].shown())
     y += 26 if style is METHODS["exact"] else -13
     return [text(x, y, style.label, css=style.css, anchor="middle", colour=style.colour, halo=True)]
 
 
 def reading_lines(panel, best, meshes, named):
-    """How long it takes to read each mesh once."""
+    """Draws a line at the time of reading each mesh once."""
     floor = panel.top + panel.height
     for n, mesh in meshes:
         if (mesh, n, "read", "0") not in best:
@@ -131,7 +131,7 @@ def reading_lines(panel, best, meshes, named):
 
 
 def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
-    """scanned: the knot and the scanned models in place of the rocks, which are one body at growing sizes."""
+    """scanned: plot the knot and the scanned models instead of the rocks, which are one body at increasing sizes."""
     best = best_rows(rows, "independent")
     meshes = sorted({(n, mesh) for (mesh, n, _, _) in best
                      if (mesh == "rock" if not scanned else not mesh.startswith("rock"))})
@@ -141,7 +141,7 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
     times = [point.us for _, points in drawn for point in points]
     times += [float(row["median_ns"]) / 1000 for (mesh, n, method, _), row in best.items()
               if method == "read" and (n, mesh) in meshes]
-    # On the left of the fastest points stand their names, where there is room; else all names stand under the plot.
+    # Wide: space for labels on the left of the fastest points. Narrow: all labels are below the plot.
     x = Scale(max(min(times), 0.01) / (20.0 if wide else 2.0), max(times) * 2.0, log=True, plain=True,
               label="time of one query, µs")
     y = Scale(1e-17, 10, log=True, every=2 if wide else 4, label="error of force, relative to the whole")
@@ -157,7 +157,7 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
     panel.parts += reading_lines(panel, best, meshes, wide)
     names = []
     for style, points in drawn:
-        # Scanned models are not one body: no line joins what does not grow into each other.
+        # Scanned models are different bodies, so that no line connects them.
         if not scanned:
             panel.curve([point.shown() for point in points], style)
         for point in points:
@@ -175,12 +175,12 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
         height += taken
 
     n, mesh = meshes[-1]
-    said = [f"{style.label} {microseconds(p.us * 1000)} µs with an error of {significant(p.error)}"
-            for style, points in drawn for p in points if (p.triangles, p.mesh) == (n, mesh)]
+    values = [f"{style.label} {microseconds(p.us * 1000)} µs with an error of {significant(p.error)}"
+              for style, points in drawn for p in points if (p.triangles, p.mesh) == (n, mesh)]
     description = ("Median time of one query in microseconds, across, against the largest error of the force relative "
                    f"to the whole displacement, upwards, both logarithmic, for {len(meshes)} meshes of "
                    f"{grouped(meshes[0][0])} to {grouped(n)} triangles. On the {mesh} of {grouped(n)}: "
-                   + "; ".join(said) + ".")
+                   + "; ".join(values) + ".")
     return Figure(name, title, description, width, height, panel.parts + names)
 
 
@@ -190,7 +190,7 @@ FIGURE4_COLUMNS = ["shape", "triangles", "method", "h", "force", "closed_form", 
 
 
 def largest_figure4_errors(rows):
-    """By (shape, triangles), by method."""
+    """Returns {(shape, triangles): {method: largest error}}."""
     largest = {}
     for row in rows:
         of_mesh = largest.setdefault((row["shape"], int(row["triangles"])), {})
@@ -249,26 +249,26 @@ def paper_figure4(rows, wide):
     names, taken = legend([closed] + [METHODS[m] for m in METHOD_ORDER], 72 if wide else 16, bottom,
                           width - (100 if wide else 30), False)
     parts += names
-    said = []
+    values = []
     for (shape, n), errors in largest_figure4_errors(rows).items():
-        said.append(f"{shape} of {grouped(n)} triangles: " + ", ".join(
+        values.append(f"{shape} of {grouped(n)} triangles: " + ", ".join(
             f"{m} {significant(errors[m])}" for m in METHOD_ORDER if m in errors))
     return Figure("paper_figure4", "The paper's figure 4, measured: force on a cube and a sphere, and its error",
                   "Above, the force of each method and the paper's closed form over the height of the centre, for a "
                   "cube and a sphere; below, the size of the force's error, logarithmic, on a coarse and a fine mesh. "
-                  "Largest errors: " + "; ".join(said) + ".", width, bottom + taken + 6, parts)
+                  "Largest errors: " + "; ".join(values) + ".", width, bottom + taken + 6, parts)
 
 
 # --- Error under stress ----------------------------------------------------------------------------------------------
 
 STRESS_COLUMNS = ["sweep", "x", "method", "error_of_whole"]
-# Title, what is across, decades from tick to tick.
+# Title, label of the horizontal axis, decades per tick.
 SWEEPS = {
     "tilt": ("tilt of a box of flat faces", "rad", 3),
     "level": ("level and position, far up", "m", 3),
     "origin": ("mesh far from its own origin", "m", 2),
     "scale": ("size of the body", "m", 3),
-    "wet_share": ("share that is wet; dotted: all of it missed", "of the whole displacement", 3),
+    "wet_share": ("submerged fraction; dotted: all of it missed", "of the whole displacement", 3),
 }
 
 
@@ -279,7 +279,7 @@ def error_under_stress(rows, wide):
         points.append((float(row["x"]), float(row["error_of_whole"])))
     unknown = set(sweeps) - set(SWEEPS)
     if unknown:
-        raise Unusable(f"a sweep called '{unknown.pop()}', which no picture is drawn of; known: {', '.join(SWEEPS)}")
+        raise Unusable(f"unknown sweep '{unknown.pop()}'; known: {', '.join(SWEEPS)}")
     columns = 3 if wide else 1
     width = 1180 if wide else 420
     panel_width, panel_height = (312, 270) if wide else (336, 240)
@@ -287,7 +287,7 @@ def error_under_stress(rows, wide):
                      "Error of force, relative to the whole")]
     methods = [m for m in METHODS if any(m in of_sweep for of_sweep in sweeps.values())]
     shown = [s for s in SWEEPS if s in sweeps]
-    said = []
+    values = []
     for place, sweep in enumerate(shown):
         title, across, decades = SWEEPS[sweep]
         xs = [x for points in sweeps[sweep].values() for x, _ in points]
@@ -304,20 +304,21 @@ def error_under_stress(rows, wide):
             panel.curve([(x, min(max(error, low * 1.2), high)) for x, error in points], METHODS[method])
         parts += panel.parts
         largest = {METHODS[m].label: max(e for _, e in sweeps[sweep][m]) for m in methods if m in sweeps[sweep]}
-        said.append(f"{title}: " + ", ".join(f"{label} {significant(error)}" for label, error in largest.items()))
+        values.append(f"{title}: " + ", ".join(f"{label} {significant(error)}" for label, error in largest.items()))
     rows_of_panels = -(-len(shown) // columns)
     bottom = 74 + rows_of_panels * (panel_height + 92) - 6
     if wide and len(shown) % columns:
-        # The free place of the last row holds the names.
+        # The legend uses the free space of the last row.
         left = 62 + (len(shown) % columns) * 388
         names, _ = legend([METHODS[m] for m in methods], left + 20, bottom - panel_height - 40, 100, False)
         taken = 0
     else:
         names, taken = legend([METHODS[m] for m in methods], 62 if wide else 16, bottom, width - 60, False)
     parts += names
-    return Figure("error_under_stress", "Error of every method over tilt, level, the mesh's origin, size and wet share",
+    return Figure("error_under_stress", "Error of every method over tilt, level, the mesh's origin, size and submerged "
+                  "fraction",
                   "A panel per kind of stress, both axes logarithmic. Largest errors over each: "
-                  + "; ".join(said) + ".", width, bottom + taken + (0 if taken == 0 else 6), parts)
+                  + "; ".join(values) + ".", width, bottom + taken + (0 if taken == 0 else 6), parts)
 
 
 DRAWN = {

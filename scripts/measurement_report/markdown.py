@@ -1,4 +1,4 @@
-"""As much of Markdown as the measuring programs write: headings, paragraphs, lists and tables."""
+"""The subset of Markdown that the measuring programs write: headings, paragraphs, lists and tables."""
 import re
 from dataclasses import dataclass
 from html import escape
@@ -7,7 +7,7 @@ from html import escape
 @dataclass
 class Table:
     header: list  # cells as Markdown
-    right: list  # of each column: is it aligned to the right
+    right: list  # per column: whether it is right-aligned
     rows: list
 
     def column(self, name):
@@ -21,7 +21,7 @@ def cells(row):
 
 
 def tables(text):
-    """Every table, with the last heading above it."""
+    """Returns every table with the heading above it."""
     found, heading, lines = [], "", text.splitlines()
     i = 0
     while i < len(lines):
@@ -52,7 +52,7 @@ def inline(text):
 
 
 def table_html(table, label):
-    """In a box of its own, which scrolls where the page is narrower."""
+    """Returns the table in a box that scrolls if the page is narrower."""
     def row(tag, row_cells):
         made = []
         for right, cell in zip(table.right, row_cells):
@@ -68,7 +68,7 @@ def table_html(table, label):
 
 
 def html(text, level):
-    """level: of the headings, whatever it is in the text."""
+    """level: the level of all headings."""
     made, paragraph, items, heading = [], [], [], "table"
     lines = text.splitlines()
 

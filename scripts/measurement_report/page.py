@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the results page from what the measurements left behind; scripts/measure_all calls it.
+"""Makes the results page from the files that the measurements wrote. Called by scripts/measure_all.
 
   page.py BUILD_DIRECTORY OUTPUT.html
 
-A measurement that was not made is said to be missing, with its command. Exit codes: 0 made; 1 nothing was measured, a
-file is not what it should be, or the page cannot be written; 2 wrong arguments.
+The page marks missing measurements and names their commands. Exit status: 0 on success; 1 if there are no measurements,
+a file is invalid, or the page cannot be written; 2 on invalid arguments.
 """
 import sys
 from html import escape
@@ -22,19 +22,19 @@ PAPER_TITLE = "Approximate and exact buoyancy calculation for real-time floating
 
 
 def network_card(part):
-    claim = "Over the network: request and answer between two processes"
+    claim = "Over the network: round trip between two processes"
     if not part.measured():
         return card(claim, None, "", "", part)
     path = file_of(part, "report.md")
     table = table_with(part, "report.md", "processors")
     row = row_with(table, {"processors": "all", "bodies": "1", "": "p50"}, path)
     return card(claim, row[table.column("service, us")], "µs",
-                "Median round trip over UDP, one body. A bare echo of as many bytes takes "
+                "Median round trip over UDP, one body. A plain LCM echo of the same size takes "
                 f"{row[table.column('echo, us')]} µs.", part)
 
 
 def replay_card(part):
-    claim = "Replay: requests of a recorded log answered in a second"
+    claim = "Replay: requests of a recorded log handled per second"
     if not part.measured():
         return card(claim, None, "", "", part)
     path = file_of(part, "section.md")
@@ -43,23 +43,23 @@ def replay_card(part):
             first, rate = table.header[0], table.column("per second")
             row = row_with(table, {first: "replay, all processors"}, path)
             alone = row_with(table, {first: "replay, one job"}, path)
-            return card(claim, grouped(row[rate]), "a second",
-                        f"All processors, reading and writing included; on one: {grouped(alone[rate])}. The same bytes "
-                        "whenever and wherever.", part)
+            return card(claim, grouped(row[rate]), "per second",
+                        f"All processors, reading and writing included; on one: {grouped(alone[rate])}. Every replay "
+                        "writes the same bytes.", part)
     raise Unusable(f"{path}: no table with a column 'per second'")
 
 
 def report_section(part, name):
     if not part.measured():
         return not_measured(part)
-    # Its own headline would repeat the section's.
+    # Omit its heading, which would repeat the section's.
     lines = [line for line in read_text(file_of(part, name)).splitlines() if not line.startswith("## ")]
     return markdown.html("\n".join(lines), 3) + source_line(part)
 
 
 def page(parts):
     commands = [p.facts["command"] for p in parts.values() if p.measured()]
-    quick = ('<p class="banner">A quick run: fewer meshes, fewer requests. Times of it are a first look.</p>'
+    quick = ('<p class="banner">A quick run with fewer meshes and requests: its times are preliminary.</p>'
              if any("--quick" in c for c in commands) else "")
     commits = sorted({p.facts["commit"] for p in parts.values() if p.measured()})
     mixed = (f'<p class="banner">These measurements were made at different commits: {escape(", ".join(commits))}.</p>'
@@ -68,7 +68,7 @@ def page(parts):
                        stability_card(parts["stability"]), network_card(parts["network"]),
                        replay_card(parts["replay"])])
     sections = [
-        ("time", "Time against error", time_section(parts["bench"])),
+        ("time", "Time and error", time_section(parts["bench"])),
         ("figure4", "The paper's figure 4: accuracy", figure4_section(parts["paper"])),
         ("table1", "The paper's table 1: time", table1_section(parts["paper"])),
         ("stability", "Numerical stability", stability_section(parts["stability"], parts["search"])),
@@ -92,8 +92,8 @@ def page(parts):
 <body>
 <header>
 <h1>buoyancy: results</h1>
-<p class="lead">How exact, how fast and how stable the forces are that water exerts on floating triangle meshes,
-measured by the project's own commands. Five algorithms are those of &ldquo;{escape(PAPER_TITLE)}&rdquo;;
+<p class="lead">Accuracy, speed and numerical stability of the hydrostatic forces on floating triangle meshes, measured
+by the project's own commands. Five algorithms are those of &ldquo;{escape(PAPER_TITLE)}&rdquo;;
 <code>hierarchical</code> is this project's.</p>
 {quick}{mixed}<nav aria-label="sections">{nav}</nav>
 </header>
@@ -105,10 +105,9 @@ measured by the project's own commands. Five algorithms are those of &ldquo;{esc
 </section>
 {body}
 </main>
-<footer><p>Errors are relative to the whole: of force, to the weight of the whole displacement; of torque, to that times
-the diagonal of the bounding box. Every figure on this page was read from what a measurement wrote, the paper's
-from one file
-(<code>bench/paper_numbers.csv</code>). Made by <code>./scripts/measure_all</code>.</p></footer>
+<footer><p>Force errors are relative to the weight of the displacement of the whole body, torque errors to that times
+the diagonal of the bounding box. Every figure on this page comes from the output of a measurement, those of the paper
+from <code>bench/paper_numbers.csv</code>. Made by <code>./scripts/measure_all</code>.</p></footer>
 </body>
 </html>
 """

@@ -1,4 +1,4 @@
-"""The paper's figure 4 and table 1, beside what scripts/measure_paper measured."""
+"""The paper's figure 4 and table 1 next to the results of scripts/measure_paper."""
 from html import escape
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from markdown import Table
 from parts import card, details, file_of, not_measured, picture, source_line, table_with
 from plot import METHODS, Figure, Panel, Scale, heading, marker, note, text
 
-FIND_MODELS = "Rocks of their size stood in; <code>BUOYANCY_MESHES</code> names the folder of the scanned models."
+FIND_MODELS = "Rocks of the same size replaced them; <code>BUOYANCY_MESHES</code> is the folder of the scanned models."
 PAPER = Path(__file__).resolve().parents[2] / "bench" / "paper_numbers.csv"
 
 
@@ -18,7 +18,7 @@ def paper_rows():
 
 
 def compared_table1(part):
-    """Rows (model, triangles, method, paper's ms or None, our us, force error) of the models that both measured."""
+    """Returns rows (model, triangles, method, paper's ms or None, our us, force error) for models in both tables."""
     paper = {(r["model"], int(r["triangles"]), r["method"]): float(r["value"])
              for r in paper_rows() if r["place"] == "table 1"}
     ours = table_with(part, "table1.md", "model")
@@ -66,14 +66,14 @@ def paper_table1_figure(compared, wide):
             y += row_height
         y += 6
     parts.append(note(width - 30, 42, "rings: the paper's; filled: here", anchor="end"))
-    said = "; ".join(f"{model} {method}: " + (f"paper {ms:g} ms, " if ms else "") + f"here {us:g} µs"
-                     for model, _, method, ms, us, _ in compared)
-    return Figure("paper_table1", "Times of the paper's table 1 beside the same measured here",
-                  f"Time of one query, logarithmic, a line per model and method. {said}.", width, height, parts)
+    values = "; ".join(f"{model} {method}: " + (f"paper {ms:g} ms, " if ms else "") + f"here {us:g} µs"
+                       for model, _, method, ms, us, _ in compared)
+    return Figure("paper_table1", "Times of the paper's table 1 next to those measured here",
+                  f"Time of one query, logarithmic, a line per model and method. {values}.", width, height, parts)
 
 
 def paper_card(part):
-    claim = "Beside the paper: its exact response, on its largest model at hand"
+    claim = "Compared with the paper: an exact result on its largest available model"
     if not part.measured():
         return card(claim, None, "", "", part)
     compared = [r for r in compared_table1(part) if r[2] in ("exact", "hierarchical")]
@@ -85,11 +85,11 @@ def paper_card(part):
     return card(claim, f"{paper_us / rows['hierarchical'][4]:.0f}", "times faster",
                 f"{rows['exact'][0]}, {grouped(largest)} triangles: {rows['exact'][3]:g} ms in the paper, "
                 f"{rows['hierarchical'][4]:g} µs here with hierarchical, {rows['exact'][4]:g} µs with the paper's "
-                "algorithm. Another processor and another language, which the ratio contains.", part)
+                "algorithm. The ratio includes another processor and another language.", part)
 
 
 def figure4_findings(rows):
-    """What section 5 of the paper reports in words, beside what came out here."""
+    """Compares the findings of section 5 of the paper with the results here."""
     of_paper = {(r["model"], int(r["triangles"])) for r in paper_rows() if r["place"] == "section 5"}
     largest = {mesh: errors for mesh, errors in figures.largest_figure4_errors(rows).items() if mesh in of_paper}
     table = Table(["the paper's section 5 finds", "body", "largest error here, coarse mesh", "fine mesh",
@@ -105,11 +105,11 @@ def figure4_findings(rows):
             verdict = "the same here" if agrees(coarse[method], fine[method]) else "not so here"
             table.rows.append([finding, f"{shape}, `{method}`", significant(coarse[method]), significant(fine[method]),
                                f"{ratio:.1f}", verdict])
-        if shape == "cube":  # a sphere's mesh lies inside the sphere: there the mesh's own error is seen
+        if shape == "cube":  # a sphere's mesh is inscribed, so that its discretisation error dominates
             for method in ("exact", "exact_surface"):
-                add("exact but for rounding", method, lambda c, f: max(c, f) < 1e-12)
-        add("a finer mesh makes it better", "improved", lambda c, f: f < c / 2)
-        add("a finer mesh leaves the error", "fast", lambda c, f: f > c / 2)
+                add("exact to rounding", method, lambda c, f: max(c, f) < 1e-12)
+        add("a finer mesh reduces the error", "improved", lambda c, f: f < c / 2)
+        add("a finer mesh does not reduce the error", "fast", lambda c, f: f > c / 2)
     return table
 
 
@@ -144,7 +144,7 @@ def table1_table(compared):
     for model, triangles, method, paper_ms, us, error in compared:
         if paper_ms:
             ratio = f"{paper_ms * 1000 / us:.1f}"
-        else:  # a method of our own, beside the paper's exact one, whose request it answers
+        else:  # hierarchical, compared with the paper's exact method, which computes the same result
             ratio = f"{exact[model, triangles] * 1000 / us:.1f} *"
         table.rows.append([model, grouped(triangles), f"`{method}`", f"{paper_ms:.2f}" if paper_ms else "", f"{us:.2f}",
                            ratio, error])
@@ -157,14 +157,13 @@ def figure4_section(part):
     rows = figures.read_rows(file_of(part, "figure4.csv"), figures.FIGURE4_COLUMNS)
     return "\n".join([
         picture(lambda wide: figures.paper_figure4(rows, wide),
-                "The paper prints no numbers with its figure 4. Its closed forms (section 5) are the thick line; the "
-                "curves are this run's. On a sphere the exact methods show how far the inscribed mesh is from "
-                "the ball."),
-        "<p>The paper says in words what the figure shows; the same meshes here:</p>",
-        markdown.table_html(figure4_findings(rows), "the paper's findings beside this run"),
+                "The paper gives no numbers with its figure 4. The thick line is its closed form (section 5); the "
+                "curves are from this run. On a sphere the exact methods show the error of the inscribed mesh."),
+        "<p>The paper's findings, compared with results on the same meshes:</p>",
+        markdown.table_html(figure4_findings(rows), "the paper's findings next to this run"),
         details("The numbers: forces at five heights, and the largest errors",
                 "<p>Force where ρg = 1.</p>"
-                + markdown.table_html(figure4_samples(rows), "forces beside the closed form")
+                + markdown.table_html(figure4_samples(rows), "forces next to the closed form")
                 + "<p>Largest error of the force over all heights, relative to the whole.</p>"
                 + markdown.table_html(figure4_errors(rows), "largest errors")),
         source_line(part)])
@@ -176,23 +175,23 @@ def table1_section(part):
     compared = compared_table1(part)
     if not compared:
         return f"<p class=\"absent\">None of the paper's models was measured. {FIND_MODELS}</p>" + source_line(part)
-    said = {r["quantity"]: r["value"] for r in paper_rows()}
+    setup = {r["quantity"]: r["value"] for r in paper_rows()}
     measured = {model for model, *_ in compared}
     absent = list(dict.fromkeys(r["model"] for r in paper_rows()
                                 if r["place"] == "table 1" and r["model"] not in measured))
-    missing = (f'<p class="absent">Not at hand, and so not compared: {escape(", ".join(absent))}. {FIND_MODELS}</p>'
-               if absent else "")
+    missing = (f'<p class="absent">Not available and therefore not compared: {escape(", ".join(absent))}. '
+               f"{FIND_MODELS}</p>" if absent else "")
     facts = part.facts
     return "\n".join([
         picture(lambda wide: paper_table1_figure(compared, wide),
                 "Across: time of one query, logarithmic. The paper has no <code>hierarchical</code>."),
-        f"<p>What differs beside the code. The paper: {escape(said['processor'])}, {escape(said['system'])}, in "
-        f"{escape(said['platform'])}, the average of {escape(said['measurements averaged'])} measurements. Here: "
+        f"<p>Other differences than the code. The paper: {escape(setup['processor'])}, {escape(setup['system'])}, in "
+        f"{escape(setup['platform'])}, the average of {escape(setup['measurements averaged'])} measurements. Here: "
         f"{escape(facts['processor'])}, {escape(facts['system'])}, {escape(facts['compiler'])}, one thread, the median "
-        "of five runs over poses from almost dry to almost submerged, as in the paper. The ratio contains all of that, "
-        "so it is no measure of an algorithm by itself.</p>",
+        "of five runs over poses from almost dry to almost submerged, as in the paper. The ratio includes all of these "
+        "differences and does not compare algorithms alone.</p>",
         missing,
-        details("The numbers: table 1 beside this run",
-                markdown.table_html(table1_table(compared), "the paper's table 1 beside this run")
-                + "<p>* Beside the paper's time for <code>exact</code>, which answers the same request.</p>"),
+        details("The numbers: table 1 next to this run",
+                markdown.table_html(table1_table(compared), "the paper's table 1 next to this run")
+                + "<p>* Compared with the paper's time for <code>exact</code>, which computes the same result.</p>"),
         source_line(part)])

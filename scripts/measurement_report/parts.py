@@ -1,4 +1,4 @@
-"""The measurements that a results page is made of, and the pieces that every section has."""
+"""The measurements of the results page, and the elements that all sections share."""
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
@@ -9,7 +9,7 @@ from figures import Unusable
 
 @dataclass
 class Part:
-    """A measurement: where its files are, and by which command they come to be there."""
+    """A measurement: the location of its files and the command that writes them."""
     key: str
     folder: str
     command: str
@@ -41,19 +41,19 @@ def read_facts(path):
     facts = dict(line.split(": ", 1) for line in read_text(path).splitlines() if ": " in line)
     for key in ("command", "date", "processor", "threads", "system", "compiler", "commit"):
         if key not in facts:
-            raise Unusable(f"{path}: no line '{key}: ...'; expected what scripts/provenance prints. Measure again.")
+            raise Unusable(f"{path}: no line '{key}: ...'; expected the output of scripts/provenance. Measure again.")
     return facts
 
 
 def find_parts(build):
-    """A part counts as measured where its provenance are, which its script writes last."""
+    """Finds the measurements; one is complete if its provenance exists, which its script writes last."""
     parts = {}
     for part in PARTS:
         folder = build / part.folder
         facts = read_facts(folder / "provenance") if (folder / "provenance").exists() else {}
         parts[part.key] = Part(part.key, str(folder), part.command, part.files, facts)
     if not any(part.measured() for part in parts.values()):
-        raise Unusable(f"{build}: no measurement is there. Run scripts/measure_all without --reuse, or one of "
+        raise Unusable(f"{build}: no measurements found. Run scripts/measure_all without --reuse, or one of "
                        + ", ".join(part.command for part in PARTS))
     return parts
 
@@ -63,12 +63,12 @@ def file_of(part, name):
 
 
 def table_with(part, name, first_column):
-    """The table of a report whose first column is called so."""
+    """Returns the table of a report whose first column has this name."""
     path = file_of(part, name)
     for _, table in markdown.tables(read_text(path)):
         if table.header[0] == first_column:
             return table
-    raise Unusable(f"{path}: no table whose first column is '{first_column}'; expected what {part.command} writes")
+    raise Unusable(f"{path}: no table whose first column is '{first_column}'; expected the output of {part.command}")
 
 
 def row_with(table, where, path_of):
@@ -87,7 +87,7 @@ def source_line(part):
 
 
 def not_measured(part):
-    return f'<p class="absent">Not measured. <code>{escape(part.command)}</code> does.</p>'
+    return f'<p class="absent">Not measured. Run <code>{escape(part.command)}</code>.</p>'
 
 
 def details(summary, inner):
@@ -95,7 +95,7 @@ def details(summary, inner):
 
 
 def picture(draw, caption):
-    """draw(wide): the figure for that width of page."""
+    """draw(wide): returns the figure in its wide or narrow form."""
     wide, narrow = draw(True), draw(False)
     return f'<figure>{wide.inline("wide")}\n{narrow.inline("narrow")}\n<figcaption>{caption}</figcaption></figure>'
 

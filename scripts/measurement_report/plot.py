@@ -1,8 +1,8 @@
 """Panels of lines and points over logarithmic or linear axes, as SVG text.
 
-Every colour stands in an attribute, so that a picture by itself needs no style sheet, and every element has a class, by
-which a page can give it another one (dark mode). Colours can be told apart by colour-blind people (Okabe and Ito), and
-each method has a point shape of its own.
+Every colour is an attribute, so that a standalone figure needs no style sheet, and every element has a class, so that a
+page can override the colour (dark mode). The palette is safe for colour-blind readers (Okabe and Ito), and each method
+has its own marker.
 """
 import math
 from dataclasses import dataclass, field
@@ -53,14 +53,14 @@ def tolerance_style(tolerance, index):
 
 
 def number(value):
-    """A coordinate: a tenth of a unit is finer than anybody sees."""
+    """Formats a coordinate with a resolution of a tenth of a unit."""
     return f"{round(value, 1) + 0.0:.1f}".removesuffix(".0")
 
 
 def text(x, y, content, *, css="ink", anchor="start", size=13, weight="", halo=False, rotate=None, colour=INK):
-    """content: markup already."""
+    """content: escaped markup."""
     extra = f' font-weight="{weight}"' if weight else ""
-    if halo:  # keeps a label readable where a line runs under it
+    if halo:  # keeps a label readable on top of a line
         extra += f' paint-order="stroke" stroke="{GROUND}" stroke-width="4" stroke-linejoin="round"'
         css += " halo"
     if rotate is not None:
@@ -70,7 +70,7 @@ def text(x, y, content, *, css="ink", anchor="start", size=13, weight="", halo=F
 
 
 def note(x, y, content, *, anchor="middle", size=12, halo=False, rotate=None):
-    """What stands back behind the names: ticks, sizes, explanations."""
+    """Returns text in a softer colour, for ticks, sizes and explanations."""
     return text(x, y, content, css="soft", anchor=anchor, size=size, halo=halo, rotate=rotate, colour=SOFT)
 
 
@@ -111,12 +111,12 @@ class Scale:
     low: float
     high: float
     log: bool = False
-    every: float = 1.0  # log: decades from one tick to the next; linear: what it says
-    plain: bool = False  # log: 0.1, 1, 1,000 in place of powers
+    every: float = 1.0  # distance of ticks; log: in decades
+    plain: bool = False  # log: 0.1, 1, 1,000 instead of powers of ten
     label: str = ""
 
     def share(self, value):
-        """0 at low, 1 at high; what lies outside sits on the edge."""
+        """Returns 0 at low, 1 at high; values outside are clamped."""
         if self.log:
             value = math.log10(max(value, self.low))
             low, high = math.log10(self.low), math.log10(self.high)
@@ -125,7 +125,7 @@ class Scale:
         return min(1.0, max(0.0, (value - low) / (high - low)))
 
     def ticks(self):
-        """Pairs of value and markup."""
+        """Returns pairs of value and markup."""
         if not self.log:
             first = math.ceil(self.low / self.every - 1e-9)
             last = math.floor(self.high / self.every + 1e-9)
@@ -143,7 +143,7 @@ class Panel:
     width: float
     height: float
     x: Scale
-    y: Scale | None  # None: nothing is measured upwards
+    y: Scale | None  # None: no vertical axis
     title: str = ""
     parts: list = field(default_factory=list)
 
@@ -183,7 +183,7 @@ class Panel:
 
 
 def legend(styles, left, top, width, with_markers):
-    """Names in rows as wide as allowed; returns parts and the height taken."""
+    """Lays out labels in rows of at most the given width; returns parts and the height used."""
     parts, x, y = [], left, top
     for style in styles:
         needed = 44 + 7.4 * len(style.label)
@@ -199,9 +199,9 @@ def legend(styles, left, top, width, with_markers):
 
 @dataclass
 class Figure:
-    name: str  # of its file; part of its ids
+    name: str  # file name; part of its ids
     title: str
-    description: str  # what somebody who does not see it has to know
+    description: str  # text alternative
     width: float
     height: float
     parts: list
@@ -216,11 +216,11 @@ class Figure:
         ])
 
     def standalone(self):
-        """A file of its own: with a title in the picture, and white under it."""
+        """Returns the figure as a file, with a white background."""
         return self._svg(
             f'xmlns="http://www.w3.org/2000/svg" width="{self.width:g}" height="{self.height:g}" ', "",
             [f'<rect width="100%" height="100%" fill="{GROUND}"/>']) + "\n"
 
     def inline(self, css):
-        """Part of a page that is shown under `css`."""
+        """Returns the figure as part of a page, shown under the class `css`."""
         return self._svg(f'class="{css}" ', f"-{css}", [])

@@ -1,4 +1,4 @@
-"""Numerical stability: what scripts/measure_stability and scripts/random_search found."""
+"""Numerical stability: the results of scripts/measure_stability and scripts/random_search."""
 import figures
 import markdown
 from figures import Unusable, grouped, significant
@@ -8,7 +8,7 @@ from plot import METHODS
 
 
 def catalogue(part):
-    """(rows, checks, largest figure, table) of each of the two tables."""
+    """Returns (rows, checks, largest value, table) for each of the two tables."""
     made = []
     for name in ("table.md", "in_time.md"):
         table = table_with(part, name, "case")
@@ -23,15 +23,15 @@ def catalogue(part):
 
 
 def stability_card(part):
-    claim = "Stable: the largest error under stress, in units of what it is held to"
+    claim = "Stable: the largest error under stress, relative to its limit"
     if not part.measured():
         return card(claim, None, "", "", part)
     tables = catalogue(part)
     worst = max(t[2] for t in tables)
     kinds, checks = sum(t[0] for t in tables), sum(t[1] for t in tables)
-    return card(claim, f"{worst:.3g}", "of 1 allowed" if worst <= 1 else "of 1 allowed: broken",
-                f"{kinds} kinds of stress, {grouped(checks)} checks; the truth in rational arithmetic or in closed "
-                "form.", part)
+    return card(claim, f"{worst:.3g}", "of 1 allowed" if worst <= 1 else "of 1 allowed: exceeded",
+                f"{kinds} kinds of stress, {grouped(checks)} checks against rational arithmetic or closed "
+                "forms.", part)
 
 
 def stress_table(rows):
@@ -53,25 +53,24 @@ def stability_section(part, search):
         (cases, checks, worst, table), (timed, timed_checks, timed_worst, in_time) = catalogue(part)
         made += [
             picture(lambda wide: figures.error_under_stress(rows, wide),
-                    "The exact methods notice none of it. The dashed line is no method of this service, but how "
-                    "simulators often compute buoyancy: every vertex moved into the world in single precision."),
-            details("The numbers behind the picture", markdown.table_html(stress_table(rows), "error under stress")),
-            f"<p>The catalogue: {cases} kinds of stress, {grouped(checks)} checks, the largest figure {worst:.3g} of "
-            "what is allowed. A gate allows G_V = ε (64 V + L A) to a volume, ε = 2⁻⁵², L the box's diagonal, A the "
-            "area of the surface.</p>",
+                    "The exact methods are not affected. The dashed line is not a method of this service, but the "
+                    "usual way of simulators: every vertex is transformed to the world frame in single precision."),
+            details("The numbers of the figure", markdown.table_html(stress_table(rows), "error under stress")),
+            f"<p>The catalogue: {cases} kinds of stress, {grouped(checks)} checks; the largest value is {worst:.3g} of "
+            "the limit. The limit for a volume is the gate G_V = ε (64 V + L A) with ε = 2⁻⁵², the diagonal L of the "
+            "bounding box and the surface area A.</p>",
             details("The catalogue, case by case", markdown.table_html(table, "the stress catalogue")),
-            f"<p>In time: {timed} kinds of run, {grouped(timed_checks)} checks, the largest figure {timed_worst:.3g} "
-            "of what is allowed.</p>",
+            f"<p>In time: {timed} kinds of run, {grouped(timed_checks)} checks; the largest value is {timed_worst:.3g} "
+            "of the limit.</p>",
             details("The runs, case by case", markdown.table_html(in_time, "runs of the simulator")),
             source_line(part)]
     else:
         made.append(not_measured(part))
     made.append("<h3>Random search</h3>")
     if search.measured():
-        made.append("<p>Random meshes and requests aimed at trouble, judged by exact arithmetic: the largest errors "
-                    "beside what they are held to and beside the bounds that came with the responses. Of approximations, "
-                    "and within a tolerance, the error may come as near to its bound as it likes. A broken bound ends "
-                    "the search with an error.</p>")
+        made.append("<p>Random meshes and adversarial poses, checked with exact arithmetic: the largest errors "
+                    "relative to their limits and to the error bounds in the results. Errors of approximations and "
+                    "errors within a tolerance may reach their bound. A violated bound fails the search.</p>")
         made.append(markdown.html(read_text(file_of(search, "report.md")), 4) + source_line(search))
     else:
         made.append(not_measured(search))

@@ -1,4 +1,4 @@
-"""Time against error: what scripts/bench measured."""
+"""Time and error: the results of scripts/bench."""
 import math
 
 import figures
@@ -24,8 +24,8 @@ def accuracy_card(part):
     worst = max(float(r["force_error"]) for r in rows)
     sizes = sorted(int(n) for _, n in meshes)
     return card(claim, significant(worst), "of the whole",
-                f"{len(meshes)} meshes of {grouped(sizes[0])} to {grouped(sizes[-1])} triangles, two regimes of poses, "
-                f"{len(targets)} instruction sets; against extended precision.", part)
+                f"{len(meshes)} meshes of {grouped(sizes[0])} to {grouped(sizes[-1])} triangles, two kinds of pose "
+                f"sequences, {len(targets)} instruction sets; compared with extended precision.", part)
 
 
 def speed_card(part):
@@ -36,8 +36,8 @@ def speed_card(part):
     triangles, mesh = max((n, mesh) for mesh, n, m, t in best if m == "hierarchical" and "shuffled" not in mesh)
     time = {m: float(best[mesh, triangles, m, "0"]["median_ns"]) for m in ("read", "exact", "hierarchical")}
     return card(claim, microseconds(time["hierarchical"]), "µs",
-                f"{grouped(triangles)} triangles, median of poses far apart, one thread. In the same run the paper's "
-                f"exact algorithm takes {microseconds(time['exact'])} µs, {time['exact'] / time['hierarchical']:.0f} "
+                f"{grouped(triangles)} triangles, median over independent poses, one thread. In the same run the "
+                f"paper's exact algorithm takes {microseconds(time['exact'])} µs, {time['exact'] / time['hierarchical']:.0f} "
                 f"times as long, and reading the mesh once {microseconds(time['read'])} µs.", part)
 
 
@@ -67,17 +67,17 @@ def time_section(part):
     if figures.speed_accuracy(rows, True):
         made.append(picture(
             lambda wide: figures.speed_accuracy(rows, wide),
-            "Rocks of growing size. An approximation gets more exact with the mesh and more expensive with it; "
-            "<code>hierarchical</code> pays for the waterline alone, and within a tolerance for less."))
+            "Rocks of growing size. The accuracy and cost of an approximation grow with the mesh; the cost of "
+            "<code>hierarchical</code> grows with the waterline only, and with a tolerance even less."))
     if figures.speed_accuracy(rows, True, scanned=True):
         made.append(picture(lambda wide: figures.speed_accuracy(rows, wide, "speed_accuracy_models", scanned=True),
-                            "The same for the torus knot and the scanned models at hand."))
+                            "The same for the torus knot and the available scanned models."))
     if not made:
-        raise Unusable(f"{file_of(part, 'speed_accuracy.csv')}: no mesh that a picture shows")
+        raise Unusable(f"{file_of(part, 'speed_accuracy.csv')}: no mesh that a figure shows")
     made.append(details("The numbers: every mesh, method and tolerance",
-                        "<p>Medians over poses far apart; errors and bounds the largest, relative to the whole "
-                        "displacement. On the processor's best instruction set.</p>"
+                        "<p>Medians over independent poses; errors and bounds are the largest, relative to the whole "
+                        "displacement, on the processor's best instruction set.</p>"
                         + markdown.table_html(time_table(rows), "time and error of every mesh, method and tolerance")))
-    made.append(details("The run's own report: goals, growth, instruction sets, the tree, many bodies",
+    made.append(details("The report of the run: goals, growth, instruction sets, the tree, many bodies",
                         markdown.html(read_text(file_of(part, "report.md")), 4)))
     return "\n".join(made) + source_line(part)
