@@ -37,7 +37,8 @@ def speed_card(part):
     time = {m: float(best[mesh, triangles, m, "0"]["median_ns"]) for m in ("read", "exact", "hierarchical")}
     return card(claim, microseconds(time["hierarchical"]), "µs",
                 f"{grouped(triangles)} triangles, median over independent poses, one thread. In the same run the "
-                f"paper's exact algorithm takes {microseconds(time['exact'])} µs, {time['exact'] / time['hierarchical']:.0f} "
+                f"paper's exact algorithm takes {microseconds(time['exact'])} µs, "
+                f"{time['exact'] / time['hierarchical']:.0f} "
                 f"times as long, and reading the mesh once {microseconds(time['read'])} µs.", part)
 
 
