@@ -1,5 +1,5 @@
-// The options that name channels with bot_core's pose messages, shared by the programs that answer such poses
-// and those that show them.
+// The options that name channels of bot_core's pose messages, shared by the programs that respond to such
+// poses and those that display them.
 #pragma once
 
 #include <optional>
