@@ -98,7 +98,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({std::string(to_string(Integrator::kSemiImplicitEuler)),
                              std::string(to_string(Integrator::kVelocityVerlet))}))
       ->capture_default_str();
-  add_lead_time_option(app, arguments.lead_time, "the poses sent")->check(number_in(-1e3, 1e3, "S"));
+  add_lead_time_option(app, arguments.lead_time, "the requested poses")->check(number_in(-1e3, 1e3, "S"));
   const CLI::Range delay_range(std::int64_t{0}, kMaxDelaySteps, "STEPS");
   auto* delay = app.add_option("--delay-steps", arguments.delay_steps,
                                "Use every response this many steps late, reproducibly, to simulate a "
