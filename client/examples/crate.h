@@ -55,7 +55,7 @@ int float_crate(World& world, const Arguments& arguments) {
   const std::int64_t steps = std::llround(kSimulatedTime / step_size);
   buoyancy::ClientOptions options;
   options.channel.lcm_url = arguments.lcm_url;
-  options.retry_policy.max_retries = arguments.retries;
+  options.retry_policy.max_retries = arguments.max_retries;
   buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open(options);
   if (!client) {
     std::fprintf(stderr, "%s\n", client.error().message().c_str());
