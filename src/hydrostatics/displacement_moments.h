@@ -3,7 +3,7 @@
 // dual numbers and rationals in the tests.
 //
 // With S, N, P the moments about a point o at height z_o over the water, k up, y = x - o, and the sums
-// (Nk)_j = N_jk k_k (docs/mathematics.md, "Read-out"):
+// (Nk)_j = N_jk k_k (docs/mathematics.md, "Conversion to volume integrals"):
 //   V = k . Nk + z_o k . S,   U_j = k_i k_k P_ijk + z_o (Nk)_j,   H = 1/2 (k_i k_j k_k P_ijk + 2 z_o k . Nk +
 //   z_o^2 k . S), M = U - k H,   A = -k . S,   a = V k - Nk,   J = k M^T + M k^T - P_ijk k_k.
 // No cap is needed: wetted surface and waterplane are closed together, so the cap's contribution follows from
