@@ -132,7 +132,8 @@ void add_body(const Body& body, const Pose& pose, const Water& water, const Mat3
     for (std::size_t i = 0; i < 3; ++i) {
       const ClipVertex<double>& from = corner[i];
       const ClipVertex<double>& to = corner[(i + 1) % 3];
-      if (from.wet() != to.wet()) cut_points.push_back((from.wet() ? intersect_edge(from, to) : intersect_edge(to, from)).y.vec3());
+      if (from.wet() != to.wet())
+        cut_points.push_back((from.wet() ? intersect_edge(from, to) : intersect_edge(to, from)).y.vec3());
     }
     if (cut_points.size() == 2) layers.waterline.emplace_back(cut_points[0], cut_points[1]);
     for (ClipVertex<double>& c : corner)
