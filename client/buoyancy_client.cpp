@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <signal.h>
@@ -100,17 +102,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   add_lead_time_option(app, arguments.lead_time, "the requested poses")->check(number_in(-1e3, 1e3, "S"));
   const CLI::Range delay_range(std::int64_t{0}, kMaxDelaySteps, "STEPS");
-  auto* delay = app.add_option("--delay-steps", arguments.delay_steps,
-                               "Use every response this many steps late, reproducibly, to simulate a "
-                               "simulator that does not wait for responses")
-                    ->check(delay_range)
-                    ->excludes(rate)
-                    ->capture_default_str();
-  app.add_option("--late", arguments.delay_steps, "Alias of --delay-steps")
+  app.add_option("--delay-steps", arguments.delay_steps,
+                 "Use every response this many steps late, reproducibly, to simulate a "
+                 "simulator that does not wait for responses")
       ->check(delay_range)
       ->excludes(rate)
-      ->excludes(delay)
-      ->group("");  // hidden
+      ->capture_default_str();
   app.add_option("--timeout", arguments.retry_policy.timeout, "Response timeout in seconds before resending")
       ->check(number_in(0.0, 1e6, "S"))
       ->capture_default_str();
@@ -236,6 +233,18 @@ int simulate(Arguments arguments) {
   return summary.interrupted ? kFailure : kSuccess;
 }
 
+// Replaces the former name of --delay-steps, which still works but is not documented.
+std::vector<std::string> with_current_names(int argc, char** argv) {
+  constexpr std::string_view kFormer = "--late";
+  std::vector<std::string> arguments(argv, argv + argc);
+  for (std::string& argument : arguments) {
+    if (argument == kFormer || argument.starts_with("--late=")) {
+      argument.replace(0, kFormer.size(), "--delay-steps");
+    }
+  }
+  return arguments;
+}
+
 int client_main(int argc, char** argv) {
   struct sigaction action {};
   action.sa_handler = request_stop;
@@ -250,7 +259,10 @@ int client_main(int argc, char** argv) {
                "buoyancy-client");
   Arguments arguments;
   add_options(app, arguments);
-  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  const std::vector<std::string> given = with_current_names(argc, argv);
+  std::vector<const char*> values;
+  for (const std::string& argument : given) values.push_back(argument.c_str());
+  if (const auto exit_code = parse_command_line(app, argc, values.data())) return *exit_code;
   return simulate(std::move(arguments));
 }
 

@@ -27,6 +27,7 @@ if(BUOYANCY_BUILD_TESTS)
   find_package(GTest REQUIRED)
   buoyancy_precompiled_headers(test HEADERS <gtest/gtest.h> <random> <nlohmann/json.hpp>
                                LIBRARIES GTest::gtest nlohmann_json::nlohmann_json)
+  target_compile_options(buoyancy_precompiled_test PRIVATE $<$<CONFIG:Release>:-O1>)  # see tests/CMakeLists.txt
 endif()
 
 # Sets <result> to whether a library, or one that it links, passes code generation options to its users. g++ applies the
@@ -82,6 +83,8 @@ function(buoyancy_reuse_precompiled_headers folder)
     get_target_property(position_independent ${target} POSITION_INDEPENDENT_CODE)
     if("${libraries}" MATCHES "GTest::")
       set(kind test)
+    elseif(folder MATCHES "^${PROJECT_SOURCE_DIR}/tests")
+      continue()  # -O1 without GoogleTest: too few for a kind of their own
     elseif(position_independent)
       set(kind library)
     else()

@@ -68,8 +68,8 @@ TEST(Buoyancyd, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   expect_failure(run({"--scene", scene, "-l", "udpm://1.2.3.4:7667"}), 2, "1.2.3.4");
   expect_failure(run({"--scene", scene, "--states-channel", ""}), 2, "0 characters");
   expect_failure(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
-  expect_failure(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "same");
-  expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "same");
+  expect_failure(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
+  expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
 }
 
 TEST(Buoyancyd, RejectsInvalidScenesAndMeshesWithUsageError) {
