@@ -261,6 +261,7 @@ int client_main(int argc, char** argv) {
   add_options(app, arguments);
   const std::vector<std::string> given = with_current_names(argc, argv);
   std::vector<const char*> values;
+  values.reserve(given.size());
   for (const std::string& argument : given) values.push_back(argument.c_str());
   if (const auto exit_code = parse_command_line(app, argc, values.data())) return *exit_code;
   return simulate(std::move(arguments));
