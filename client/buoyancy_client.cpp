@@ -121,7 +121,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
                "Block immediately while waiting for a response instead of spinning for up to 50 us first: "
                "uses less processor time, but each step takes longer")
       ->excludes(embedded);
-  app.add_option("--session", arguments.session, "Session id")->default_str("random");
+  app.add_option("--session", arguments.session,
+                 "Session id sent with every request; set it to make two runs send identical bytes")
+      ->default_str("random");
   app.add_flag("--json", arguments.json, "Print the summary as JSON");
 }
 

@@ -35,7 +35,7 @@ struct ReportArguments {
 
 void add_options(CLI::App& app, ReportArguments& arguments) {
   app.description(
-      R"(Writes a recorded run as one HTML page that any browser displays without a network: playback of
+      R"(Write a recorded run as one HTML page that any browser displays without a network: playback of
 the bodies in the water, plots, and which evaluations were skipped. RUN is a CSV file of
 buoyancy-client, a CSV file of poses (see buoyancy-replay), or a log of lcm-logger. A long run is
 decimated; its extremes are kept.
@@ -48,7 +48,7 @@ decimated; its extremes are kept.
   add_states_channel_option(app, arguments.file.states_channel);
   add_wrenches_channel_option(app, arguments.file.wrenches_channel);
   add_status_channel_option(app, arguments.file.status_channel);
-  add_options(app, arguments.poses);
+  add_viewer_options(app, arguments.poses);
   app.add_option(
       "--bodies", arguments.bodies,
       "Ids of the bodies to show, at most 1,000, such as 1-50,900 (default: the first 1,000 in RUN). The "

@@ -48,15 +48,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--scheduling", arguments.scheduling,
                  "Scheduling policy. idle: run only while a processor would otherwise be idle; normal: run "
-                 "like other "
-                 "programs, for a machine that is never idle")
+                 "like other programs, for a machine that is never idle")
       ->check(CLI::IsMember({"idle", "normal"}))
       ->capture_default_str();
   add_states_channel_option(app, arguments.channels.states);
   add_wrenches_channel_option(app, arguments.channels.wrenches);
   add_hydrostatics_channel_option(app, arguments.channels.hydrostatics);
   add_status_channel_option(app, arguments.channels.status);
-  add_pose_channel_options(app, arguments.poses);
+  add_viewer_channel_options(app, arguments.poses);
 }
 
 // Checks what CLI11 cannot check per option.
@@ -110,8 +109,8 @@ int show(const CLI::App& app, const Arguments& arguments) {
 
 int view_main(int argc, char** argv) {
   CLI::App app(
-      R"(Shows live LCM traffic between a buoyancy service and its clients in a browser: the bodies in
-the water, latency, counters and losses. Publishes nothing on LCM.
+      R"(Show live LCM traffic between a buoyancy service and its clients in a browser: the bodies in
+the water, latency, counters and losses. Nothing is published on LCM.
 )" + exit_status_help(),
       "buoyancy-view");
   Arguments arguments;

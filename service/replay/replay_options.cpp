@@ -82,8 +82,10 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       ->needs(mesh)
       ->type_name("METHOD")
       ->default_str(std::string(to_string(BodyDescription{}.method)));
-  app.add_option("--tolerance", options.tolerance,
-                 "With --mesh: allowed error relative to the weight of the full displacement (0 = exact)")
+  app.add_option(
+         "--tolerance", options.tolerance,
+         "With --mesh: allowed error relative to the weight of the full displacement (0 = exact; only "
+         "hierarchical uses it)")
       ->needs(mesh)
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("RATIO")

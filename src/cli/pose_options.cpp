@@ -54,24 +54,15 @@ Expected<ChannelOfBody> parse_channel_of_body(const std::string& option, const s
   return named;
 }
 
-}  // namespace
-
-void add_pose_channel_options(CLI::App& app, PoseOptions& options) {
-  app.add_option("--pose", options.poses,
-                 "Treat each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL as a request for BODY "
-                 "(id or name in the scene). Repeatable")
-      ->allow_extra_args(false)
-      ->option_text("CHANNEL=BODY");
-  app.add_option(
-         "--force-torque", options.force_torques,
-         "Publish the responses to poses of BODY as bot_core.six_axis_force_torque_t on CHANNEL, in "
-         "the world frame about the body's reference point, instead of as body_wrenches_t. Repeatable")
+void add_channel_options(CLI::App& app, PoseOptions& options, const std::string& pose,
+                         const std::string& force_torque) {
+  app.add_option("--pose", options.poses, pose)->allow_extra_args(false)->option_text("CHANNEL=BODY");
+  app.add_option("--force-torque", options.force_torques, force_torque)
       ->allow_extra_args(false)
       ->option_text("CHANNEL=BODY");
 }
 
-void add_options(CLI::App& app, PoseOptions& options) {
-  add_pose_channel_options(app, options);
+void add_velocity_options(CLI::App& app, PoseOptions& options) {
   app.add_option_function<std::string>(
          "--velocity-frame",
          [&options](const std::string& frame) {
@@ -83,14 +74,39 @@ void add_options(CLI::App& app, PoseOptions& options) {
   add_lead_time_option(app, options.lead_time, "the poses of --pose");
 }
 
+}  // namespace
+
+void add_options(CLI::App& app, PoseOptions& options) {
+  add_channel_options(
+      app, options,
+      "Treat each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL as a request for BODY (id or name "
+      "in the scene). Repeatable",
+      "Publish the responses to poses of BODY as bot_core.six_axis_force_torque_t on CHANNEL, in the world "
+      "frame about the body's reference point, instead of as body_wrenches_t. Repeatable");
+  add_velocity_options(app, options);
+}
+
+void add_viewer_channel_options(CLI::App& app, PoseOptions& options) {
+  add_channel_options(
+      app, options,
+      "Show each bot_core.pose_t or bot_core.rigid_transform_t on CHANNEL as BODY (id or name in the scene). "
+      "Repeatable",
+      "Read responses about BODY from CHANNEL (bot_core.six_axis_force_torque_t). Repeatable");
+}
+
+void add_viewer_options(CLI::App& app, PoseOptions& options) {
+  add_viewer_channel_options(app, options);
+  add_velocity_options(app, options);
+}
+
 Expected<PoseChannels> resolve_pose_channels(const PoseOptions& options, const Scene& scene,
                                              const std::vector<std::string>& reserved) {
   PoseChannels poses;
   std::set<std::string> used(reserved.begin(), reserved.end());
   const auto claim_channel = [&used](const std::string& channel) -> Expected<void> {
     if (used.insert(channel).second) return {};
-    return make_error(
-        {"channel " + channel, "used for two purposes", "a different channel for each", "", ""});
+    return make_error({"channel " + channel, "used for two purposes", "a different channel for each", "",
+                       "Name another channel in --pose, --force-torque or the option of the message"});
   };
   for (const std::string& text : options.poses) {
     const Expected<ChannelOfBody> named = parse_channel_of_body("--pose", text, scene);

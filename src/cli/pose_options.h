@@ -23,8 +23,10 @@ struct PoseOptions {
 
 // Declares all of the options on app; parsing fills options, which must live as long.
 void add_options(CLI::App& app, PoseOptions& options);
-// Declares --pose and --force-torque only, for programs to which velocities do not matter.
-void add_pose_channel_options(CLI::App& app, PoseOptions& options);
+// The same for programs that only display the poses and the responses.
+void add_viewer_options(CLI::App& app, PoseOptions& options);
+// Declares --pose and --force-torque only, for such programs if velocities do not matter to them.
+void add_viewer_channel_options(CLI::App& app, PoseOptions& options);
 
 // Resolves the options against a scene. reserved: channels that carry other messages. Errors: not
 // CHANNEL=BODY, a body that the scene lacks or has twice by that name, a channel that LCM cannot carry, that
