@@ -20,7 +20,8 @@ namespace {
 
 int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseChannels poses,
           SignalFd& reload) {
-  TerminationSignals termination;  // blocks the signals before the connection starts a thread
+  // Blocks the signals before Daemon starts the scene-loader thread, which inherits the mask.
+  TerminationSignals termination;
   Expected<LcmConnection> connection =
       LcmConnection::open(options.lcm_url, {.receive_own = false, .spin = !options.no_spin});
   if (!connection) {

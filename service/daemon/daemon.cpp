@@ -115,8 +115,9 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   systemd_.ready();
 
   while (true) {
-    const bool busy = !latest_.empty() || connection_.handle_one_spinning();
-    const int timeout_ms = busy ? 0 : -1;
+    bool handled = false;
+    if (latest_.empty()) handled = connection_.handle_one_spinning();
+    const int timeout_ms = handled || !latest_.empty() ? 0 : -1;
     if (::poll(descriptors.data(), descriptors.size(), timeout_ms) < 0) {
       if (errno == EINTR) continue;  // interrupted, e.g. by SIGSTOP/SIGCONT or a debugger
       return make_error(

@@ -53,7 +53,8 @@ class Daemon {
   Daemon& operator=(const Daemon&) = delete;
 
   // Handles requests until a termination signal arrives; call it once. reload: SIGHUP.
-  // Errors: the connection ended.
+  // Errors: too few file descriptors for timers and signals, a failed subscription, or a failed poll(). A
+  // message that cannot be sent is no error: it is counted and logged.
   Expected<void> run(TerminationSignals& termination, SignalFd& reload);
 
   // Is a scene being loaded? Then the destructor waits until the load has finished.

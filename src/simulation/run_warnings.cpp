@@ -86,7 +86,7 @@ std::optional<Error> step_warning(const Simulation& simulation) {
     warning.actual += " (effective step: the lead time worsens the step of " + number(step) + " s)";
   warning.actual += value < kStabilityLimit ? ", stable but inaccurate" : ", unstable";
   warning.expected = "at most " + number(kAccuracyLimit) + "; from " + number(kStabilityLimit) +
-                     " on the motion grows without bound";
+                     " on the simulation is unstable";
   warning.cause = describe_frequency(worst);
   warning.hint = "Use --step " + rounded_down(good_step) + " or less";
   return warning;
