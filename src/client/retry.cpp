@@ -52,9 +52,11 @@ Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
 tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited) {
   std::array<char, 64> actual{};
   std::snprintf(actual.data(), actual.size(), "no response for %.3g s", waited);
-  return make_error({subject(channel, seq), actual.data(), "a response from buoyancyd",
-                     "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
-                     "Start buoyancyd with the same scene, URL and channels, or use --embedded"});
+  return make_error(
+      {subject(channel, seq), actual.data(), "a response from buoyancyd",
+       "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
+       "Start buoyancyd with the same scene, URL and channels; if it is still loading its meshes, "
+       "allow more retries"});
 }
 
 tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq) {

@@ -18,15 +18,23 @@ constexpr unsigned kPermissions = 0666;  // before the umask
 
 tl::unexpected<Error> write_error(const std::filesystem::path& path, int error) {
   std::string cause;
-  if (error == ENOSPC || error == EDQUOT) cause = "the disk is full";
-  if (error == ENOENT) cause = "the directory does not exist";
+  std::string hint;
+  if (error == ENOSPC || error == EDQUOT) {
+    cause = "the disk is full";
+    hint = "Free some space, or write to another disk";
+  }
+  if (error == ENOENT) {
+    cause = "the directory does not exist";
+    hint = "Create the directory first";
+  }
   return make_error({path.string(), "could not be written (" + std::generic_category().message(error) + ")",
-                     "a writable file", std::move(cause), ""});
+                     "a writable file", std::move(cause), std::move(hint)});
 }
 
 tl::unexpected<Error> stalled_reader(const std::filesystem::path& path) {
   return make_error({path.string(), "is full, and its reader has stalled since the termination signal",
-                     "a reader that keeps reading", "", ""});
+                     "a reader that keeps reading", "",
+                     "Write to a regular file, or keep the reader running"});
 }
 
 }  // namespace

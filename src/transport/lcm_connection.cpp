@@ -61,6 +61,13 @@ void ignore_own_packets(lcm_t* lcm, UdpmReceiver& receiver) {
   if (const auto own = receiver.find_sender(token, kTimeout)) receiver.truncate_packets_of(*own);
 }
 
+std::string send_hint(const std::string& url) {
+  const Expected<UdpmUrl> parsed = parse_udpm_url(url);
+  if (!parsed) return "";  // memq://
+  return "Check the route with 'ip route get " + parsed->group +
+         "'; for 'Message too long', send fewer bodies per request";
+}
+
 // Dispatches messages of memq://.
 extern "C" void buoyancy_lcm_dispatch(const lcm_recv_buf_t* received, const char* channel,
                                       void* subscription) noexcept {
@@ -107,7 +114,8 @@ Expected<void> check_channels_distinct(const std::vector<std::string>& channels)
     names += (names.empty() ? "" : ", ") + channel;
   }
   if (std::set<std::string>(channels.begin(), channels.end()).size() == channels.size()) return {};
-  return make_error({"channels " + names, "two are equal", "different names", "", ""});
+  return make_error(
+      {"channels " + names, "two are equal", "different names", "", "Give each channel its own name"});
 }
 
 struct LcmConnection::Impl {
@@ -153,8 +161,8 @@ Expected<LcmConnection> LcmConnection::open(const std::string& url, const Connec
   }
   lcm_t* lcm = lcm_create(resolved.c_str());
   if (lcm == nullptr) {
-    return make_error({"LCM URL '" + resolved + "'", "LCM could not open it", "a working LCM connection",
-                       "see the message that LCM printed above", ""});
+    return make_error({"LCM URL '" + resolved + "'", "LCM could not open it", "a working LCM connection", "",
+                       "See the message that LCM printed above"});
   }
   if (receiver && !options.receive_own) ignore_own_packets(lcm, *receiver);
   return LcmConnection(std::make_unique<Impl>(lcm, std::move(receiver), options.spin), resolved);
@@ -186,7 +194,9 @@ Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
     return make_error({"LCM channel '" + channel + "'",
                        "a message of " + std::to_string(bytes.size()) + " bytes was not sent (" +
                            std::generic_category().message(errno) + ")",
-                       "a network that accepts it", "the multicast route is gone", ""});
+                       "a network that accepts it",
+                       "the multicast route is gone, or the message is larger than the network accepts",
+                       send_hint(url_)});
   }
   return {};
 }

@@ -51,8 +51,10 @@ std::string subject(const UdpmUrl& url) {
 }
 
 tl::unexpected<Error> socket_failed(const UdpmUrl& url, const std::string& what, int error) {
-  return make_error({subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
-                     "another program uses the port exclusively, or this one may not open sockets", ""});
+  return make_error(
+      {subject(url), what + " failed (" + reason(error) + ")", "a UDP socket on that port",
+       "another program uses the port exclusively, or this one may not open sockets",
+       "Give the LCM URL of every program another port, or end the program that uses this one"});
 }
 
 // Returns an LCM message that no other probe sends: "LC02", a sequence number, the channel, the payload.

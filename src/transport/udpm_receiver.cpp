@@ -68,9 +68,10 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
       ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
       set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
   if (!ready) {
-    return make_error({to_string(url), std::generic_category().message(errno),
-                       "a UDP socket bound to the group",
-                       "another program uses the port exclusively, or this one may not open sockets", ""});
+    return make_error(
+        {to_string(url), std::generic_category().message(errno), "a UDP socket bound to the group",
+         "another program uses the port exclusively, or this one may not open sockets",
+         "Give the LCM URL of every program another port, or end the program that uses this one"});
   }
   if (!set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
   return UdpmReceiver(std::move(socket));
