@@ -12,8 +12,8 @@
 // volume tolerance G_V (docs/mathematics.md, "The moment tree"). A leaf's vertices are relative to the leaf's
 // own centre, so that heights and edges are rounded relative to the size of the leaf and not of the body.
 //
-// Complexity: build O(n log n), below 1 us per triangle. Memory: about 60 B per triangle. Query:
-// hierarchical.h.
+// Complexity: build O(n log n), below 1 us per triangle. Memory: about 60 to 110 B per
+// triangle (docs/measurements.md, "The tree"). Query: hierarchical.h.
 #pragma once
 
 #include <array>

@@ -52,10 +52,11 @@ Sum sum_over_blocks(const TriangleMesh& surface, const VertexHeights& heights, c
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& triangle = surface.triangles[i];
       const unsigned corners = 0U + is_wet[triangle[0]] + is_wet[triangle[1]] + is_wet[triangle[2]];
+      // Branch-free: i is written at the end of both lists, and a list grows only if i belongs to it.
       wet[num_wet] = static_cast<std::uint32_t>(i);
       cut[num_cut] = static_cast<std::uint32_t>(i);
       num_wet += static_cast<std::size_t>(corners == 3);
-      num_cut += static_cast<std::size_t>(corners - 1 < 2);
+      num_cut += static_cast<std::size_t>(corners - 1 < 2);  // 1 or 2: 0 - 1 wraps around
     }
     Sum block{};
     add_block(block, TriangleList(wet.data(), num_wet), TriangleList(cut.data(), num_cut));

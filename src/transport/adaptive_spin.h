@@ -1,20 +1,18 @@
 // Decides how long a thread that waits for a message spins (polls) before it blocks. Spinning pays while
-// messages arrive in quick succession, as in lock-step: on a virtual machine a blocked thread wakes some 30
-// us after its message arrived, a spinning thread after 1 us. The spinning thread yields the processor at
+// messages arrive in quick succession, as in lock-step: on a virtual machine a blocked thread wakes some
+// 30 us after its message arrived, a spinning thread after 1 us. The spinning thread yields the processor at
 // each poll to any other thread that wants it.
 //
 // Rules:
 //   - A wait spins for kSpinTime if the messages of the two previous waits arrived within kSpinTime. For a
-//   wait
-//     that blocked, the kernel's time stamp of the arrival counts.
+//     wait that blocked, the kernel's time stamp of the arrival counts.
 //   - Two ends that both block delay each other so much that neither would ever spin again. So at first, and
 //     after kProbeEvery waits without a spin, the next kProbeWaits waits spin for kProbeTime, which is longer
 //     than the other end takes to wake up; the other end then observes messages in quick succession. The
 //     first probe that finds nothing ends the probing.
 //   - On a loaded machine a yielded processor comes back only after milliseconds: after a spin that took
-//   longer
-//     than kPreemptedAfter, no wait spins for the next 1, 8, 64, ... kMaxSkipped waits. Each spin that finds
-//     its message halves the next such number.
+//     longer than kPreemptedAfter, no wait spins for the next 1, 8, 64, ... kMaxSkipped waits. Each spin that
+//     finds its message halves the next such number.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // An LCM connection that returns errors instead of blocking or aborting, and that delivers bytes instead of
 // decoded messages. The service, the client and the tests all use it.
 //
-// It sends through liblcm and receives, over UDP, through UdpmReceiver (which documents why). This file works
-// around these defects of liblcm: a machine without a multicast route (one Error, with the command that fixes
-// it), subscribe() hiding that failure, handle() asserting after an exception, select() and EINTR. Use from
-// one thread at a time; only memq:// starts a thread.
+// It sends through liblcm and receives, over UDP, through UdpmReceiver (which documents why). It works around
+// four defects of liblcm: without a multicast route it blocks and aborts (here: one Error, with the command
+// that fixes it); subscribe() hides that failure; handle() asserts after an exception; select() is not
+// restarted after EINTR. Use from one thread at a time; only memq:// starts a thread.
 #pragma once
 
 #include <chrono>
