@@ -3,7 +3,7 @@
 // Rule: every volume and first-moment integral over the wetted part is exact if each directed edge is matched
 // by an opposite one. "Closed" meshes (each edge used once in each direction) and "balanced" meshes (each
 // edge used equally often in both directions) satisfy it and are accepted. A mesh, or a component outside all
-// others, of negative volume is inside out: it is turned, which the report states. Open meshes are refused
+// others, of negative volume is inside out: it is turned, which the report states. Open meshes are rejected
 // or, with OpenPolicy::kDryBoundary, accepted if boundary edges are their only fault; the hydrostatics are
 // then valid while the whole boundary is dry.
 #pragma once
@@ -34,10 +34,10 @@ struct ValidatedMesh {
 struct MeshValidation {
   MeshReport report;                  // always set
   std::optional<ValidatedMesh> mesh;  // set if accepted
-  std::optional<Error> refusal;       // set if refused
+  std::optional<Error> refusal;       // set if rejected
 };
 
-// Welds, checks and orients the mesh. name: identifies it in the report and the refusal.
+// Welds, checks and orients the mesh. name: identifies it in the report and the error.
 MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& name,
                              const ValidationOptions& options = {});
 

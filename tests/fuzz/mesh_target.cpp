@@ -1,5 +1,5 @@
 // Fuzz target: bytes to vertices, faces and a policy (fuzz_mesh.h), then the whole preparation of a mesh:
-// welding, topology, orientation, refusals, the moment tree. A refusal must state its reason; an accepted
+// welding, topology, orientation, rejections, the moment tree. A rejection must state its reason; an accepted
 // mesh must satisfy the contract of ValidatedMesh and pass a second validation unchanged.
 #include <algorithm>
 #include <array>
@@ -113,12 +113,12 @@ void check_inside_out(const FuzzMesh& input, const MeshValidation& first) {
 void check(const FuzzMesh& input) {
   const MeshValidation validation = validate_mesh(input.imported, "fuzz", input.options);
   require(!to_text(validation.report).empty(), "the report is not empty");
-  require(validation.mesh.has_value() != validation.refusal.has_value(), "a mesh is accepted or refused");
+  require(validation.mesh.has_value() != validation.refusal.has_value(), "a mesh is accepted or rejected");
   if (validation.refusal) {
     const Error& refusal = *validation.refusal;
     require(!refusal.actual.empty() && !refusal.expected.empty() && !refusal.cause.empty() &&
                 !refusal.hint.empty(),
-            "a refusal states actual, expected, cause and hint");
+            "a rejection states actual, expected, cause and hint");
     return;
   }
   const ValidatedMesh& accepted = *validation.mesh;

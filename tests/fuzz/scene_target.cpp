@@ -1,4 +1,4 @@
-// Fuzz target: bytes as the text of a scene file. A refusal must state its reason on one line; an accepted
+// Fuzz target: bytes as the text of a scene file. A rejection must state its reason on one line; an accepted
 // scene must be within the ranges of docs/scene_file.md. If every body is a small generated shape, the scene
 // is also prepared, reported on and evaluated for each body. No file is read.
 #include <algorithm>

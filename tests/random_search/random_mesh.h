@@ -15,7 +15,7 @@ struct RandomMesh {
   ValidatedMesh validated;
 };
 
-// Returns the same mesh for the same seed. Draws again if validation refuses a mesh.
+// Returns the same mesh for the same seed. Draws again if validation rejects a mesh.
 RandomMesh random_mesh(std::uint64_t seed);
 
 }  // namespace buoyancy

@@ -86,7 +86,7 @@ TEST(StressMeshPolicy, AcceptsOnlyBalancedEdgesAndReportsAll) {
   TriangleMesh open = rock;
   open.triangles.pop_back();
   const MeshValidation of_open = validate(open);
-  stress.require(!of_open.mesh && of_open.refusal && of_open.report.boundary_edges == 3, "open: refused");
+  stress.require(!of_open.mesh && of_open.refusal && of_open.report.boundary_edges == 3, "open: rejected");
   stress.require(of_open.report.area_vector.norm() > 1e-3, "open: int n dA");
   const Vec3& by_axis = of_open.report.volume_by_axis;
   stress.require(by_axis.maxCoeff() - by_axis.minCoeff() > 1e-6, "open: V from x, y, z");
@@ -96,19 +96,19 @@ TEST(StressMeshPolicy, AcceptsOnlyBalancedEdgesAndReportsAll) {
   finned.triangles.push_back({rock.triangles[0][0], rock.triangles[0][1], fin});
   const MeshValidation of_finned = validate(finned);
   stress.require(!of_finned.mesh && of_finned.refusal && of_finned.report.non_manifold_edges == 1,
-                 "fin: refused");
+                 "fin: rejected");
 
   TriangleMesh doubled = rock;
   doubled.triangles.push_back(rock.triangles[7]);
   const MeshValidation of_doubled = validate(doubled);
   stress.require(!of_doubled.mesh && of_doubled.refusal && of_doubled.report.duplicate_faces == 1,
-                 "duplicate face: refused");
+                 "duplicate face: rejected");
 
   TriangleMesh misoriented = rock;
   std::swap(misoriented.triangles[5][0], misoriented.triangles[5][1]);
   const MeshValidation of_misoriented = validate(misoriented);
   stress.require(!of_misoriented.mesh && of_misoriented.report.misoriented_edges == 3,
-                 "misoriented: refused");
+                 "misoriented: rejected");
 
   // Two boxes that share an edge, and two that share a face, which exists twice with opposite orientations.
   const TriangleMesh by_edge = joined(box_from({0, 0, 0}, {1, 1, 1}), box_from({1, 1, 0}, {1, 1, 1}));
