@@ -44,7 +44,7 @@ struct Configuration {
 // Request for the first `bodies` bodies of the scene at one step; the first ten cross the water surface.
 std::vector<std::uint8_t> request_at(int bodies, int step, const Configuration& configuration) {
   WrenchRequest request;
-  request.key = {.utime = 0, .session_id = 1, .seq = step};
+  request.id = {.utime = 0, .session_id = 1, .seq = step};
   const double time = configuration.moving ? 0.01 * step : 0.0;
   for (int id = 1; id <= bodies; ++id) {
     BodyState state;

@@ -45,7 +45,7 @@ std::vector<std::uint8_t> request_of(std::int64_t session, std::int64_t seq) {
   state.position = {0.0, 0.0, 0.3 * std::sin(0.1 * static_cast<double>(seq) + static_cast<double>(session))};
   state.quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
-  encode(WrenchRequest{.key = {seq, session, seq}, .lead_time = 0.0, .bodies = {state}}, bytes);
+  encode(WrenchRequest{.id = {seq, session, seq}, .lead_time = 0.0, .bodies = {state}}, bytes);
   return bytes;
 }
 
@@ -111,8 +111,8 @@ class Clients {
     const auto now = Clock::now();
     if (decode(bytes, response_)) fail("an invalid response");
     if (response_.bodies.size() != 1 || response_.bodies[0].force[2] <= 0.0) fail("a wrong response");
-    const auto session = static_cast<std::size_t>(response_.key.session_id);
-    received_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(response_.key.seq)]));
+    const auto session = static_cast<std::size_t>(response_.id.session_id);
+    received_.ages.push_back(seconds(now - sent_[session][static_cast<std::size_t>(response_.id.seq)]));
     ++received_.responses[session];
     received_.max_gap[session] = std::max(received_.max_gap[session], seconds(now - last_response_[session]));
     last_response_[session] = now;

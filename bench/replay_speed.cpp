@@ -43,7 +43,7 @@ void write_log(const std::string& path, std::int64_t events) {
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint8_t> event;
   for (std::int64_t i = 0; i < events; ++i) {
-    request.key = {.utime = i, .session_id = 1, .seq = i};
+    request.id = {.utime = i, .session_id = 1, .seq = i};
     const double half_angle = 1e-4 * static_cast<double>(i);
     request.bodies[0] = {.body_id = 1,
                          .position = {0.0, 0.0, height_at(i)},
@@ -69,7 +69,7 @@ void read_and_write(const std::string& input, const std::string& output) {
     const auto* recorded = std::get_if<RecordedEvent>(&item);
     if (recorded == nullptr) break;
     if (decode(recorded->bytes, request)) fail("not a request");
-    response.key = request.key;
+    response.id = request.id;
     response.bodies.resize(request.bodies.size());
     for (std::size_t i = 0; i < response.bodies.size(); ++i)
       response.bodies[i].body_id = request.bodies[i].body_id;

@@ -58,7 +58,7 @@ std::int64_t write_log(const Scene& scene, const std::string& path, std::int64_t
   std::int64_t written = 0;
   std::int64_t seq = 0;
   for (; written < bytes; ++seq) {
-    request.key = {.utime = 1'000 * seq, .session_id = 1, .seq = seq};
+    request.id = {.utime = 1'000 * seq, .session_id = 1, .seq = seq};
     const double seconds = 1e-3 * static_cast<double>(seq);
     for (std::size_t i = 0; i < request.bodies.size(); ++i) {
       const auto place = static_cast<double>(i);

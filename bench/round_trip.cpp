@@ -86,7 +86,7 @@ void check_responses(Client& client, const Scene& scene) {
   const States states = states_at(scene, 1);
   const WrenchResponse crossing = send_request(client, 1, states);
   std::vector<std::uint8_t> request;
-  encode(WrenchRequest{.key = crossing.key, .lead_time = 0.0, .bodies = states}, request);
+  encode(WrenchRequest{.id = crossing.id, .lead_time = 0.0, .bodies = states}, request);
   RequestHandler handler(scene, {.threads = 1});
   const Bytes expected = handler.handle(request);
   std::vector<std::uint8_t> actual;
@@ -137,7 +137,7 @@ Run time_run(Pair& pair, std::size_t requests) {
     time_block(pair.echo, block, pair.step, run.echo);
     for (std::size_t i = 0; i < kBlock; ++i) {
       const auto seq = static_cast<std::int64_t>(pair.step + i);
-      encode(WrenchRequest{.key = {seq, 1, seq}, .lead_time = 0.0, .bodies = block[i]}, bytes);
+      encode(WrenchRequest{.id = {seq, 1, seq}, .lead_time = 0.0, .bodies = block[i]}, bytes);
       const auto start = Clock::now();
       pair.handler.handle(bytes);
       run.solver.push_back(microseconds(Clock::now() - start));

@@ -168,15 +168,15 @@ void Daemon::on_pose(std::size_t channel, Bytes pose) {
 }
 
 void Daemon::enqueue(Bytes request, double arrival) {
-  const auto key = peek_request_id(request);
-  if (!key) {
+  const auto id = peek_request_id(request);
+  if (!id) {
     handle(request, arrival);  // rejects it and counts the cause
     return;
   }
-  LatestRequestQueue::PushResult result = latest_.push(*key, request, arrival);
+  LatestRequestQueue::PushResult result = latest_.push(*id, request, arrival);
   if (result == LatestRequestQueue::PushResult::kFull) {
     handle_next();
-    result = latest_.push(*key, request, arrival);
+    result = latest_.push(*id, request, arrival);
   }
   if (result == LatestRequestQueue::PushResult::kReplaced) handler_.record_superseded();
   if (result == LatestRequestQueue::PushResult::kStale) handler_.record_stale();
@@ -192,8 +192,8 @@ void Daemon::handle(Bytes request, double arrival) {
   const Bytes bytes = handler_.handle(request);
   if (bytes.empty()) return;
   if (counters.sessions + counters.sessions_evicted != sessions_before) {
-    const RequestId key = peek_request_id(request).value();
-    spdlog::debug("session {} starts with seq {}", key.session_id, key.seq);
+    const RequestId id = peek_request_id(request).value();
+    spdlog::debug("session {} starts with seq {}", id.session_id, id.seq);
   }
   if (publish_response(bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {

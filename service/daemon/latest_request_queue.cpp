@@ -17,9 +17,9 @@ LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions) : max_sessions_
   pending_.reserve(max_sessions);
 }
 
-LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& key, Bytes request, double arrival) {
-  Session* session = find(key.session_id);
-  if (session != nullptr && !supersedes(key.seq, session->newest_seq) &&
+LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Bytes request, double arrival) {
+  Session* session = find(id.session_id);
+  if (session != nullptr && !supersedes(id.seq, session->newest_seq) &&
       arrival <= session->arrival + kRestartIdleTime) {
     return PushResult::kStale;
   }
@@ -28,8 +28,8 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& key, By
 
   const bool replaces = session->pending;
   if (!replaces) pending_.push_back(static_cast<std::size_t>(session - sessions_.data()));
-  session->id = key.session_id;
-  session->newest_seq = key.seq;
+  session->id = id.session_id;
+  session->newest_seq = id.seq;
   session->pending = true;
   session->arrival = arrival;
   session->last_use = ++use_;

@@ -37,7 +37,7 @@ class LatestRequestQueue {
 
   // Does not allocate once the session's buffer is as large as its largest message. arrival: [s], of any
   // monotonic clock; pop_next() returns it with the request.
-  PushResult push(const RequestId& key, Bytes request, double arrival);
+  PushResult push(const RequestId& id, Bytes request, double arrival);
 
   // Removes the request of the session that has waited longest and calls handle(Bytes request,
   // double arrival), which must not call push(). False: the queue is empty.

@@ -210,7 +210,7 @@ template <typename Message>
 std::optional<Message> ReplayComparison::Channel<Message>::pop_counterpart() {
   for (std::size_t i = 0; i < kMatchWindow; ++i) {
     if (i == ahead.size() && !read_one()) break;
-    if (!same_id(ahead[i].key, now.key)) continue;
+    if (!same_id(ahead[i].id, now.id)) continue;
     std::optional<Message> found = std::move(ahead[i]);
     unmatched_baseline += static_cast<std::int64_t>(i);
     ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(i) + 1);
@@ -251,7 +251,7 @@ void ReplayComparison::add(Channel<Message>& channel, Bytes bytes, const Compare
 void ReplayComparison::add(Bytes response) {
   add(responses_, response,
       [this](const BodyWrench& now, const BodyWrench& baseline, BodyDifferences& differences) {
-        compare(now, baseline, responses_.now.key.utime, differences);
+        compare(now, baseline, responses_.now.id.utime, differences);
       });
 }
 

@@ -46,7 +46,7 @@ void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes h
   [[maybe_unused]] const auto rejected = decode(response, response_);
   assert(!rejected);  // the handler encoded it
   for (const BodyWrench& wrench : response_.bodies) {
-    format_wrench_row(response_.key.utime, wrench, row_);
+    format_wrench_row(response_.id.utime, wrench, row_);
     append(bytes_of(row_));
   }
 }

@@ -18,17 +18,17 @@ Expected<Client> Client::open(const ClientOptions& options) {
 }
 
 Client::Client(ClientVariant client, std::int64_t session_id) : client_(std::move(client)) {
-  request_.key.session_id = session_id;
+  request_.id.session_id = session_id;
 }
 
 Expected<const WrenchResponse*> Client::request(std::int64_t utime, std::span<const BodyState> states,
                                                 double lead_time) {
-  request_.key.utime = utime;
+  request_.id.utime = utime;
   request_.lead_time = lead_time;
   request_.bodies.assign(states.begin(), states.end());
   Expected<const WrenchResponse*> response =
       std::visit([this](auto& client) { return client.request(request_); }, client_);
-  ++request_.key.seq;
+  ++request_.id.seq;
   return response;
 }
 

@@ -35,7 +35,7 @@ class Client {
   static Expected<Client> open(const ClientOptions& options = {});
 
   // Requests the wrenches on bodies in these states and returns one per state, in the same order, valid until
-  // the next call. utime: simulation time [us], which the response's key repeats. lead_time: [s], evaluates
+  // the next call. utime: simulation time [us], which the response's id repeats. lead_time: [s], evaluates
   // at the poses extrapolated by this much; 0: as given. A body that cannot be evaluated has zeros and a
   // status other than kOk; see find_failed_body(). Errors: see retry.h.
   Expected<const WrenchResponse*> request(std::int64_t utime, std::span<const BodyState> states,
@@ -48,7 +48,7 @@ class Client {
   Client(ClientVariant client, std::int64_t session_id);
 
   ClientVariant client_;
-  WrenchRequest request_;  // reused; its key is the next request's
+  WrenchRequest request_;  // reused; its id is the next request's
 };
 
 // A random session_id >= 0. The probability that it equals a given other one is 2^-63.

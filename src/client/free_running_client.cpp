@@ -17,7 +17,7 @@ Expected<const WrenchResponse*> FreeRunningClient::request(const WrenchRequest& 
     return first;
   }
 
-  const std::int64_t seq = request.key.seq;
+  const std::int64_t seq = request.id.seq;
   wait_for(std::numeric_limits<std::int64_t>::max(), next_send_);
   if (channel_.cancelled()) return cancelled_error(channel_, seq);
   const Clock::time_point now = Clock::now();
@@ -31,7 +31,7 @@ Expected<const WrenchResponse*> FreeRunningClient::request(const WrenchRequest& 
     const double waited = to_seconds(Clock::now() - waiting_since_);
     if (waiting_ && waited > retry_policy_.total_timeout()) return no_response_error(channel_, seq, waited);
     ++statistics_.late;
-    statistics_.max_lag = std::max(statistics_.max_lag, seq - channel_.latest_response().key.seq);
+    statistics_.max_lag = std::max(statistics_.max_lag, seq - channel_.latest_response().id.seq);
   }
   return check_response(channel_, request, channel_.latest_response());
 }

@@ -22,9 +22,9 @@ timespec to_timespec(Clock::duration duration) {
 
 void LcmRequestChannel::Inbox::receive(Bytes bytes) {
   if (decode(bytes, incoming)) return;
-  if (incoming.key.session_id != session_id || incoming.key.seq > last_sent) return;
-  arrivals.push_back({incoming.key.seq, Clock::now()});
-  if (has_response && incoming.key.seq <= latest.key.seq) return;
+  if (incoming.id.session_id != session_id || incoming.id.seq > last_sent) return;
+  arrivals.push_back({incoming.id.seq, Clock::now()});
+  if (has_response && incoming.id.seq <= latest.id.seq) return;
   std::swap(latest, incoming);
   has_response = true;
 }
@@ -48,8 +48,8 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
 }
 
 Expected<void> LcmRequestChannel::send(const WrenchRequest& request) {
-  inbox_->session_id = request.key.session_id;
-  inbox_->last_sent = request.key.seq;
+  inbox_->session_id = request.id.session_id;
+  inbox_->last_sent = request.id.seq;
   encode(request, request_bytes_);
   return resend();
 }
@@ -59,7 +59,7 @@ Expected<void> LcmRequestChannel::resend() {
 }
 
 bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
-  const auto arrived = [&] { return inbox_->has_response && inbox_->latest.key.seq >= seq; };
+  const auto arrived = [&] { return inbox_->has_response && inbox_->latest.id.seq >= seq; };
   inbox_->arrivals.clear();
   int after_deadline = 0;
   while (!arrived()) {

@@ -21,15 +21,15 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
   ++statistics.requests;
   Expected<void> sent = channel.send(request);
   for (std::int64_t retries = 0;; ++retries) {
-    if (channel.wait_for(request.key.seq, Clock::now() + to_duration(retry_policy.timeout))) {
+    if (channel.wait_for(request.id.seq, Clock::now() + to_duration(retry_policy.timeout))) {
       statistics.round_trip.add(to_seconds(channel.arrivals().back().at - sent_at));
       return check_response(channel, request, channel.latest_response());
     }
-    if (channel.cancelled()) return cancelled_error(channel, request.key.seq);
+    if (channel.cancelled()) return cancelled_error(channel, request.id.seq);
     if (retries == retry_policy.max_retries) {
       ++statistics.unanswered;
       if (!sent) return make_error(sent.error());
-      return no_response_error(channel, request.key.seq, to_seconds(Clock::now() - sent_at));
+      return no_response_error(channel, request.id.seq, to_seconds(Clock::now() - sent_at));
     }
     ++statistics.retries;
     sent = channel.resend();
@@ -42,7 +42,7 @@ Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
       request.bodies.begin(), request.bodies.end(), response.bodies.begin(), response.bodies.end(),
       [](const BodyState& state, const BodyWrench& wrench) { return state.body_id == wrench.body_id; });
   if (!same_bodies) {
-    return make_error({subject(channel, request.key.seq), "a response with other bodies than requested",
+    return make_error({subject(channel, request.id.seq), "a response with other bodies than requested",
                        "one wrench per requested body, in the order of the request",
                        "a program other than buoyancyd publishes on the wrenches channel", ""});
   }

@@ -47,7 +47,7 @@ tl::expected<Bytes, DecodeError> PoseRequestAdapter::make_request(std::size_t in
   const tl::expected<StampedBodyState, DecodeError> stamped = decode_pose(poses_, index, pose);
   if (!stamped) return tl::unexpected(stamped.error());
   const auto session = static_cast<std::uint64_t>(first_session_) + index;
-  request_.key = {stamped->utime, static_cast<std::int64_t>(session), next_seq_[index]++};
+  request_.id = {stamped->utime, static_cast<std::int64_t>(session), next_seq_[index]++};
   request_.bodies.front() = stamped->state;
   encode(request_, bytes_);
   return Bytes(bytes_);
@@ -57,7 +57,7 @@ void encode_force_torque(Bytes response, WrenchResponse& decoded, std::vector<st
   [[maybe_unused]] const auto error = decode(response, decoded);
   assert(!error && decoded.bodies.size() == 1);
   const BodyWrench& wrench = decoded.bodies.front();
-  encode_six_axis_force_torque(decoded.key.utime, wrench.force, wrench.torque, bytes);
+  encode_six_axis_force_torque(decoded.id.utime, wrench.force, wrench.torque, bytes);
 }
 
 }  // namespace buoyancy

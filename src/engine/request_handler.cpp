@@ -37,15 +37,15 @@ void RequestHandler::set_scene(const Scene& scene) {
 Bytes RequestHandler::handle(Bytes request) {
   ++counters_.requests;
   last_session_.reset();
-  const auto key = peek_request_id(request);
-  if (!key) {
-    count_decode_error(key.error());
+  const auto id = peek_request_id(request);
+  if (!id) {
+    count_decode_error(id.error());
     return {};
   }
 
-  const auto known = std::ranges::find(sessions_, key->session_id, &Session::id);
+  const auto known = std::ranges::find(sessions_, id->session_id, &Session::id);
   const bool is_new = known == sessions_.end();
-  Session& session = is_new ? start_session(*key) : *known;
+  Session& session = is_new ? start_session(*id) : *known;
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   if (!is_new) {
@@ -54,11 +54,11 @@ Bytes RequestHandler::handle(Bytes request) {
       last_session_ = index;
       return session.last_response;
     }
-    if (key->seq == session.last_seq) ++counters_.conflicting_retries;
-    if (key->seq < session.newest_seq) ++counters_.stale;
+    if (id->seq == session.last_seq) ++counters_.conflicting_retries;
+    if (id->seq < session.newest_seq) ++counters_.stale;
   }
-  session.last_seq = key->seq;
-  session.newest_seq = std::max(session.newest_seq, key->seq);
+  session.last_seq = id->seq;
+  session.newest_seq = std::max(session.newest_seq, id->seq);
   compute(request, session);
   ++counters_.computed;
   last_session_ = index;
@@ -115,7 +115,7 @@ void RequestHandler::compute(Bytes request, Session& session) {
   session.last_request.clear();
   [[maybe_unused]] const auto error = decode(request, request_);
   assert(!error);  // peek_request_id() made the same checks
-  response_.key = request_.key;
+  response_.id = request_.id;
   evaluator_.evaluate_all(request_, response_.bodies, counters_);
   compute_hydrostatics();
   encode(response_, session.last_response);
@@ -125,7 +125,7 @@ void RequestHandler::compute(Bytes request, Session& session) {
 }
 
 void RequestHandler::compute_hydrostatics() {
-  hydrostatics_.key = request_.key;
+  hydrostatics_.id = request_.id;
   hydrostatics_.bodies.clear();
   for (std::size_t i = 0; scene_->any_hydrostatics() && i < request_.bodies.size(); ++i) {
     const BodyState& state = request_.bodies[i];

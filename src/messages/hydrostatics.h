@@ -27,7 +27,7 @@ struct BodyHydrostatics {
 };
 
 struct BodiesHydrostatics {
-  RequestId key;
+  RequestId id;
   std::vector<BodyHydrostatics> bodies;
 };
 

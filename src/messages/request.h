@@ -23,7 +23,7 @@ struct RequestId {
 };
 
 struct WrenchRequest {
-  RequestId key;
+  RequestId id;
   double lead_time = 0.0;  // [s]
   std::vector<BodyState> bodies;
 };
@@ -56,7 +56,7 @@ struct BodyWrench {
 };
 
 struct WrenchResponse {
-  RequestId key;
+  RequestId id;
   std::vector<BodyWrench> bodies;
 };
 

@@ -110,10 +110,10 @@ std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics)
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes) {
   const auto bodies = validate<WrenchRequest>(bytes);
   if (!bodies) return tl::unexpected(bodies.error());
-  RequestId key;
+  RequestId id;
   BigEndianReader reader(bytes.data() + sizeof(std::int64_t));
-  visit_fields(key, reader);
-  return key;
+  visit_fields(id, reader);
+  return id;
 }
 
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes) {

@@ -39,7 +39,7 @@ std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request);
 std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response);
 std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
 
-// Makes the same checks and decodes the request's key only. O(1).
+// Makes the same checks and decodes the request's id only. O(1).
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 
 // Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest

@@ -22,9 +22,9 @@ namespace buoyancy {
 template <typename T, typename Plain>
 concept MaybeConst = std::same_as<std::remove_const_t<T>, Plain>;
 
-template <MaybeConst<RequestId> Key, typename Visitor>
-void visit_fields(Key& key, Visitor& visitor) {
-  visitor(key.utime, key.session_id, key.seq);
+template <MaybeConst<RequestId> Id, typename Visitor>
+void visit_fields(Id& id, Visitor& visitor) {
+  visitor(id.utime, id.session_id, id.seq);
 }
 
 template <MaybeConst<BodyState> State, typename Visitor>
@@ -50,18 +50,18 @@ void visit_fields(Body& body, Visitor& visitor) {
 // A header holds the fields before the number of bodies.
 template <MaybeConst<WrenchRequest> Message, typename Visitor>
 void visit_header(Message& request, Visitor& visitor) {
-  visit_fields(request.key, visitor);
+  visit_fields(request.id, visitor);
   visitor(request.lead_time);
 }
 
 template <MaybeConst<WrenchResponse> Message, typename Visitor>
 void visit_header(Message& response, Visitor& visitor) {
-  visit_fields(response.key, visitor);
+  visit_fields(response.id, visitor);
 }
 
 template <MaybeConst<BodiesHydrostatics> Message, typename Visitor>
 void visit_header(Message& hydrostatics, Visitor& visitor) {
-  visit_fields(hydrostatics.key, visitor);
+  visit_fields(hydrostatics.id, visitor);
 }
 
 // A status consists of a header, its strings and a trailer.

@@ -74,7 +74,7 @@ LogItem StateCsvReader::next() {
   }
   request_.bodies.clear();
   const auto append = [this](const Row& row) {
-    request_.key.utime = row.utime;
+    request_.id.utime = row.utime;
     request_.bodies.push_back(row.state);
   };
   if (pending_) append(*pending_);
@@ -88,7 +88,7 @@ LogItem StateCsvReader::next() {
       corrupt_line_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; skipped"};
       break;
     }
-    if (!request_.bodies.empty() && row->utime != request_.key.utime) {
+    if (!request_.bodies.empty() && row->utime != request_.id.utime) {
       pending_ = *row;
       break;
     }
@@ -96,8 +96,8 @@ LogItem StateCsvReader::next() {
   }
   if (!request_.bodies.empty()) {
     encode(request_, bytes_);
-    ++request_.key.seq;
-    return RecordedEvent{request_.key.utime, {}, bytes_};
+    ++request_.id.seq;
+    return RecordedEvent{request_.id.utime, {}, bytes_};
   }
   if (corrupt_line_) return next();
   if (file_.read_error() && offset_ < size()) {

@@ -87,7 +87,7 @@ std::int64_t Simulation::utime() const {
 }
 
 const WrenchRequest& Simulation::request() {
-  request_.key = {utime(), options_.session_id, step_number_};
+  request_.id = {utime(), options_.session_id, step_number_};
   request_.lead_time = options_.lead_time;
   request_.bodies.clear();
   for (const SimulatedBody& body : bodies_) {
@@ -110,7 +110,7 @@ const WrenchResponse& Simulation::delayed_response(const WrenchResponse& latest)
 void Simulation::accept(const WrenchResponse& latest) {
   const WrenchResponse& response = delayed_response(latest);
   assert(response.bodies.size() == bodies_.size());
-  delay_ = static_cast<double>(step_number_ - response.key.seq) * options_.step;
+  delay_ = static_cast<double>(step_number_ - response.id.seq) * options_.step;
   const bool wrenches_are_current = delay_ == 0.0 && options_.lead_time == 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SimulatedBody& body = bodies_[i];

@@ -37,7 +37,7 @@ TEST(Client, SendsStatesUnchangedAndNumbersRequests) {
   {
     const FakeService service([&](const WrenchRequest& request) {
       received.push_back(request);
-      return Responses{encoded(response_to(request, static_cast<double>(request.key.seq)))};
+      return Responses{encoded(response_to(request, static_cast<double>(request.id.seq)))};
     });
     ClientOptions options;
     options.session_id = 42;
@@ -45,7 +45,7 @@ TEST(Client, SendsStatesUnchangedAndNumbersRequests) {
     for (std::int64_t step = 0; step < 3; ++step) {
       const Expected<const WrenchResponse*> response = client.request(1000 * step, two_states(), 0.25);
       ASSERT_TRUE(response) << response.error().message();
-      EXPECT_EQ((*response)->key.utime, 1000 * step);
+      EXPECT_EQ((*response)->id.utime, 1000 * step);
       EXPECT_EQ((*response)->bodies.at(1).body_id, 6);
       EXPECT_EQ((*response)->bodies.at(1).force[2], static_cast<double>(step));
     }
@@ -53,9 +53,9 @@ TEST(Client, SendsStatesUnchangedAndNumbersRequests) {
   }
   std::int64_t expected_seq = 0;
   for (const WrenchRequest& request : received) {
-    if (request.key.seq < expected_seq) continue;  // a retry on a busy machine
-    EXPECT_EQ(request.key.session_id, 42);
-    EXPECT_EQ(request.key.seq, expected_seq++);
+    if (request.id.seq < expected_seq) continue;  // a retry on a busy machine
+    EXPECT_EQ(request.id.session_id, 42);
+    EXPECT_EQ(request.id.seq, expected_seq++);
     EXPECT_EQ(request.lead_time, 0.25);
     ASSERT_EQ(request.bodies.size(), 2U);
     EXPECT_EQ(request.bodies[0].position, two_states()[0].position);
@@ -69,7 +69,7 @@ TEST(Client, SendsStatesUnchangedAndNumbersRequests) {
 TEST(Client, DrawsDistinctSessionsForTwoClients) {
   std::atomic<std::int64_t> newest_session{-1};
   const FakeService service([&](const WrenchRequest& request) {
-    newest_session = request.key.session_id;
+    newest_session = request.id.session_id;
     return Responses{encoded(response_to(request, request.bodies[0].position[0]))};
   });
   std::array<Client, 2> clients{open_client(), open_client()};
@@ -89,7 +89,7 @@ TEST(Client, DrawsDistinctSessionsForTwoClients) {
 TEST(Client, ReturnsNewestResponseInFreeRunningMode) {
   // Responds to the first request only.
   const FakeService service([](const WrenchRequest& request) {
-    return request.key.seq == 0 ? Responses{encoded(response_to(request, 7.0))} : Responses{};
+    return request.id.seq == 0 ? Responses{encoded(response_to(request, 7.0))} : Responses{};
   });
   ClientOptions options;
   options.interval = 0.02;
@@ -97,7 +97,7 @@ TEST(Client, ReturnsNewestResponseInFreeRunningMode) {
   for (std::int64_t step = 0; step < 5; ++step) {
     const Expected<const WrenchResponse*> response = client.request(step, two_states());
     ASSERT_TRUE(response) << response.error().message();
-    EXPECT_EQ((*response)->key.utime, 0);
+    EXPECT_EQ((*response)->id.utime, 0);
   }
   EXPECT_EQ(client.statistics().late, 4);
 }

@@ -83,7 +83,7 @@ inline LcmRequestChannel open_channel() {
 // A request about bodies 5 and 6 in session 77.
 inline WrenchRequest make_request(std::int64_t seq) {
   WrenchRequest request;
-  request.key = {1000 * seq, 77, seq};
+  request.id = {1000 * seq, 77, seq};
   request.bodies.resize(2);
   request.bodies[0].body_id = 5;
   request.bodies[1].body_id = 6;
@@ -92,7 +92,7 @@ inline WrenchRequest make_request(std::int64_t seq) {
 
 inline WrenchResponse response_to(const WrenchRequest& request, double force) {
   WrenchResponse response;
-  response.key = request.key;
+  response.id = request.id;
   for (const BodyState& body : request.bodies) {
     BodyWrench wrench;
     wrench.body_id = body.body_id;

@@ -14,11 +14,11 @@ namespace {
 TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
   const FakeService service([](const WrenchRequest& request) {
     WrenchResponse other_session = response_to(request, 1.0);
-    other_session.key.session_id += 1;
+    other_session.id.session_id += 1;
     WrenchResponse earlier = response_to(request, 2.0);
-    earlier.key.seq -= 1;
+    earlier.id.seq -= 1;
     WrenchResponse later = response_to(request, 3.0);
-    later.key.seq += 1;
+    later.id.seq += 1;
     std::vector<std::uint8_t> cut = encoded(response_to(request, 4.0));
     cut.pop_back();
     return Responses{encoded(other_session), encoded(earlier), encoded(later), cut,
@@ -28,7 +28,7 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
   for (std::int64_t seq = 0; seq < 20; ++seq) {
     const Expected<const WrenchResponse*> response = client.request(make_request(seq));
     ASSERT_TRUE(response) << response.error().message();
-    EXPECT_EQ((*response)->key.seq, seq);
+    EXPECT_EQ((*response)->id.seq, seq);
     EXPECT_EQ((*response)->bodies[1].force[2], 9.0);
   }
   EXPECT_EQ(client.statistics().requests, 20);
@@ -38,7 +38,7 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
 TEST(LockstepClient, ResendsRequestUntilResponseArrives) {
   std::vector<std::int64_t> received_seqs;
   const FakeService service([&](const WrenchRequest& request) {
-    received_seqs.push_back(request.key.seq);
+    received_seqs.push_back(request.id.seq);
     if (received_seqs.size() < 4) return Responses{};
     return Responses{encoded(response_to(request, 9.0))};
   });

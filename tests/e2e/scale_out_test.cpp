@@ -77,7 +77,7 @@ class Share {
 
 std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
   std::vector<std::uint8_t> bytes;
-  encode(WrenchResponse{.key = {}, .bodies = wrenches}, bytes);
+  encode(WrenchResponse{.id = {}, .bodies = wrenches}, bytes);
   return bytes;
 }
 

@@ -117,8 +117,8 @@ bool wait_for_retries(LcmConnection& bus, int times) {
   bus.subscribe(std::string(kStatesChannel), [&](Bytes bytes, std::string_view) {
     WrenchRequest request;
     if (decode(bytes, request)) return;
-    received = request.key.seq == seq ? received + 1 : 1;
-    seq = request.key.seq;
+    received = request.id.seq == seq ? received + 1 : 1;
+    seq = request.id.seq;
   });
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (received < times && std::chrono::steady_clock::now() < deadline) {

@@ -25,7 +25,7 @@ BodyState placed(std::int32_t id, double height, double tilt = 0.0) {
 }
 
 WrenchRequest make_request(std::vector<BodyState> bodies, double lead_time = 0.0) {
-  return {.key = {}, .lead_time = lead_time, .bodies = std::move(bodies)};
+  return {.id = {}, .lead_time = lead_time, .bodies = std::move(bodies)};
 }
 
 // Bodies 1 to count, all with one rock mesh.

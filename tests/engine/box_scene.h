@@ -70,10 +70,10 @@ inline BodyState upright(std::int32_t id, double height) {
   return state;
 }
 
-inline std::vector<std::uint8_t> request_bytes(const RequestId& key, std::vector<BodyState> bodies,
+inline std::vector<std::uint8_t> request_bytes(const RequestId& id, std::vector<BodyState> bodies,
                                                double lead_time = 0.0) {
   std::vector<std::uint8_t> bytes;
-  encode(WrenchRequest{.key = key, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
+  encode(WrenchRequest{.id = id, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
   return bytes;
 }
 

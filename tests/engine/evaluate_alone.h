@@ -11,7 +11,7 @@ inline BodyWrench evaluate_alone(const Scene& scene, const BodyState& state, dou
                                  ServiceCounters& counters) {
   BodyEvaluator evaluator(scene, 1);
   std::vector<BodyWrench> wrenches;
-  evaluator.evaluate_all({.key = {}, .lead_time = lead_time, .bodies = {state}}, wrenches, counters);
+  evaluator.evaluate_all({.id = {}, .lead_time = lead_time, .bodies = {state}}, wrenches, counters);
   return wrenches.at(0);
 }
 

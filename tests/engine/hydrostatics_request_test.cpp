@@ -110,9 +110,9 @@ TEST(RequestHandler, ReturnsHydrostaticsInRequestedOrder) {
   bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
   handler.handle(request_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
   const BodiesHydrostatics found = decoded_hydrostatics(handler.last_hydrostatics());
-  EXPECT_EQ(found.key.utime, 5);
-  EXPECT_EQ(found.key.session_id, 6);
-  EXPECT_EQ(found.key.seq, 7);
+  EXPECT_EQ(found.id.utime, 5);
+  EXPECT_EQ(found.id.session_id, 6);
+  EXPECT_EQ(found.id.seq, 7);
   ASSERT_EQ(found.bodies.size(), 3U);
   for (const BodyHydrostatics& body : found.bodies) EXPECT_EQ(body.body_id, kHydrostaticBox);
   EXPECT_NEAR(found.bodies[0].submerged_volume, 0.25, 1e-14);

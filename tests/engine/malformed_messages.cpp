@@ -20,7 +20,7 @@ constexpr std::size_t kLargeDatagram = 60000;
 
 ByteVector request_of(std::size_t bodies) {
   WrenchRequest request{
-      .key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .lead_time = 0.0, .bodies = {}};
+      .id = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .lead_time = 0.0, .bodies = {}};
   BodyState body;
   body.body_id = 1;
   body.quaternion_wxyz = {1, 0, 0, 0};
@@ -31,7 +31,7 @@ ByteVector request_of(std::size_t bodies) {
 }
 
 ByteVector response_of(std::size_t bodies) {
-  WrenchResponse response{.key = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .bodies = {}};
+  WrenchResponse response{.id = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .bodies = {}};
   response.bodies.resize(bodies);
   ByteVector bytes;
   encode(response, bytes);

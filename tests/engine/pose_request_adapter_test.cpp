@@ -37,16 +37,16 @@ TEST(PoseRequestAdapter, UsesOneSessionPerChannel) {
   PoseRequestAdapter poses = two_channels(VelocityFrame::kWorld);
   for (std::int64_t i = 0; i < 3; ++i) {
     const WrenchRequest hull = decoded_request(poses, 0, encoded_by_lcm(upright_pose(0.25, 10 + i)));
-    EXPECT_EQ(hull.key.utime, 10 + i);
-    EXPECT_EQ(hull.key.session_id, kFirstSession);
-    EXPECT_EQ(hull.key.seq, i);
+    EXPECT_EQ(hull.id.utime, 10 + i);
+    EXPECT_EQ(hull.id.session_id, kFirstSession);
+    EXPECT_EQ(hull.id.seq, i);
     ASSERT_EQ(hull.bodies.size(), 1U);
     EXPECT_EQ(hull.bodies[0].body_id, kBox);
     EXPECT_EQ(hull.bodies[0].position[2], 0.25);
   }
   const WrenchRequest buoy = decoded_request(poses, 1, encoded_by_lcm(upright_pose(0.0, -1)));
-  EXPECT_EQ(buoy.key.session_id, kFirstSession + 1);
-  EXPECT_EQ(buoy.key.seq, 0);
+  EXPECT_EQ(buoy.id.session_id, kFirstSession + 1);
+  EXPECT_EQ(buoy.id.seq, 0);
   EXPECT_EQ(buoy.bodies[0].body_id, kOffsetBox);
 }
 

@@ -45,11 +45,11 @@ std::int64_t bodies_computed(const ServiceCounters& counters) {
 
 TEST(RequestHandler, ReturnsResponseWithRequestId) {
   RequestHandler handler(scene());
-  const RequestId key{.utime = -5, .session_id = INT64_MIN, .seq = INT64_MAX};
-  const WrenchResponse response = decoded(handler.handle(request_bytes(key, {upright(kBox, 0.0)})));
-  EXPECT_EQ(response.key.utime, key.utime);
-  EXPECT_EQ(response.key.session_id, key.session_id);
-  EXPECT_EQ(response.key.seq, key.seq);
+  const RequestId id{.utime = -5, .session_id = INT64_MIN, .seq = INT64_MAX};
+  const WrenchResponse response = decoded(handler.handle(request_bytes(id, {upright(kBox, 0.0)})));
+  EXPECT_EQ(response.id.utime, id.utime);
+  EXPECT_EQ(response.id.session_id, id.session_id);
+  EXPECT_EQ(response.id.seq, id.seq);
   ASSERT_EQ(response.bodies.size(), 1U);
   EXPECT_NEAR(response.bodies[0].force[2], 0.5 * kWeight, response.bodies[0].force_error_bound);
   EXPECT_EQ(handler.counters().requests, 1);
@@ -75,8 +75,8 @@ TEST(RequestHandler, ReturnsBodiesInRequestedOrderWithRepetitions) {
 TEST(RequestHandler, HandlesRequestWithoutBodies) {
   RequestHandler handler(scene());
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 3, .seq = 9}, {})));
-  EXPECT_EQ(response.key.session_id, 3);
-  EXPECT_EQ(response.key.seq, 9);
+  EXPECT_EQ(response.id.session_id, 3);
+  EXPECT_EQ(response.id.seq, 9);
   EXPECT_TRUE(response.bodies.empty());
   EXPECT_EQ(handler.counters().computed, 1);
 }
@@ -241,7 +241,7 @@ TEST(RequestHandler, UsesNewSceneWithinSession) {
   handler.set_scene(taller);
   EXPECT_EQ(&handler.scene(), &taller);
   const WrenchResponse response = decoded(handler.handle(request(1, 6)));
-  EXPECT_EQ(response.key.seq, 6);
+  EXPECT_EQ(response.id.seq, 6);
   EXPECT_NEAR(response.bodies[0].submerged_volume, 1.0, 1e-13) << "at the pose of the last response";
   EXPECT_EQ(handler.newest_seq(2), 5);
   const WrenchResponse gone = decoded(handler.handle(
@@ -450,8 +450,8 @@ RC_GTEST_PROP(RequestHandler, ManagesSessionsLikeModel, ()) {
     const ByteVector bytes = request(id, seq, height);
     model.handle(id, seq, bytes);
     const WrenchResponse response = decoded(handler.handle(bytes));
-    RC_ASSERT(response.key.session_id == id);
-    RC_ASSERT(response.key.seq == seq);
+    RC_ASSERT(response.id.session_id == id);
+    RC_ASSERT(response.id.seq == seq);
     RC_ASSERT(response.bodies.size() == std::size_t{1});
     RC_ASSERT(std::abs(response.bodies[0].submerged_volume - (0.5 - height)) < 1e-13);
   }

@@ -55,8 +55,8 @@ WrenchRequest request_of(const RecordedEvent& recorded, std::size_t number) {
   WrenchRequest request;
   require(!decode(recorded.bytes, request), "a request from CSV decodes");
   require(!request.bodies.empty() && request.bodies.size() <= kMaxRowsPerRequest, "a request has bodies");
-  require(request.key.utime == recorded.timestamp && request.key.session_id == 0 &&
-              request.key.seq == static_cast<std::int64_t>(number) && request.lead_time == 0.0,
+  require(request.id.utime == recorded.timestamp && request.id.session_id == 0 &&
+              request.id.seq == static_cast<std::int64_t>(number) && request.lead_time == 0.0,
           "a request from CSV has its rows' utime, session 0 and seq counted from 0");
   return request;
 }
@@ -78,7 +78,7 @@ std::vector<WrenchRequest> read_all(StateCsvReader& reader, const std::vector<st
       const WrenchRequest& request = requests.back();
       require(request.bodies.size() <= lines.size() - next_line, "a file has no more rows than lines");
       for (std::size_t row = 0; row < request.bodies.size(); ++row) {
-        require(utime_of(lines[next_line++]) == request.key.utime, "the rows of a request have its utime");
+        require(utime_of(lines[next_line++]) == request.id.utime, "the rows of a request have its utime");
       }
     } else {
       require(!std::get<CorruptSection>(item).description.empty(), "a report describes the error");
@@ -101,7 +101,7 @@ std::string rewrite(const std::vector<WrenchRequest>& requests) {
   std::string text(kTwistHeader);
   for (const WrenchRequest& request : requests) {
     for (const BodyState& body : request.bodies) {
-      text += std::to_string(request.key.utime) + "," + std::to_string(body.body_id);
+      text += std::to_string(request.id.utime) + "," + std::to_string(body.body_id);
       for (const double value : body.position) append(value, text);
       for (const double value : body.quaternion_wxyz) append(value, text);
       for (const double value : body.linear_velocity) append(value, text);

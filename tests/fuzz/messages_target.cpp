@@ -155,7 +155,7 @@ bool same(const RequestId& a, const RequestId& b) {
 void check_response(const WrenchRequest& request, Bytes bytes) {
   WrenchResponse response;
   require(!decode(bytes, response), "a response decodes");
-  require(same(response.key, request.key), "a response carries its request's id");
+  require(same(response.id, request.id), "a response carries its request's id");
   require(response.bodies.size() == request.bodies.size(), "a response has its request's bodies");
   for (std::size_t i = 0; i < response.bodies.size(); ++i) {
     require(response.bodies[i].body_id == request.bodies[i].body_id, "bodies keep their order");
@@ -174,7 +174,7 @@ void check_hydrostatics(const WrenchRequest& request, Bytes bytes) {
   if (bytes.empty()) return;
   BodiesHydrostatics hydrostatics;
   require(!decode(bytes, hydrostatics), "hydrostatics decode");
-  require(same(hydrostatics.key, request.key), "hydrostatics carry their request's id");
+  require(same(hydrostatics.id, request.id), "hydrostatics carry their request's id");
   require(std::equal(expected_ids.begin(), expected_ids.end(), hydrostatics.bodies.begin(),
                      hydrostatics.bodies.end(),
                      [](std::int32_t id, const BodyHydrostatics& body) { return id == body.body_id; }),
@@ -198,7 +198,7 @@ void send_request(const Packet& packet, RequestHandler& handler) {
     require(response.empty() && hydrostatics.empty(), "an invalid packet gets no response");
     return;
   }
-  require(same(*id, request.key), "peek_request_id() finds the request's id");
+  require(same(*id, request.id), "peek_request_id() finds the request's id");
   check_response(request, response);
   check_hydrostatics(request, hydrostatics);
   require(copy_of(handler.handle(packet)) == response && copy_of(handler.last_hydrostatics()) == hydrostatics,

@@ -35,7 +35,7 @@ inline RequestId random_request_id() {
 }
 
 inline WrenchRequest random_request() {
-  WrenchRequest request{.key = random_request_id(), .lead_time = random_double(), .bodies = {}};
+  WrenchRequest request{.id = random_request_id(), .lead_time = random_double(), .bodies = {}};
   request.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyState& body : request.bodies) {
     body.body_id = random_integer<std::int32_t>();
@@ -48,7 +48,7 @@ inline WrenchRequest random_request() {
 }
 
 inline WrenchResponse random_response() {
-  WrenchResponse response{.key = random_request_id(), .bodies = {}};
+  WrenchResponse response{.id = random_request_id(), .bodies = {}};
   response.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyWrench& body : response.bodies) {
     body.body_id = random_integer<std::int32_t>();
@@ -64,7 +64,7 @@ inline WrenchResponse random_response() {
 }
 
 inline BodiesHydrostatics random_hydrostatics() {
-  BodiesHydrostatics hydrostatics{.key = random_request_id(), .bodies = {}};
+  BodiesHydrostatics hydrostatics{.id = random_request_id(), .bodies = {}};
   hydrostatics.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
   for (BodyHydrostatics& body : hydrostatics.bodies) {
     body.body_id = random_integer<std::int32_t>();

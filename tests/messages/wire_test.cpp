@@ -39,9 +39,9 @@ void copy(const std::array<double, kSize>& from, double (&to)[kSize]) {
 
 body_states_t to_generated(const WrenchRequest& request) {
   body_states_t message{};
-  message.utime = request.key.utime;
-  message.session_id = request.key.session_id;
-  message.seq = request.key.seq;
+  message.utime = request.id.utime;
+  message.session_id = request.id.session_id;
+  message.seq = request.id.seq;
   message.lead_time = request.lead_time;
   message.num_bodies = static_cast<std::int32_t>(request.bodies.size());
   for (const BodyState& body : request.bodies) {
@@ -57,9 +57,9 @@ body_states_t to_generated(const WrenchRequest& request) {
 
 body_wrenches_t to_generated(const WrenchResponse& response) {
   body_wrenches_t message{};
-  message.utime = response.key.utime;
-  message.session_id = response.key.session_id;
-  message.seq = response.key.seq;
+  message.utime = response.id.utime;
+  message.session_id = response.id.session_id;
+  message.seq = response.id.seq;
   message.num_bodies = static_cast<std::int32_t>(response.bodies.size());
   for (const BodyWrench& body : response.bodies) {
     body_wrench_t& to = message.bodies.emplace_back();
@@ -82,9 +82,9 @@ void copy(const std::array<std::array<double, kColumns>, kRows>& from, double (&
 
 bodies_hydrostatics_t to_generated(const BodiesHydrostatics& hydrostatics) {
   bodies_hydrostatics_t message{};
-  message.utime = hydrostatics.key.utime;
-  message.session_id = hydrostatics.key.session_id;
-  message.seq = hydrostatics.key.seq;
+  message.utime = hydrostatics.id.utime;
+  message.session_id = hydrostatics.id.session_id;
+  message.seq = hydrostatics.id.seq;
   message.num_bodies = static_cast<std::int32_t>(hydrostatics.bodies.size());
   for (const BodyHydrostatics& body : hydrostatics.bodies) {
     body_hydrostatics_t& to = message.bodies.emplace_back();
@@ -106,7 +106,7 @@ bodies_hydrostatics_t to_generated(const BodiesHydrostatics& hydrostatics) {
 }
 
 ByteVector request_of(std::size_t bodies) {
-  WrenchRequest request{.key = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
+  WrenchRequest request{.id = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
   request.bodies.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) request.bodies[i].body_id = static_cast<std::int32_t>(i);
   return encoded(request);
@@ -133,9 +133,9 @@ RC_GTEST_PROP(Wire, DecodesRequestsOfGeneratedCode, ()) {
   const ByteVector bytes = encoded_by_lcm(message);
   WrenchRequest request = random_request();  // its previous content must not matter
   RC_ASSERT(!decode(bytes, request).has_value());
-  RC_ASSERT(request.key.utime == message.utime);
-  RC_ASSERT(request.key.session_id == message.session_id);
-  RC_ASSERT(request.key.seq == message.seq);
+  RC_ASSERT(request.id.utime == message.utime);
+  RC_ASSERT(request.id.session_id == message.session_id);
+  RC_ASSERT(request.id.seq == message.seq);
   RC_ASSERT(request.bodies.size() == message.bodies.size());
   RC_ASSERT(encoded_by_lcm(to_generated(request)) == bytes);
 }
@@ -161,11 +161,11 @@ RC_GTEST_PROP(Wire, DecodesHydrostaticsOfGeneratedCode, ()) {
 
 RC_GTEST_PROP(Wire, PeeksSameRequestIdAsDecode, ()) {
   const WrenchRequest request = random_request();
-  const auto key = peek_request_id(encoded(request));
-  RC_ASSERT(key.has_value());
-  RC_ASSERT(key->utime == request.key.utime);
-  RC_ASSERT(key->session_id == request.key.session_id);
-  RC_ASSERT(key->seq == request.key.seq);
+  const auto id = peek_request_id(encoded(request));
+  RC_ASSERT(id.has_value());
+  RC_ASSERT(id->utime == request.id.utime);
+  RC_ASSERT(id->session_id == request.id.session_id);
+  RC_ASSERT(id->seq == request.id.seq);
 }
 
 RC_GTEST_PROP(Wire, DecodesOrRejectsRandomBytesAfterValidFingerprint, ()) {
@@ -181,9 +181,9 @@ TEST(Wire, EncodesToSizesOfMessageDefinitions) {
   EXPECT_EQ(request_of(0).size(), kRequestFixed);
   EXPECT_EQ(request_of(3).size(), kRequestFixed + 3 * kBodyState);
   EXPECT_EQ(encoded(WrenchResponse{}).size(), kResponseFixed);
-  EXPECT_EQ(encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}}).size(), kResponseFixed + 2 * kBodyWrench);
+  EXPECT_EQ(encoded(WrenchResponse{.id = {}, .bodies = {{}, {}}}).size(), kResponseFixed + 2 * kBodyWrench);
   EXPECT_EQ(encoded(BodiesHydrostatics{}).size(), kResponseFixed);
-  EXPECT_EQ(encoded(BodiesHydrostatics{.key = {}, .bodies = {{}, {}}}).size(),
+  EXPECT_EQ(encoded(BodiesHydrostatics{.id = {}, .bodies = {{}, {}}}).size(),
             kResponseFixed + 2 * kBodyHydrostatics);
 }
 
@@ -200,7 +200,7 @@ TEST(Wire, RejectsEveryTruncationOfRequest) {
 }
 
 TEST(Wire, RejectsEveryTruncationOfResponse) {
-  const ByteVector whole = encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}});
+  const ByteVector whole = encoded(WrenchResponse{.id = {}, .bodies = {{}, {}}});
   WrenchResponse response;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), response),
@@ -210,7 +210,7 @@ TEST(Wire, RejectsEveryTruncationOfResponse) {
 }
 
 TEST(Wire, RejectsEveryTruncationOfHydrostatics) {
-  const ByteVector whole = encoded(BodiesHydrostatics{.key = {}, .bodies = {{}, {}}});
+  const ByteVector whole = encoded(BodiesHydrostatics{.id = {}, .bodies = {{}, {}}});
   BodiesHydrostatics hydrostatics;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), hydrostatics),
@@ -232,7 +232,7 @@ TEST(Wire, RejectsEveryFlippedFingerprintBit) {
 TEST(Wire, RejectsOtherBuoyancyTypes) {
   WrenchRequest request;
   WrenchResponse response;
-  EXPECT_EQ(decode(encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}}), request),
+  EXPECT_EQ(decode(encoded(WrenchResponse{.id = {}, .bodies = {{}, {}}}), request),
             DecodeError::kFingerprint);
   EXPECT_EQ(decode(request_of(2), response), DecodeError::kFingerprint);
   EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), response), DecodeError::kFingerprint);
@@ -251,7 +251,7 @@ TEST(Wire, RejectsCountsThatDoNotMatchLength) {
     set_count(bytes, kRequestFixed, c.count);
     WrenchRequest request;
     EXPECT_EQ(decode(bytes, request), c.expected) << c.count;
-    ByteVector response_bytes = encoded(WrenchResponse{.key = {}, .bodies = {{}, {}}});
+    ByteVector response_bytes = encoded(WrenchResponse{.id = {}, .bodies = {{}, {}}});
     set_count(response_bytes, kResponseFixed, c.count);
     WrenchResponse response;
     EXPECT_EQ(decode(response_bytes, response), c.expected) << c.count;

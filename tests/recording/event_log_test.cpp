@@ -16,7 +16,7 @@ namespace {
 
 std::vector<std::uint8_t> request(std::int64_t seq, std::size_t bodies = 1) {
   WrenchRequest request;
-  request.key = {1'000 + seq, 7, seq};
+  request.id = {1'000 + seq, 7, seq};
   request.bodies.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) request.bodies[i].body_id = static_cast<std::int32_t>(i);
   std::vector<std::uint8_t> bytes;
@@ -60,8 +60,8 @@ LogContents read_all(const std::string& bytes) {
     if (const auto* corrupt = std::get_if<CorruptSection>(&item)) {
       contents.corrupt_sections.push_back(corrupt->description);
     } else {
-      const auto key = peek_request_id(std::get<RecordedEvent>(item).bytes);
-      contents.seqs.push_back(key ? key->seq : -1);
+      const auto id = peek_request_id(std::get<RecordedEvent>(item).bytes);
+      contents.seqs.push_back(id ? id->seq : -1);
     }
   }
   EXPECT_EQ(reader->offset(), reader->size());

@@ -32,7 +32,7 @@ CsvContents read_all(const std::string& contents) {
       const auto& recorded = std::get<RecordedEvent>(item);
       WrenchRequest request;
       EXPECT_FALSE(decode(recorded.bytes, request));
-      EXPECT_EQ(recorded.timestamp, request.key.utime);
+      EXPECT_EQ(recorded.timestamp, request.id.utime);
       read.requests.push_back(request);
     }
   }
@@ -52,7 +52,7 @@ TEST(StateCsv, ParsesEveryColumnExactly) {
       "-9223372036854775808,-2147483648,0.1,-2e-308,3,0.5,+.5,-0.5,5e-1,1,2,3,4,5,1.7976931348623157e308\n");
   ASSERT_EQ(read.requests.size(), 1U);
   const WrenchRequest& request = read.requests[0];
-  EXPECT_EQ(request.key.utime, INT64_MIN);
+  EXPECT_EQ(request.id.utime, INT64_MIN);
   EXPECT_EQ(request.lead_time, 0.0);
   ASSERT_EQ(request.bodies.size(), 1U);
   const BodyState& state = request.bodies[0];
@@ -72,8 +72,8 @@ TEST(StateCsv, GroupsRowsWithEqualUtimeIntoOneRequest) {
   ASSERT_EQ(read.requests.size(), 3U);
   EXPECT_EQ(read.requests[0].bodies.size(), 2U);
   EXPECT_EQ(read.requests[1].bodies.size(), 1U);
-  EXPECT_EQ(read.requests[2].key.utime, 10);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(read.requests[i].key.seq, static_cast<std::int64_t>(i));
+  EXPECT_EQ(read.requests[2].id.utime, 10);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(read.requests[i].id.seq, static_cast<std::int64_t>(i));
 }
 
 TEST(StateCsv, LimitsRowsPerRequest) {

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> request(int number) {
   state.quaternion_wxyz = {0.8, 0.6, 0.0, 0.0};
   std::vector<std::uint8_t> bytes;
   // Different lengths, so that no mutation leaves the following events aligned by chance.
-  encode(WrenchRequest{.key = {number, 7, number},
+  encode(WrenchRequest{.id = {number, 7, number},
                        .lead_time = 0.0,
                        .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)},
          bytes);

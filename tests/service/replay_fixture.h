@@ -43,7 +43,7 @@ class Replay : public testing::Test {
 
 inline std::vector<std::uint8_t> request(std::int64_t utime, double height) {
   WrenchRequest request;
-  request.key = {utime, 0, utime};
+  request.id = {utime, 0, utime};
   request.bodies.resize(1);
   request.bodies[0].body_id = 1;
   request.bodies[0].position = {7.0, 8.0, height};

@@ -49,7 +49,7 @@ TEST_F(ReplayPoses, WritesWrenchesOfTheBodyOfEachPoseChannel) {
   for (std::size_t i = 0; i < 20; ++i) {
     const auto timestamp = static_cast<std::int64_t>(500 + i);
     EXPECT_EQ(events[i].timestamp, timestamp);
-    EXPECT_EQ(responses[i].key.utime, 10 * timestamp);
+    EXPECT_EQ(responses[i].id.utime, 10 * timestamp);
     ASSERT_EQ(responses[i].bodies.size(), 1U);
     EXPECT_EQ(responses[i].bodies[0].body_id, 1);
     EXPECT_NEAR(responses[i].bodies[0].force[2], force_at(0.01 * static_cast<double>(i) - 2.0), 1e-7);
@@ -251,7 +251,7 @@ TEST_F(ReplayPoses, ReportsDifferencesFromNonFiniteBaselines) {
           (in_force ? wrench.force[1] : wrench.*bound) = number;
           std::vector<std::uint8_t> bytes;
           encode(response, bytes);
-          changed += event("BUOYANCY_WRENCHES", response.key.utime / 10, bytes);
+          changed += event("BUOYANCY_WRENCHES", response.id.utime / 10, bytes);
         }
         write("changed.lcmlog", changed);
         EXPECT_EQ(

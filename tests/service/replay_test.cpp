@@ -106,7 +106,7 @@ TEST_F(Replay, KeepsTimestampsAndCopiesNoOtherChannel) {
     EXPECT_EQ(responses[i].timestamp, timestamp);
     WrenchResponse response;
     ASSERT_FALSE(decode(responses[i].bytes, response));
-    EXPECT_EQ(response.key.utime, 10 * timestamp);
+    EXPECT_EQ(response.id.utime, 10 * timestamp);
     EXPECT_DOUBLE_EQ(response.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
   }
 }
@@ -129,7 +129,7 @@ TEST_F(Replay, WritesRequestedHydrostaticsToLogsOnly) {
     EXPECT_EQ(found[i].timestamp, 500 + seq);
     BodiesHydrostatics hydrostatics;
     ASSERT_FALSE(decode(found[i].bytes, hydrostatics));
-    EXPECT_EQ(hydrostatics.key.seq, seq);
+    EXPECT_EQ(hydrostatics.id.seq, seq);
     EXPECT_DOUBLE_EQ(hydrostatics.bodies.at(0).waterplane_area, 6.0);
   }
 

@@ -21,9 +21,9 @@ using nlohmann::json;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::uint8_t> response_bytes(const RequestId& key, std::vector<BodyWrench> bodies) {
+std::vector<std::uint8_t> response_bytes(const RequestId& id, std::vector<BodyWrench> bodies) {
   std::vector<std::uint8_t> bytes;
-  encode(WrenchResponse{.key = key, .bodies = std::move(bodies)}, bytes);
+  encode(WrenchResponse{.id = id, .bodies = std::move(bodies)}, bytes);
   return bytes;
 }
 
@@ -114,13 +114,13 @@ TEST_F(BusMonitorTest, ShowsKnownMetacentres) {
   body.metacenters = {{{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}};
   body.metacentric_heights = {0.75, kNan};
   std::vector<std::uint8_t> bytes;
-  encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
+  encode(BodiesHydrostatics{.id = {}, .bodies = {body}}, bytes);
   monitor_.on_hydrostatics(bytes);
   json shown = snapshot(0.1)["bodies"][0];
   EXPECT_EQ(shown["m"], json({{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}));
   EXPECT_EQ(shown["gm"], json({0.75, nullptr}));
   body.metacenters[1][2] = kNan;  // dry
-  encode(BodiesHydrostatics{.key = {}, .bodies = {body}}, bytes);
+  encode(BodiesHydrostatics{.id = {}, .bodies = {body}}, bytes);
   monitor_.on_hydrostatics(bytes);
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }

@@ -24,7 +24,7 @@ namespace {
 
 WrenchRequest request_at(std::int64_t seq, double height, std::int64_t session_id = 1) {
   WrenchRequest request;
-  request.key = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq};
+  request.id = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq};
   request.bodies.resize(1);
   request.bodies[0] = {.body_id = 1, .position = {0.0, 0.0, height}, .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}};
   return request;
@@ -196,7 +196,7 @@ TEST_F(RunFileTest, KeepsDurationOfParallelAndReusedSessions) {
   for (std::int64_t i = 0; i < 100; ++i) {
     WrenchRequest one = request_at(i, 0.0, 1);
     WrenchRequest other = request_at(i, 0.0, 2);
-    one.key.utime += 7;
+    one.id.utime += 7;
     log_request(1'000 * i, other);
     log_request(1'000 * i + 7, one);
   }
@@ -220,7 +220,7 @@ TEST_F(RunFileTest, KeepsDurationWithUnrelatedClocks) {
     for (const auto& [body, clock] :
          {std::pair(kBox, kLongAgo), {kFastBox, std::int64_t{0}}, {kOffsetBox, kUnixTime}}) {
       WrenchRequest request = request_at(i, 0.0, body);
-      request.key.utime += clock;
+      request.id.utime += clock;
       request.bodies[0].body_id = body;
       log_request(1'000 * i, request);
     }

@@ -17,7 +17,7 @@ RequestId pose_request_id(std::int32_t body_id, std::int64_t utime) {
 tl::expected<WrenchRequest, DecodeError> PoseTracker::request(std::size_t index, Bytes pose) const {
   const tl::expected<StampedBodyState, DecodeError> decoded = decode_pose(poses_, index, pose);
   if (!decoded) return tl::unexpected(decoded.error());
-  return WrenchRequest{.key = pose_request_id(decoded->state.body_id, decoded->utime),
+  return WrenchRequest{.id = pose_request_id(decoded->state.body_id, decoded->utime),
                        .lead_time = poses_.lead_time,
                        .bodies = {decoded->state}};
 }

@@ -70,7 +70,7 @@ void BusMonitor::on_pose(std::size_t index, Bytes bytes, ArrivalTime arrival) {
 }
 
 void BusMonitor::record_request(const WrenchRequest& request, ArrivalTime arrival, SeqPolicy policy) {
-  tracker_.on_request(request.key, arrival.utime, arrival.now, policy);
+  tracker_.on_request(request.id, arrival.utime, arrival.now, policy);
   const bool requested_recently = request_received_ && *request_received_ + kStatusTimeout >= arrival.now;
   if (!waiting_since_ || !requested_recently) waiting_since_ = arrival.now;
   request_received_ = arrival.now;
@@ -87,11 +87,11 @@ void BusMonitor::record_request(const WrenchRequest& request, ArrivalTime arriva
 
 void BusMonitor::on_response(Bytes bytes, ArrivalTime arrival) {
   if (!decode_or_count(bytes, response_)) return;
-  RequestId key = response_.key;
-  if (response_.bodies.size() == 1 && !tracker_.contains(key)) {
-    key = poses_.request_id_for_pose(response_.bodies.front().body_id, key.utime).value_or(key);
+  RequestId id = response_.id;
+  if (response_.bodies.size() == 1 && !tracker_.contains(id)) {
+    id = poses_.request_id_for_pose(response_.bodies.front().body_id, id.utime).value_or(id);
   }
-  record_response(key, arrival);
+  record_response(id, arrival);
   for (const BodyWrench& wrench : response_.bodies) {
     BodyMonitor* const body = find(wrench.body_id);
     if (body == nullptr) continue;
@@ -113,10 +113,10 @@ void BusMonitor::on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arr
   body->force_torque_only = true;
 }
 
-void BusMonitor::record_response(const RequestId& key, ArrivalTime arrival) {
+void BusMonitor::record_response(const RequestId& id, ArrivalTime arrival) {
   response_received_ = arrival.now;
   waiting_since_.reset();
-  if (const auto latency = tracker_.on_response(key, arrival.utime)) {
+  if (const auto latency = tracker_.on_response(id, arrival.utime)) {
     latency_.add(*latency);
     latency_of_second_.add(*latency);
   }

@@ -123,7 +123,7 @@ class BusMonitor {
   void count_malformed(DecodeError error);
   BodyMonitor* find(std::int32_t id);
   void record_request(const WrenchRequest& request, ArrivalTime arrival, SeqPolicy policy);
-  void record_response(const RequestId& key, ArrivalTime arrival);
+  void record_response(const RequestId& id, ArrivalTime arrival);
 
   const Scene* scene_;
   PoseTracker poses_;

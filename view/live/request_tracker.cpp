@@ -4,9 +4,9 @@
 
 namespace buoyancy::view {
 
-bool RequestTracker::on_request(const RequestId& key, std::int64_t utime, double now, SeqPolicy policy) {
-  const Key request{key.session_id, key.seq};
-  const bool is_new = update_session(key, now, policy);
+bool RequestTracker::on_request(const RequestId& id, std::int64_t utime, double now, SeqPolicy policy) {
+  const Key request{id.session_id, id.seq};
+  const bool is_new = update_session(id, now, policy);
   if (requests_.contains(request)) {
     ++counts_.requests_repeated;
     return false;
@@ -18,14 +18,14 @@ bool RequestTracker::on_request(const RequestId& key, std::int64_t utime, double
   return is_new;
 }
 
-bool RequestTracker::update_session(const RequestId& key, double now, SeqPolicy policy) {
-  const auto found = sessions_.find(key.session_id);
+bool RequestTracker::update_session(const RequestId& id, double now, SeqPolicy policy) {
+  const auto found = sessions_.find(id.session_id);
   if (found == sessions_.end()) {
     if (sessions_.size() == kMaxSessions) {
       sessions_.erase(std::ranges::min_element(
           sessions_, {}, [](const auto& session) { return session.second.last_active; }));
     }
-    sessions_.emplace(key.session_id, Session{key.seq, now});
+    sessions_.emplace(id.session_id, Session{id.seq, now});
     ++counts_.sessions;
     return true;
   }
@@ -33,17 +33,17 @@ bool RequestTracker::update_session(const RequestId& key, double now, SeqPolicy 
   session.last_active = now;
   // Unsigned, so that the distance of any two numbers is representable.
   const std::uint64_t ahead =
-      static_cast<std::uint64_t>(key.seq) - static_cast<std::uint64_t>(session.latest_seq);
+      static_cast<std::uint64_t>(id.seq) - static_cast<std::uint64_t>(session.latest_seq);
   const bool is_repeat = ahead == 0;
-  if (policy == SeqPolicy::kConsecutive && key.seq > session.latest_seq && ahead <= kMaxSeqGap) {
+  if (policy == SeqPolicy::kConsecutive && id.seq > session.latest_seq && ahead <= kMaxSeqGap) {
     counts_.requests_missed += static_cast<std::int64_t>(ahead) - 1;
   }
-  session.latest_seq = key.seq;
+  session.latest_seq = id.seq;
   return !is_repeat;
 }
 
-std::optional<double> RequestTracker::on_response(const RequestId& key, std::int64_t utime) {
-  const auto found = requests_.find({key.session_id, key.seq});
+std::optional<double> RequestTracker::on_response(const RequestId& id, std::int64_t utime) {
+  const auto found = requests_.find({id.session_id, id.seq});
   if (found == requests_.end()) {
     ++counts_.responses_without_request;
     return std::nullopt;

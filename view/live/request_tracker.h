@@ -43,13 +43,13 @@ class RequestTracker {
   };
 
   // utime: arrival [us since 1970]; now: arrival on a monotonic clock [s]. Returns false for a repeat.
-  bool on_request(const RequestId& key, std::int64_t utime, double now,
+  bool on_request(const RequestId& id, std::int64_t utime, double now,
                   SeqPolicy policy = SeqPolicy::kConsecutive);
-  bool contains(const RequestId& key) const { return requests_.contains({key.session_id, key.seq}); }
+  bool contains(const RequestId& id) const { return requests_.contains({id.session_id, id.seq}); }
 
   // Returns the time [s] from the first arrival of the request to its first response, 0 if the clock went
   // back. nullopt: no such request is pending.
-  std::optional<double> on_response(const RequestId& key, std::int64_t utime);
+  std::optional<double> on_response(const RequestId& id, std::int64_t utime);
 
   // Drops the requests that are older than kTimeout.
   void expire(double now);
@@ -77,8 +77,8 @@ class RequestTracker {
     double last_active;
   };
 
-  // Returns false if key repeats the latest request of its session.
-  bool update_session(const RequestId& key, double now, SeqPolicy policy);
+  // Returns false if id repeats the latest request of its session.
+  bool update_session(const RequestId& id, double now, SeqPolicy policy);
   void drop_oldest();
 
   std::unordered_map<Key, TrackedRequest, HashKey> requests_;

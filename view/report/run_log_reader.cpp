@@ -29,7 +29,7 @@ class ResponseMatcher {
   void on_request(std::int64_t timestamp, Bytes bytes) {
     WrenchRequest request;
     if (const auto error = decode(bytes, request)) return warn_skipped("request", *error);
-    const std::int64_t session_id = request.key.session_id;
+    const std::int64_t session_id = request.id.session_id;
     add_pending({timestamp, true, std::move(request), {}}, session_id);
   }
 
@@ -44,9 +44,9 @@ class ResponseMatcher {
 
   void on_response(std::int64_t timestamp, Bytes bytes) {
     if (const auto error = decode(bytes, response_)) return warn_skipped("response", *error);
-    auto request = pending_.find(key_of(response_.key));
+    auto request = pending_.find(key_of(response_.id));
     if (request == pending_.end() && response_.bodies.size() == 1) {
-      request = find_pose(response_.bodies.front().body_id, response_.key.utime);
+      request = find_pose(response_.bodies.front().body_id, response_.id.utime);
     }
     complete(timestamp, request, std::nullopt);
   }
@@ -74,25 +74,25 @@ class ResponseMatcher {
   };
   using PendingRequests = std::map<Key, PendingRequest>;
 
-  static Key key_of(const RequestId& key) { return {key.session_id, key.seq}; }
+  static Key key_of(const RequestId& id) { return {id.session_id, id.seq}; }
 
   void warn_skipped(const char* message, DecodeError error) {
     builder_.add_warning(std::string(message) + " skipped: " + to_string(error));
   }
 
   void add_pending(PendingRequest pending, std::int64_t session_id) {
-    const Key key = key_of(pending.request.key);
+    const Key key = key_of(pending.request.id);
     if (pending_.contains(key) || key == last_completed_) return;  // a retry
     for (const BodyState& state : pending.request.bodies) {
-      pending.times.push_back(builder_.time_of(state.body_id, session_id, pending.request.key.utime));
+      pending.times.push_back(builder_.time_of(state.body_id, session_id, pending.request.id.utime));
     }
     order_.push_back(pending_.emplace(key, std::move(pending)).first->first);
     while (pending_.size() > kMaxPending) drop_oldest();
   }
 
   PendingRequests::iterator find_pose(std::int32_t body_id, std::int64_t utime) {
-    const auto key = poses_.request_id_for_pose(body_id, utime);
-    return key ? pending_.find(key_of(*key)) : pending_.end();
+    const auto id = poses_.request_id_for_pose(body_id, utime);
+    return id ? pending_.find(key_of(*id)) : pending_.end();
   }
 
   // request: pending_.end() if the log does not contain the request, or for a repeated response.
