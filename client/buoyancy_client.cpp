@@ -148,12 +148,13 @@ int report(const Error& error, int exit_code) {
   return exit_code;
 }
 
-Expected<RequestClient> make_client(const Arguments& arguments, const Scene& scene) {
-  if (arguments.embedded) return RequestClient(InProcessClient(scene));
+Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene) {
+  if (arguments.embedded) return SimulationClient(InProcessClient(scene));
   Expected<LcmRequestChannel> channel = LcmRequestChannel::open(arguments.channel);
   if (!channel) return make_error(channel.error());
-  if (!arguments.rate) return RequestClient(LockstepClient(std::move(*channel), arguments.retry_policy));
-  return RequestClient(FreeRunningClient(std::move(*channel), arguments.retry_policy, 1.0 / *arguments.rate));
+  if (!arguments.rate) return SimulationClient(LockstepClient(std::move(*channel), arguments.retry_policy));
+  return SimulationClient(
+      FreeRunningClient(std::move(*channel), arguments.retry_policy, 1.0 / *arguments.rate));
 }
 
 int simulate(Arguments arguments) {
@@ -183,11 +184,11 @@ int simulate(Arguments arguments) {
     if (!created) return report(created.error(), kFailure);
     csv = std::move(*created);
   }
-  Expected<RequestClient> client = make_client(arguments, *scene);
+  Expected<SimulationClient> client = make_client(arguments, *scene);
   if (!client) return report(client.error(), kFailure);
 
   RunSummary summary;
-  const auto warn = [&summary](std::optional<Error> warning) {
+  const auto warn = [&summary](std::optional<Warning> warning) {
     if (!warning) return;
     std::fprintf(stderr, "buoyancy-client: warning: %s\n", warning->message().c_str());
     summary.warnings.push_back(std::move(*warning));
@@ -203,7 +204,7 @@ int simulate(Arguments arguments) {
     outcome = run(*simulation, *client, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
       progress.update(now.step_number(), steps, now.step_number());
       if (arguments.rate) {
-        if (std::optional<Error> warning = latency.update(now)) {
+        if (std::optional<Warning> warning = latency.update(now)) {
           progress.clear();
           warn(std::move(warning));
         }

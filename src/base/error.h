@@ -22,6 +22,9 @@ struct Error {
   std::string message() const;
 };
 
+// A warning has the same parts as an error, but ends nothing.
+using Warning = Error;
+
 template <typename T>
 using Expected = tl::expected<T, Error>;
 

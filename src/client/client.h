@@ -37,7 +37,7 @@ class Client {
   // Requests the wrenches on bodies in these states and returns one per state, in the same order, valid until
   // the next call. utime: simulation time [us], which the response's id repeats. lead_time: [s], evaluates
   // at the poses extrapolated by this much; 0: as given. A body that cannot be evaluated has zeros and a
-  // status other than kOk; see find_failed_body(). Errors: see retry.h.
+  // status other than kOk; see find_failed_body(). Errors: see retry_policy.h.
   Expected<const WrenchResponse*> request(std::int64_t utime, std::span<const BodyState> states,
                                           double lead_time = 0.0);
 

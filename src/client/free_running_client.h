@@ -3,13 +3,13 @@
 //
 // After the first response it never waits longer than the interval, counts how late its responses are, and
 // returns an error when no response has arrived for RetryPolicy::total_timeout(). Contract and errors: see
-// retry.h.
+// retry_policy.h.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 
-#include "client/retry.h"
+#include "client/retry_policy.h"
 
 namespace buoyancy {
 

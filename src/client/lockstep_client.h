@@ -1,10 +1,11 @@
 // A client that sends one request at a time and waits for its response.
 //
 // The same bytes are sent again after each timeout until the response with the request's (session_id, seq)
-// arrives. Loss on the network therefore costs time and changes no result. Contract and errors: see retry.h.
+// arrives. Loss on the network therefore costs time and changes no result. Contract and errors: see
+// retry_policy.h.
 #pragma once
 
-#include "client/retry.h"
+#include "client/retry_policy.h"
 
 namespace buoyancy {
 

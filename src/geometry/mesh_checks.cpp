@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/format.h"
-#include "geometry/rounding_area.h"
+#include "geometry/sheet_rounding_area.h"
 
 namespace buoyancy {
 namespace {
@@ -114,7 +114,7 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
 
 std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
   const double rounding_error = std::numeric_limits<double>::epsilon() *
-                                (64.0 * std::abs(volume) + report.diagonal * rounding_area(mesh));
+                                (64.0 * std::abs(volume) + report.diagonal * sheet_rounding_area(mesh));
   if (volume > rounding_error) return std::nullopt;
   if (volume < -rounding_error) {
     return Error{report.name, "encloses " + number(volume) + " m^3",

@@ -30,7 +30,9 @@ struct HydrostaticMesh {
   double area = 0.0;             // [m^2], A_s
   // [m^2], A_r, the area that rounding errors are proportional to. A face's area is a difference of products
   // of its edges, each of which is rounded: for a needle or a sliver across the axes the products are larger
-  // than their difference.
+  // than their difference. sum of max(area, product of the two shorter edges / 2): the first corner joins
+  // them. Validation does not choose the first corner; its sheet_rounding_area() takes the longest edge
+  // instead.
   double rounding_area = 0.0;
   double volume = 0.0;           // [m^3], V_T; for an open mesh the sum about c, which is only a scale
   Vec3 centroid = Vec3::Zero();  // [m], about c: centroid of the enclosed volume; box centre for open meshes

@@ -104,7 +104,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
-                             body.hydrostatics, center_of_mass(body.client, prepared), body.client});
+                             body.hydrostatics, center_of_mass(body.dynamics, prepared), body.dynamics});
   }
   return scene;
 }

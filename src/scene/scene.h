@@ -38,7 +38,7 @@ struct Body {
   bool hydrostatics = false;        // requested; the mesh then has a moment tree
   // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
   std::optional<Vec3> center_of_mass_B;
-  DynamicsSpec client;
+  DynamicsSpec dynamics;  // section [body.client]
 };
 
 class Scene {

@@ -218,7 +218,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   }
   if (client != nullptr) {
     read_dynamics(TomlTable(*client, "body " + std::to_string(body.id) + ", [body.client]", context),
-                  body.client);
+                  body.dynamics);
   }
   return body;
 }

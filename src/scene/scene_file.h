@@ -57,8 +57,8 @@ struct BodyDescription {
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
-  DynamicsSpec client;
-  std::string source_location;  // "scene.toml:12", for errors; empty without a scene file
+  DynamicsSpec dynamics;            // section [body.client]
+  std::string source_location;      // "scene.toml:12", for errors; empty without a scene file
 };
 
 // The names in the scene file's `open` and buoyancy-replay's --open.

@@ -14,16 +14,16 @@ using Json = nlohmann::ordered_json;
 
 // Returns the mass that the simulator uses; nullopt if it is unknown, since an open mesh encloses no volume.
 std::optional<double> mass_of(const Body& body, const Water& water) {
-  if (body.client.mass) return body.client.mass;
+  if (body.dynamics.mass) return body.dynamics.mass;
   if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
-  return body.client.density.value_or(0.5 * water.density) * body.prepared_mesh->mass_properties.volume;
+  return body.dynamics.density.value_or(0.5 * water.density) * body.prepared_mesh->mass_properties.volume;
 }
 
 std::optional<double> density_of(const Body& body, const Water& water) {
-  if (body.client.density) return body.client.density;
-  if (!body.client.mass) return 0.5 * water.density;
+  if (body.dynamics.density) return body.dynamics.density;
+  if (!body.dynamics.mass) return 0.5 * water.density;
   if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
-  return *body.client.mass / body.prepared_mesh->mass_properties.volume;
+  return *body.dynamics.mass / body.prepared_mesh->mass_properties.volume;
 }
 
 std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {

@@ -27,7 +27,7 @@ Error open_mesh_error(const std::string& subject) {
 }  // namespace
 
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
-  const DynamicsSpec& spec = body.client;
+  const DynamicsSpec& spec = body.dynamics;
   const MassProperties& enclosed = body.prepared_mesh->mass_properties;
   const std::string subject = "body " + std::to_string(body.id) + " (" + body.name + ")";
   if (body.prepared_mesh->mesh.is_open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {

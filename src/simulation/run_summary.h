@@ -34,7 +34,7 @@ struct RunSummary {
   SimulationOptions options;
   std::vector<BodySummary> bodies;
   ClientStats client;
-  std::vector<Error> warnings;
+  std::vector<Warning> warnings;
 };
 
 BodySummary summarize(const SimulatedBody& body, const Water& water);  // O(vertices)

@@ -64,7 +64,7 @@ std::string describe_frequency(const Worst& worst) {
 
 }  // namespace
 
-std::optional<Error> step_warning(const Simulation& simulation) {
+std::optional<Warning> step_warning(const Simulation& simulation) {
   const SimulationOptions& options = simulation.options();
   const double step = options.step;
   const double delay = static_cast<double>(options.delay_steps) * step;
@@ -78,7 +78,7 @@ std::optional<Error> step_warning(const Simulation& simulation) {
   const double good = kAccuracyLimit / frequency;
   const double good_step = good * good / (std::sqrt(lead * lead + good * good) + lead);
   const double value = effective_step * frequency;
-  Error warning;
+  Warning warning;
   warning.subject = subject(*worst.body, worst.others);
   warning.actual = "step x frequency = " + number(effective_step) + " s x " + number(frequency) +
                    " rad/s = " + number(value);
@@ -92,13 +92,13 @@ std::optional<Error> step_warning(const Simulation& simulation) {
   return warning;
 }
 
-std::optional<Error> latency_warning(const Simulation& simulation, double delay) {
+std::optional<Warning> latency_warning(const Simulation& simulation, double delay) {
   if (!(delay > 0.0)) return std::nullopt;
   const Worst worst = worst_above(simulation, kLatencyLimit / delay);
   if (worst.body == nullptr) return std::nullopt;
 
   const double frequency = worst.highest.frequency;
-  Error warning;
+  Warning warning;
   warning.subject = subject(*worst.body, worst.others);
   warning.actual = "response delay x frequency = " + number(delay) + " s x " + number(frequency) +
                    " rad/s = " + number(delay * frequency);
@@ -111,19 +111,19 @@ std::optional<Error> latency_warning(const Simulation& simulation, double delay)
   return warning;
 }
 
-std::optional<Error> LatencyMonitor::update(const Simulation& simulation) {
+std::optional<Warning> LatencyMonitor::update(const Simulation& simulation) {
   sum_ += simulation.delay();
   ++steps_;
   const double window = std::max(1.0, 10.0 * simulation.options().step);
   if (warned_ || static_cast<double>(steps_) * simulation.options().step < window) return std::nullopt;
-  std::optional<Error> warning = latency_warning(simulation, sum_ / static_cast<double>(steps_));
+  std::optional<Warning> warning = latency_warning(simulation, sum_ / static_cast<double>(steps_));
   warned_ = warning.has_value();
   sum_ = 0.0;
   steps_ = 0;
   return warning;
 }
 
-std::optional<Error> energy_warning(const Simulation& simulation) {
+std::optional<Warning> energy_warning(const Simulation& simulation) {
   const SimulatedBody* worst = nullptr;
   double worst_rise = 0.0;  // as a fraction of the largest kinetic energy
   int bodies = 0;
@@ -142,7 +142,7 @@ std::optional<Error> energy_warning(const Simulation& simulation) {
   if (worst == nullptr) return std::nullopt;
 
   const EnergyStats& energy = worst->energy;
-  Error warning;
+  Warning warning;
   warning.subject = subject(*worst, bodies - 1);
   warning.actual = "mechanical energy rose by " + number(energy.max - energy.initial) +
                    " J; the largest kinetic energy is " + number(energy.max_kinetic) + " J";

@@ -1,5 +1,5 @@
-// Warnings about runs whose results are not trustworthy although every single response is right. Each warning
-// is an Error whose subject is the worst affected body; none ends a run.
+// Warnings about runs whose results are not trustworthy although every single response is right. Each
+// Warning's subject is the worst affected body; none ends a run.
 //
 // With w the body's highest natural frequency (natural_frequency.h) and h the step, both integrators are
 // stable while h w < 2, whatever the damping: its part of the step is exact. At h w = 0.5 the periods of
@@ -25,16 +25,16 @@ inline constexpr double kLatencyLimit = 0.1;    // of d w: warned about above th
 
 // Warns if the step is too large for a body in its present state. Sweeps only the bodies for which
 // natural_frequency_bound() does not rule that out.
-std::optional<Error> step_warning(const Simulation& simulation);
+std::optional<Warning> step_warning(const Simulation& simulation);
 
 // Warns if responses with this delay [s], >= 0, are too late for a body in its present state. Same cost.
-std::optional<Error> latency_warning(const Simulation& simulation, double delay);
+std::optional<Warning> latency_warning(const Simulation& simulation, double delay);
 
 // Warns once about the response delay of a free-running simulation, when its mean over a second of simulated
 // time, but at least ten steps, is too large.
 class LatencyMonitor {
  public:
-  std::optional<Error> update(const Simulation& simulation);  // after every step
+  std::optional<Warning> update(const Simulation& simulation);  // after every step
 
  private:
   double sum_ = 0.0;  // [s], sum of the delays in the present window
@@ -44,6 +44,6 @@ class LatencyMonitor {
 
 // Warns if the mechanical energy of a body more than doubled: if it rose by more than half the largest
 // kinetic energy, and by more than rounding. Nothing in a scene adds energy to a body.
-std::optional<Error> energy_warning(const Simulation& simulation);
+std::optional<Warning> energy_warning(const Simulation& simulation);
 
 }  // namespace buoyancy

@@ -60,13 +60,13 @@ Error not_ok_error(const SimulatedBody& body, double time) {
 Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOptions& options) {
   Simulation simulation(scene.water(), options);
   for (const Body& body : scene.bodies()) {
-    if (!body.client.given) continue;
+    if (!body.dynamics.given) continue;
     Expected<RigidBody> rigid = make_rigid_body(body, scene.water());
     if (!rigid) return make_error(rigid.error());
     SimulatedBody simulated;
     simulated.body = &body;
     simulated.rigid = *rigid;
-    simulated.state = initial_state(*rigid, body.client);
+    simulated.state = initial_state(*rigid, body.dynamics);
     simulation.bodies_.push_back(simulated);
   }
   if (simulation.bodies_.empty()) {
@@ -151,7 +151,7 @@ Expected<void> Simulation::check_motion() const {
   return {};
 }
 
-Expected<RunOutcome> run(Simulation& simulation, RequestClient& client, std::int64_t steps,
+Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::int64_t steps,
                          const std::atomic<bool>& stop,
                          const std::function<Expected<void>(const Simulation&)>& after_step) {
   while (true) {

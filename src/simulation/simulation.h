@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "simulation/integrator.h"
-#include "simulation/request_client.h"
+#include "simulation/simulation_client.h"
 
 namespace buoyancy {
 
@@ -92,7 +92,7 @@ enum class RunOutcome { kCompleted, kInterrupted };
 // Runs `steps` steps, or until stop becomes true. Calls after_step at the start and after every step, also
 // after the one whose wrenches end the run, but never with a state that is not finite and a wrench that is
 // OK. An error that after_step returns ends the run.
-Expected<RunOutcome> run(Simulation& simulation, RequestClient& client, std::int64_t steps,
+Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::int64_t steps,
                          const std::atomic<bool>& stop,
                          const std::function<Expected<void>(const Simulation&)>& after_step);
 

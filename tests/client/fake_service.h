@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
-#include "client/retry.h"
+#include "client/retry_policy.h"
 #include "messages/wire.h"
 #include "tests/support/timeouts.h"
 #include "transport/lcm_connection.h"

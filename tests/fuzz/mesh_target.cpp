@@ -12,7 +12,7 @@
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/mesh_validation.h"
-#include "geometry/rounding_area.h"
+#include "geometry/sheet_rounding_area.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/fuzz/fuzz_bytes.h"
@@ -60,7 +60,7 @@ void check_volume(const TriangleMesh& mesh, const MeshReport& report) {
   if (!report.closed()) return;
   require(report.volume > 0.0, "a closed mesh encloses a positive volume");
   const double rounding = std::numeric_limits<double>::epsilon() *
-                          (64.0 * std::abs(report.volume) + report.diagonal * rounding_area(mesh));
+                          (64.0 * std::abs(report.volume) + report.diagonal * sheet_rounding_area(mesh));
   const double spread = report.volume_by_axis.maxCoeff() - report.volume_by_axis.minCoeff();
   require(spread <= rounding, "the volume is the same from x, y and z");
 }

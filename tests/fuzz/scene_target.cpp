@@ -62,22 +62,23 @@ void check_water(const Water& water) {
   require(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
 }
 
-void check_client(const DynamicsSpec& client) {
-  require(!(client.mass && client.density), "mass and density exclude each other");
-  for (const auto& given : {client.mass, client.density}) {
+void check_dynamics(const DynamicsSpec& dynamics) {
+  require(!(dynamics.mass && dynamics.density), "mass and density exclude each other");
+  for (const auto& given : {dynamics.mass, dynamics.density}) {
     require(!given || (std::isfinite(*given) && *given > 0.0), "mass and density are above 0");
   }
-  require(!client.center_of_mass_B || client.center_of_mass_B->allFinite(), "the centre of mass is finite");
-  if (client.inertia_B) {
-    require(client.inertia_B->allFinite() && Eigen::LLT<Mat3>(*client.inertia_B).info() == Eigen::Success,
+  require(!dynamics.center_of_mass_B || dynamics.center_of_mass_B->allFinite(),
+          "the centre of mass is finite");
+  if (dynamics.inertia_B) {
+    require(dynamics.inertia_B->allFinite() && Eigen::LLT<Mat3>(*dynamics.inertia_B).info() == Eigen::Success,
             "the inertia is positive definite");
   }
-  require(client.position.allFinite() && client.linear_velocity.allFinite() &&
-              client.angular_velocity.allFinite(),
+  require(dynamics.position.allFinite() && dynamics.linear_velocity.allFinite() &&
+              dynamics.angular_velocity.allFinite(),
           "position and velocities are finite");
-  require(std::abs(client.orientation.norm() - 1.0) <= 1e-15, "the orientation is a unit quaternion");
-  for (const double damping : {client.linear_damping, client.linear_damping_quadratic, client.angular_damping,
-                               client.angular_damping_quadratic}) {
+  require(std::abs(dynamics.orientation.norm() - 1.0) <= 1e-15, "the orientation is a unit quaternion");
+  for (const double damping : {dynamics.linear_damping, dynamics.linear_damping_quadratic,
+                               dynamics.angular_damping, dynamics.angular_damping_quadratic}) {
     require(std::isfinite(damping) && damping >= 0.0, "damping is at least 0");
   }
 }
@@ -97,7 +98,7 @@ void check_description(const SceneDescription& scene) {
     } else {
       require(check_shape(std::get<Shape>(body.source)).has_value(), "a shape is within its ranges");
     }
-    check_client(body.client);
+    check_dynamics(body.dynamics);
   }
 }
 
@@ -119,7 +120,7 @@ void check_prepared(const SceneDescription& description) {
   require(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"),
           "the reports are not empty");
   for (const Body& body : scene->bodies()) {
-    const Pose pose{.p_WB = body.client.position, .q_WB = body.client.orientation};
+    const Pose pose{.p_WB = body.dynamics.position, .q_WB = body.dynamics.orientation};
     const BuoyancyResult result = buoyancy(body.solver, pose, scene->water(), body.reference_B);
     require(result.status != BuoyancyStatus::kOpenEdgeWet, "a generated shape is closed");
     require(result.force_W.allFinite() && result.torque_W.allFinite() && std::isfinite(result.volume) &&

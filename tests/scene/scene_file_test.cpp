@@ -34,7 +34,7 @@ TEST(SceneFile, UsesDefaultsForMissingKeys) {
   EXPECT_EQ(body.open, OpenPolicy::kRefuse);
   EXPECT_EQ(body.reference_B, Vec3::Zero());
   EXPECT_EQ(body.source_location, "pool.toml:1");
-  EXPECT_FALSE(body.client.given);
+  EXPECT_FALSE(body.dynamics.given);
 }
 
 TEST(SceneFile, ReadsEveryKey) {
@@ -93,22 +93,22 @@ angular_damping_quadratic = 13
   EXPECT_EQ(body.open, OpenPolicy::kDryBoundary);
   EXPECT_EQ(body.reference_B, Vec3(1, 2, 3.5));
 
-  const DynamicsSpec& client = body.client;
-  EXPECT_TRUE(client.given);
-  EXPECT_EQ(client.mass, 12.0);
-  EXPECT_FALSE(client.density);
-  EXPECT_EQ(client.center_of_mass_B, Vec3(0.1, 0.2, 0.3));
+  const DynamicsSpec& dynamics = body.dynamics;
+  EXPECT_TRUE(dynamics.given);
+  EXPECT_EQ(dynamics.mass, 12.0);
+  EXPECT_FALSE(dynamics.density);
+  EXPECT_EQ(dynamics.center_of_mass_B, Vec3(0.1, 0.2, 0.3));
   Mat3 inertia_B;
   inertia_B << 4, 0.4, 0.5, 0.4, 5, 0.6, 0.5, 0.6, 6;
-  EXPECT_EQ(client.inertia_B, inertia_B);
-  EXPECT_EQ(client.position, Vec3(7, 8, 9));
-  EXPECT_EQ(client.orientation.coeffs(), Eigen::Quaterniond(0, 0, 0, -1).coeffs());
-  EXPECT_EQ(client.linear_velocity, Vec3::UnitX());
-  EXPECT_EQ(client.angular_velocity, Vec3::UnitY());
-  EXPECT_EQ(client.linear_damping, 10.0);
-  EXPECT_EQ(client.linear_damping_quadratic, 11.0);
-  EXPECT_EQ(client.angular_damping, 12.0);
-  EXPECT_EQ(client.angular_damping_quadratic, 13.0);
+  EXPECT_EQ(dynamics.inertia_B, inertia_B);
+  EXPECT_EQ(dynamics.position, Vec3(7, 8, 9));
+  EXPECT_EQ(dynamics.orientation.coeffs(), Eigen::Quaterniond(0, 0, 0, -1).coeffs());
+  EXPECT_EQ(dynamics.linear_velocity, Vec3::UnitX());
+  EXPECT_EQ(dynamics.angular_velocity, Vec3::UnitY());
+  EXPECT_EQ(dynamics.linear_damping, 10.0);
+  EXPECT_EQ(dynamics.linear_damping_quadratic, 11.0);
+  EXPECT_EQ(dynamics.angular_damping, 12.0);
+  EXPECT_EQ(dynamics.angular_damping_quadratic, 13.0);
 }
 
 TEST(SceneFile, EnablesHydrostaticsOnlyIfRequested) {
@@ -149,7 +149,7 @@ TEST(SceneFile, NormalisesDirectionsOfAnyLength) {
       scene_with_crate("[body.client]\norientation = [1e300, 1e300, 0, 0]\n[world]\nup = [0, 0, 1e-300]\n"));
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->water.up_W, Vec3::UnitZ());
-  EXPECT_NEAR(scene->bodies[0].client.orientation.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(scene->bodies[0].dynamics.orientation.norm(), 1.0, 1e-15);
 }
 
 TEST(SceneFile, ReportsCompleteErrors) {

@@ -52,7 +52,7 @@ TEST(Scene, CopiesBodySettings) {
   EXPECT_EQ(body.solver.method(), Method::kFast);
   EXPECT_EQ(body.solver.tolerance(), 0.25);
   EXPECT_EQ(body.reference_B, Vec3(1, 2, 3));
-  EXPECT_EQ(body.client.mass, 9.0);
+  EXPECT_EQ(body.dynamics.mass, 9.0);
 }
 
 TEST(Scene, BuildsTreeForRequestedHydrostatics) {

@@ -31,8 +31,8 @@ TEST(ShippedScenes, HaveFloatingBodies) {
     const Expected<Scene> scene = Scene::load(entry.path());
     ASSERT_TRUE(scene) << scene.error().message();
     for (const Body& body : scene->bodies()) {
-      EXPECT_TRUE(body.client.given) << entry.path() << ", body " << body.id;
-      EXPECT_LT(body.client.density.value_or(0.0), scene->water().density)
+      EXPECT_TRUE(body.dynamics.given) << entry.path() << ", body " << body.id;
+      EXPECT_LT(body.dynamics.density.value_or(0.0), scene->water().density)
           << entry.path() << ", body " << body.id;
     }
   }
@@ -57,13 +57,13 @@ TEST(ShippedScenes, DropDuckOfPlausibleSize) {
   const HydrostaticMesh& mesh = duck.prepared_mesh->mesh;
   for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
     const Vec3 vertex_B = mesh.center_B + Vec3(mesh.surface.x[i], mesh.surface.y[i], mesh.surface.z[i]);
-    const Vec3 vertex_W = duck.client.position + duck.client.orientation * vertex_B;
+    const Vec3 vertex_W = duck.dynamics.position + duck.dynamics.orientation * vertex_B;
     min_z = std::min(min_z, vertex_W.z());
     max_z = std::max(max_z, vertex_W.z());
   }
   EXPECT_GT(min_z, 0.0);
   EXPECT_LT(max_z, 3.0);
-  const Vec3 head_up_W = duck.client.orientation * Vec3::UnitY();
+  const Vec3 head_up_W = duck.dynamics.orientation * Vec3::UnitY();
   EXPECT_GT(head_up_W.z(), 0.7);
 }
 

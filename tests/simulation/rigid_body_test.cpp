@@ -65,7 +65,7 @@ TEST(RigidBody, ConvertsStateToAndFromBodyOrigin) {
       "orientation = [0.5, 0.5, -0.5, 0.5]\nlinear_velocity = [1, 2, 3]\nangular_velocity = [-0.3, 0.2, "
       "0.9]\n");
   const RigidBody body = rigid_body_of(scene);
-  const RigidBodyState state = initial_state(body, scene.bodies().front().client);
+  const RigidBodyState state = initial_state(body, scene.bodies().front().dynamics);
   const Vec3 center_from_origin_W = state.q_WB * body.center_of_mass_B;
   EXPECT_LT((state.center_W - Vec3(5, 6, 7) - center_from_origin_W).norm(), 1e-14);
   EXPECT_LT((state.velocity_W - Vec3(1, 2, 3) - Vec3(-0.3, 0.2, 0.9).cross(center_from_origin_W)).norm(),

@@ -36,7 +36,7 @@ SimulationOptions options_of(Integrator integrator, double step) {
   return options;
 }
 
-bool contains(const std::optional<Error>& warning, const std::string& text) {
+bool contains(const std::optional<Warning>& warning, const std::string& text) {
   return warning && warning->message().find(text) != std::string::npos;
 }
 
@@ -53,7 +53,7 @@ TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
         Simulation simulation = simulation_of(scene, options_of(integrator, step));
         const double wh = frequency_of_plate(relative_density) * step;
         SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(to_string(integrator)));
-        const std::optional<Error> warning = step_warning(simulation);
+        const std::optional<Warning> warning = step_warning(simulation);
         run_in_process(scene, simulation, 2000);
         const EnergyStats& energy = simulation.bodies().front().energy;
         if (wh <= kAccuracyLimit) {
@@ -85,7 +85,7 @@ TEST(StepWarning, RecommendsAcceptableStep) {
       const Scene scene = scene_of(kWater + plate(1, 0.02));
       SimulationOptions options = options_of(integrator, 0.1);
       options.lead_time = lead_time;
-      const std::optional<Error> warning = step_warning(simulation_of(scene, options));
+      const std::optional<Warning> warning = step_warning(simulation_of(scene, options));
       ASSERT_TRUE(warning);
       double recommended = 0.0;
       ASSERT_EQ(std::sscanf(warning->hint.c_str(), "Use --step %lf or less", &recommended), 1)
@@ -100,7 +100,7 @@ TEST(StepWarning, RecommendsAcceptableStep) {
 
 TEST(StepWarning, NamesWorstBodyAndCountsOthers) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(3, 0.02) + plate(2, 0.004) + plate(4, 0.02));
-  const std::optional<Error> warning =
+  const std::optional<Warning> warning =
       step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02)));
   ASSERT_TRUE(warning);
   EXPECT_EQ(warning->subject, "body 2 (plate 2) and 2 more");
@@ -140,7 +140,7 @@ TEST(StepWarning, AccountsForExcessLeadTime) {
         SimulationOptions options = options_of(integrator, factor * limit);
         options.lead_time = lead_time;
         Simulation simulation = simulation_of(scene, options);
-        const std::optional<Error> warning = step_warning(simulation);
+        const std::optional<Warning> warning = step_warning(simulation);
         EXPECT_TRUE(contains(warning, factor < 1.0 ? "stable but inaccurate" : ", unstable")) << factor;
         EXPECT_TRUE(contains(warning, "lead time"));
         // Below the limit the lead time damps the motion out; beyond it the motion continues.
@@ -165,7 +165,7 @@ TEST(LatencyWarning, AppearsAboveOneTenthRadian) {
   const Simulation simulation = simulation_of(scene, {});
   EXPECT_FALSE(latency_warning(simulation, 0.0));
   EXPECT_FALSE(latency_warning(simulation, 0.099 / w));
-  const std::optional<Error> warning = latency_warning(simulation, 0.101 / w);
+  const std::optional<Warning> warning = latency_warning(simulation, 0.101 / w);
   EXPECT_TRUE(contains(warning, "body 2 (plate 2)"));
   EXPECT_TRUE(contains(warning, "= 0.101")) << warning->message();
   EXPECT_TRUE(contains(latency_warning(simulation, 1.0), "and 1 more"));

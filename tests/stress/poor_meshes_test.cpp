@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "base/format.h"
-#include "geometry/rounding_area.h"
 #include "geometry/shapes.h"
+#include "geometry/sheet_rounding_area.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/sample_meshes.h"
 #include "tests/hydrostatics/test_meshes.h"
@@ -85,7 +85,7 @@ TEST(StressPoorMeshes, IsExactForSliversAndNeedles) {
       const StressedBody needle((oblique ? "oblique " : "") + named.name,
                                 oblique ? turned(named.mesh, random.rotation()) : named.mesh);
       const double wide =
-          kEpsilon * (64.0 * needle.mesh.volume + needle.mesh.diagonal * rounding_area(needle.source));
+          kEpsilon * (64.0 * needle.mesh.volume + needle.mesh.diagonal * sheet_rounding_area(needle.source));
       for (int i = 0; i < tries(40); ++i) {
         Water water = kStressWater;
         const Pose pose = stressed_pose(random, needle, i, water);

@@ -108,7 +108,7 @@ RunBuilder::ShownBody* RunBuilder::show(std::size_t index) {
   bodies_[index] = std::make_unique<ShownBody>(max_rows_of_body_);
   bodies_[index]->mesh_up = mesh_up_of(body);
   run_.bodies[index].shown = true;
-  if (body.client.given) {
+  if (body.dynamics.given) {
     if (Expected<RigidBody> rigid = make_rigid_body(body, scene_.water()))
       bodies_[index]->rigid = *std::move(rigid);
   }

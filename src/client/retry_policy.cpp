@@ -1,4 +1,4 @@
-#include "client/retry.h"
+#include "client/retry_policy.h"
 
 #include <algorithm>
 #include <array>

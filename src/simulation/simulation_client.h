@@ -26,11 +26,11 @@ class InProcessClient {
   ClientStats statistics_;
 };
 
-using RequestClient = std::variant<InProcessClient, LockstepClient, FreeRunningClient>;
+using SimulationClient = std::variant<InProcessClient, LockstepClient, FreeRunningClient>;
 
 // The response holds as many bodies as the request, in the same order, and is valid until the next call.
 // Errors: those of the client in use.
-Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request);
-ClientStats statistics(const RequestClient& client);
+Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRequest& request);
+ClientStats statistics(const SimulationClient& client);
 
 }  // namespace buoyancy

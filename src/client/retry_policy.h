@@ -9,19 +9,10 @@
 
 #include <cstdint>
 
+#include "client/client_stats.h"
 #include "client/lcm_request_channel.h"
-#include "messages/latency_histogram.h"
 
 namespace buoyancy {
-
-struct ClientStats {
-  LatencyHistogram round_trip;  // [s], from the first sending of a request to the arrival of its response
-  std::int64_t requests = 0;    // without retries
-  std::int64_t retries = 0;
-  std::int64_t unanswered = 0;  // requests that never got their response
-  std::int64_t late = 0;        // requests for which only the response to an earlier request was available
-  std::int64_t max_lag = 0;     // largest number of requests by which a response was late
-};
 
 // A request is sent at most 1 + max_retries times, `timeout` apart.
 struct RetryPolicy {

@@ -1,4 +1,4 @@
-#include "geometry/rounding_area.h"
+#include "geometry/sheet_rounding_area.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 namespace buoyancy {
 
-double rounding_area(const TriangleMesh& mesh) {
+double sheet_rounding_area(const TriangleMesh& mesh) {
   PairwiseSum<double> sum;
   for (const Triangle& face : mesh.triangles) {
     const Vec3 ab = mesh.vertex(face[1]) - mesh.vertex(face[0]);

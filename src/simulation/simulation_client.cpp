@@ -1,4 +1,4 @@
-#include "simulation/request_client.h"
+#include "simulation/simulation_client.h"
 
 #include <cassert>
 #include <chrono>
@@ -15,11 +15,11 @@ Expected<const WrenchResponse*> InProcessClient::request(const WrenchRequest& re
   return &response_;
 }
 
-Expected<const WrenchResponse*> request(RequestClient& client, const WrenchRequest& request) {
+Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRequest& request) {
   return std::visit([&](auto& alternative) { return alternative.request(request); }, client);
 }
 
-ClientStats statistics(const RequestClient& client) {
+ClientStats statistics(const SimulationClient& client) {
   return std::visit([](const auto& alternative) -> ClientStats { return alternative.statistics(); }, client);
 }
 
