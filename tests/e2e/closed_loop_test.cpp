@@ -27,7 +27,7 @@ nlohmann::json simulate_with_service(const std::string& scene, Options options) 
   return simulate(scene, options);
 }
 
-TEST(ClosedLoop, BodiesSettleAtTheirDrafts) {
+TEST(ClosedLoop, SettlesAtExpectedDrafts) {
   const TempDir directory;
   const std::string path = directory.write("drafts.toml", R"(
 [water]

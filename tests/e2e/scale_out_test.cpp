@@ -81,7 +81,7 @@ std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
   return bytes;
 }
 
-TEST(ScaleOut, TwoServicesMatchOneServiceBitForBit) {
+TEST(ScaleOut, MatchesOneServiceBitForBit) {
   const TempDir directory;
   Share all(directory, "ALL", {1, 2, 3, 4, 5, 6});
   Share odd(directory, "ODD", {1, 3, 5});

@@ -64,7 +64,7 @@ TEST(PaperMethods, ConvergesExceptForFastWhenMeshIsRefined) {
             0.2 * max_error(coarse, Method::kFastSurface, 1.0, sphere_force));
 }
 
-TEST(PaperMethods, ErrsOnlyByDiscretizationOnSpheresWhenExact) {
+TEST(PaperMethods, ConvergesWithSecondOrderOnSpheresWhenExact) {
   const TriangleMesh coarse = make_shape(SphereShape{.radius = 1, .segments = 50});
   const TriangleMesh fine = make_shape(SphereShape{.radius = 1, .segments = 200});
   for (const Method method : {Method::kExact, Method::kExactSurface, Method::kHierarchical}) {

@@ -38,7 +38,7 @@ TEST(ShippedScenes, HaveFloatingBodies) {
   }
 }
 
-TEST(ShippedScenes, DropDuckOfPlausibleSize) {
+TEST(ShippedScenes, ScaleDuckToPlausibleSize) {
   const Expected<SceneDescription> description = read_scene_file(shipped("duck.toml"));
   ASSERT_TRUE(description) << description.error().message();
   const std::filesystem::path model = std::get<MeshFile>(description->bodies.at(0).source).path;

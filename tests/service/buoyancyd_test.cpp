@@ -85,7 +85,7 @@ TEST(Buoyancyd, RejectsInvalidScenesAndMeshesWithUsageError) {
       2, "gone.stl");
 }
 
-TEST(Buoyancyd, PrintsTheFixForAMissingMulticastRoute) {
+TEST(Buoyancyd, PrintsFixForMissingMulticastRoute) {
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess finished =
@@ -95,7 +95,7 @@ TEST(Buoyancyd, PrintsTheFixForAMissingMulticastRoute) {
   expect_failure(finished, 1, "ip route add 224.0.0.0/4 dev lo");
 }
 
-TEST(Buoyancyd, LogsALostRouteAndRecoversWhenItReturns) {
+TEST(Buoyancyd, LogsLostRouteAndRecoversWhenItReturns) {
   RunningService service;
   const std::vector<std::string> route{"224.0.0.0/4", "dev", "lo"};
   ASSERT_EQ(
@@ -209,7 +209,7 @@ TEST(Buoyancyd, PublishesConfigurationAndUptimeInItsStatus) {
   EXPECT_GT(reloaded->uptime, first->uptime);
 }
 
-TEST(Buoyancyd, PublishesTheLongestQueueWaitOfTheLastSecond) {
+TEST(Buoyancyd, PublishesLongestQueueWaitOfLastSecond) {
   const RunningService service;
   RawLcmSocket socket;
   RawStates states = one_body(1, 0, 0.0);
@@ -234,7 +234,7 @@ TEST(Buoyancyd, PublishesTheLongestQueueWaitOfTheLastSecond) {
       << "covers the last second only";
 }
 
-TEST(Buoyancyd, ChecksASceneWithoutANetwork) {
+TEST(Buoyancyd, ChecksSceneWithoutNetwork) {
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess text = run({"--scene", scene, "--check"});

@@ -29,7 +29,7 @@ std::vector<std::string> pop_all(LatestRequestQueue& queue) {
 
 using Strings = std::vector<std::string>;
 
-TEST(LatestRequestQueue, KeepsTheNewestOfEachSession) {
+TEST(LatestRequestQueue, KeepsNewestOfEachSession) {
   LatestRequestQueue queue(8);
   EXPECT_EQ(push(queue, 1, 10, "a10"), PushResult::kQueued);
   EXPECT_EQ(push(queue, 2, 5, "b5"), PushResult::kQueued);
@@ -40,7 +40,7 @@ TEST(LatestRequestQueue, KeepsTheNewestOfEachSession) {
   EXPECT_EQ(pop_all(queue), Strings{});
 }
 
-TEST(LatestRequestQueue, KeepsTheLastArrivalOfEqualSeqs) {
+TEST(LatestRequestQueue, KeepsLastArrivalOfEqualSeqs) {
   LatestRequestQueue queue(8);
   push(queue, 1, 10, "first");
   EXPECT_EQ(push(queue, 1, 10, "second"), PushResult::kReplaced);
@@ -48,7 +48,7 @@ TEST(LatestRequestQueue, KeepsTheLastArrivalOfEqualSeqs) {
   EXPECT_EQ(push(queue, 1, 10, "third"), PushResult::kQueued) << "a retry of a popped request is queued";
 }
 
-TEST(LatestRequestQueue, DropsStaleRequestsAfterTheNewestWasPopped) {
+TEST(LatestRequestQueue, DropsStaleRequestsAfterNewestWasPopped) {
   LatestRequestQueue queue(8);
   push(queue, 1, 100, "a");
   pop_all(queue);
@@ -59,7 +59,7 @@ TEST(LatestRequestQueue, DropsStaleRequestsAfterTheNewestWasPopped) {
   EXPECT_EQ(push(queue, 1, 36, "e"), PushResult::kQueued) << "the session continues from there";
 }
 
-TEST(LatestRequestQueue, AcceptsALowerSeqAfterTheRestartIdleTime) {
+TEST(LatestRequestQueue, AcceptsLowerSeqAfterRestartIdleTime) {
   LatestRequestQueue queue(8);
   queue.push({0, 1, 30}, bytes_of("old"), 10.0);
   pop_all(queue);
@@ -70,7 +70,7 @@ TEST(LatestRequestQueue, AcceptsALowerSeqAfterTheRestartIdleTime) {
   EXPECT_EQ(pop_all(queue), Strings{"newer"});
 }
 
-TEST(LatestRequestQueue, QueuesEveryRequestOfARestartedClient) {
+TEST(LatestRequestQueue, QueuesEveryRequestOfRestartedClient) {
   LatestRequestQueue queue(8);
   push(queue, 1, 1000, "old");
   pop_all(queue);
@@ -80,7 +80,7 @@ TEST(LatestRequestQueue, QueuesEveryRequestOfARestartedClient) {
   }
 }
 
-TEST(LatestRequestQueue, ComparesSeqsAtTheLimitsOfTheirRange) {
+TEST(LatestRequestQueue, ComparesSeqsAtLimitsOfTheirRange) {
   constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t kHighest = std::numeric_limits<std::int64_t>::max();
   EXPECT_TRUE(supersedes(kHighest, kLowest));
@@ -91,7 +91,7 @@ TEST(LatestRequestQueue, ComparesSeqsAtTheLimitsOfTheirRange) {
   EXPECT_TRUE(supersedes(kLowest, kLowest));
 }
 
-TEST(LatestRequestQueue, ReportsFullIfEverySessionHasAPendingRequest) {
+TEST(LatestRequestQueue, ReportsFullIfEverySessionHasPendingRequest) {
   LatestRequestQueue queue(2);
   push(queue, 1, 1, "a");
   push(queue, 2, 1, "b");
@@ -119,7 +119,7 @@ TEST(LatestRequestQueue, ServesSessionsInTurnWhateverTheirRequestRates) {
   EXPECT_EQ(popped, (Strings{"slow", "fast20", "faster30", "slow", "fast50", "faster60"}));
 }
 
-TEST(LatestRequestQueue, EvictsTheLeastRecentlyUsedSession) {
+TEST(LatestRequestQueue, EvictsLeastRecentlyUsedSession) {
   LatestRequestQueue queue(2);
   push(queue, 1, 50, "a");
   push(queue, 2, 50, "b");
@@ -131,7 +131,7 @@ TEST(LatestRequestQueue, EvictsTheLeastRecentlyUsedSession) {
   EXPECT_EQ(push(queue, 2, 49, "b"), PushResult::kQueued) << "2 is not";
 }
 
-TEST(LatestRequestQueue, ReturnsTheArrivalTimeOfTheNewestRequest) {
+TEST(LatestRequestQueue, ReturnsArrivalTimeOfNewestRequest) {
   LatestRequestQueue queue(2);
   queue.push({0, 1, 1}, bytes_of("a"), 1.5);
   queue.push({0, 1, 2}, bytes_of("b"), 2.5);

@@ -26,7 +26,7 @@ void expect_response(RawLcmSocket& socket, std::int64_t seq, const std::string& 
 
 class MalformedPackets : public testing::TestWithParam<std::string> {};
 
-TEST_P(MalformedPackets, CountsThemByCauseAndHandlesTheNextRequest) {
+TEST_P(MalformedPackets, CountsThemByCauseAndHandlesNextRequest) {
   const std::vector<MalformedMessage> messages = malformed_messages();
   ASSERT_GE(messages.size(), 40U);
   RunningService service({"--mode", GetParam()});
@@ -50,7 +50,7 @@ TEST_P(MalformedPackets, CountsThemByCauseAndHandlesTheNextRequest) {
 INSTANTIATE_TEST_SUITE_P(Modes, MalformedPackets, testing::Values("lockstep", "latest"),
                          [](const auto& mode) { return mode.param; });
 
-TEST(MalformedPackets, IgnoresBytesThatAreNotAnLcmPacket) {
+TEST(MalformedPackets, IgnoresBytesThatAreNoLcmPacket) {
   RunningService service;
   RawLcmSocket socket;
   const std::vector<RawBytes> packets{
@@ -72,7 +72,7 @@ TEST(MalformedPackets, IgnoresBytesThatAreNotAnLcmPacket) {
   }
 }
 
-TEST(MalformedPackets, IgnoresAPacketWithAnUnterminatedChannelName) {
+TEST(MalformedPackets, IgnoresPacketWithUnterminatedChannelName) {
   RunningService service;
   RawLcmSocket socket;
   // If the receiver reads past the end of a packet, it finds the end of the name in this one.
@@ -118,7 +118,7 @@ TEST(MalformedPackets, KeepsNoUnsubscribedChannelNameInMemory) {
   EXPECT_LE(resident_kb(service.child().pid()) - before, kMaxGrowth);
 }
 
-TEST(MalformedPackets, LogsAFloodOfMalformedMessagesInFewLines) {
+TEST(MalformedPackets, LogsFloodOfMalformedMessagesInFewLines) {
   RunningService service;
   RawLcmSocket socket;
   constexpr int kMessages = 5'000;

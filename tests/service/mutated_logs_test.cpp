@@ -128,7 +128,7 @@ class ReplayMutatedLogs : public testing::Test {
   std::string scene_ = directory_.write("scene.toml", kScene);
 };
 
-TEST_F(ReplayMutatedLogs, KeepsResponsesBeforeAndAfterTheMutation) {
+TEST_F(ReplayMutatedLogs, KeepsResponsesBeforeAndAfterMutation) {
   const Log log = original_log();
   ASSERT_EQ(replay(log.bytes).exit_code, 0);
   const Responses expected = responses();

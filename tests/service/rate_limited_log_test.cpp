@@ -7,7 +7,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(RateLimitedLog, LogsAnEventAtOnceThenCountsAtGrowingIntervals) {
+TEST(RateLimitedLog, LogsEventAtOnceThenCountsAtGrowingIntervals) {
   RateLimitedLog log;
   std::vector<std::pair<double, std::string>> logged;
   for (int second = 0; second <= 2000; ++second) {  // 5 per second
@@ -23,7 +23,7 @@ TEST(RateLimitedLog, LogsAnEventAtOnceThenCountsAtGrowingIntervals) {
                                                                  {1871, "rejected: 3000 in 600 s"}}));
 }
 
-TEST(RateLimitedLog, WritesFewLinesForAnEventThatLastsADay) {
+TEST(RateLimitedLog, WritesFewLinesForDayLongEvent) {
   RateLimitedLog log;
   std::size_t lines = 0;
   for (int second = 0; second < 86'400; ++second) {
@@ -55,7 +55,7 @@ TEST(RateLimitedLog, KeepsTimeAndNewestDetailPerEvent) {
   EXPECT_EQ(log.drain(1.0), Lines{"not sent: 2 in 1 s; too large"});
 }
 
-TEST(RateLimitedLog, LogsAtOnceAgainAfterTheLongestInterval) {
+TEST(RateLimitedLog, LogsAtOnceAgainAfterLongestInterval) {
   RateLimitedLog log;
   for (int second = 0; second < 100; ++second) {
     log.add({"rejected", 1, {}}, second);

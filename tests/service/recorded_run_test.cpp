@@ -18,7 +18,7 @@ std::vector<RawBytes> events(const std::string& path, const std::string& channel
   return found;
 }
 
-TEST(RecordedRun, ReplaysToTheSameBytesAsTheLiveRun) {
+TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   const TempDir directory;
   const std::string recorded = directory.path("live.lcmlog");
   const std::string replayed = directory.path("replayed.lcmlog");

@@ -50,7 +50,7 @@ std::size_t lines_with(const std::string& text, const std::string& log) {
   return count;
 }
 
-TEST(Reload, UsesTheNewSceneFromTheNextRequestOfTheSession) {
+TEST(Reload, UsesNewSceneFromNextRequestOfSession) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
@@ -64,7 +64,7 @@ TEST(Reload, UsesTheNewSceneFromTheNextRequestOfTheSession) {
   }));
 }
 
-TEST(Reload, KeepsResponsesOfTheOldSceneForRetries) {
+TEST(Reload, KeepsResponsesOfOldSceneForRetries) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
@@ -80,7 +80,7 @@ TEST(Reload, KeepsResponsesOfTheOldSceneForRetries) {
               1e-6);
 }
 
-TEST(Reload, KeepsTheOldSceneIfTheNewOneIsInvalid) {
+TEST(Reload, KeepsOldSceneIfNewOneIsInvalid) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
@@ -94,7 +94,7 @@ TEST(Reload, KeepsTheOldSceneIfTheNewOneIsInvalid) {
   EXPECT_EQ(lines_with("reload failed", service.log()), 2U) << service.log();
 }
 
-TEST(Reload, LosesNoResponseOfASteadyStream) {
+TEST(Reload, LosesNoResponseOfSteadyStream) {
   RunningService service({}, kBefore);
   RawLcmSocket socket;
   constexpr std::int64_t kRequests = 4000;
@@ -116,7 +116,7 @@ TEST(Reload, LosesNoResponseOfASteadyStream) {
   expect_clean_exit(service);
 }
 
-TEST(Reload, UsesTheOldSceneWhileLoadingAndQueuesOneReload) {
+TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
   RunningService service({"--log-level", "debug"}, kBefore);
   RawLcmSocket socket;
   service.write("tetrahedron.obj", tetrahedron::obj());
@@ -146,7 +146,7 @@ TEST(Reload, UsesTheOldSceneWhileLoadingAndQueuesOneReload) {
   EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three requests during the first";
 }
 
-TEST(Reload, LetsTheServiceExitDuringALoad) {
+TEST(Reload, LetsServiceExitDuringLoad) {
   RunningService service({}, kBefore);
   LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");

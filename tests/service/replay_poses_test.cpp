@@ -39,7 +39,7 @@ std::vector<WrenchResponse> responses_in(const std::string& path) {
   return responses;
 }
 
-TEST_F(ReplayPoses, WritesWrenchesOfTheBodyOfEachPoseChannel) {
+TEST_F(ReplayPoses, WritesWrenchesOfBodyOfEachPoseChannel) {
   write("in.lcmlog", log_of_poses(20));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
@@ -98,7 +98,7 @@ TEST_F(ReplayPoses, WritesForceTorqueMessagesOnTheirOwnChannel) {
   }
 }
 
-TEST_F(ReplayPoses, ReadsVelocitiesInTheFrameOfTheOption) {
+TEST_F(ReplayPoses, ReadsVelocitiesInFrameOfOption) {
   // Rotated by 90 degrees about y: the body's -x is the world's +z.
   bot_core::pose_t pose = upright_pose(0.0, 1);
   pose.orientation[0] = pose.orientation[2] = std::sqrt(0.5);
@@ -116,7 +116,7 @@ TEST_F(ReplayPoses, ReadsVelocitiesInTheFrameOfTheOption) {
   EXPECT_NEAR(volume("body"), 12.0 - 12.0 * 0.5, 1e-9) << "rises by 0.5 m";
 }
 
-TEST_F(ReplayPoses, ReportsNonFiniteTwistForALeadTimeWithoutVelocity) {
+TEST_F(ReplayPoses, ReportsNonFiniteTwistForLeadTimeWithoutVelocity) {
   bot_core::rigid_transform_t transform{};
   transform.quat[0] = 1.0;
   write("in.lcmlog", event("POSE", 1, encoded_by_lcm(transform)));
@@ -144,7 +144,7 @@ TEST_F(ReplayPoses, ReportsAndCountsInvalidPoses) {
   EXPECT_EQ(summary["rejected"]["fingerprint"], 1);
 }
 
-TEST_F(ReplayPoses, HandlesPosesAroundACorruptSectionAndReportsIt) {
+TEST_F(ReplayPoses, HandlesPosesAroundCorruptSectionAndReportsIt) {
   const std::string before = log_of_poses(10);
   write("in.lcmlog", before + "garbage" + log_of_poses(10));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
@@ -175,7 +175,7 @@ TEST_F(ReplayPoses, CopiesMatchingChannelsInOrderOnRequest) {
       << "a recorded response is not copied";
 }
 
-TEST_F(ReplayPoses, WritesTheSameOutputForAnyNumberOfJobs) {
+TEST_F(ReplayPoses, WritesSameOutputForAnyNumberOfJobs) {
   std::string log;
   for (int i = 0; i < 6000; ++i) {
     log += pose_event(i, 0.001 * i - 3.0);
@@ -198,7 +198,7 @@ TEST_F(ReplayPoses, WritesTheSameOutputForAnyNumberOfJobs) {
   for (const char* jobs : {"2", "3", "8"}) EXPECT_TRUE(outcome(jobs) == of_one_job) << jobs << " jobs";
 }
 
-TEST_F(ReplayPoses, ComparesWithABaselineBodyByBody) {
+TEST_F(ReplayPoses, ComparesWithBaselineBodyByBody) {
   write("in.lcmlog", log_of_poses(3000));
   ASSERT_EQ(replay(path("in.lcmlog"), path("baseline.lcmlog"), {"--pose", "POSE=1"}).exit_code, 0);
   const auto compared = [&](const std::string& baseline, int exit_code) {
@@ -264,7 +264,7 @@ TEST_F(ReplayPoses, ReportsDifferencesFromNonFiniteBaselines) {
   }
 }
 
-TEST_F(ReplayPoses, WritesTheSameBytesForAnyOrderOfPoseOptions) {
+TEST_F(ReplayPoses, WritesSameBytesForAnyOrderOfPoseOptions) {
   write("in.lcmlog", log_of_poses(5) + event("HULL", 900, encoded_by_lcm(upright_pose(0.5, 9'000))));
   ASSERT_EQ(run({"--scene", scene_, "--pose", "POSE=1", "--pose", "HULL=1", path("in.lcmlog"),
                  path("a.lcmlog"), "--jobs", "1"})
@@ -276,7 +276,7 @@ TEST_F(ReplayPoses, WritesTheSameBytesForAnyOrderOfPoseOptions) {
   EXPECT_TRUE(read_file(path("a.lcmlog")) == read_file(path("b.lcmlog")));
 }
 
-TEST_F(ReplayPoses, WarnsAboutChannelsThatAreNotInTheLog) {
+TEST_F(ReplayPoses, WarnsAboutChannelsThatAreNotInLog) {
   write("in.lcmlog", log_of_poses(2));
   const FinishedProcess misspelt =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--pose", "POZE=1"});
@@ -288,7 +288,7 @@ TEST_F(ReplayPoses, WarnsAboutChannelsThatAreNotInTheLog) {
             std::string::npos);
 }
 
-TEST_F(ReplayPoses, RejectsANameThatTwoBodiesShare) {
+TEST_F(ReplayPoses, RejectsNameThatTwoBodiesShare) {
   write("scene.toml",
         "[[body]]\nid = 1\nname = \"a\"\nshape = { type = \"box\", size = [1, 1, 1] }\n"
         "[[body]]\nid = 2\nname = \"a\"\nshape = { type = \"box\", size = [2, 2, 2] }\n");

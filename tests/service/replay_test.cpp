@@ -203,7 +203,7 @@ TEST_F(Replay, ComparesCentresAndHydrostatics) {
   }
 }
 
-TEST_F(Replay, WritesTheSameResponsesForCsvAndLogInput) {
+TEST_F(Replay, WritesSameResponsesForCsvAndLogInput) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20; ++i) poses += pose_row(i, 0.125 * i);
   ASSERT_EQ(replay(write("in.csv", poses), path("from_csv.csv")).exit_code, 0);
@@ -211,7 +211,7 @@ TEST_F(Replay, WritesTheSameResponsesForCsvAndLogInput) {
   EXPECT_EQ(read_file(path("from_csv.csv")), read_file(path("from_log.csv")));
 }
 
-TEST_F(Replay, WritesTheSameBytesInEveryRun) {
+TEST_F(Replay, WritesSameBytesInEveryRun) {
   write("in.lcmlog", log_of_requests(100));
   ASSERT_EQ(replay(path("in.lcmlog"), path("a.lcmlog")).exit_code, 0);
   ASSERT_EQ(replay(path("in.lcmlog"), path("b.lcmlog")).exit_code, 0);
@@ -219,7 +219,7 @@ TEST_F(Replay, WritesTheSameBytesInEveryRun) {
   EXPECT_GT(read_file(path("a.lcmlog")).size(), 10'000U);
 }
 
-TEST_F(Replay, HandlesIntactEventsOfACorruptLogAndFails) {
+TEST_F(Replay, HandlesIntactEventsOfCorruptLogAndFails) {
   std::string log = log_of_requests(10);
   const std::size_t middle = log.size() / 2;
   log.insert(middle, "garbage");
@@ -256,7 +256,7 @@ TEST_F(Replay, ReportsMalformedRowsByLineAndFails) {
   EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 3U);
 }
 
-TEST_F(Replay, PrintsTheFirstInputErrorsAndCountsTheRest) {
+TEST_F(Replay, PrintsFirstInputErrorsAndCountsRest) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 1000; ++i) poses += "x\n";
   const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"), {"--json"});
@@ -266,14 +266,14 @@ TEST_F(Replay, PrintsTheFirstInputErrorsAndCountsTheRest) {
   EXPECT_EQ(nlohmann::json::parse(finished.standard_output)["corrupt_sections"], 1000);
 }
 
-TEST_F(Replay, WritesAnEmptyOutputForAnEmptyInput) {
+TEST_F(Replay, WritesEmptyOutputForEmptyInput) {
   EXPECT_EQ(replay(write("in.csv", ""), path("out.csv")).exit_code, 0);
   EXPECT_EQ(read_file(path("out.csv")), kWrenchHeader);
   EXPECT_EQ(replay(write("in.lcmlog", ""), path("out.lcmlog")).exit_code, 0);
   EXPECT_EQ(read_file(path("out.lcmlog")), "");
 }
 
-TEST_F(Replay, AcceptsOneMeshInsteadOfAScene) {
+TEST_F(Replay, AcceptsOneMeshInsteadOfScene) {
   write("cube.obj", kCube);
   write("in.csv", kPoseHeader + pose_row(0, 0.25));
   const FinishedProcess finished = run({"--mesh", path("cube.obj"), path("in.csv"), path("out.csv")});
@@ -330,7 +330,7 @@ TEST_F(Replay, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   EXPECT_EQ(read_file(out), "") << "no output without a replay";
 }
 
-TEST_F(Replay, FailsIfTheOutputCannotBeWritten) {
+TEST_F(Replay, FailsIfOutputCannotBeWritten) {
   const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
   std::filesystem::create_symlink("/dev/full", path("full.csv"));
   for (const std::string& out :
@@ -343,7 +343,7 @@ TEST_F(Replay, FailsIfTheOutputCannotBeWritten) {
   }
 }
 
-TEST_F(Replay, EndsItsOutputWithAWholeRowWhenTerminated) {
+TEST_F(Replay, EndsItsOutputWithWholeRowWhenTerminated) {
   write("scene.toml",
         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [20, 20, 20] }\n"
         "method = \"exact\"\n");
@@ -366,7 +366,7 @@ TEST_F(Replay, EndsItsOutputWithAWholeRowWhenTerminated) {
   EXPECT_EQ(responses.back().size(), 15U);
 }
 
-TEST_F(Replay, StopsOnASignalIfItsPipeHasNoActiveReader) {
+TEST_F(Replay, StopsOnSignalIfItsPipeHasNoActiveReader) {
   std::string poses = kPoseHeader;
   for (int i = 0; i < 20'000; ++i) poses += pose_row(i, 1e-4 * i);
   write("in.csv", poses);
@@ -395,7 +395,7 @@ TEST_F(Replay, StopsOnASignalIfItsPipeHasNoActiveReader) {
   }
 }
 
-TEST_F(Replay, AcceptsOpenMeshesWithADryBoundaryOnRequest) {
+TEST_F(Replay, AcceptsOpenMeshesWithDryBoundaryOnRequest) {
   const std::string lid = "f 5 6 7 8\n";
   std::string cup = kCube;
   cup.erase(cup.find(lid), lid.size());

@@ -66,7 +66,7 @@ std::vector<Pose> poses(std::size_t count) {
 
 class RoundTrip : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(RoundTrip, MatchesArchimedesPrincipleForAnIndependentClient) {
+TEST_P(RoundTrip, MatchesArchimedesPrincipleForIndependentClient) {
   const RunningService service;
   RawLcmSocket socket;
   const std::vector<Pose> requested = poses(GetParam());
@@ -103,7 +103,7 @@ TEST_P(RoundTrip, MatchesArchimedesPrincipleForAnIndependentClient) {
 INSTANTIATE_TEST_SUITE_P(Bodies, RoundTrip, testing::Values(1U, 100U, 1000U));
 
 // The hydrostatics message is larger than the receive buffer.
-TEST(HydrostaticsRoundTrip, DropsNoRequestForTheServicesOwnPackets) {
+TEST(HydrostaticsRoundTrip, DropsNoRequestForServicesOwnPackets) {
   const RunningService service({"-l", "udpm://239.255.76.67:7667?recv_buf_size=106496"},
                                kHydrostaticBoxScene);
   RawLcmSocket socket;
@@ -195,7 +195,7 @@ TEST(HydrostaticsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) 
   EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "request 2 gets none";
 }
 
-TEST(LockstepMode, RepeatsTheSameBytesForARetryWithoutComputing) {
+TEST(LockstepMode, RepeatsSameBytesForRetryWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 0.3));
@@ -213,7 +213,7 @@ TEST(LockstepMode, RepeatsTheSameBytesForARetryWithoutComputing) {
   }));
 }
 
-TEST(LockstepMode, RecomputesAChangedRequestWithTheSameSeq) {
+TEST(LockstepMode, RecomputesChangedRequestWithSameSeq) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 5, 1.0));
@@ -224,7 +224,7 @@ TEST(LockstepMode, RecomputesAChangedRequestWithTheSameSeq) {
       socket, [](const ServiceStatus& status) { return status.counters.conflicting_retries == 1; }));
 }
 
-TEST(LockstepMode, HandlesEveryRequestOfABurstInOrder) {
+TEST(LockstepMode, HandlesEveryRequestOfBurstInOrder) {
   const RunningService service;
   RawLcmSocket socket;
   for (std::int64_t seq = 0; seq < 200; ++seq)
@@ -232,7 +232,7 @@ TEST(LockstepMode, HandlesEveryRequestOfABurstInOrder) {
   for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(receive(socket).seq, seq);
 }
 
-TEST(LockstepMode, HandlesRequestsOfARestartedClientAtOnce) {
+TEST(LockstepMode, HandlesRequestsOfRestartedClientAtOnce) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1'000'000, 0.0));
@@ -247,7 +247,7 @@ TEST(LockstepMode, HandlesRequestsOfARestartedClientAtOnce) {
   EXPECT_DOUBLE_EQ(same_session.bodies[0].submerged_volume, 18.0);
 }
 
-TEST(LockstepMode, ReturnsTheSameBytesAfterAKillAndRestart) {
+TEST(LockstepMode, ReturnsSameBytesAfterKillAndRestart) {
   RawLcmSocket socket;
   std::optional<RawBytes> before;
   std::optional<ServiceStatus> status_before;
@@ -315,7 +315,7 @@ TEST(LockstepMode, ReturnsStatusAndZerosForEachInvalidBody) {
   }));
 }
 
-TEST(LatestMode, HandlesTheNewestPendingRequestOfEachSession) {
+TEST(LatestMode, HandlesNewestPendingRequestOfEachSession) {
   RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
   constexpr std::int64_t kRequests = 50;

@@ -84,7 +84,7 @@ TEST_F(SystemdNotifierTest, ReportsReadyOnceRequestsAreHandled) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 1 request answered"));
 }
 
-TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterTheSceneIsLoaded) {
+TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterSceneIsLoaded) {
   const TempDir directory;
   LeasedFile scene(directory.write("scene.toml", kBoxScene));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
@@ -97,7 +97,7 @@ TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterTheSceneIsLoaded) {
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(SystemdNotifierTest, ReportsStartEndAndFailureOfAReload) {
+TEST_F(SystemdNotifierTest, ReportsStartEndAndFailureOfReload) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGHUP);
@@ -118,7 +118,7 @@ TEST_F(SystemdNotifierTest, ReportsStartEndAndFailureOfAReload) {
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 0 requests answered; the last reload failed"));
 }
 
-TEST_F(SystemdNotifierTest, ReportsStoppingBeforeTheExit) {
+TEST_F(SystemdNotifierTest, ReportsStoppingBeforeExit) {
   RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   service.child().send_signal(SIGTERM);
@@ -126,7 +126,7 @@ TEST_F(SystemdNotifierTest, ReportsStoppingBeforeTheExit) {
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }
 
-TEST_F(SystemdNotifierTest, PingsTheWatchdogOnlyWhileTheLoopRuns) {
+TEST_F(SystemdNotifierTest, PingsWatchdogOnlyWhileLoopRuns) {
   RunningService service({}, kBoxScene, environment("100000"));
   for (int ping = 0; ping < 5; ++ping) ASSERT_TRUE(systemd_.has_received("WATCHDOG=1"));
   service.stop();
@@ -137,7 +137,7 @@ TEST_F(SystemdNotifierTest, PingsTheWatchdogOnlyWhileTheLoopRuns) {
   EXPECT_TRUE(systemd_.has_received("WATCHDOG=1"));
 }
 
-TEST_F(SystemdNotifierTest, PingsTheWatchdogDuringALoad) {
+TEST_F(SystemdNotifierTest, PingsWatchdogDuringLoad) {
   RunningService service({}, kBoxScene, environment("100000"));
   LeasedFile scene(service.path("scene.toml"));
   if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
@@ -152,7 +152,7 @@ TEST_F(SystemdNotifierTest, PingsTheWatchdogDuringALoad) {
   EXPECT_TRUE(systemd_.has_received("READY=1"));
 }
 
-TEST_F(SystemdNotifierTest, SendsNoPingWithoutAWatchdog) {
+TEST_F(SystemdNotifierTest, SendsNoPingWithoutWatchdog) {
   const RunningService service({}, kBoxScene, environment());
   const std::vector<std::string> received = systemd_.receive_until("STATUS=2 bodies, 0");
   ASSERT_TRUE(systemd_.has_received("READY=1"));
@@ -160,7 +160,7 @@ TEST_F(SystemdNotifierTest, SendsNoPingWithoutAWatchdog) {
   EXPECT_EQ(more, std::nullopt) << "no ping, and an unchanged status is not sent again";
 }
 
-TEST(Buoyancyd, HandlesRequestsAfterTheNotifySocketIsGone) {
+TEST(Buoyancyd, HandlesRequestsAfterNotifySocketIsGone) {
   std::string gone;
   {
     const NotifySocket manager;

@@ -273,7 +273,7 @@ TEST(Damping, ReachesTerminalSpeed) {
   EXPECT_NEAR(state.velocity_W.z(), -1.5, 1e-4);
 }
 
-TEST(Integrator, NamesRoundTrip) {
+TEST(Integrator, ParsesItsOwnNames) {
   for (const Integrator integrator : kBoth)
     EXPECT_EQ(integrator_from_name(to_string(integrator)), integrator);
   EXPECT_EQ(integrator_from_name("runge_kutta"), std::nullopt);

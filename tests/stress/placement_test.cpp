@@ -68,7 +68,7 @@ TEST(StressPlacement, IsBitIdenticalFarAwayWhenUpIsAxis) {
   }
 }
 
-TEST(StressPlacement, IsAsExactAsPoseFarAwayWhenUpIsTilted) {
+TEST(StressPlacement, ChangesOnlyByPositionRoundingFarAway) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted", "the same body near",
                     "A_wp dh, dh = eps |p| (beside G_V)");
   for (const StressedBody& body : stressed_bodies()) {

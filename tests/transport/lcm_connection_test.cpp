@@ -206,7 +206,7 @@ TEST(LcmConnection, DoesNotSpinIfDisabled) {
   EXPECT_TRUE(returned_at_once);
 }
 
-TEST(LcmConnection, OwnMessagesDoNotFillReceiveBuffer) {
+TEST(LcmConnection, KeepsReceiveBufferFreeOfOwnMessages) {
   const char* const small_buffer = "udpm://239.255.76.67:7667?recv_buf_size=106496";
   LcmConnection connection = open_or_abort(small_buffer, {.receive_own = false});
   LcmConnection other = open_or_abort();
