@@ -193,7 +193,7 @@ Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits)
       const unsigned int m = placed.node->mMeshes[i];
       triangles_here += counts[m].triangles;
       vertices += counts[m].triangles > 0 ? scene.mMeshes[m]->mNumVertices : 0;
-      imported.source.left_out += static_cast<std::int64_t>(counts[m].points_and_lines);
+      imported.source.ignored_primitives += static_cast<std::int64_t>(counts[m].points_and_lines);
     }
     triangles += triangles_here;
     if (triangles_here > 0) ++imported.source.nodes;
@@ -366,7 +366,7 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
 
   Expected<ImportedMesh> imported = flatten(*scene, limits);
   if (imported && imported->mesh.triangles.empty())
-    return make_error(no_triangles(imported->source.left_out));
+    return make_error(no_triangles(imported->source.ignored_primitives));
   if (imported) describe(*scene, path, format, logging.errors(), imported->source);
   return imported;
 }

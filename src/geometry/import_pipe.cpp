@@ -21,7 +21,7 @@ struct Header {
   std::int64_t is_mesh = 0;
   std::array<std::uint64_t, 4> text_bytes{};  // sizes of the texts: four for an Error, three for a mesh
   std::int64_t nodes = 0;
-  std::int64_t left_out = 0;
+  std::int64_t ignored_primitives = 0;
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
 };
@@ -128,7 +128,7 @@ bool send_import(int pipe, const Expected<ImportedMesh>& result) {
     texts = {result->source.format, result->source.up_axis, result->source.note, ""};
     header.is_mesh = 1;
     header.nodes = result->source.nodes;
-    header.left_out = result->source.left_out;
+    header.ignored_primitives = result->source.ignored_primitives;
     header.vertices = result->mesh.vertex_count();
     header.triangles = result->mesh.triangles.size();
   } else {
@@ -159,11 +159,11 @@ std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int pipe, con
   }
   if (header.is_mesh != 1) return make_error({"", texts[0], texts[1], texts[2], texts[3]});
   if (header.vertices > limits.vertices || header.triangles > limits.faces || header.triangles == 0 ||
-      header.nodes < 0 || header.left_out < 0) {
+      header.nodes < 0 || header.ignored_primitives < 0) {
     return ImportFailure::kBroken;
   }
   ImportedMesh imported;
-  imported.source = {texts[0], texts[1], texts[2], header.nodes, header.left_out};
+  imported.source = {texts[0], texts[1], texts[2], header.nodes, header.ignored_primitives};
   TriangleMesh& mesh = imported.mesh;
   if (!reader.read_array(mesh.x, header.vertices) || !reader.read_array(mesh.y, header.vertices) ||
       !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles)) {

@@ -27,11 +27,11 @@ struct ImportLimits {
 
 // Metadata of the file, for the report.
 struct MeshSource {
-  std::string format;         // "Collada", "PLY", ...
-  std::string up_axis;        // up direction in the file: "y", "z", "x" or "not stated"
-  std::string note;           // how the importer changed axes and units; may be empty
-  std::int64_t nodes = 0;     // nodes with triangles, including instances
-  std::int64_t left_out = 0;  // ignored primitives: points and lines
+  std::string format;                   // "Collada", "PLY", ...
+  std::string up_axis;                  // up direction in the file: "y", "z", "x" or "not stated"
+  std::string note;                     // how the importer changed axes and units; may be empty
+  std::int64_t nodes = 0;               // nodes with triangles, including instances
+  std::int64_t ignored_primitives = 0;  // points and lines
 };
 
 struct ImportedMesh {

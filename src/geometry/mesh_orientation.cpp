@@ -59,12 +59,12 @@ double volume_with_holes_closed(const TriangleMesh& mesh, const std::vector<Hole
   return volume.total();
 }
 
-void turn(ComponentReport& component) {
+void flip(ComponentReport& component) {
   component.volume = -component.volume;
-  component.turned = !component.turned;
+  component.flipped = !component.flipped;
 }
 
-// Turns inside-out components, marks cavities and nested solids. enclosing: as enclosing_components()
+// Flips inside-out components, marks cavities and nested solids. enclosing: as enclosing_components()
 // returns.
 void classify_components(const std::vector<std::vector<std::int32_t>>& enclosing,
                          std::vector<ComponentReport>& components) {
@@ -74,7 +74,7 @@ void classify_components(const std::vector<std::vector<std::int32_t>>& enclosing
   std::stable_sort(outermost_first.begin(), outermost_first.end(),
                    [&depth](std::size_t i, std::size_t j) { return depth(i) < depth(j); });
 
-  std::vector<bool> root_is_turned(components.size(), false);
+  std::vector<bool> root_is_flipped(components.size(), false);
   for (const std::size_t i : outermost_first) {
     ComponentReport& component = components[i];
     std::int64_t counted = 0;  // times that the space around it is counted
@@ -84,9 +84,9 @@ void classify_components(const std::vector<std::vector<std::int32_t>>& enclosing
       counted += components[outer].volume > 0.0 ? 1 : -1;
       if (depth(outer) < depth(root)) root = outer;
     }
-    root_is_turned[i] = root == i ? component.volume < 0.0 : root_is_turned[root];
-    if (root_is_turned[i]) turn(component);
-    if (component.volume < 0.0 && counted <= 0) turn(component);
+    root_is_flipped[i] = root == i ? component.volume < 0.0 : root_is_flipped[root];
+    if (root_is_flipped[i]) flip(component);
+    if (component.volume < 0.0 && counted <= 0) flip(component);
     component.cavity = component.volume < 0.0;
     component.nested = component.volume > 0.0 && counted > 0;
   }
@@ -118,7 +118,7 @@ void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components) {
   classify_components(enclosing_components(mesh, topology), components);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    if (components[static_cast<std::size_t>(topology.component_of_face[f])].turned) {
+    if (components[static_cast<std::size_t>(topology.component_of_face[f])].flipped) {
       std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
     }
   }
@@ -129,7 +129,7 @@ double orient_open(TriangleMesh& mesh, const std::vector<Hole>& holes,
   const double volume = volume_with_holes_closed(mesh, holes);
   if (volume >= 0.0) return volume;
   for (Triangle& face : mesh.triangles) std::swap(face[1], face[2]);
-  for (ComponentReport& component : components) turn(component);
+  for (ComponentReport& component : components) flip(component);
   return -volume;
 }
 

@@ -45,8 +45,8 @@ std::string source_text(const MeshSource& source) {
   listing.add_if(!source.format.empty(), source.format);
   listing.add_if(!source.up_axis.empty(), "up axis " + source.up_axis);
   listing.add_if(source.nodes > 1, std::to_string(source.nodes) + " nodes");
-  listing.add_if(source.left_out > 0,
-                 pluralize(source.left_out, "point or line left out", "points and lines left out"));
+  listing.add_if(source.ignored_primitives > 0,
+                 pluralize(source.ignored_primitives, "point or line left out", "points and lines left out"));
   listing.add_if(!source.note.empty(), source.note);
   return listing.text("");
 }
@@ -93,7 +93,7 @@ std::string component_text(const ComponentReport& component) {
   if (!component.closed) text += ", open";
   if (component.cavity) text += ", a cavity";
   if (component.nested) text += ", inside another: its volume counts twice";
-  if (component.turned) text += ", was inside out and has been turned";
+  if (component.flipped) text += ", was inside out: its winding was reversed";
   return text;
 }
 
@@ -111,12 +111,12 @@ void add_components(const MeshReport& report, AlignedLines& lines) {
   if (report.components.size() < 2) return;
   const std::int64_t cavities = count_components(report, &ComponentReport::cavity);
   const std::int64_t nested = count_components(report, &ComponentReport::nested);
-  const std::int64_t turned = count_components(report, &ComponentReport::turned);
+  const std::int64_t flipped = count_components(report, &ComponentReport::flipped);
   Listing listing;
   listing.add_if(true, std::to_string(report.components.size()));
   listing.add_if(cavities > 0, pluralize(cavities, "cavity", "cavities"));
   listing.add_if(nested > 0, std::to_string(nested) + " inside another");
-  listing.add_if(turned > 0, std::to_string(turned) + " turned");
+  listing.add_if(flipped > 0, std::to_string(flipped) + " flipped");
   lines.add("components", listing.text(""));
   for (std::size_t i = 0; i < report.components.size() && i < kMaxListed; ++i) {
     lines.add("", component_text(report.components[i]));
@@ -164,7 +164,7 @@ std::string to_text(const MeshReport& report) {
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
                   (*report.intersecting_pairs == 0 ? "" : ": overlapping volumes count twice"));
   }
-  if (report.turned) lines.add("turned", "was inside out: all faces have been turned");
+  if (report.flipped) lines.add("flipped", "was inside out: the winding of all faces was reversed");
   return report.name + "\n" + lines.text();
 }
 

@@ -15,11 +15,11 @@ namespace buoyancy {
 // Triangles connected through shared edges.
 struct ComponentReport {
   std::int64_t triangles = 0;
-  double volume = 0.0;  // [m^3], signed, as used (after turning), about the mesh's bounding-box centre
-  bool closed = false;  // has no boundary edge
-  bool cavity = false;  // negative volume, inside another component: its volume is subtracted
-  bool nested = false;  // positive volume, inside another component: its volume is counted twice
-  bool turned = false;  // was inside out and has been turned
+  double volume = 0.0;   // [m^3], signed, as used (after flipping), about the mesh's bounding-box centre
+  bool closed = false;   // has no boundary edge
+  bool cavity = false;   // negative volume, inside another component: its volume is subtracted
+  bool nested = false;   // positive volume, inside another component: its volume is counted twice
+  bool flipped = false;  // was inside out: its winding was reversed
 };
 
 // Connected boundary edges.
@@ -56,7 +56,7 @@ struct MeshReport {
 
   std::vector<ComponentReport> components;  // largest absolute volume first
   std::vector<HoleReport> holes;            // most edges first
-  bool turned = false;                      // the whole mesh was inside out and has been turned
+  bool flipped = false;                     // the whole mesh was inside out: all windings were reversed
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0 && misoriented_edges == 0; }
 };

@@ -75,9 +75,9 @@ void report_components(std::vector<ComponentReport> components, MeshReport& repo
                    [](const ComponentReport& a, const ComponentReport& b) {
                      return std::abs(a.volume) > std::abs(b.volume);
                    });
-  report.turned =
+  report.flipped =
       !components.empty() && std::all_of(components.begin(), components.end(),
-                                         [](const ComponentReport& component) { return component.turned; });
+                                         [](const ComponentReport& component) { return component.flipped; });
   report.components = std::move(components);
 }
 

@@ -3,7 +3,7 @@
 // Rule: every volume and first-moment integral over the wetted part is exact if each directed edge is matched
 // by an opposite one. "Closed" meshes (each edge used once in each direction) and "balanced" meshes (each
 // edge used equally often in both directions) satisfy it and are accepted. A mesh, or a component outside all
-// others, of negative volume is inside out: it is turned, which the report states. Open meshes are rejected
+// others, of negative volume is inside out: it is flipped, which the report states. Open meshes are rejected
 // or, with OpenPolicy::kDryBoundary, accepted if boundary edges are their only fault; the hydrostatics are
 // then valid while the whole boundary is dry.
 #pragma once

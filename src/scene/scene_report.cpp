@@ -89,12 +89,12 @@ Json to_json(const MeshSource& source) {
           {"up_axis", source.up_axis},
           {"note", source.note},
           {"nodes", source.nodes},
-          {"left_out", source.left_out}};
+          {"left_out", source.ignored_primitives}};
 }
 
 Json to_json(const ComponentReport& component) {
   return {{"triangles", component.triangles}, {"volume", component.volume}, {"closed", component.closed},
-          {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.turned}};
+          {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.flipped}};
 }
 
 Json to_json(const MeshReport& report) {
@@ -128,7 +128,7 @@ Json to_json(const MeshReport& report) {
           {"intersecting_pairs", to_json(report.intersecting_pairs)},
           {"components", std::move(components)},
           {"holes", std::move(holes)},
-          {"turned", report.turned}};
+          {"turned", report.flipped}};
 }
 
 Json to_json(const Body& body, const Scene& scene) {

@@ -89,7 +89,7 @@ TEST_F(ImportPipe, TransfersMeshBitForBit) {
   EXPECT_EQ(result->source.up_axis, "z");
   EXPECT_EQ(result->source.note, "a note");
   EXPECT_EQ(result->source.nodes, 3);
-  EXPECT_EQ(result->source.left_out, 4);
+  EXPECT_EQ(result->source.ignored_primitives, 4);
 }
 
 TEST_F(ImportPipe, TransfersMoreThanPipeCapacity) {
@@ -166,7 +166,7 @@ TEST_F(ImportPipe, AllocatesNoMemoryForMissingBytes) {
   for (std::size_t at = 0; at < kHeaderBytes; at += 8) {
     for (const std::uint64_t value :
          {std::numeric_limits<std::uint64_t>::max(), std::uint64_t{150'000'000}}) {
-      if (at == 40 || at == 48) continue;  // nodes and left_out: any number >= 0 is valid
+      if (at == 40 || at == 48) continue;  // nodes and ignored_primitives: any number >= 0 is valid
       std::string wrong = complete;
       std::memcpy(wrong.data() + at, &value, sizeof(value));
       std::array<int, 2> ends{};

@@ -48,7 +48,7 @@ TEST_F(MeshImport, ReadsTetrahedronFromEveryFormat) {
     EXPECT_EQ(found.mesh.triangles.size(), 4U);
     EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
     EXPECT_EQ(found.source.nodes, 1);
-    EXPECT_EQ(found.source.left_out, 0);
+    EXPECT_EQ(found.source.ignored_primitives, 0);
     EXPECT_EQ(found.source.format, to_string(*format_from_path(name)));
   }
 }
@@ -89,7 +89,7 @@ TEST_F(MeshImport, CountsIgnoredPointsAndLines) {
   const ImportedMesh found =
       imported(directory_.write("mixed.obj", tetrahedron::obj() + "l 1 2 3\np 1\np 2\n"));
   EXPECT_EQ(found.mesh.triangles.size(), 4U);
-  EXPECT_EQ(found.source.left_out, 4);  // a line of three points is two lines
+  EXPECT_EQ(found.source.ignored_primitives, 4);  // a line of three points is two lines
   EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
 }
 

@@ -17,10 +17,10 @@ MeshReport report_of(const TriangleMesh& mesh) {
 TEST(MeshOrientation, TurnsOnlyInsideOutComponent) {
   const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(9, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
-  EXPECT_FALSE(report.turned);
+  EXPECT_FALSE(report.flipped);
   ASSERT_EQ(report.components.size(), 2U);
-  EXPECT_FALSE(report.components[0].turned);
-  EXPECT_TRUE(report.components[1].turned);
+  EXPECT_FALSE(report.components[0].flipped);
+  EXPECT_TRUE(report.components[1].flipped);
   EXPECT_DOUBLE_EQ(report.components[1].volume, 1.0);
   EXPECT_FALSE(report.components[1].cavity);
 }
@@ -28,22 +28,22 @@ TEST(MeshOrientation, TurnsOnlyInsideOutComponent) {
 TEST(MeshOrientation, TurnsLargerInsideOutComponent) {
   const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1, Vec3(9, 0, 0))));
   EXPECT_DOUBLE_EQ(report.volume, 9.0);
-  EXPECT_TRUE(report.components[0].turned);
-  EXPECT_FALSE(report.components[1].turned);
+  EXPECT_TRUE(report.components[0].flipped);
+  EXPECT_FALSE(report.components[1].flipped);
 }
 
 TEST(MeshOrientation, KeepsCavity) {
   const MeshReport report = report_of(joined(cube_mesh(2), inside_out(cube_mesh(1, Vec3(0.2, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 7.0);
   EXPECT_TRUE(report.components[1].cavity);
-  EXPECT_FALSE(report.components[1].turned);
+  EXPECT_FALSE(report.components[1].flipped);
   EXPECT_FALSE(report.components[1].nested);
 }
 
 TEST(MeshOrientation, TurnsInsideOutShellWithItsCavity) {
   const MeshReport report = report_of(joined(inside_out(cube_mesh(2)), cube_mesh(1)));
   EXPECT_DOUBLE_EQ(report.volume, 7.0);
-  EXPECT_TRUE(report.turned);
+  EXPECT_TRUE(report.flipped);
   EXPECT_TRUE(report.components[1].cavity);
 }
 
@@ -51,9 +51,9 @@ TEST(MeshOrientation, KeepsCavityNextToInsideOutSolid) {
   const MeshReport report = report_of(
       joined(joined(cube_mesh(2), inside_out(cube_mesh(1))), inside_out(cube_mesh(3, Vec3(9, 0, 0)))));
   EXPECT_DOUBLE_EQ(report.volume, 27.0 + 7.0);
-  EXPECT_TRUE(report.components[0].turned);
+  EXPECT_TRUE(report.components[0].flipped);
   EXPECT_TRUE(report.components[2].cavity);
-  EXPECT_FALSE(report.turned);
+  EXPECT_FALSE(report.flipped);
 }
 
 TEST(MeshOrientation, ReportsNestedSolid) {
@@ -68,7 +68,7 @@ TEST(MeshOrientation, TurnsInsideOutSolidInCavity) {
   EXPECT_DOUBLE_EQ(report_of(joined(shell, cube_mesh(1))).volume, 27.0 - 8.0 + 1.0);
   const MeshReport report = report_of(joined(shell, inside_out(cube_mesh(1))));
   EXPECT_DOUBLE_EQ(report.volume, 27.0 - 8.0 + 1.0);
-  EXPECT_TRUE(report.components[2].turned);
+  EXPECT_TRUE(report.components[2].flipped);
   EXPECT_FALSE(report.components[2].nested);
 }
 
@@ -76,7 +76,7 @@ TEST(MeshOrientation, DistinguishesNestedBoxesFromNestedSolids) {
   // A small cube in the hole of a ring lies inside the ring's box but outside the ring.
   const TriangleMesh ring = make_shape(TorusKnotShape{1.0, 0.1, 1, 1, 60, 12});
   const MeshReport outside = report_of(joined(ring, inside_out(cube_mesh(0.1))));
-  EXPECT_TRUE(outside.components[1].turned);
+  EXPECT_TRUE(outside.components[1].flipped);
   EXPECT_FALSE(outside.components[1].cavity);
 }
 
@@ -85,7 +85,7 @@ TEST(MeshOrientation, IgnoresFacesBehindRayOrigin) {
   TriangleMesh corner = tetrahedron_mesh();
   corner = moved_mesh(corner, 10.0 * Mat3::Identity(), Vec3::Zero());
   const MeshReport report = report_of(joined(corner, inside_out(cube_mesh(1, Vec3(6, 3, 3)))));
-  EXPECT_TRUE(report.components[1].turned);
+  EXPECT_TRUE(report.components[1].flipped);
   EXPECT_FALSE(report.components[1].cavity);
 }
 

@@ -53,16 +53,17 @@ TEST(MeshReport, ClassifiesEveryComponent) {
   const TriangleMesh shell = joined(cube_mesh(4), inside_out(cube_mesh(3)));
   const TriangleMesh filled = joined(shell, inside_out(cube_mesh(2)));
   const std::string text = text_of(joined(filled, cube_mesh(1)));
-  expect_line(text, "  components    4, 1 cavity, 1 inside another, 1 turned");
+  expect_line(text, "  components    4, 1 cavity, 1 inside another, 1 flipped");
   expect_line(text, "                12 triangles, 64 m^3");
   expect_line(text, "                12 triangles, -27 m^3, a cavity");
-  expect_line(text, "                12 triangles, 8 m^3, was inside out and has been turned");
+  expect_line(text, "                12 triangles, 8 m^3, was inside out: its winding was reversed");
   expect_line(text, "                12 triangles, 1 m^3, inside another: its volume counts twice");
-  EXPECT_EQ(text.find("all faces have been turned"), std::string::npos);
+  EXPECT_EQ(text.find("the winding of all faces"), std::string::npos);
 }
 
 TEST(MeshReport, ReportsTurnedMesh) {
-  expect_line(text_of(inside_out(cube_mesh())), "  turned        was inside out: all faces have been turned");
+  expect_line(text_of(inside_out(cube_mesh())),
+              "  flipped       was inside out: the winding of all faces was reversed");
 }
 
 TEST(MeshReport, TruncatesLongLists) {

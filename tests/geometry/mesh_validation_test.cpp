@@ -40,7 +40,7 @@ TEST(MeshValidation, AcceptsAndMeasuresClosedMesh) {
   EXPECT_EQ(cube.report.area_vector, Vec3::Zero());
   ASSERT_EQ(cube.report.components.size(), 1U);
   EXPECT_TRUE(cube.report.components[0].closed);
-  EXPECT_FALSE(cube.report.turned);
+  EXPECT_FALSE(cube.report.flipped);
   EXPECT_TRUE(cube.mesh->boundary_vertices.empty());
 }
 
@@ -66,12 +66,12 @@ TEST(MeshValidation, AcceptsBalancedEdges) {
 TEST(MeshValidation, TurnsAndReportsInsideOutMesh) {
   const MeshValidation cube = validate(inside_out(cube_mesh()));
   ASSERT_TRUE(cube.mesh);
-  EXPECT_TRUE(cube.report.turned);
-  EXPECT_TRUE(cube.report.components[0].turned);
+  EXPECT_TRUE(cube.report.flipped);
+  EXPECT_TRUE(cube.report.components[0].flipped);
   EXPECT_DOUBLE_EQ(cube.report.volume, 1.0);
   EXPECT_DOUBLE_EQ(cube.report.components[0].volume, 1.0);
   EXPECT_DOUBLE_EQ(validate(cube.mesh->mesh).report.volume, 1.0);
-  EXPECT_FALSE(validate(cube.mesh->mesh).report.turned);
+  EXPECT_FALSE(validate(cube.mesh->mesh).report.flipped);
 }
 
 TEST(MeshValidation, RefusesOpenMeshAndLocatesHole) {
@@ -88,7 +88,7 @@ TEST(MeshValidation, AcceptsOpenMeshWithDryBoundaryPolicy) {
   const MeshValidation open = validate(without_face(cube_mesh(), 2), OpenPolicy::kDryBoundary);  // 4 5 6
   ASSERT_TRUE(open.mesh);
   EXPECT_EQ(open.mesh->boundary_vertices, (std::vector<std::int32_t>{4, 5, 6}));
-  EXPECT_FALSE(open.report.turned);
+  EXPECT_FALSE(open.report.flipped);
 }
 
 TEST(MeshValidation, TurnsInsideOutOpenMesh) {
@@ -96,8 +96,8 @@ TEST(MeshValidation, TurnsInsideOutOpenMesh) {
   cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);
   const MeshValidation turned = validate(inside_out(cup), OpenPolicy::kDryBoundary);
   ASSERT_TRUE(turned.mesh);
-  EXPECT_TRUE(turned.report.turned);
-  EXPECT_EQ(validate(turned.mesh->mesh, OpenPolicy::kDryBoundary).report.turned, false);
+  EXPECT_TRUE(turned.report.flipped);
+  EXPECT_EQ(validate(turned.mesh->mesh, OpenPolicy::kDryBoundary).report.flipped, false);
 }
 
 // Returns a basin of 1 m by 1 m by 1 m, open at the top, with a flange of 10 m by 10 m around its rim.
@@ -119,8 +119,8 @@ TEST(MeshValidation, OrientsOpenMeshByVolumeWithClosedHoles) {
   const MeshValidation basin = validate(flanged_basin(), OpenPolicy::kDryBoundary);
   ASSERT_TRUE(basin.mesh);
   EXPECT_LT(basin.report.volume, 0.0);
-  EXPECT_FALSE(basin.report.turned);
-  EXPECT_TRUE(validate(inside_out(flanged_basin()), OpenPolicy::kDryBoundary).report.turned);
+  EXPECT_FALSE(basin.report.flipped);
+  EXPECT_TRUE(validate(inside_out(flanged_basin()), OpenPolicy::kDryBoundary).report.flipped);
 }
 
 TEST(MeshValidation, RefusesMisorientedAndNonManifoldWithEitherPolicy) {

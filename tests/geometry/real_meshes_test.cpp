@@ -47,7 +47,7 @@ TEST_P(ClosedRealMesh, MatchesIndependentFigures) {
   EXPECT_EQ(report.components.size(), GetParam().components);
   EXPECT_TRUE(report.closed());
   EXPECT_EQ(report.balanced_edges, 0);
-  EXPECT_FALSE(report.turned);
+  EXPECT_FALSE(report.flipped);
   EXPECT_NEAR(report.volume, GetParam().volume, 5e-7 * GetParam().volume);
   EXPECT_LE((report.volume_by_axis.array() - report.volume).abs().maxCoeff(), 1e-12 * report.volume);
   EXPECT_LE(report.area_vector.norm(), 1e-13 * report.area);
@@ -90,7 +90,7 @@ TEST(RealMeshes, AcceptOpenBunnyOnlyWithDryBoundaryPolicy) {
   const MeshValidation accepted = validate_file(path, OpenPolicy::kDryBoundary);
   ASSERT_TRUE(accepted.mesh);
   EXPECT_EQ(accepted.mesh->boundary_vertices.size(), 223U);
-  EXPECT_FALSE(accepted.report.turned);
+  EXPECT_FALSE(accepted.report.flipped);
 }
 
 // The independent measurement counts every edge of more than two faces as non-manifold. Here such edges of

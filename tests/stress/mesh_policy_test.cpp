@@ -53,13 +53,13 @@ TEST(StressMeshPolicy, ReorientsAndReportsInsideOutMeshes) {
   for (const InsideOut& one : cases) {
     const MeshValidation validation = validate(one.given);
     ASSERT_TRUE(validation.mesh) << one.name;
-    stress.require(validation.report.turned == one.whole, "the report on the whole, " + one.name);
-    int components_turned = 0;
+    stress.require(validation.report.flipped == one.whole, "the report on the whole, " + one.name);
+    int components_flipped = 0;
     for (const ComponentReport& component : validation.report.components) {
-      components_turned += static_cast<int>(component.turned);
+      components_flipped += static_cast<int>(component.flipped);
       stress.require(component.volume > 0.0, "the component's volume, " + one.name);
     }
-    stress.require(components_turned == 1, "the report on components, " + one.name);
+    stress.require(components_flipped == 1, "the report on components, " + one.name);
     if (one.whole) stress.require(make_hydrostatic_mesh({one.given, {}}).volume < 0.0, "V at load");
     // The mesh as intended and as accepted.
     const StressedBody meant(one.name, one.meant);
@@ -163,7 +163,7 @@ TEST(StressMeshPolicy, SumsCavitiesComponentsAndShells) {
     }
     for (const ComponentReport& component : validation.report.components) {
       cavities -= static_cast<int>(component.cavity);
-      stress.require(!component.turned && !component.nested, "the report, " + parts.name);
+      stress.require(!component.flipped && !component.nested, "the report, " + parts.name);
     }
     stress.require(cavities == 0, "cavities, " + parts.name);
 

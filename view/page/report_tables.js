@@ -139,6 +139,6 @@ function mesh_findings(mesh) {
   add(mesh.dropped_faces, 'face dropped', 'faces dropped');
   add(mesh.duplicate_faces, 'duplicate face', 'duplicate faces');
   add(mesh.intersecting_pairs, 'pair of faces intersects', 'pairs of faces intersect');
-  if (mesh.turned) findings.push('was inside out and has been reoriented');
+  if (mesh.turned) findings.push('was inside out: the winding of all faces was reversed');
   return findings.join('; ');
 }
