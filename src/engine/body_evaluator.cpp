@@ -29,7 +29,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   fully_submerged_.reserve(scene.bodies().size());
   for (const Body& body : scene.bodies()) {
     estimated_time_.push_back(estimated_time(body.solver));
-    fully_submerged_.push_back(fully_submerged(body.solver.mesh(), scene.water(), body.reference_B));
+    fully_submerged_.push_back(submerged_constants(body.solver.mesh(), scene.water(), body.reference_B));
   }
 }
 

@@ -27,11 +27,11 @@ struct ErrorBounds {
   double force, torque;
 };
 
-// [m], distance from c, beyond the body's size, that a method's intermediate values reach. The paper's
-// methods lose digits where the pressure is much larger than its variation over the body or the apex is far
-// from the body: at depth; where overlapping parts put the centroid far outside; for `fast`, where B's origin
-// is.
-double far_reach(const Solver& solver, const WaterPlane& plane) {
+// [m], "reach" in docs/mathematics.md: the distance from c, beyond the body's size, that a method's
+// intermediate values reach, and that cancels in the result. The paper's methods lose digits where the
+// pressure is much larger than its variation over the body or the apex is far from the body: at depth; where
+// overlapping parts put the centroid far outside; for `fast`, where B's origin is.
+double cancellation_distance(const Solver& solver, const WaterPlane& plane) {
   const HydrostaticMesh& mesh = solver.mesh();
   switch (solver.method()) {
     case Method::kHierarchical:
@@ -55,12 +55,13 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Di
   const double near = mesh.rounding_bound();
   // The diagonal of bodies smaller than 1e-162 m underflows, and so does everything else.
   const double per_metre = mesh.diagonal > 0.0 ? near / mesh.diagonal : 0.0;
-  const double rounding = near + kGrowth * far_reach(solver, plane) * per_metre + displaced.rounding;
+  const double rounding =
+      near + kGrowth * cancellation_distance(solver, plane) * per_metre + displaced.rounding;
   double lever = mesh.max_lever_arm(reference_B);
-  if (displaced.left_out_reach > 0.0) {
-    lever = std::max(lever, displaced.left_out_reach + (reference_B - mesh.center_B).norm());
+  if (displaced.truncation_lever > 0.0) {
+    lever = std::max(lever, displaced.truncation_lever + (reference_B - mesh.center_B).norm());
   }
-  const double force = rounding + displaced.left_out;
+  const double force = rounding + displaced.truncation_bound;
   return {force, force * lever};
 }
 
@@ -75,24 +76,25 @@ Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, co
 
 // The centre of buoyancy is the volume's centroid, and the torque follows from its lever: neither depends on
 // the depth.
-void set_submerged_result(const FullySubmerged& wet, const Pose& pose, const Water& water,
+void set_submerged_result(const FullySubmerged& submerged, const Pose& pose, const Water& water,
                           BuoyancyResult& result) {
   const Eigen::Quaterniond& q = pose.q_WB;
   const double two_by_norm_squared = 2.0 / (q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
   const auto up = Point<double>::from(water.up_W);
-  const Point<double> lever_W = rotate(q, two_by_norm_squared, wet.lever_B);
-  const Point<double> center_W =
-      wet.lever_B == wet.centroid_B ? lever_W : rotate(q, two_by_norm_squared, wet.centroid_B);
-  const Point<double> torque_W = wet.lift * cross(lever_W, up);
+  const Point<double> lever_W = rotate(q, two_by_norm_squared, submerged.lever_B);
+  const Point<double> center_W = submerged.lever_B == submerged.centroid_B
+                                     ? lever_W
+                                     : rotate(q, two_by_norm_squared, submerged.centroid_B);
+  const Point<double> torque_W = submerged.buoyant_force * cross(lever_W, up);
   // Every field is set, so that no old value remains.
   result = {.status = BuoyancyStatus::kOk,
             .immersion = Immersion::kSubmerged,
-            .force_W = wet.force_W,
+            .force_W = submerged.force_W,
             .torque_W = (torque_W - dot(up, torque_W) * up).vec3(),
-            .volume = wet.volume,
+            .volume = submerged.volume,
             .center_of_buoyancy_W = center_W.vec3(),
-            .force_error_bound = wet.force_error_bound,
-            .torque_error_bound = wet.torque_error_bound,
+            .force_error_bound = submerged.force_error_bound,
+            .torque_error_bound = submerged.torque_error_bound,
             .dropped_force = 0.0,
             .dropped_torque = 0.0};
 }
@@ -102,7 +104,7 @@ void set_result_from_displacement(const Solver& solver, const WaterPlane& plane,
                                   const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const HydrostaticMesh& mesh = solver.mesh();
   const Displacement displaced = solver.displacement(plane);
-  const double weight = water.density * water.gravity;  // [N/m^3]
+  const double specific_weight = water.density * water.gravity;  // [N/m^3]
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
   const Vec3& k = plane.up_B;
   const Vec3 lever = mesh.center_B - reference_B;  // [m], B
@@ -114,17 +116,17 @@ void set_result_from_displacement(const Solver& solver, const WaterPlane& plane,
       result.dropped_force = (displaced.force - k.dot(displaced.force) * k).norm() / mesh.volume;
       result.dropped_torque = std::abs(twist) / mesh.volume / mesh.diagonal;
     }
-    result.force_W = (weight * displaced.volume) * water.up_W;
+    result.force_W = (specific_weight * displaced.volume) * water.up_W;
     const Vec3 torque_W = R_WB * (displaced.torque - twist * k + lever.cross(displaced.volume * k));
-    result.torque_W = weight * (torque_W - water.up_W.dot(torque_W) * water.up_W);
+    result.torque_W = specific_weight * (torque_W - water.up_W.dot(torque_W) * water.up_W);
   } else {
-    result.force_W = weight * (R_WB * displaced.force);
-    result.torque_W = weight * (R_WB * (displaced.torque + lever.cross(displaced.force)));
+    result.force_W = specific_weight * (R_WB * displaced.force);
+    result.torque_W = specific_weight * (R_WB * (displaced.torque + lever.cross(displaced.force)));
   }
 
   const ErrorBounds bounds = error_bounds(solver, plane, displaced, reference_B);
-  result.force_error_bound = weight * bounds.force;
-  result.torque_error_bound = weight * bounds.torque;
+  result.force_error_bound = specific_weight * bounds.force;
+  result.torque_error_bound = specific_weight * bounds.torque;
   const double min_volume = is_exact(solver.method()) ? bounds.force : mesh.volume_tolerance();
   if (std::abs(displaced.volume) > min_volume) {
     result.center_of_buoyancy_W = R_WB * (mesh.center_B + displaced.moment / displaced.volume);
@@ -146,26 +148,26 @@ bool is_decided_by_bounds(const Solver& solver, Immersion immersion) {
 }
 
 // Requires is_decided_by_bounds().
-void set_result_from_bounds(const FullySubmerged& wet, Immersion immersion, const Pose& pose,
+void set_result_from_bounds(const FullySubmerged& submerged, Immersion immersion, const Pose& pose,
                             const Water& water, BuoyancyResult& result) {
   if (immersion == Immersion::kDry) {  // every method gives exactly zero
     result = {};
     result.immersion = immersion;
     return;
   }
-  set_submerged_result(wet, pose, water, result);
+  set_submerged_result(submerged, pose, water, result);
   if (!finite(result)) result = failed_result(BuoyancyStatus::kOutOfRange, immersion);
 }
 
 }  // namespace
 
-FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
-  const double weight = water.density * water.gravity;  // [N/m^3]
-  const double force_error_bound = weight * mesh.rounding_bound();
-  const double lift = weight * mesh.volume;
+FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
+  const double specific_weight = water.density * water.gravity;  // [N/m^3]
+  const double force_error_bound = specific_weight * mesh.rounding_bound();
+  const double buoyant_force = specific_weight * mesh.volume;
   return {.volume = mesh.volume,
-          .lift = lift,
-          .force_W = lift * water.up_W,
+          .buoyant_force = buoyant_force,
+          .force_W = buoyant_force * water.up_W,
           // This order loses no digits for a reference point near the body, both far from B's origin.
           .lever_B = (mesh.center_B - reference_B) + mesh.centroid,
           .centroid_B = mesh.center_B + mesh.centroid,
@@ -173,11 +175,11 @@ FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, 
           .torque_error_bound = force_error_bound * mesh.max_lever_arm(reference_B)};
 }
 
-bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
+bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& submerged, const Pose& pose,
                               const Water& water, BuoyancyResult& result) {
   const Immersion quick = quick_immersion(solver.mesh(), pose, water);
   if (!is_decided_by_bounds(solver, quick)) return false;
-  set_result_from_bounds(wet, quick, pose, water, result);
+  set_result_from_bounds(submerged, quick, pose, water, result);
   return true;
 }
 
@@ -185,7 +187,7 @@ BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& wat
   const HydrostaticMesh& mesh = solver.mesh();
   BuoyancyResult result;
   const auto by_bounds = [&](Immersion immersion) {
-    set_result_from_bounds(fully_submerged(mesh, water, reference_B), immersion, pose, water, result);
+    set_result_from_bounds(submerged_constants(mesh, water, reference_B), immersion, pose, water, result);
     return result;
   };
   const Immersion quick = quick_immersion(mesh, pose, water);

@@ -40,7 +40,7 @@ BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& wat
 // The part of a fully submerged body's result that does not depend on the pose.
 struct FullySubmerged {
   double volume = 0.0;              // [m^3]
-  double lift = 0.0;                // [N]
+  double buoyant_force = 0.0;       // [N]
   Vec3 force_W = Vec3::Zero();      // [N]
   Vec3 lever_B = Vec3::Zero();      // [m], from the reference point to the volume's centroid
   Vec3 centroid_B = Vec3::Zero();   // [m], from B's origin
@@ -48,12 +48,13 @@ struct FullySubmerged {
   double torque_error_bound = 0.0;  // [N m]
 };
 
-FullySubmerged fully_submerged(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
+FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
 
 // Sets `result` to that of buoyancy() if quick_immersion() suffices for it: if the body is dry or, with
 // `hierarchical`, fully submerged. Returns false, and leaves `result` unchanged, otherwise. Complexity: O(1).
-// wet: fully_submerged() of the solver's mesh in this water, about the reference point of the torque.
-bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& wet, const Pose& pose,
+// submerged: submerged_constants() of the solver's mesh in this water, about the reference point of the
+// torque.
+bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& submerged, const Pose& pose,
                               const Water& water, BuoyancyResult& result);
 
 }  // namespace buoyancy

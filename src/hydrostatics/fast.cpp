@@ -10,13 +10,13 @@ namespace {
 struct ElementSum {
   double volume = 0.0;
   Vec3 moment = Vec3::Zero();
-  double left_out = 0.0;  // [m^3], sum |V_i| of the cut triangles
+  double truncation_bound = 0.0;  // [m^3], sum |V_i| of the cut triangles
   std::size_t wet_triangles = 0;
 
   ElementSum& operator+=(const ElementSum& other) {
     volume += other.volume;
     moment += other.moment;
-    left_out += other.left_out;
+    truncation_bound += other.truncation_bound;
     wet_triangles += other.wet_triangles;
     return *this;
   }
@@ -44,18 +44,18 @@ Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPla
                                                      sum.moment += elements_[i].moment;
                                                    }
                                                    for (const std::uint32_t i : cut)
-                                                     sum.left_out += std::abs(elements_[i].volume);
+                                                     sum.truncation_bound += std::abs(elements_[i].volume);
                                                    sum.wet_triangles += wet.size();
                                                  });
   Displacement result = displacement_of_volume(total.volume, total.moment, plane);
-  result.left_out = total.left_out;
+  result.truncation_bound = total.truncation_bound;
   if (total.wet_triangles < mesh.surface.triangles.size()) {
     // The cone over the waterplane is missing; the waterplane's area is at most that of the wetted surface
     // and at most that of the dry surface.
     const double waterplane_area = mesh.is_open() ? mesh.area : 0.5 * mesh.area;
-    result.left_out += std::abs(plane.height(-mesh.center_B)) * waterplane_area / 3.0;
+    result.truncation_bound += std::abs(plane.height(-mesh.center_B)) * waterplane_area / 3.0;
   }
-  result.left_out_reach = mesh.center_B.norm();
+  result.truncation_lever = mesh.center_B.norm();
   return result;
 }
 

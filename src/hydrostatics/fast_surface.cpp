@@ -10,11 +10,11 @@ namespace {
 struct PressureSum {
   PressureElements wet;
   // [m^3], sum over the cut triangles of twice the area times the sum of the corners' depths
-  double left_out6 = 0.0;
+  double truncation_bound6 = 0.0;
 
   PressureSum& operator+=(const PressureSum& other) {
     wet += other.wet;
-    left_out6 += other.left_out6;
+    truncation_bound6 += other.truncation_bound6;
     return *this;
   }
 };
@@ -30,10 +30,10 @@ Displacement fast_surface(const HydrostaticMesh& mesh, const WaterPlane& plane) 
         // The integral of a convex function is at most that of the plane through its corner values:
         // int |min(z, 0)| dA <= A/3 sum |min(z_i, 0)|.
         const double depths = std::max(-a.z, 0.0) + std::max(-b.z, 0.0) + std::max(-c.z, 0.0);
-        block.left_out6 += depths * cross(b.y - a.y, c.y - a.y).vec3().norm();
+        block.truncation_bound6 += depths * cross(b.y - a.y, c.y - a.y).vec3().norm();
       });
   Displacement result = sum.wet.displacement(plane);
-  result.left_out = sum.left_out6 / 6.0;
+  result.truncation_bound = sum.truncation_bound6 / 6.0;
   return result;
 }
 

@@ -40,7 +40,7 @@ TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
 struct AxisIntegrals {
   double volume = 0.0;         // [m^3] int z n_a dA
   Vec3 moment = Vec3::Zero();  // [m^4] int z y n_a dA
-  double height = 0.0;         // [m^4] int z^2 n_a dA
+  double z_squared = 0.0;      // [m^4] int z^2 n_a dA
 };
 
 // Integrals over nodes, with z = k . y + z_c.
@@ -64,8 +64,8 @@ double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }
 
-Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
-                                  const HydrostaticMesh& mesh) {
+Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
+                             const HydrostaticMesh& mesh) {
   const Vec3& k = plane.up_B;
   const double z_c = -plane.h_c;
   const auto a = static_cast<int>(query.axes[0]);
@@ -75,7 +75,7 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
   wet.volume += sum.volume6 / 6.0;
   wet.moment[b] += sum.moment_b24 / 24.0;
   wet.moment[c] += sum.moment_c24 / 24.0;
-  wet.height += sum.height24 / 12.0;
+  wet.z_squared += sum.z_squared12 / 12.0;
 
   Displacement result;
   if (query.budget > 0.0) {
@@ -83,8 +83,8 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
     const Vec3 offset_N(rest.offsets.N[0], rest.offsets.N[1], rest.offsets.N[2]);
     wet.volume += rest.offsets.S + rest.volume;
     wet.moment += offset_N + rest.moment;
-    wet.height += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
-    result.left_out = rest.error;
+    wet.z_squared += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
+    result.truncation_bound = rest.error;
   }
   if (!mesh.meets_volume_tolerance()) result.rounding = kEpsilon * sum.rounding;
 
@@ -93,7 +93,7 @@ Displacement displacement_moments(const WettedTreeSum& sum, const TreeQuery& que
   result.volume = wet.volume / k[a];
   result.moment[b] = wet.moment[b] / k[a];
   result.moment[c] = wet.moment[c] / k[a];
-  const double along_k = 0.5 * wet.height / k[a] - z_c * result.volume;
+  const double along_k = 0.5 * wet.z_squared / k[a] - z_c * result.volume;
   result.moment[a] = (along_k - k[b] * result.moment[b] - k[c] * result.moment[c]) / k[a];
   result.force = result.volume * k;
   result.torque = result.moment.cross(k);
@@ -130,8 +130,8 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
   const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // [m^3]
   if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
   query.half_diagonal = 0.5 * mesh.diagonal;
-  Displacement result = displacement_moments(sum_wetted_tree(tree, query), query, plane, mesh);
-  result.left_out += from_plane;
+  Displacement result = to_displacement(sum_wetted_tree(tree, query), query, plane, mesh);
+  result.truncation_bound += from_plane;
   return result;
 }
 

@@ -9,11 +9,11 @@ namespace {
 
 struct ElementSum {
   VolumeElements wet;
-  double left_out6 = 0.0;  // [m^3], 6 sum |V_i(o)| of the cut triangles
+  double truncation_bound6 = 0.0;  // [m^3], 6 sum |V_i(o)| of the cut triangles
 
   ElementSum& operator+=(const ElementSum& other) {
     wet += other.wet;
-    left_out6 += other.left_out6;
+    truncation_bound6 += other.truncation_bound6;
     return *this;
   }
 };
@@ -29,11 +29,11 @@ Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane) {
         block.wet.add(a.y, b.y, c.y, o);
       },
       [o](ElementSum& block, const auto& a, const auto& b, const auto& c) {
-        block.left_out6 += std::abs(six_volumes(a.y, b.y, c.y, o));
+        block.truncation_bound6 += std::abs(six_volumes(a.y, b.y, c.y, o));
       });
   Displacement result = displacement_of_volume(sum.wet.volume(), sum.wet.moment(apex), plane);
-  result.left_out = sum.left_out6 / 6.0;
-  result.left_out_reach = apex.norm();
+  result.truncation_bound = sum.truncation_bound6 / 6.0;
+  result.truncation_lever = apex.norm();
   return result;
 }
 

@@ -97,8 +97,8 @@ class LeafSums {
       : volume6_(hn::Zero(Reals())),
         moment_b24_(hn::Zero(Reals())),
         moment_c24_(hn::Zero(Reals())),
-        whole_height48_(hn::Zero(Reals())),
-        cut_height24_(hn::Zero(Reals())) {}
+        whole_z_squared24_(hn::Zero(Reals())),
+        cut_z_squared12_(hn::Zero(Reals())) {}
 
   // Adds the wet part of the cut leaves' triangles, less the leaf's moments where
   // LeafWork::subtract_from_leaf.
@@ -115,8 +115,8 @@ class LeafSums {
     volume6_ = hn::Add(volume6_, hn::Add(whole.volume6_, cut.volume6_));
     moment_b24_ = hn::Add(moment_b24_, hn::Add(whole.moment_b24_, cut.moment_b24_));
     moment_c24_ = hn::Add(moment_c24_, hn::Add(whole.moment_c24_, cut.moment_c24_));
-    whole_height48_ = hn::Add(whole_height48_, whole.whole_height48_);
-    cut_height24_ = hn::Add(cut_height24_, cut.cut_height24_);
+    whole_z_squared24_ = hn::Add(whole_z_squared24_, whole.whole_z_squared24_);
+    cut_z_squared12_ = hn::Add(cut_z_squared12_, cut.cut_z_squared12_);
   }
 
   HWY_INLINE void finish(WettedTreeSum& sum) const {
@@ -125,8 +125,8 @@ class LeafSums {
     sum.volume6 = hn::GetLane(hn::SumOfLanes(d, volume6_));
     sum.moment_b24 = hn::GetLane(hn::SumOfLanes(d, moment_b24_));
     sum.moment_c24 = hn::GetLane(hn::SumOfLanes(d, moment_c24_));
-    sum.height24 =
-        hn::GetLane(hn::SumOfLanes(d, hn::MulAdd(hn::Set(d, 0.5), whole_height48_, cut_height24_)));
+    sum.z_squared12 =
+        hn::GetLane(hn::SumOfLanes(d, hn::MulAdd(hn::Set(d, 0.5), whole_z_squared24_, cut_z_squared12_)));
   }
 
  private:
@@ -185,7 +185,7 @@ class LeafSums {
       moment_c24_ = hn::MulAdd(w, moment(cp, cq, cr, leaf.center_c4), moment_c24_);
       // (sum z)^2 + sum z^2 = twice the sum of squares and products.
       const auto squares = hn::MulAdd(zp, weight_p, hn::MulAdd(zq, weight_q, hn::Mul(zr, weight_r)));
-      whole_height48_ = hn::MulAdd(w, squares, whole_height48_);
+      whole_z_squared24_ = hn::MulAdd(w, squares, whole_z_squared24_);
     }
   }
 
@@ -222,15 +222,15 @@ class LeafSums {
       volume6_ = hn::Sub(volume6_, weighted);
       moment_b24_ = hn::NegMulAdd(weighted, moment(bp, b_pq, b_pr, leaf.center_b4), moment_b24_);
       moment_c24_ = hn::NegMulAdd(weighted, moment(cp, c_pq, c_pr, leaf.center_c4), moment_c24_);
-      cut_height24_ = hn::NegMulAdd(weighted, zp, cut_height24_);
+      cut_z_squared12_ = hn::NegMulAdd(weighted, zp, cut_z_squared12_);
     }
   }
 
   RealVector volume6_;
   RealVector moment_b24_;
   RealVector moment_c24_;
-  RealVector whole_height48_;
-  RealVector cut_height24_;
+  RealVector whole_z_squared24_;
+  RealVector cut_z_squared12_;
   double rounding_ = 0.0;
 };
 

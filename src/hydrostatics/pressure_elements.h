@@ -18,12 +18,12 @@ namespace buoyancy {
 struct PressureElements {
   Point<double> force6{0, 0, 0};    // [m^3], 6 F/(rho g)
   Point<double> torque24{0, 0, 0};  // [m^4], 24 tau_c/(rho g)
-  double height24 = 0.0;            // [m^4], 24 H
+  double z_squared12 = 0.0;         // [m^4], 12 int z^2 k . n dA = 24 H
 
   PressureElements& operator+=(const PressureElements& other) {
     force6 += other.force6;
     torque24 += other.torque24;
-    height24 += other.height24;
+    z_squared12 += other.z_squared12;
     return *this;
   }
 
@@ -38,7 +38,7 @@ struct PressureElements {
     const double zz = a.z * a.z + b.z * b.z + c.z * c.z + a.z * b.z + b.z * c.z + c.z * a.z;
     force6 += force;
     torque24 += cross(zy, twice_area);
-    height24 += zz * dot(up_B, twice_area);
+    z_squared12 += zz * dot(up_B, twice_area);
   }
 
   // Volume and centre of buoyancy follow from the pressure: V = k . F, the horizontal part of V (c_B - c)
@@ -49,7 +49,7 @@ struct PressureElements {
     result.torque = torque24.vec3() / 24.0;
     result.volume = plane.up_B.dot(result.force);
     result.moment =
-        plane.up_B.cross(result.torque) + (height24 / 24.0 + plane.h_c * result.volume) * plane.up_B;
+        plane.up_B.cross(result.torque) + (z_squared12 / 24.0 + plane.h_c * result.volume) * plane.up_B;
     return result;
   }
 };

@@ -43,10 +43,10 @@ struct WettedTreeSum {
   AxisMoments nodes;  // about c, of the fully submerged nodes
 
   // Sums over the triangles of crossing leaves, with z the height and y about c:
-  double volume6 = 0.0;     // [m^3], 6 int z n_a dA
-  double moment_b24 = 0.0;  // [m^4], 24 int z y_b n_a dA
-  double moment_c24 = 0.0;  // [m^4], 24 int z y_c n_a dA
-  double height24 = 0.0;    // [m^4], 12 int z^2 n_a dA
+  double volume6 = 0.0;      // [m^3], 6 int z n_a dA
+  double moment_b24 = 0.0;   // [m^4], 24 int z y_b n_a dA
+  double moment_c24 = 0.0;   // [m^4], 24 int z y_c n_a dA
+  double z_squared12 = 0.0;  // [m^4], 12 int z^2 n_a dA
 
   PrunedSum pruned;  // zero if the budget is
 

@@ -218,7 +218,7 @@ TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {
         hash.add(found.volume);
         hash.add(found.moment);
         hash.add(found.torque);
-        hash.add(found.left_out);
+        hash.add(found.truncation_bound);
       }
     }
     EXPECT_EQ(hash.value(), known->second)

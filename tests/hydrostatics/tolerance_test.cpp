@@ -153,15 +153,15 @@ TEST(Tolerance, ReservesRoomForEveryTreeShape) {
   }
 }
 
-TEST(Tolerance, GivesExactBitsWhenBelowRounding) {
+TEST(Tolerance, HasNoEffectBelowRoundingBound) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 16});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
   const Pose pose{Vec3(0, 0, 0.3), Eigen::Quaterniond(0.9, 0.1, 0.3, -0.2).normalized()};
   const WaterPlane plane = water_plane_in_body(pose, kUnitWater, mesh.center_B);
   const Displacement exactly = hierarchical(mesh, plane);
   const Displacement barely = hierarchical(mesh, plane, 1e-16);
-  EXPECT_EQ(exactly.left_out, 0.0);
-  EXPECT_EQ(barely.left_out, 0.0);
+  EXPECT_EQ(exactly.truncation_bound, 0.0);
+  EXPECT_EQ(barely.truncation_bound, 0.0);
   EXPECT_EQ(barely.volume, exactly.volume);
   EXPECT_EQ(barely.moment, exactly.moment);
   EXPECT_EQ(barely.torque, exactly.torque);

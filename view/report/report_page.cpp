@@ -49,7 +49,7 @@ Json median_time(const Body& body, const BodyRun& run, Query query) {
 
 // How the body's rows are evaluated, and the cost [ns] of an evaluation from the bounds and of a full query.
 Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) {
-  const FullySubmerged submerged = fully_submerged(body.solver.mesh(), water, body.reference_B);
+  const FullySubmerged submerged = submerged_constants(body.solver.mesh(), water, body.reference_B);
   BodyOutcome outcome;
   return {{"unchanged", run.evaluations.unchanged},
           {"dry", run.evaluations.dry},
