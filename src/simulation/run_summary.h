@@ -16,9 +16,10 @@ namespace buoyancy {
 struct BodySummary {
   std::int32_t id = 0;
   std::string name;
-  double mass = 0.0;          // [kg]
-  double draft = 0.0;         // [m], depth of the lowest vertex below the level; negative above it
-  double heave = 0.0;         // [m], height of the centre of mass over the level
+  double mass = 0.0;   // [kg]
+  double draft = 0.0;  // [m], depth of the lowest vertex below the level; negative above it
+  // [m], height of the centre of mass above the level; in reports and the live view, of B's origin
+  double heave = 0.0;
   double roll = 0.0;          // [rad]
   double pitch = 0.0;         // [rad]
   double energy_drift = 0.0;  // (last - first) / max kinetic energy; 0 for a body that never moved

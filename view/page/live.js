@@ -25,6 +25,7 @@
   const model_text = await fetch_model();
   const { model, version, body_statuses } = JSON.parse(model_text);
   const up = model.water.up;
+  // [m], heave: height of B's origin above the level. The client's table has that of the centre of mass.
   const heave = (p) => p[0] * up[0] + p[1] * up[1] + p[2] * up[2] - model.water.level;
   const along_up = (f) => f[0] * up[0] + f[1] * up[1] + f[2] * up[2];
   const scene = make_water_scene(element('canvas'), model);

@@ -8,7 +8,7 @@ namespace buoyancy::view {
 enum class MeshUp { kZ, kY, kX };  // the axis of B that points up if the body is upright
 
 struct Attitude {
-  double heave = 0.0;  // [m], height of B's origin over the water
+  double heave = 0.0;  // [m], height of B's origin above the level; in run_summary.h, of the centre of mass
   double roll = 0.0;   // [degrees], -180 to 180
   double pitch = 0.0;  // [degrees], -90 to 90
 };

@@ -25,7 +25,7 @@ namespace buoyancy::view {
 //   kBx .. kBz       from B's origin to the centre of buoyancy [m]
 //   kEnergy          mechanical energy [J] (simulation/rigid_body.h)
 //   kRoundTrip       time from request to response [s], by the recorder's clock
-//   kHeave           height of B's origin over the water [m]
+//   kHeave           height of B's origin above the level [m]
 //   kRoll, kPitch    angles from upright [degrees] (attitude.h)
 //   kForce, kTorque  norms [N], [N m]
 enum RunColumn : std::size_t {
