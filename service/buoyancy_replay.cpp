@@ -56,9 +56,9 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   }
   if (*summary->stopped_by == '\0' && options.input.extension() == ".lcmlog") {
     for (const std::string& channel : task.channels.unseen_channels()) {
-      print_error(app, Error{"warning: channel " + channel, "no events in " + options.input.string(),
-                             "requests or poses", "the channel has another name in the log",
-                             "See --states-channel and --pose"});
+      print_error(app, Warning{"warning: channel " + channel, "no events in " + options.input.string(),
+                               "requests or poses", "the channel has another name in the log",
+                               "See --states-channel and --pose"});
     }
   }
   const std::string text =

@@ -73,7 +73,7 @@ std::string to_text(const RunSummary& summary) {
               static_cast<long long>(summary.client.requests), static_cast<long long>(summary.client.retries),
               static_cast<long long>(summary.client.unanswered), static_cast<long long>(summary.client.late),
               static_cast<long long>(summary.client.max_lag));
-  for (const Error& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
+  for (const Warning& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
   return text;
 }
 
@@ -91,7 +91,7 @@ std::string to_json(const RunSummary& summary) {
                       {"energy_range", body.energy_range}});
   }
   nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
-  for (const Error& warning : summary.warnings) warnings.push_back(warning.message());
+  for (const Warning& warning : summary.warnings) warnings.push_back(warning.message());
   const LatencyPercentiles round_trip = summary.client.round_trip.percentiles();
   const nlohmann::ordered_json json = {{"integrator", to_string(summary.options.integrator)},
                                        {"step", summary.options.step},
