@@ -53,11 +53,11 @@ ip route add 224.0.0.0/4 dev lo
 TwoMachines::TwoMachines() : switch_(empty_machine()), service_(empty_machine()) {
   for (ChildProcess* machine : {&switch_, &service_}) {
     if (has_own_namespace(*machine)) continue;
-    warning_ = "no namespace for a second machine: " + machine->standard_error();
+    error_ = "no namespace for a second machine: " + machine->standard_error();
     return;
   }
   run(kSetUp);
-  set_up_ = !warning_;
+  set_up_ = !error_;
 }
 
 TwoMachines::~TwoMachines() {
@@ -75,7 +75,7 @@ void TwoMachines::run(const std::string& script) {
   command.environment = {"SWITCH=" + std::to_string(switch_.pid()),
                          "SERVICE=" + std::to_string(service_.pid())};
   const FinishedProcess finished = run_to_end(command, kWaitTimeout);
-  if (finished.exit_code != 0) warning_ = script + ": " + finished.standard_error;
+  if (finished.exit_code != 0) error_ = script + ": " + finished.standard_error;
 }
 
 }  // namespace buoyancy

@@ -15,7 +15,7 @@ inline constexpr const char* kTwoMachinesUrl = "udpm://239.255.76.67:7667?ttl=1"
 
 class TwoMachines {
  public:
-  // Sets warning() if this machine does not support it.
+  // Sets error() if this machine does not support it.
   TwoMachines();
   TwoMachines(const TwoMachines&) = delete;
   TwoMachines& operator=(const TwoMachines&) = delete;
@@ -23,7 +23,7 @@ class TwoMachines {
 
   // Why the setup failed: no permission to create namespaces, or a kernel without veth or bridge. Later: the
   // error of a failed command below.
-  const std::optional<std::string>& warning() const { return warning_; }
+  const std::optional<std::string>& error() const { return error_; }
 
   // Returns the same command, run on the service's machine.
   ChildCommand on_service_machine(ChildCommand command) const;
@@ -43,7 +43,7 @@ class TwoMachines {
 
   ChildProcess switch_;
   ChildProcess service_;
-  std::optional<std::string> warning_;
+  std::optional<std::string> error_;
   bool set_up_ = false;
 };
 

@@ -42,7 +42,7 @@ class TwoMachinesTest : public testing::Test {
  protected:
   void SetUp() override {
     // Network namespaces require root, and some containers do not allow even root to create them.
-    if (machines_.warning()) GTEST_SKIP() << "network: " << *machines_.warning();
+    if (machines_.error()) GTEST_SKIP() << "network: " << *machines_.error();
   }
 
   std::string embedded(std::int64_t steps) const { return embedded_csv(directory_, scene_, steps, kStep); }
@@ -143,7 +143,7 @@ TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
   ASSERT_EQ(client.wait(cut_seconds()), std::nullopt) << client.standard_error();
   EXPECT_EQ(size_of(csv_), size_at_cut) << "the cable was not unplugged";
   machines_.plug_in_cable();
-  EXPECT_FALSE(machines_.warning()) << *machines_.warning();
+  EXPECT_FALSE(machines_.error()) << *machines_.error();
   ASSERT_TRUE(advances(client));
   const nlohmann::json summary = interrupt_and_compare(client);
   ASSERT_TRUE(summary.is_object());
@@ -161,7 +161,7 @@ TEST_F(TwoMachinesTest, SurvivesClientInterfaceDown) {
   // Ten timeouts during which no request can be sent. The attempts are not visible outside the client.
   EXPECT_EQ(client.wait(0.5), std::nullopt) << client.standard_error();
   machines_.bring_interface_up();
-  EXPECT_FALSE(machines_.warning()) << *machines_.warning();
+  EXPECT_FALSE(machines_.error()) << *machines_.error();
   ASSERT_TRUE(advances(client));
   interrupt_and_compare(client);
 }
