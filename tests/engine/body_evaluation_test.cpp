@@ -12,6 +12,7 @@
 
 #include "tests/engine/box_scene.h"
 #include "tests/engine/evaluate_alone.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {
@@ -21,14 +22,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 constexpr double kLargest = std::numeric_limits<double>::max();
 
-const Scene& scene() {
-  static const Scene the_scene = box_scene();
-  return the_scene;
-}
-
 BodyWrench evaluate(const BodyState& state, double lead_time = 0.0) {
   ServiceCounters counters;
-  return evaluate_alone(scene(), state, lead_time, counters);
+  return evaluate_alone(shared_box_scene(), state, lead_time, counters);
 }
 
 void expect_zeros(const BodyWrench& wrench) {
@@ -95,9 +91,9 @@ TEST(BodyEvaluation, BoundsErrorOfApproximateMethod) {
 
 TEST(BodyEvaluation, CountsBodiesByImmersion) {
   ServiceCounters counters;
-  EXPECT_EQ(evaluate_alone(scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
-  for (int i = 0; i < 2; ++i) evaluate_alone(scene(), upright(kBox, -10.0), 0.0, counters);
-  for (int i = 0; i < 3; ++i) evaluate_alone(scene(), upright(kBox, 0.2), 0.0, counters);
+  EXPECT_EQ(evaluate_alone(shared_box_scene(), upright(kBox, 10.0), 0.0, counters).force[2], 0.0);
+  for (int i = 0; i < 2; ++i) evaluate_alone(shared_box_scene(), upright(kBox, -10.0), 0.0, counters);
+  for (int i = 0; i < 3; ++i) evaluate_alone(shared_box_scene(), upright(kBox, 0.2), 0.0, counters);
   EXPECT_EQ(counters.bodies_dry, 1);
   EXPECT_EQ(counters.bodies_wet, 2);
   EXPECT_EQ(counters.bodies_crossing, 3);
@@ -111,14 +107,14 @@ TEST(BodyEvaluation, RecordsLargestDroppedComponents) {
   tilted.quaternion_wxyz = {0.9, 0.3, 0.3, 0.1};
   for (int i = 0; i < 20; ++i) {
     tilted.position[2] = -0.5 + 0.05 * i;
-    evaluate_alone(scene(), tilted, 0.0, counters);
+    evaluate_alone(shared_box_scene(), tilted, 0.0, counters);
   }
   EXPECT_EQ(count(counters, BodyStatus::kOk), 20);
   EXPECT_GT(counters.largest_dropped_force + counters.largest_dropped_torque, 0.0);
   EXPECT_LT(counters.largest_dropped_force, 1e-13);
   EXPECT_LT(counters.largest_dropped_torque, 1e-13);
   const ServiceCounters before = counters;
-  evaluate_alone(scene(), upright(kBox, 10.0), 0.0, counters);
+  evaluate_alone(shared_box_scene(), upright(kBox, 10.0), 0.0, counters);
   EXPECT_EQ(counters.largest_dropped_force, before.largest_dropped_force);
   EXPECT_EQ(counters.largest_dropped_torque, before.largest_dropped_torque);
 }
@@ -199,7 +195,7 @@ TEST(BodyEvaluation, ReturnsStatusAndZerosForEveryInvalidState) {
     BodyState state = upright(kBox, 0.0);
     invalid.corrupt(state);
     ServiceCounters counters;
-    const BodyWrench wrench = evaluate_alone(scene(), state, invalid.lead_time, counters);
+    const BodyWrench wrench = evaluate_alone(shared_box_scene(), state, invalid.lead_time, counters);
     EXPECT_EQ(wrench.body_id, state.body_id);
     EXPECT_STREQ(to_string(wrench.status), to_string(invalid.expected));
     expect_zeros(wrench);
@@ -266,7 +262,7 @@ TEST(BodyEvaluation, NormalisesQuaternionsWithinTolerance) {
     const BodyWrench unit = evaluate(state);
     for (double& component : state.quaternion_wxyz) component *= c.norm;
     ServiceCounters counters;
-    const BodyWrench wrench = evaluate_alone(scene(), state, 0.0, counters);
+    const BodyWrench wrench = evaluate_alone(shared_box_scene(), state, 0.0, counters);
     EXPECT_EQ(wrench.status, c.expected);
     EXPECT_EQ(counters.quaternions_normalised, c.normalised);
     if (c.expected != BodyStatus::kOk) continue;

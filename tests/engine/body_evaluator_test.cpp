@@ -12,6 +12,7 @@
 
 #include "tests/engine/box_scene.h"
 #include "tests/engine/evaluate_alone.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "messages/wire.h"
-#include "scene/scene.h"
-#include "scene/scene_file.h"
+#include "tests/support/byte_vector.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 
@@ -19,14 +18,6 @@ inline constexpr std::int32_t kFastBox = -3;         // same, with an approximat
 inline constexpr std::int32_t kHierarchicalBox = 5;  // same, with the default method
 inline constexpr std::int32_t kHydrostaticBox = 6;   // like kOffsetBox, but fast; with hydrostatics
 inline constexpr std::int32_t kNoBody = 4;           // no body of box_scene() has this id
-
-inline Scene scene_of(std::string_view text, const std::filesystem::path& directory = {}) {
-  const auto description = parse_scene(text, "test scene", directory);
-  if (!description) throw std::runtime_error(description.error().message());
-  auto scene = Scene::prepare(*description);
-  if (!scene) throw std::runtime_error(scene.error().message());
-  return std::move(*scene);
-}
 
 inline Scene box_scene() {
   return scene_of(R"(
@@ -61,6 +52,12 @@ inline Scene box_scene() {
   )");
 }
 
+// The same box_scene() at every call, for tests that need no scene of their own.
+inline const Scene& shared_box_scene() {
+  static const Scene scene = box_scene();
+  return scene;
+}
+
 // An upright body at rest, its centre at this height over the water [m].
 inline BodyState upright(std::int32_t id, double height) {
   BodyState state;
@@ -70,9 +67,8 @@ inline BodyState upright(std::int32_t id, double height) {
   return state;
 }
 
-inline std::vector<std::uint8_t> request_bytes(const RequestId& id, std::vector<BodyState> bodies,
-                                               double lead_time = 0.0) {
-  std::vector<std::uint8_t> bytes;
+inline ByteVector request_bytes(const RequestId& id, std::vector<BodyState> bodies, double lead_time = 0.0) {
+  ByteVector bytes;
   encode(WrenchRequest{.id = id, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
   return bytes;
 }

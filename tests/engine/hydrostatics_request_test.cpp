@@ -7,22 +7,16 @@
 #include "engine/body_evaluation.h"
 #include "engine/request_handler.h"
 #include "tests/engine/box_scene.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 namespace {
 
-using ByteVector = std::vector<std::uint8_t>;
-
-const Scene& scene() {
-  static const Scene the_scene = box_scene();
-  return the_scene;
-}
-
 BodyHydrostatics hydrostatics_of(const BodyState& state, double lead_time, BodyStatus status,
                                  ServiceCounters& counters) {
-  const Body* body = scene().find(state.body_id);
-  return evaluate_hydrostatics(*body, scene().water(), validate_pose(state, lead_time).pose, status,
-                               counters);
+  const Body* body = shared_box_scene().find(state.body_id);
+  return evaluate_hydrostatics(*body, shared_box_scene().water(), validate_pose(state, lead_time).pose,
+                               status, counters);
 }
 
 TEST(EvaluateHydrostatics, MatchesClosedFormForHalfSubmergedBox) {
@@ -89,10 +83,6 @@ TEST(EvaluateHydrostatics, ReturnsStatusAndZerosForFailedBody) {
   EXPECT_EQ(counters.hydrostatics, 0);
 }
 
-ByteVector copy_of(Bytes bytes) {
-  return {bytes.begin(), bytes.end()};
-}
-
 ByteVector request_without_hydrostatics(std::int64_t seq) {
   return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
 }
@@ -104,7 +94,7 @@ BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
 }
 
 TEST(RequestHandler, ReturnsHydrostaticsInRequestedOrder) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
                                 upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
   bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
@@ -123,7 +113,7 @@ TEST(RequestHandler, ReturnsHydrostaticsInRequestedOrder) {
 }
 
 TEST(RequestHandler, ReturnsNoHydrostaticsIfNoBodyHasThisOutput) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   EXPECT_TRUE(handler.last_hydrostatics().empty());
   const ByteVector with_hydrostatics =
       request_bytes({.session_id = 1, .seq = 1}, {upright(kHydrostaticBox, 0.0)});
@@ -143,7 +133,7 @@ TEST(RequestHandler, ReturnsNoHydrostaticsIfNoBodyHasThisOutput) {
 }
 
 TEST(RequestHandler, ReturnsSameHydrostaticsForRetry) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const auto make_request = [](std::int64_t session_id, double height) {
     return request_bytes({.session_id = session_id, .seq = 1}, {upright(kHydrostaticBox, height)});
   };
@@ -158,7 +148,7 @@ TEST(RequestHandler, ReturnsSameHydrostaticsForRetry) {
 }
 
 TEST(RequestHandler, ReusesHydrostaticsOfUnmovedBody) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const auto send_request = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
     handler.handle(request_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
     BodiesHydrostatics found;

@@ -11,8 +11,6 @@
 namespace buoyancy {
 namespace {
 
-using ByteVector = std::vector<std::uint8_t>;
-
 constexpr std::size_t kFingerprint = 8;
 constexpr std::size_t kFixed = 44;  // fingerprint, utime, session_id, seq, lead_time, num_bodies
 constexpr std::size_t kBody = 108;

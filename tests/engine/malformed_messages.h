@@ -2,17 +2,17 @@
 // handler itself and for the service over a network.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "messages/wire.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 
 struct MalformedMessage {
   std::string name;  // unique
-  std::vector<std::uint8_t> bytes;
+  ByteVector bytes;
   DecodeError error;  // that decoding returns
 };
 

@@ -12,20 +12,11 @@
 #include "tests/engine/box_scene.h"
 #include "tests/engine/malformed_messages.h"
 #include "tests/support/allocation_count.h"
+#include "tests/support/byte_vector.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {
-
-using ByteVector = std::vector<std::uint8_t>;
-
-const Scene& scene() {
-  static const Scene the_scene = box_scene();
-  return the_scene;
-}
-
-ByteVector copy_of(Bytes bytes) {
-  return {bytes.begin(), bytes.end()};
-}
 
 WrenchResponse decoded(Bytes bytes) {
   WrenchResponse response;
@@ -44,7 +35,7 @@ std::int64_t bodies_computed(const ServiceCounters& counters) {
 }
 
 TEST(RequestHandler, ReturnsResponseWithRequestId) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const RequestId id{.utime = -5, .session_id = INT64_MIN, .seq = INT64_MAX};
   const WrenchResponse response = decoded(handler.handle(request_bytes(id, {upright(kBox, 0.0)})));
   EXPECT_EQ(response.id.utime, id.utime);
@@ -57,7 +48,7 @@ TEST(RequestHandler, ReturnsResponseWithRequestId) {
 }
 
 TEST(RequestHandler, ReturnsBodiesInRequestedOrderWithRepetitions) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const std::vector<BodyState> bodies{upright(kOffsetBox, 0.1), upright(kBox, -0.2), upright(kNoBody, 0.0),
                                       upright(kOffsetBox, 0.3), upright(kBox, -0.2), upright(kFastBox, 9.0)};
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 1, .seq = 1}, bodies)));
@@ -73,7 +64,7 @@ TEST(RequestHandler, ReturnsBodiesInRequestedOrderWithRepetitions) {
 }
 
 TEST(RequestHandler, HandlesRequestWithoutBodies) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 3, .seq = 9}, {})));
   EXPECT_EQ(response.id.session_id, 3);
   EXPECT_EQ(response.id.seq, 9);
@@ -82,7 +73,7 @@ TEST(RequestHandler, HandlesRequestWithoutBodies) {
 }
 
 TEST(RequestHandler, HandlesThousandBodies) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   std::vector<BodyState> bodies(1000);
   for (int i = 0; i < 1000; ++i) bodies[static_cast<std::size_t>(i)] = upright(kBox, -0.5 + 1e-3 * i);
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 1, .seq = 1}, bodies)));
@@ -93,7 +84,7 @@ TEST(RequestHandler, HandlesThousandBodies) {
 }
 
 TEST(RequestHandler, EvaluatesOtherBodiesBesideInvalidOne) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   std::vector<BodyState> bodies(3, upright(kBox, 0.0));
   bodies[1].position[2] = std::numeric_limits<double>::quiet_NaN();
   const WrenchResponse response = decoded(handler.handle(request_bytes({.session_id = 1, .seq = 1}, bodies)));
@@ -105,7 +96,7 @@ TEST(RequestHandler, EvaluatesOtherBodiesBesideInvalidOne) {
 }
 
 TEST(RequestHandler, ReportsBadLeadTimeForEveryKnownBody) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kNoBody, 0.0), upright(kOffsetBox, 0.0)};
   const WrenchResponse response = decoded(handler.handle(
       request_bytes({.session_id = 1, .seq = 1}, bodies, std::numeric_limits<double>::quiet_NaN())));
@@ -116,7 +107,7 @@ TEST(RequestHandler, ReportsBadLeadTimeForEveryKnownBody) {
 }
 
 TEST(RequestHandler, ReturnsSameBytesForRetryWithoutComputing) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const ByteVector first = copy_of(handler.handle(request(1, 1)));
   const ServiceCounters before = handler.counters();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(copy_of(handler.handle(request(1, 1))), first);
@@ -129,7 +120,7 @@ TEST(RequestHandler, ReturnsSameBytesForRetryWithoutComputing) {
 }
 
 TEST(RequestHandler, CountsRetryOfRequestWithoutBodies) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const ByteVector empty = request_bytes({.session_id = 1, .seq = 1}, {});
   const ByteVector first = copy_of(handler.handle(empty));
   EXPECT_EQ(copy_of(handler.handle(empty)), first);
@@ -137,7 +128,7 @@ TEST(RequestHandler, CountsRetryOfRequestWithoutBodies) {
 }
 
 TEST(RequestHandler, RecomputesConflictingRetry) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   handler.handle(request(1, 1, 0.0));
   const WrenchResponse changed = decoded(handler.handle(request(1, 1, 0.25)));
   EXPECT_NEAR(changed.bodies[0].submerged_volume, 0.25, 1e-13);
@@ -151,7 +142,7 @@ TEST(RequestHandler, RecomputesConflictingRetry) {
 }
 
 TEST(RequestHandler, HandlesAndCountsStaleRequest) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const ByteVector first = copy_of(handler.handle(request(1, 1)));
   handler.handle(request(1, 2));
   EXPECT_EQ(copy_of(handler.handle(request(1, 1))), first);
@@ -161,7 +152,7 @@ TEST(RequestHandler, HandlesAndCountsStaleRequest) {
 }
 
 TEST(RequestHandler, StartsNewSessionForNewSessionId) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   handler.handle(request(1, 1000));
   EXPECT_EQ(handler.newest_seq(1), 1000);
   EXPECT_EQ(handler.newest_seq(2), std::nullopt);
@@ -173,7 +164,7 @@ TEST(RequestHandler, StartsNewSessionForNewSessionId) {
 }
 
 TEST(RequestHandler, AcceptsNegativeSequenceNumbers) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   handler.handle(request(1, INT64_MIN));
   handler.handle(request(1, -4));
   EXPECT_EQ(handler.newest_seq(1), -4);
@@ -183,7 +174,7 @@ TEST(RequestHandler, AcceptsNegativeSequenceNumbers) {
 }
 
 TEST(RequestHandler, EvictsLeastRecentlyUsedSession) {
-  RequestHandler handler(scene(), {.max_sessions = 2});
+  RequestHandler handler(shared_box_scene(), {.max_sessions = 2});
   handler.handle(request(1, 1));
   handler.handle(request(2, 1));
   handler.handle(request(1, 1));  // a retry is a use
@@ -196,7 +187,7 @@ TEST(RequestHandler, EvictsLeastRecentlyUsedSession) {
 }
 
 TEST(RequestHandler, RecomputesRetryOfEvictedSession) {
-  RequestHandler handler(scene(), {.max_sessions = 1});
+  RequestHandler handler(shared_box_scene(), {.max_sessions = 1});
   const ByteVector first = copy_of(handler.handle(request(1, 5)));
   handler.handle(request(2, 9));
   EXPECT_EQ(copy_of(handler.handle(request(1, 5))), first);
@@ -207,7 +198,7 @@ TEST(RequestHandler, RecomputesRetryOfEvictedSession) {
 }
 
 TEST(RequestHandler, LimitsNumberOfSessions) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   for (std::int64_t id = 0; id < 1000; ++id) {
     EXPECT_FALSE(handler.handle(request(id, 1)).empty());
     EXPECT_LE(handler.counters().sessions, 64);
@@ -236,7 +227,7 @@ Scene taller_box_scene() {
 
 TEST(RequestHandler, UsesNewSceneWithinSession) {
   const Scene taller = taller_box_scene();
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   for (const std::int64_t session_id : {1, 2}) handler.handle(request(session_id, 5));
   handler.set_scene(taller);
   EXPECT_EQ(&handler.scene(), &taller);
@@ -276,7 +267,7 @@ TEST(RequestHandler, ClearsCachedResultsOnSceneChange) {
   const auto make_request = [](std::int64_t seq) {
     return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.1), upright(kHydrostaticBox, 0.1)});
   };
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   handler.handle(make_request(1));
   handler.set_scene(other);
   handler.handle(make_request(2));
@@ -288,7 +279,7 @@ TEST(RequestHandler, ClearsCachedResultsOnSceneChange) {
 }
 
 TEST(RequestHandler, CountsSupersededAndStaleRequests) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   handler.record_superseded();
   handler.record_superseded();
   handler.record_stale();
@@ -324,7 +315,7 @@ std::int64_t rejections(const ServiceCounters& counters, DecodeError error) {
 }
 
 TEST(RequestHandler, RejectsAndCountsMalformedMessages) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   std::int64_t rejected = 0;
   for (const MalformedMessage& message : malformed_messages()) {
     SCOPED_TRACE(message.name);
@@ -343,7 +334,7 @@ TEST(RequestHandler, RejectsAndCountsMalformedMessages) {
 }
 
 TEST(RequestHandler, KeepsStoredResponseAfterMalformedMessages) {
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const ByteVector first = copy_of(handler.handle(request(77, 5)));
   for (const MalformedMessage& message : malformed_messages()) {
     handler.handle(message.bytes);
@@ -354,7 +345,7 @@ TEST(RequestHandler, KeepsStoredResponseAfterMalformedMessages) {
 
 TEST(RequestHandler, DoesNotAllocateForMalformedMessages) {
   const auto list = malformed_messages();
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   const AllocationCount allocations;
   for (const MalformedMessage& message : list) handler.handle(message.bytes);
   EXPECT_EQ(allocations.count(), 0);
@@ -379,7 +370,7 @@ TEST(RequestHandler, DoesNotAllocateAfterWarmUp) {
       requests.push_back(requests.back());
     }
   }
-  RequestHandler handler(scene());
+  RequestHandler handler(shared_box_scene());
   for (const std::int64_t session_id : {1, 2}) handler.handle(make_request(session_id, -1, true));
 
   const AllocationCount allocations;
@@ -440,7 +431,7 @@ class SessionModel {
 
 RC_GTEST_PROP(RequestHandler, ManagesSessionsLikeModel, ()) {
   const std::size_t max_sessions = *rc::gen::inRange<std::size_t>(1, 5);
-  RequestHandler handler(scene(), {.max_sessions = max_sessions});
+  RequestHandler handler(shared_box_scene(), {.max_sessions = max_sessions});
   SessionModel model(max_sessions);
   const auto num_requests = *rc::gen::inRange(0, 200);
   for (int i = 0; i < num_requests; ++i) {

@@ -20,11 +20,13 @@
 #include "scene/scene.h"
 #include "tests/fuzz/fuzz_bytes.h"
 #include "tests/fuzz/fuzz_check.h"
+#include "tests/support/byte_vector.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {
 
-using Packet = std::vector<std::uint8_t>;
+using Packet = ByteVector;
 
 constexpr std::string_view kScene = R"(
 [[body]]
@@ -52,13 +54,7 @@ outputs = ["wrench", "hydrostatics"]
 )";
 
 const Scene& small_scene() {
-  static const Scene kPrepared = [] {
-    const Expected<SceneDescription> description = parse_scene(kScene, "fuzz.toml", "/nowhere");
-    if (!description) fail_requirement("the target's own scene parses", description.error().message());
-    Expected<Scene> scene = Scene::prepare(*description);
-    if (!scene) fail_requirement("the target's own scene is prepared", scene.error().message());
-    return *std::move(scene);
-  }();
+  static const Scene kPrepared = scene_of(kScene);
   return kPrepared;
 }
 
@@ -179,10 +175,6 @@ void check_hydrostatics(const WrenchRequest& request, Bytes bytes) {
                      hydrostatics.bodies.end(),
                      [](std::int32_t id, const BodyHydrostatics& body) { return id == body.body_id; }),
           "hydrostatics cover the bodies that request them");
-}
-
-Packet copy_of(Bytes bytes) {
-  return {bytes.begin(), bytes.end()};
 }
 
 // handler: the one that receives all packets.

@@ -13,11 +13,10 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
 #include "tests/support/allocation_count.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 namespace {
-
-using ByteVector = std::vector<std::uint8_t>;
 
 constexpr std::size_t kRequestFixed = 44;
 constexpr std::size_t kBodyState = 108;

@@ -1,16 +1,10 @@
 #include "tests/simulation/in_process_run.h"
 
+#include <atomic>
 #include <stdexcept>
+#include <utility>
 
 namespace buoyancy {
-
-Scene scene_of(const std::string& text) {
-  const Expected<SceneDescription> description = parse_scene(text, "test.toml", ".");
-  if (!description) throw std::runtime_error(description.error().message());
-  Expected<Scene> scene = Scene::prepare(*description);
-  if (!scene) throw std::runtime_error(scene.error().message());
-  return std::move(*scene);
-}
 
 Simulation simulation_of(const Scene& scene, const SimulationOptions& options) {
   Expected<Simulation> simulation = Simulation::make(scene, options);

@@ -1,14 +1,12 @@
 // Runs the simulator in the test's own process, without files, options or a network.
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <string>
 
 #include "simulation/simulation.h"
 
 namespace buoyancy {
-
-Scene scene_of(const std::string& text);  // throws for an invalid scene
 
 Simulation simulation_of(const Scene& scene, const SimulationOptions& options);  // throws
 

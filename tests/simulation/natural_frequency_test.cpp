@@ -8,6 +8,7 @@
 
 #include "tests/geometry/mesh_files.h"
 #include "tests/simulation/in_process_run.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {

@@ -9,6 +9,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "messages/conversions.h"
 #include "tests/simulation/in_process_run.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {

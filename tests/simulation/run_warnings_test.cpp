@@ -7,6 +7,7 @@
 
 #include "tests/simulation/in_process_run.h"
 #include "tests/stress/stress_case.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {

@@ -10,6 +10,7 @@
 #include "simulation/run_summary.h"
 #include "tests/simulation/in_process_run.h"
 #include "tests/stress/stress_case.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {

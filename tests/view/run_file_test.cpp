@@ -15,6 +15,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
+#include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "view/report/body_list.h"
 #include "view/report/report_page.h"
