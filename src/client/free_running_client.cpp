@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "client/request_with_retries.h"
+
 namespace buoyancy {
 
 FreeRunningClient::FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval)

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <deque>
 
+#include "client/client_stats.h"
+#include "client/lcm_request_channel.h"
 #include "client/retry_policy.h"
 
 namespace buoyancy {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "client/request_with_retries.h"
+
 namespace buoyancy {
 
 LockstepClient::LockstepClient(LcmRequestChannel channel, RetryPolicy retry_policy)

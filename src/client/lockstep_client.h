@@ -5,6 +5,8 @@
 // retry_policy.h.
 #pragma once
 
+#include "client/client_stats.h"
+#include "client/lcm_request_channel.h"
 #include "client/retry_policy.h"
 
 namespace buoyancy {

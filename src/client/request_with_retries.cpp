@@ -1,4 +1,4 @@
-#include "client/retry_policy.h"
+#include "client/request_with_retries.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,30 @@
+// Sends one request over LCM, with retries, and checks its response: the part that LockstepClient and
+// FreeRunningClient share. Contract and errors: see retry_policy.h.
+#pragma once
+
+#include <cstdint>
+
+#include "client/client_stats.h"
+#include "client/lcm_request_channel.h"
+#include "client/retry_policy.h"
+
+namespace buoyancy {
+
+// Sends the request, and the same bytes again after each timeout, until its response arrives or the retries
+// are used up. A failed sending counts as a lost request, since network interfaces may come back.
+Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel, const WrenchRequest& request,
+                                                     const RetryPolicy& retry_policy,
+                                                     ClientStats& statistics);
+
+// Returns the response, or an error if it does not hold the request's bodies in the request's order.
+Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel, const WrenchRequest& request,
+                                               const WrenchResponse& response);
+
+// waited: time without a response [s].
+tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited);
+tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq);
+
+double to_seconds(Clock::duration duration);
+Clock::duration to_duration(double seconds);
+
+}  // namespace buoyancy
