@@ -29,9 +29,10 @@ class Service {
 
 // The engines and Python are optional for a build. scripts/test installs them, so that it skips none of these
 // tests; a build without one of them names it and runs the other tests.
-constexpr const char* kNoBullet = "double-precision Bullet (libbullet-dev) was not found by CMake";
-constexpr const char* kNoOde = "ODE (libode-dev) was not found by CMake";
-constexpr const char* kNoPython = "python3 was not found by CMake";
+constexpr const char* kNoBullet =
+    "CMake did not find double-precision Bullet; install libbullet-dev and configure again";
+constexpr const char* kNoOde = "CMake did not find ODE; install libode-dev and configure again";
+constexpr const char* kNoPython = "CMake did not find Python; install python3 and configure again";
 
 void expect_crate_settles_level(const std::string& program) {
   const Service service;

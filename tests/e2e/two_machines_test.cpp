@@ -41,8 +41,11 @@ double cut_seconds() {
 class TwoMachinesTest : public testing::Test {
  protected:
   void SetUp() override {
-    // Network namespaces require root, and some containers do not allow even root to create them.
-    if (machines_.error()) GTEST_SKIP() << "network: " << *machines_.error();
+    if (machines_.error()) {
+      GTEST_SKIP() << "network: two machines take a kernel with veth and bridge, and permission for network "
+                      "namespaces; run ctest as root, in a container with --privileged. "
+                   << *machines_.error();
+    }
   }
 
   std::string embedded(std::int64_t steps) const { return embedded_csv(directory_, scene_, steps, kStep); }

@@ -84,7 +84,10 @@ TEST_F(ImportProcess, SurvivesCrashOfImporter) {
 
 TEST_F(ImportProcess, StopsImporterAtMemoryLimit) {
   // The importer's limit is RLIMIT_AS, and these sanitizers reserve terabytes of addresses before main().
-  if (kShadowMemory) GTEST_SKIP() << "address space cannot be limited under a sanitizer with shadow memory";
+  if (kShadowMemory) {
+    GTEST_SKIP() << "address space cannot be limited under this sanitizer; use a preset without it, such as "
+                    "release or ubsan";
+  }
   ImportLimits limits = long_timeout();
   limits.memory_bytes = 200'000'000;
   const std::string header = "OFF\n50000000 50000000 0\n";

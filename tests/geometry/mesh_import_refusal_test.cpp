@@ -257,10 +257,7 @@ TEST_F(MeshImportErrors, AreCompleteForCorruptedFiles) {
 
 TEST_F(MeshImportErrors, RejectSharedMalformedFiles) {
   const fs::path malformed = shared_mesh_file("malformed");
-  if (!fs::exists(malformed)) {
-    // Their licences exclude them from the project (shared_mesh_files.h).
-    GTEST_SKIP() << "the shared meshes were not found; set BUOYANCY_MESHES to their directory";
-  }
+  if (!fs::exists(malformed)) GTEST_SKIP() << missing_shared_mesh(malformed);
   for (const fs::directory_entry& entry : fs::directory_iterator(malformed)) import_error(entry.path());
 }
 

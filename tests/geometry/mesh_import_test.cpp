@@ -237,10 +237,8 @@ TEST(MeshImportRealFiles, MatchIndependentTriangleAndVertexCounts) {
       SharedMesh{"wamv_dirty.dae", 4'564, 13'692},
       SharedMesh{"wheels_2comp_78164.obj", 78'164, 234'492},
   };
-  if (!fs::exists(shared_mesh_file(kMeshes[0].name))) {
-    // Their licences exclude them from the project (shared_mesh_files.h).
-    GTEST_SKIP() << "the shared meshes were not found; set BUOYANCY_MESHES to their directory";
-  }
+  const fs::path first = shared_mesh_file(kMeshes[0].name);
+  if (!fs::exists(first)) GTEST_SKIP() << missing_shared_mesh(first);
   for (const SharedMesh& expected : kMeshes) {
     const ImportedMesh found = imported(shared_mesh_file(expected.name));
     EXPECT_EQ(found.mesh.triangles.size(), expected.triangles) << expected.name;
@@ -250,8 +248,8 @@ TEST(MeshImportRealFiles, MatchIndependentTriangleAndVertexCounts) {
 
 TEST(MeshImportRealFiles, ReadDuck) {
   const fs::path duck = kTestModels / "Collada/duck.dae";
-  // scripts/test installs the package; a manual build may lack it.
-  if (!fs::exists(duck)) GTEST_SKIP() << "package assimp-testmodels is not installed";
+  if (!fs::exists(duck))
+    GTEST_SKIP() << duck << " was not found; install the Debian package assimp-testmodels";
   const ImportedMesh found = imported(duck);
   EXPECT_EQ(found.mesh.triangles.size(), 4'212U);
   EXPECT_EQ(found.source.format, "Collada");

@@ -13,8 +13,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr const char* kNotFound = " was not found: $BUOYANCY_MESHES names the directory of the shared meshes";
-
 MeshValidation validate_file(const std::filesystem::path& path, OpenPolicy open = OpenPolicy::kRefuse) {
   const Expected<ImportedMesh> imported = import_mesh(path);
   EXPECT_TRUE(imported) << imported.error().message();
@@ -37,7 +35,7 @@ class ClosedRealMesh : public testing::TestWithParam<Measured> {};
 
 TEST_P(ClosedRealMesh, MatchesIndependentFigures) {
   const std::filesystem::path path = shared_mesh_file(GetParam().file);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << missing_shared_mesh(path);
   const MeshValidation validation = validate_file(path);
   ASSERT_TRUE(validation.mesh) << validation.refusal->message();
   const MeshReport& report = validation.report;
@@ -66,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RealMeshes, CloseWaveEnergyFloatByToleranceWeld) {
   const std::filesystem::path path = shared_mesh_file("rm3_float_tolweld.stl");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << missing_shared_mesh(path);
   const MeshValidation validation = validate_file(path);
   ASSERT_TRUE(validation.mesh);
   EXPECT_EQ(validation.report.weld, WeldKind::kTolerance);
@@ -77,7 +75,7 @@ TEST(RealMeshes, CloseWaveEnergyFloatByToleranceWeld) {
 
 TEST(RealMeshes, AcceptOpenBunnyOnlyWithDryBoundaryPolicy) {
   const std::filesystem::path path = shared_mesh_file("bunny_69451_open.ply");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << missing_shared_mesh(path);
   const MeshValidation refused = validate_file(path);
   EXPECT_FALSE(refused.mesh);
   ASSERT_TRUE(refused.refusal);
@@ -97,7 +95,7 @@ TEST(RealMeshes, AcceptOpenBunnyOnlyWithDryBoundaryPolicy) {
 // this mesh are balanced, since each is used equally often in both directions.
 TEST(RealMeshes, RefuseCatamaranAndCountItsFaults) {
   const std::filesystem::path path = shared_mesh_file("wamv_dirty.dae");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << kNotFound;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << missing_shared_mesh(path);
   for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
     const MeshValidation validation = validate_file(path, policy);
     EXPECT_FALSE(validation.mesh);
@@ -123,7 +121,8 @@ TEST(RealMeshes, RefuseCatamaranAndCountItsFaults) {
 
 TEST(RealMeshes, FindFourIntersectingPairsInDuck) {
   const std::filesystem::path path = "/usr/share/assimp/models/Collada/duck_triangulate.dae";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is in Debian's assimp-testmodels";
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << path << " was not found; install the Debian package assimp-testmodels";
   const MeshValidation duck = validate_file(path);
   ASSERT_TRUE(duck.mesh);
   EXPECT_EQ(duck.report.triangles, 4212);

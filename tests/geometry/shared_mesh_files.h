@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 
 namespace buoyancy {
 
@@ -14,6 +15,12 @@ inline std::filesystem::path shared_mesh_file(const char* name) {
       directory != nullptr ? std::filesystem::path(directory)
                            : std::filesystem::path(BUOYANCY_SOURCE_DIR).parent_path() / "shared" / "meshes";
   return meshes / name;
+}
+
+// Why a test that needs the file is skipped.
+inline std::string missing_shared_mesh(const std::filesystem::path& path) {
+  return path.string() + " was not found; set BUOYANCY_MESHES to the directory of the shared meshes, " +
+         "which their licences exclude from the project";
 }
 
 }  // namespace buoyancy

@@ -2,7 +2,6 @@
 // planes, to the references' own accuracy. The meshes are not part of the project; where they are absent
 // these tests are skipped.
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -12,19 +11,14 @@
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
 #include "hydrostatics/buoyancy.h"
+#include "tests/geometry/shared_mesh_files.h"
 #include "tests/hydrostatics/agreement.h"
 
 namespace buoyancy {
 namespace {
 
-std::filesystem::path mesh_directory() {
-  // NOLINTNEXTLINE(concurrency-mt-unsafe): tests have one thread
-  const char* const named = std::getenv("BUOYANCY_MESHES");
-  return named != nullptr ? named : BUOYANCY_SOURCE_DIR "/../shared/meshes";
-}
-
 MeshValidation load(const std::string& file, OpenPolicy open = OpenPolicy::kRefuse) {
-  const auto imported = import_mesh(mesh_directory() / file);
+  const auto imported = import_mesh(shared_mesh_file(file.c_str()));
   EXPECT_TRUE(imported) << imported.error().message();
   if (!imported) return {};
   return validate_mesh(*imported, file, {.open = open});
@@ -41,16 +35,13 @@ Water water_below(const Vec3& normal, double offset) {
 class ReferenceMeshes : public testing::Test {
  protected:
   void SetUp() override {
-    // The reference meshes have their own licences and are kept outside the project.
-    if (!std::filesystem::exists(mesh_directory() / "oracles.json")) {
-      GTEST_SKIP() << "no reference meshes in " << mesh_directory()
-                   << "; set BUOYANCY_MESHES to a folder that has them";
-    }
+    const std::filesystem::path results = shared_mesh_file("oracles.json");
+    if (!std::filesystem::exists(results)) GTEST_SKIP() << missing_shared_mesh(results);
   }
 };
 
 TEST_F(ReferenceMeshes, MatchesReferenceVolumesAndCentres) {
-  const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
+  const auto oracles = nlohmann::json::parse(std::ifstream(shared_mesh_file("oracles.json")));
   int planes = 0;
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;
@@ -132,7 +123,7 @@ TEST_F(ReferenceMeshes, RefusesDirtyWamVWithReasons) {
 }
 
 TEST_F(ReferenceMeshes, MatchesExactWithHierarchical) {
-  const auto oracles = nlohmann::json::parse(std::ifstream(mesh_directory() / "oracles.json"));
+  const auto oracles = nlohmann::json::parse(std::ifstream(shared_mesh_file("oracles.json")));
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;
     const MeshValidation validation = load(file);

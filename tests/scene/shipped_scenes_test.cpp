@@ -43,7 +43,7 @@ TEST(ShippedScenes, ScaleDuckToPlausibleSize) {
   ASSERT_TRUE(description) << description.error().message();
   const std::filesystem::path model = std::get<MeshFile>(description->bodies.at(0).source).path;
   if (!std::filesystem::exists(model)) {
-    GTEST_SKIP() << model << " was not found: the package assimp-testmodels is not installed";
+    GTEST_SKIP() << model << " was not found; install the Debian package assimp-testmodels";
   }
   const Expected<Scene> scene = Scene::prepare(*description);
   ASSERT_TRUE(scene) << scene.error().message();

@@ -29,4 +29,10 @@ class LeasedFile {
   bool held_ = false;
 };
 
+// Why a test that needs a lease on the file is skipped.
+inline std::string no_lease_on(const std::string& path) {
+  return "the file system of " + path + " has no leases; set TMPDIR to a directory on another one, such as " +
+         "ext4 or tmpfs";
+}
+
 }  // namespace buoyancy

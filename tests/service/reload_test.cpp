@@ -122,7 +122,7 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
   service.write("tetrahedron.obj", tetrahedron::obj());
   service.write("scene.toml", "[[body]]\nid = 1\nmesh = \"tetrahedron.obj\"\n");
   LeasedFile mesh(service.path("tetrahedron.obj"));
-  if (!mesh.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
+  if (!mesh.held()) GTEST_SKIP() << no_lease_on(service.path(""));
   service.child().send_signal(SIGHUP);
   std::int64_t seq = 0;
   while (!mesh.awaited() && seq < 100'000) vertical_force(socket, seq++);
@@ -149,7 +149,7 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
 TEST(Reload, LetsServiceExitDuringLoad) {
   RunningService service({}, kBefore);
   LeasedFile scene(service.path("scene.toml"));
-  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("scene.toml");
+  if (!scene.held()) GTEST_SKIP() << no_lease_on(service.path("scene.toml"));
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("SIGHUP: reloading", kWaitTimeout)) << service.log();
   expect_clean_exit(service);

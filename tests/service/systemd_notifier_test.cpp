@@ -64,7 +64,9 @@ class NotifySocket {
 class SystemdNotifierTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!BUOYANCY_EXPECT_SYSTEMD) GTEST_SKIP() << "built without libsystemd";
+    if (!BUOYANCY_EXPECT_SYSTEMD) {
+      GTEST_SKIP() << "built without libsystemd; install libsystemd-dev and configure again";
+    }
   }
   std::vector<std::string> environment(const std::string& watchdog_usec = "") const {
     std::vector<std::string> entries{"NOTIFY_SOCKET=" + systemd_.path()};
@@ -87,7 +89,7 @@ TEST_F(SystemdNotifierTest, ReportsReadyOnceRequestsAreHandled) {
 TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterSceneIsLoaded) {
   const TempDir directory;
   LeasedFile scene(directory.write("scene.toml", kBoxScene));
-  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << directory.path("");
+  if (!scene.held()) GTEST_SKIP() << no_lease_on(directory.path(""));
   ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
   command.environment = environment();
   ChildProcess child(command);
@@ -140,7 +142,7 @@ TEST_F(SystemdNotifierTest, PingsWatchdogOnlyWhileLoopRuns) {
 TEST_F(SystemdNotifierTest, PingsWatchdogDuringLoad) {
   RunningService service({}, kBoxScene, environment("100000"));
   LeasedFile scene(service.path("scene.toml"));
-  if (!scene.held()) GTEST_SKIP() << "no leases on the file system of " << service.path("");
+  if (!scene.held()) GTEST_SKIP() << no_lease_on(service.path(""));
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(systemd_.has_received("RELOADING=1"));
   for (int ping = 0; ping < 10; ++ping) {

@@ -349,7 +349,10 @@ TEST(LcmConnection, KeepsHandlersWhenMoved) {
 
 TEST(LcmConnection, NamesCommandThatAddsMissingMulticastRoute) {
   const NetworkWithoutRoutes network;
-  if (!network.entered()) GTEST_SKIP() << "this machine permits no network namespace";
+  if (!network.entered()) {
+    GTEST_SKIP() << "no permission to create a network namespace; run the test with ctest or with "
+                    "scripts/in_network_namespace";
+  }
   const Expected<LcmConnection> connection = LcmConnection::open("");
   ASSERT_FALSE(connection);
   const std::string message = connection.error().message();
