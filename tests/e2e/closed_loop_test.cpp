@@ -12,7 +12,7 @@
 
 #include "hydrostatics/buoyancy.h"
 #include "scene/scene.h"
-#include "tests/support/timeouts.h"
+#include "tests/support/running_program.h"
 
 namespace buoyancy {
 namespace {
@@ -21,8 +21,7 @@ constexpr double kGravity = kStandardGravity;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 nlohmann::json simulate_with_service(const std::string& scene, Options options) {
-  ChildProcess service(service_command(scene, {"-l", kServiceUrl}));
-  EXPECT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene, {"-l", kServiceUrl}));
   options.insert(options.end(), {"-l", kServiceUrl, "--retries", "10000"});
   return simulate(scene, options);
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -17,15 +18,9 @@ const std::string kSources = BUOYANCY_SOURCE_DIR;
 // Time step [s]: the 20 s of the crate's motion take 4,000 round trips.
 constexpr const char* kStep = "0.005";
 
-class Service {
- public:
-  Service() : child_(service_command(kSources + "/scenes/box.toml", {})) {
-    EXPECT_TRUE(child_.wait_for_text("ready:", kWaitTimeout)) << child_.standard_error();
-  }
-
- private:
-  ChildProcess child_;
-};
+ChildCommand box_service() {
+  return service_command(kSources + "/scenes/box.toml", {});
+}
 
 // The engines and Python are optional for a build. scripts/test installs them, so that it skips none of these
 // tests; a build without one of them names it and runs the other tests.
@@ -35,7 +30,7 @@ constexpr const char* kNoOde = "CMake did not find ODE; install libode-dev and c
 constexpr const char* kNoPython = "CMake did not find Python; install python3 and configure again";
 
 void expect_crate_settles_level(const std::string& program) {
-  const Service service;
+  const RunningProgram service(box_service());
   const FinishedProcess run = run_to_end(command_of({program, "", kStep}), kRunTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   double height = NAN;
@@ -73,7 +68,7 @@ TEST(Examples, PythonReceivesForceOnBox) {
   const FinishedProcess generated = run_to_end(command_of(generate), kRunTimeout);
   ASSERT_EQ(generated.exit_code, 0) << generated.standard_error;
 
-  const Service service;
+  const RunningProgram service(box_service());
   for (const double height : {0.0, 0.1, 1.0}) {
     ChildCommand command =
         command_of({PYTHON, kSources + "/client/examples/round_trip.py", "--height", std::to_string(height)});

@@ -8,6 +8,7 @@
 
 #include "tests/e2e/closed_loop.h"
 #include "tests/e2e/lossy_relay.h"
+#include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 #include "transport/lcm_connection.h"
 
@@ -53,8 +54,7 @@ class Lockstep : public testing::Test {
 TEST_F(Lockstep, ProducesSameBytesEmbeddedOverUdpAndOverLossyNetwork) {
   const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "4"});
   ASSERT_GT(embedded.size(), 4000U * 300U);
-  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl}));
   EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "4"}) == embedded);
 
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20250405});
@@ -99,8 +99,7 @@ TEST_F(Lockstep, FailsWithoutServiceAndNamesEndpoint) {
 
 TEST_F(Lockstep, NamesBodyAndStatusIfServiceHasDifferentScene) {
   const std::string other = directory_.write("other.toml", "[[body]]\nid = 7\nshape = { type = \"box\" }\n");
-  ChildProcess service(service_command(other, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(other, {"-l", kServiceUrl}));
   const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_NE(finished.standard_error.find("body 8 (crate)"), std::string::npos) << finished.standard_error;
@@ -108,8 +107,7 @@ TEST_F(Lockstep, NamesBodyAndStatusIfServiceHasDifferentScene) {
 }
 
 TEST_F(Lockstep, EndsOnSigintWithSummaryAndValidCsv) {
-  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("interrupted.csv");
   ChildProcess client(
       client_command(scene_, {"-l", kServiceUrl, "--duration", "1e6", "--csv", csv, "--json"}));
@@ -138,8 +136,7 @@ TEST_F(Lockstep, EndsOnSigtermWhileWaitingForService) {
 using FreeRunning = Lockstep;
 
 TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
-  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   // Responses take eight intervals or more.
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.0, 0.04, 1});
   const nlohmann::json summary =
@@ -159,8 +156,7 @@ TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
 }
 
 TEST_F(FreeRunning, ContinuesWithOlderResponseAfterLoss) {
-  ChildProcess service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl, "--mode", "latest"}));
   const LossyRelay relay({kClientUrl, kServiceUrl, 0.1, 0.0, 2});
   // Warnings may appear: they depend on the machine's load.
   const nlohmann::json summary =
@@ -172,8 +168,7 @@ TEST_F(FreeRunning, ContinuesWithOlderResponseAfterLoss) {
 }
 
 TEST_F(FreeRunning, FailsIfServiceDies) {
-  ChildProcess service(service_command(scene_, {"-l", kServiceUrl}));
-  ASSERT_TRUE(service.wait_for_text("ready", kWaitTimeout)) << service.standard_error();
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("free.csv");
   ChildProcess client(client_command(scene_, {"-l", kServiceUrl, "--rate", "1000", "--duration", "1e6",
                                               "--timeout", "0.5", "--retries", "1", "--csv", csv}));

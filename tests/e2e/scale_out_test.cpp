@@ -8,7 +8,7 @@
 
 #include "client/client.h"
 #include "tests/e2e/closed_loop.h"
-#include "tests/support/timeouts.h"
+#include "tests/support/running_program.h"
 
 namespace buoyancy {
 namespace {
@@ -52,7 +52,6 @@ class Share {
             directory.write(name + ".toml", scene_of(ids)),
             {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
              "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
-    if (!service_.wait_for_text("ready", kWaitTimeout)) throw std::runtime_error(service_.standard_error());
     ClientOptions options;
     options.channel.states_channel = name + "_STATES";
     options.channel.wrenches_channel = name + "_WRENCHES";
@@ -71,7 +70,7 @@ class Share {
   std::string log() const { return service_.standard_error(); }
 
  private:
-  ChildProcess service_;
+  RunningProgram service_;
   std::optional<Client> client_;
 };
 

@@ -13,6 +13,7 @@
 #include "messages/wire.h"
 #include "tests/e2e/closed_loop.h"
 #include "tests/e2e/lossy_relay.h"
+#include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 #include "transport/lcm_connection.h"
 
@@ -80,16 +81,14 @@ class TwoMachinesTest : public testing::Test {
 };
 
 TEST_F(TwoMachinesTest, MatchesRunInOneProcess) {
-  ChildProcess running(service());
-  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const RunningProgram running(service());
   const std::string csv = directory_.path("across.csv");
   simulate(scene_, {"-l", kTwoMachinesUrl, "--duration", kDuration, "--csv", csv, "--retries", "10000"});
   EXPECT_TRUE(read_file(csv) == embedded(kSteps));
 }
 
 TEST_F(TwoMachinesTest, DoesNotConnectWithTtlZero) {
-  ChildProcess running(service());
-  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const RunningProgram running(service());
   const FinishedProcess finished = run_to_end(
       client_command(scene_, {"-l", kServiceUrl, "--timeout", "0.05", "--retries", "3"}), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
@@ -97,8 +96,7 @@ TEST_F(TwoMachinesTest, DoesNotConnectWithTtlZero) {
 }
 
 TEST_F(TwoMachinesTest, ProducesSameBytesDespiteLossAndReordering) {
-  ChildProcess running(service());
-  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const RunningProgram running(service());
   RelayOptions options{kClientUrl, kTwoMachinesUrl, 0.05, 0.0, 7};
   options.duplication = 0.1;
   options.reordering = 0.1;
@@ -132,8 +130,7 @@ bool wait_for_retries(LcmConnection& bus, int times) {
 }
 
 TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
-  ChildProcess running(service());
-  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const RunningProgram running(service());
   ChildProcess client(endless_run());
   ASSERT_TRUE(advances(client));
   machines_.unplug_cable();
@@ -156,8 +153,7 @@ TEST_F(TwoMachinesTest, SurvivesUnpluggedCableAndReportsItsDuration) {
 }
 
 TEST_F(TwoMachinesTest, SurvivesClientInterfaceDown) {
-  ChildProcess running(service());
-  ASSERT_TRUE(running.wait_for_text("ready", kWaitTimeout)) << running.standard_error();
+  const RunningProgram running(service());
   ChildProcess client(endless_run());
   ASSERT_TRUE(advances(client));
   machines_.take_interface_down();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/service/running_service.h"
+#include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -175,8 +176,7 @@ TEST(Buoyancyd, PrefixesJournalLinesWithTheirLevelWithoutTime) {
                        "export JOURNAL_STREAM=" + journal_stream + "; exec \"$0\" --scene \"$1\"", BUOYANCYD,
                        scene});
   };
-  ChildProcess child(started("$(stat -L -c %d:%i /dev/stderr)"));
-  ASSERT_TRUE(child.wait_for_text("ready:", kWaitTimeout)) << child.standard_error();
+  RunningProgram child(started("$(stat -L -c %d:%i /dev/stderr)"));
   EXPECT_TRUE(child.standard_error().starts_with("<6>ready: 2 bodies;")) << child.standard_error();
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);

@@ -12,7 +12,7 @@
 #include "messages/status.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/raw_lcm.h"
-#include "tests/support/child_process.h"
+#include "tests/support/running_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -44,11 +44,7 @@ class RunningService {
  public:
   explicit RunningService(std::vector<std::string> options = {}, const std::string& scene = kBoxScene,
                           std::vector<std::string> environment = {})
-      : child_(command(std::move(options), directory_.write("scene.toml", scene), std::move(environment))) {
-    if (!child_.wait_for_text("ready:", kWaitTimeout)) {
-      throw std::runtime_error("buoyancyd did not become ready: " + child_.standard_error());
-    }
-  }
+      : child_(command(std::move(options), directory_.write("scene.toml", scene), std::move(environment))) {}
 
   ChildProcess& child() { return child_; }
   std::string log() const { return child_.standard_error(); }
@@ -77,7 +73,7 @@ class RunningService {
   }
 
   TempDir directory_;
-  ChildProcess child_;
+  RunningProgram child_;
 };
 
 inline RawStates one_body(std::int64_t session_id, std::int64_t seq, double height) {

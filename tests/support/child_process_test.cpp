@@ -1,10 +1,12 @@
 #include "tests/support/child_process.h"
 
 #include <fstream>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/support/running_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -124,6 +126,22 @@ TEST(ChildProcess, ExitsWith127IfProgramIsMissing) {
   const FinishedProcess finished = run_to_end(command, kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 127);
   EXPECT_NE(finished.standard_error.find("/no/such/program"), std::string::npos);
+}
+
+TEST(RunningProgram, ReturnsOnceProgramIsReady) {
+  // The program starts slowly, so that a constructor that did not wait would return before.
+  RunningProgram program(shell("sleep 0.2; echo ready: >&2; exec sleep 600"));
+  EXPECT_EQ(program.standard_error(), "ready:\n");
+  EXPECT_EQ(program.wait(0.0), std::nullopt);
+}
+
+TEST(RunningProgram, ThrowsStandardErrorIfProgramEndsFirst) {
+  try {
+    const RunningProgram program(shell("echo no scene >&2; exit 2"));
+    FAIL() << "it is not ready";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "sh did not become ready: no scene\n");
+  }
 }
 
 }  // namespace

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/service/running_service.h"
-#include "tests/support/timeouts.h"
+#include "tests/support/running_program.h"
 #include "tests/view/http_peer.h"
 
 namespace buoyancy::view {
@@ -20,12 +19,8 @@ class RunningView {
   // port: 0 selects a free one.
   explicit RunningView(const std::string& scene, std::vector<std::string> options = {},
                        std::uint16_t port = 0)
-      : child_(command(directory_.write("scene.toml", scene), std::move(options), port)) {
-    if (!child_.wait_for_text("ready: ", kWaitTimeout)) {
-      throw std::runtime_error("buoyancy-view did not become ready: " + child_.standard_error());
-    }
-    port_ = port_from_ready_line(child_.standard_output());
-  }
+      : child_(command(directory_.write("scene.toml", scene), std::move(options), port)),
+        port_(port_from_ready_line(child_.standard_output())) {}
 
   ChildProcess& child() { return child_; }
   std::uint16_t port() const { return port_; }
@@ -40,8 +35,8 @@ class RunningView {
   }
 
   TempDir directory_;
-  ChildProcess child_;
-  std::uint16_t port_ = 0;
+  RunningProgram child_;
+  std::uint16_t port_;
 };
 
 }  // namespace buoyancy::view

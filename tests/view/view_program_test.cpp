@@ -12,6 +12,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/running_view.h"
 
@@ -202,9 +203,8 @@ std::set<int> policies_of(const ChildProcess& process) {
 
 TEST(ViewProgram, UsesIdleSchedulingByDefault) {
   const TempDir directory;
-  ChildProcess view(
+  const RunningProgram view(
       command_of({BUOYANCY_VIEW, "--scene", directory.write("scene.toml", kScene), "--port", "0"}));
-  ASSERT_TRUE(view.wait_for_text("ready: ", kWaitTimeout)) << view.standard_error();
   EXPECT_EQ(policies_of(view), std::set<int>{SCHED_IDLE});
   RunningView normal(kScene);
   EXPECT_EQ(policies_of(normal.child()), std::set<int>{SCHED_OTHER});
