@@ -81,7 +81,7 @@ TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
   double min_ns = std::numeric_limits<double>::max();
   for (int i = 0; i < (extent == Extent::kFull ? 5 : 2); ++i) {
     const auto start = Clock::now();
-    const MomentTree tree = build_moment_tree(model.mesh.surface);
+    const MomentTree tree = build_moment_tree(model.mesh);
     min_ns = std::min(min_ns, std::chrono::duration<double, std::nano>(Clock::now() - start).count());
   }
   return {model.name, model.source.triangles.size(), min_ns / triangles,

@@ -4,18 +4,17 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel_tasks.h"
 
 namespace buoyancy {
 namespace {
 
-// A triangle during the build. The float32 sum of its corners decides on which side of a split it goes.
-struct Item {
-  std::array<float, 3> corner_sum;
-  std::int32_t triangle;
-};
-
 struct Range {
-  std::size_t begin, end;
+  std::size_t begin = 0, end = 0;
   std::size_t size() const { return end - begin; }
 };
 
@@ -31,29 +30,150 @@ struct Bounds {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);
   }
+  Vec3 center() const { return 0.5 * (min + max); }
+  double width() const { return (max - min).sum(); }
 };
 
-// The result of building a subtree, for its parent.
-struct Subtree {
-  std::uint32_t child = 0;
-  Bounds bounds;
-  NodeMoments moments;
-  Vec3 projected_area = Vec3::Zero();  // int |n_a| dA [m^2]
+// What is sorted into the tree: a triangle or a leaf. The float32 position decides on which side of a split
+// it goes.
+struct Item {
+  std::array<float, 3> position;
+  std::uint32_t index;
 };
 
-NodeMoments pack(const SurfaceMoments<double>& moments, double area) {
-  NodeMoments node;
-  for (int a = 0; a < 3; ++a) {
-    std::size_t n = 0;
-    const auto put = [&](double value) {
-      node.values[NodeMoments::slot(static_cast<std::size_t>(a), n++)] = value;
-    };
-    put(moments.S(a));
-    for (int i = 0; i < 3; ++i) put(moments.N(i, a));
-    for (int pair = 0; pair < 6; ++pair) put(moments.P(pair, a));
+Item make_item(const Vec3& position, std::size_t index) {
+  return {
+      {static_cast<float>(position.x()), static_cast<float>(position.y()), static_cast<float>(position.z())},
+      static_cast<std::uint32_t>(index)};
+}
+
+// Splits the range along the axis on which its items spread most; `left` of them go to the first part.
+std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, std::size_t left) {
+  std::array<float, 3> low = items[range.begin].position;
+  std::array<float, 3> high = low;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], items[i].position[axis]);
+      high[axis] = std::max(high[axis], items[i].position[axis]);
+    }
   }
-  node.values[NodeMoments::kArea] = area;
-  return node;
+  std::size_t axis = 0;
+  for (std::size_t other = 1; other < 3; ++other) {
+    if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+  }
+  const auto at = [&items](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(
+      at(range.begin), at(range.begin + left), at(range.end), [axis](const Item& a, const Item& b) {
+        // The index breaks ties, so that the tree depends on the mesh alone.
+        return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis] : a.index < b.index;
+      });
+  return {{range.begin, range.begin + left}, {range.begin + left, range.end}};
+}
+
+// About half of `size`, a multiple of `unit` where that splits it.
+std::size_t left_share(std::size_t size, std::size_t unit) {
+  const std::size_t left = (size / 2 + unit / 2) / unit * unit;
+  return left == 0 || left >= size ? size / 2 : left;
+}
+
+// The distinct vertices of some triangles.
+struct LeafVertices {
+  std::array<std::int32_t, kLeafVertices> index;
+  std::size_t count = 0;
+
+  std::size_t find(std::int32_t vertex) const {
+    return static_cast<std::size_t>(
+        std::find(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(count), vertex) - index.begin());
+  }
+  // Returns false if there is no room.
+  bool add(std::int32_t vertex) {
+    if (find(vertex) < count) return true;
+    if (count == kLeafVertices) return false;
+    index[count++] = vertex;
+    return true;
+  }
+};
+
+// Cuts the triangles into leaves.
+//
+// A run of kRun triangles is cut into equal parts, as few as possible. Patches of some meshes have many
+// vertices (a strip of n triangles has n + 2), so that a leaf cannot hold kLeafTriangles of them. Halving
+// such a leaf would leave it half empty. Therefore the run is cut into more parts instead, and that number of
+// parts is chosen whose leaves have the least total width, which is proportional to the number of leaves that
+// a random plane crosses.
+class LeafCutter {
+ public:
+  LeafCutter(const TriangleMesh& surface, std::vector<Item>& items) : surface_(surface), items_(items) {}
+
+  // Appends the leaves of a range in spatial order.
+  void cut(const Range& range, std::vector<Range>& leaves) {
+    if (range.size() > kRun) {
+      const auto [left, right] = split(items_, range, left_share(range.size(), kRun));
+      cut(left, leaves);
+      cut(right, leaves);
+      return;
+    }
+    double min_width = std::numeric_limits<double>::infinity();
+    const std::size_t min_parts = (range.size() + kLeafTriangles - 1) / kLeafTriangles;
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto last = items_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    for (std::size_t parts = min_parts; parts <= 2 * min_parts; ++parts) {
+      leaves_.clear();
+      width_ = 0.0;
+      const bool all_fit = cut_run(range, (range.size() + parts - 1) / parts);
+      if (width_ < min_width) {
+        min_width = width_;
+        best_leaves_ = leaves_;
+        best_items_.assign(first, last);
+      }
+      if (all_fit) break;
+    }
+    std::copy(best_items_.begin(), best_items_.end(), first);
+    leaves.insert(leaves.end(), best_leaves_.begin(), best_leaves_.end());
+  }
+
+ private:
+  static constexpr std::size_t kRun = std::size_t{8} * kLeafTriangles;
+
+  // Cuts a range into leaves of at most `size` triangles; halves those with too many vertices. Returns false
+  // if there were such.
+  bool cut_run(const Range& range, std::size_t size) {
+    if (range.size() > size) {
+      const auto [left, right] = split(items_, range, left_share(range.size(), size));
+      const bool left_fits = cut_run(left, size);
+      return cut_run(right, size) && left_fits;
+    }
+    LeafVertices vertices;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (const std::int32_t vertex : surface_.triangles[items_[i].index]) {
+        if (vertices.add(vertex)) continue;
+        const auto [left, right] = split(items_, range, range.size() / 2);
+        cut_run(left, size);
+        cut_run(right, size);
+        return false;
+      }
+    }
+    Bounds bounds;
+    for (std::size_t v = 0; v < vertices.count; ++v) bounds.include(surface_.vertex(vertices.index[v]));
+    width_ += bounds.width();
+    leaves_.push_back(range);
+    return true;
+  }
+
+  const TriangleMesh& surface_;
+  std::vector<Item>& items_;
+  // Of the current run: the latest attempt, and the best one.
+  std::vector<Range> leaves_, best_leaves_;
+  std::vector<Item> best_items_;
+  double width_ = 0.0;  // [m], total of leaves_
+};
+
+AxisMoments of_axis(const SurfaceMoments<double>& moments, int a) {
+  AxisMoments result;
+  result.S = moments.S(a);
+  for (int i = 0; i < 3; ++i) result.N[static_cast<std::size_t>(i)] = moments.N(i, a);
+  for (int pair = 0; pair < 6; ++pair) result.P[static_cast<std::size_t>(pair)] = moments.P(pair, a);
+  return result;
 }
 
 // Returns the upper half of a float32 that is at least x; infinity if x exceeds the range. Requires x >= 0.
@@ -62,218 +182,244 @@ std::uint16_t upper_half_rounded_up(double x) {
   return static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(above) + 0xFFFFU) >> 16U);
 }
 
+// Returns the exponent e of the least power of two above x: x < 2^e.
+int exponent_above(double x) {
+  int exponent = 0;
+  std::frexp(x, &exponent);
+  return exponent;
+}
+
 class Builder {
  public:
-  explicit Builder(const TriangleMesh& surface) : surface_(surface) {
-    items_.reserve(surface.triangles.size());
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-      const Triangle& triangle = surface.triangles[t];
-      const Vec3 sum =
-          surface.vertex(triangle[0]) + surface.vertex(triangle[1]) + surface.vertex(triangle[2]);
-      items_.push_back(
-          {{static_cast<float>(sum.x()), static_cast<float>(sum.y()), static_cast<float>(sum.z())},
-           static_cast<std::int32_t>(t)});
-    }
-    Bounds bounds;
-    for (const Triangle& triangle : surface.triangles) {
-      for (const std::int32_t vertex : triangle) bounds.include(surface.vertex(vertex));
-    }
-    int exponent = 0;
-    std::frexp(bounds.min.cwiseAbs().cwiseMax(bounds.max.cwiseAbs()).maxCoeff(), &exponent);
-    tree_.grid = std::ldexp(1.0, exponent - 22);
-    const std::size_t leaves = surface.triangles.size() / (kLeafTriangles / 2) + 1;
-    tree_.leaves.reserve(leaves);
-    tree_.moments.reserve(leaves + leaves / 4);
-    tree_.nodes.reserve(leaves / 4 + 1);
-  }
+  Builder(const TriangleMesh& surface, const Vec3& file_origin)
+      : surface_(surface),
+        file_origin_(file_origin),
+        threads_(surface.triangles.size() < kMinParallel ? 1 : max_parallel_tasks()) {}
 
   MomentTree build() {
-    const Subtree root = build_node({0, items_.size()});
-    tree_.total = root.moments;
+    sort_triangles();
+    set_units();
+    cut_leaves();
+    build_nodes();
+    fill_leaves();
+    fill_nodes();
     return std::move(tree_);
   }
 
  private:
-  // Collects the distinct vertices of the range's triangles; returns false if a leaf cannot hold them.
-  bool leaf_vertices(const Range& range, std::array<std::int32_t, kLeafVertices>& vertices,
-                     std::size_t& count) const {
-    count = 0;
-    if (range.size() > kLeafTriangles) return false;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      for (const std::int32_t vertex : surface_.triangles[static_cast<std::size_t>(items_[i].triangle)]) {
-        const auto last = vertices.begin() + static_cast<std::ptrdiff_t>(count);
-        if (std::find(vertices.begin(), last, vertex) != last) continue;
-        if (count == kLeafVertices) return false;
-        vertices[count++] = vertex;
+  static constexpr std::size_t kMinParallel = 20'000;  // triangles; fewer take less than a few ms
+  static constexpr std::size_t kTask = 12'000;         // triangles
+  static constexpr std::size_t kLeavesPerTask = 256;
+
+  // What a parent needs to know of a child.
+  struct Subtree {
+    Bounds bounds;
+    SurfaceMoments<double> moments;
+    double area = 0.0;                   // [m^2]
+    Vec3 projected_area = Vec3::Zero();  // int |n_a| dA [m^2]
+
+    Subtree& operator+=(const Subtree& other) {
+      bounds.include(other.bounds);
+      moments += other.moments;
+      area += other.area;
+      projected_area += other.projected_area;
+      return *this;
+    }
+  };
+
+  void sort_triangles() {
+    items_.resize(surface_.triangles.size());
+    const std::size_t tasks = (items_.size() + kTask - 1) / kTask;
+    run_parallel_tasks(tasks, threads_, [this](std::size_t task) {
+      const std::size_t end = std::min(items_.size(), (task + 1) * kTask);
+      for (std::size_t t = task * kTask; t < end; ++t) {
+        const Triangle& triangle = surface_.triangles[t];
+        items_[t] = make_item(
+            surface_.vertex(triangle[0]) + surface_.vertex(triangle[1]) + surface_.vertex(triangle[2]), t);
+      }
+    });
+  }
+
+  void set_units() {
+    double reach = 0.0;
+    for (const Triangle& triangle : surface_.triangles) {
+      for (const std::int32_t vertex : triangle) {
+        reach = std::max(reach, surface_.vertex(vertex).cwiseAbs().maxCoeff());
       }
     }
-    return true;
+    const int exponent = exponent_above(reach);
+    tree_.grid = std::ldexp(1.0, exponent - 22);
+    tree_.unit = std::ldexp(1.0, exponent - 15);
   }
 
-  bool fits_a_leaf(const Range& range) const {
-    std::array<std::int32_t, kLeafVertices> vertices;
-    std::size_t count = 0;
-    return leaf_vertices(range, vertices, count);
-  }
-
-  // Returns the size in triangles of the largest full subtree below `size`, at least that of a leaf.
-  static std::size_t full_subtree(std::size_t size) {
-    std::size_t full = kLeafTriangles;
-    while (full * kTreeWidth < size) full *= kTreeWidth;
-    return full;
-  }
-
-  // Returns the number of triangles that go left: about half, in multiples of a full subtree.
-  static std::size_t left_share(std::size_t size, std::size_t full) {
-    const std::size_t left = (size / 2 + full / 2) / full * full;
-    return left == 0 || left >= size ? size / 2 : left;
-  }
-
-  // Splits the range along the axis on which its triangles' centroids spread most.
-  std::pair<Range, Range> split(const Range& range, std::size_t left) {
-    std::array<float, 3> low = items_[range.begin].corner_sum;
-    std::array<float, 3> high = low;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], items_[i].corner_sum[axis]);
-        high[axis] = std::max(high[axis], items_[i].corner_sum[axis]);
+  void cut_leaves() {
+    std::vector<Range> tasks;
+    const auto split_into_tasks = [&](const auto& self, const Range& range) -> void {
+      if (range.size() <= kTask) {
+        tasks.push_back(range);
+        return;
       }
+      const auto [left, right] = split(items_, range, left_share(range.size(), 8 * kLeafTriangles));
+      self(self, left);
+      self(self, right);
+    };
+    split_into_tasks(split_into_tasks, {0, items_.size()});
+    std::vector<std::vector<Range>> leaves(tasks.size());
+    run_parallel_tasks(tasks.size(), threads_, [&](std::size_t task) {
+      LeafCutter(surface_, items_).cut(tasks[task], leaves[task]);
+    });
+    for (const std::vector<Range>& some : leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
+  }
+
+  // Builds a full tree over the leaves, level by level in the sense that a node's children are numbered
+  // before theirs.
+  void build_nodes() {
+    std::vector<Item> order;
+    order.reserve(leaves_.size());
+    for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t i = leaves_[leaf].begin; i < leaves_[leaf].end; ++i) {
+        sum += Vec3(items_[i].position[0], items_[i].position[1], items_[i].position[2]);
+      }
+      order.push_back(make_item(sum / static_cast<double>(leaves_[leaf].size()), leaf));
     }
-    std::size_t axis = 0;
-    for (std::size_t other = 1; other < 3; ++other) {
-      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
-    }
-    const auto at = [this](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(
-        at(range.begin), at(range.begin + left), at(range.end), [axis](const Item& a, const Item& b) {
-          // The triangle's index breaks ties, so that the tree depends on the mesh alone.
-          return a.corner_sum[axis] != b.corner_sum[axis] ? a.corner_sum[axis] < b.corner_sum[axis]
-                                                          : a.triangle < b.triangle;
-        });
-    return {{range.begin, range.begin + left}, {range.begin + left, range.end}};
+    leaf_places_.reserve(leaves_.size());
+    tree_.nodes.reserve(leaves_.size() / (kTreeWidth - 1) + 1);
+    tree_.nodes.emplace_back();
+    parents_.push_back(0);
+    build_node(0, order, {0, order.size()});
   }
 
   // Splits the range into a node's children, each as large as a full subtree, so that the few nodes near the
-  // root have unused slots and not the many nodes above the leaves. Unused slots serve to halve parts that
-  // have few triangles but too many vertices for a leaf, which then need no node of their own.
-  std::vector<Range> children_of(const Range& range) {
-    const std::size_t full = full_subtree(range.size());
+  // root have unused slots and not the many nodes above the leaves.
+  static std::vector<Range> children_of(std::vector<Item>& order, const Range& range) {
+    std::size_t full = 1;
+    while (full * kTreeWidth < range.size()) full *= kTreeWidth;
     std::vector<Range> ranges{range};
-    const auto split_at = [&](std::size_t i) {
-      const auto [left, right] = split(ranges[i], left_share(ranges[i].size(), full));
-      ranges[i] = left;
-      ranges.insert(ranges.begin() + static_cast<std::ptrdiff_t>(i) + 1, right);
-    };
     for (std::size_t i = 0; i < ranges.size();) {
       if (ranges[i].size() > full && ranges.size() < kTreeWidth) {
-        split_at(i);
+        const auto [left, right] = split(order, ranges[i], left_share(ranges[i].size(), full));
+        ranges[i] = left;
+        ranges.insert(ranges.begin() + static_cast<std::ptrdiff_t>(i) + 1, right);
       } else {
         ++i;
       }
     }
-    for (std::size_t i = 0; i < ranges.size() && ranges.size() < kTreeWidth;) {
-      if (ranges[i].size() > 1 && ranges[i].size() <= kLeafTriangles && !fits_a_leaf(ranges[i])) {
-        split_at(i);
-      } else {
-        ++i;
-      }
-    }
+    std::stable_partition(ranges.begin(), ranges.end(), [](const Range& part) { return part.size() > 1; });
     return ranges;
   }
 
-  Subtree build_node(const Range& range) {
-    const auto index = static_cast<std::uint32_t>(tree_.nodes.size());
-    tree_.nodes.emplace_back();
-    const std::vector<Range> ranges = children_of(range);
-    const auto first_moments = static_cast<std::uint32_t>(tree_.moments.size());
-    tree_.moments.resize(tree_.moments.size() + ranges.size());
-
+  void build_node(std::size_t index, std::vector<Item>& order, const Range& range) {
+    const std::vector<Range> ranges = children_of(order, range);
     TreeNode node{};
-    node.first_moments = first_moments;
-    node.children = static_cast<std::uint32_t>(ranges.size());
-    Subtree result;
-    result.child = index;
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const auto moments_index = first_moments + static_cast<std::uint32_t>(i);
-      const Subtree child =
-          fits_a_leaf(ranges[i]) ? build_leaf(ranges[i], moments_index) : build_node(ranges[i]);
-      node.child[i] = child.child;
-      set_bounds(node, i, child.bounds);
-      for (std::size_t a = 0; a < 3; ++a) {
-        node.projected_area[a][i] = upper_half_rounded_up(child.projected_area[static_cast<int>(a)]);
+    node.first_node = static_cast<std::uint32_t>(tree_.nodes.size());
+    node.first_leaf = static_cast<std::uint32_t>(leaf_places_.size());
+    node.first_moments = static_cast<std::uint32_t>(num_children_);
+    node.children = static_cast<std::uint8_t>(ranges.size());
+    for (const Range& part : ranges) {
+      const auto place = static_cast<std::uint32_t>(num_children_++);
+      if (part.size() > 1) {
+        ++node.inner_nodes;
+        tree_.nodes.emplace_back();
+        parents_.push_back(place);
+      } else {
+        leaf_places_.push_back({order[part.begin].index, place});
       }
-      tree_.moments[moments_index] = child.moments;
-      result.bounds.include(child.bounds);
-      result.moments += child.moments;
-      result.projected_area += child.projected_area;
     }
     tree_.nodes[index] = node;
-    return result;
+    for (std::size_t i = 0; i < node.inner_nodes; ++i) build_node(node.first_node + i, order, ranges[i]);
   }
 
-  // Sets float32 bounds that contain the double bounds despite rounding.
-  void set_bounds(TreeNode& node, std::size_t i, const Bounds& bounds) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    const auto set = [&](int axis, float& center, float& half) {
-      center = static_cast<float>(0.5 * (bounds.min[axis] + bounds.max[axis]));
-      const double needed = std::max(bounds.max[axis] - static_cast<double>(center),
-                                     static_cast<double>(center) - bounds.min[axis]);
-      half = std::nextafter(static_cast<float>(needed), kInfinity);
-      tree_.reach = std::max(tree_.reach, std::nextafter(std::abs(center) + half, kInfinity));
-    };
-    set(0, node.center_x[i], node.half_x[i]);
-    set(1, node.center_y[i], node.half_y[i]);
-    set(2, node.center_z[i], node.half_z[i]);
+  void fill_leaves() {
+    subtrees_.resize(num_children_);
+    if (fill_leaves(tree_.leaves)) return;
+    tree_.leaves = {};
+    fill_leaves(tree_.double_leaves);
   }
 
-  Subtree build_leaf(Range range, std::uint32_t moments_index) {
-    // The halves of a leaf are spatially coherent, so that a kernel for eight triangles can skip one half.
-    if (range.size() > kLeafTriangles / 2) split(range, kLeafTriangles / 2);
-    std::array<std::int32_t, kLeafVertices> vertices;
-    std::size_t count = 0;
-    leaf_vertices(range, vertices, count);
+  // Returns false if a vertex is not exact.
+  template <typename Real>
+  bool fill_leaves(LargePageArray<TreeLeaf<Real>>& leaves) {
+    leaves.resize(leaf_places_.size());
+    std::atomic<bool> exact{true};
+    const std::size_t tasks = (leaves.size() + kLeavesPerTask - 1) / kLeavesPerTask;
+    run_parallel_tasks(tasks, threads_, [&](std::size_t task) {
+      const std::size_t end = std::min(leaves.size(), (task + 1) * kLeavesPerTask);
+      for (std::size_t i = task * kLeavesPerTask; i < end && exact; ++i) {
+        if (!fill_leaf(leaf_places_[i], leaves[i])) exact = false;
+      }
+    });
+    for (const TreeLeaf<Real>& leaf : leaves)
+      tree_.rounding += exact ? static_cast<double>(leaf.rounding) : 0.0;
+    return exact;
+  }
 
-    Subtree result;
-    result.child = TreeNode::kLeafBit + static_cast<std::uint32_t>(tree_.leaves.size());
-    for (std::size_t i = 0; i < count; ++i) result.bounds.include(surface_.vertex(vertices[i]));
+  struct LeafPlace {
+    std::uint32_t range;  // index into leaves_
+    std::uint32_t child;  // number of the child, over all nodes
+  };
 
-    TreeLeaf leaf{};
-    leaf.moments = moments_index;
-    leaf.vertices = static_cast<std::uint8_t>(count);
-    leaf.triangles = static_cast<std::uint8_t>(range.size());
-    const Vec3 middle = 0.5 * (result.bounds.min + result.bounds.max);
-    const Vec3 center = (middle / tree_.grid).array().round().matrix() * tree_.grid;
-    leaf.center = {center.x(), center.y(), center.z()};
-    for (std::size_t i = 0; i < kLeafVertices; ++i) {
-      const Vec3 at = surface_.vertex(vertices[i < count ? i : 0]) - center;
-      for (std::size_t axis = 0; axis < 3; ++axis) leaf.y[axis][i] = at[static_cast<int>(axis)];
-    }
-    SurfaceMoments<double> moments;
-    double area = 0.0;
-    double rounding = 0.0;  // [m^3]
+  template <typename Real>
+  bool fill_leaf(const LeafPlace& place, TreeLeaf<Real>& leaf) {
+    const Range& range = leaves_[place.range];
+    LeafVertices vertices;
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      const Triangle& triangle = surface_.triangles[static_cast<std::size_t>(items_[i].triangle)];
-      const auto slot = i - range.begin;
-      const auto local = [&](std::int32_t vertex) {
-        return static_cast<std::uint8_t>(std::find(vertices.begin(), vertices.end(), vertex) -
-                                         vertices.begin());
+      for (const std::int32_t vertex : surface_.triangles[items_[i].index]) vertices.add(vertex);
+    }
+    Subtree& subtree = subtrees_[place.child];
+    subtree = {};
+    for (std::size_t v = 0; v < vertices.count; ++v) {
+      subtree.bounds.include(surface_.vertex(vertices.index[v]));
+    }
+    leaf.moments = place.child;
+    leaf.vertices = static_cast<std::uint8_t>(vertices.count);
+    leaf.triangles = static_cast<std::uint8_t>(range.size());
+    const Vec3 center = subtree.bounds.center();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (place_vertices(axis, vertices, center[axis], leaf)) continue;
+      if (place_vertices(axis, vertices, file_origin_[axis], leaf)) continue;
+      return false;
+    }
+
+    double rounding = 0.0;  // [m^3]
+    leaf.corners = {};
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const Triangle& triangle = surface_.triangles[items_[i].index];
+      const auto local = [&](int corner) {
+        return vertices.find(triangle[static_cast<std::size_t>(corner)]);
       };
-      leaf.a[slot] = local(triangle[0]);
-      leaf.b[slot] = local(triangle[1]);
-      leaf.c[slot] = local(triangle[2]);
-      leaf.corners[slot] = static_cast<std::uint16_t>(leaf.a[slot] | leaf.b[slot] << 4U | leaf.c[slot] << 8U);
-      const auto of_triangle = moments_of_triangle<double>(
+      leaf.corners[i - range.begin].word = static_cast<std::uint16_t>(
+          local(0) | local(1) << LeafCorners::kBits | local(2) << (2 * LeafCorners::kBits));
+      const auto moments = moments_of_triangle<double>(
           surface_.vertex(triangle[0]), surface_.vertex(triangle[1]), surface_.vertex(triangle[2]));
-      moments += of_triangle;
-      area += of_triangle.S.norm();
-      result.projected_area += of_triangle.S.cwiseAbs();
+      subtree.moments += moments;
+      subtree.area += moments.S.norm();
+      subtree.projected_area += moments.S.cwiseAbs();
       rounding += edges_cubed(triangle);
     }
     leaf.rounding = static_cast<float>(0.5 * rounding);
-    tree_.rounding += static_cast<double>(leaf.rounding);
-    result.moments = pack(moments, area);
-    tree_.leaves.push_back(leaf);
-    return result;
+    return true;
+  }
+
+  // Sets one coordinate of the leaf's centre, near `middle`, and of its vertices. Returns false if a vertex
+  // is not exact.
+  //
+  // Float32 coordinates about the middle of the leaf are float32 numbers if they differ by less than a factor
+  // of three: then all of them are multiples of a unit that is small enough. If they do not, the leaf is not
+  // small in comparison with its distance from the file's origin, and that origin serves as its centre.
+  template <typename Real>
+  bool place_vertices(int axis, const LeafVertices& vertices, double middle, TreeLeaf<Real>& leaf) const {
+    const auto n = static_cast<std::size_t>(axis);
+    const double steps = std::nearbyint(middle / tree_.grid);
+    if (!(std::abs(steps) <= 0x1p23)) return false;
+    leaf.center[n] = static_cast<std::int32_t>(steps);
+    for (std::size_t i = 0; i < kLeafVertices; ++i) {
+      const double at =
+          surface_.vertex(vertices.index[i < vertices.count ? i : 0])[axis] - steps * tree_.grid;
+      leaf.y[n][i] = static_cast<Real>(at);
+      if (static_cast<double>(leaf.y[n][i]) != at) return false;
+    }
+    return true;
   }
 
   // Twice the area of a cut triangle is a product of two edges, at worst the longest two, with a relative
@@ -288,27 +434,87 @@ class Builder {
     return edges[1] * edges[2] * edges[2];
   }
 
+  // From the leaves up: a node's number is greater than its parent's.
+  void fill_nodes() {
+    for (auto& moments : tree_.moments) moments.resize(num_children_);
+    tree_.areas.resize(num_children_);
+    tree_.projected_areas.resize(tree_.nodes.size());
+    for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
+      TreeNode& node = tree_.nodes[n];
+      Subtree sum;
+      for (std::size_t i = 0; i < node.children; ++i) {
+        const std::size_t child = node.first_moments + i;
+        const Subtree& subtree = subtrees_[child];
+        sum += subtree;
+        set_bounds(node, i, subtree.bounds);
+        for (std::size_t a = 0; a < 3; ++a) {
+          const auto axis = static_cast<int>(a);
+          tree_.moments[a][child] = of_axis(subtree.moments, axis);
+          tree_.projected_areas[n].values[a][i] = upper_half_rounded_up(subtree.projected_area[axis]);
+        }
+        tree_.areas[child] = subtree.area;
+      }
+      if (n > 0) {
+        subtrees_[parents_[n]] = sum;
+      } else {
+        tree_.total = sum.moments;
+      }
+    }
+  }
+
+  // Exact, because the unit is a power of two.
+  void set_bounds(TreeNode& node, std::size_t i, const Bounds& bounds) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<int>(a);
+      const auto low = static_cast<std::int32_t>(std::floor(bounds.min[axis] / tree_.unit));
+      const auto high = static_cast<std::int32_t>(std::ceil(bounds.max[axis] / tree_.unit));
+      const std::int32_t center = (low + high) >> 1;
+      const std::int32_t half = std::max(high - center, center - low);
+      node.center[a][i] = static_cast<std::int16_t>(center);
+      node.half[a][i] = static_cast<std::uint16_t>(half);
+      tree_.reach = std::max(tree_.reach, tree_.unit * (std::abs(center) + half));
+    }
+  }
+
   const TriangleMesh& surface_;
-  std::vector<Item> items_;
+  Vec3 file_origin_;
+  std::size_t threads_;
   MomentTree tree_;
+  std::vector<Item> items_;             // triangles
+  std::vector<Range> leaves_;           // of items_
+  std::vector<LeafPlace> leaf_places_;  // by index into MomentTree::leaves
+  std::vector<std::uint32_t> parents_;  // of each node but the root: the number of the child that it is
+  std::size_t num_children_ = 0;        // of all nodes
+  std::vector<Subtree> subtrees_;       // of each child
 };
+
+template <typename T>
+std::size_t bytes_of(const LargePageArray<T>& array) {
+  return array.size() * sizeof(T);
+}
 
 }  // namespace
 
-SurfaceMoments<double> NodeMoments::moments() const {
+SurfaceMoments<double> MomentTree::moments_of(std::size_t i) const {
   SurfaceMoments<double> result;
   for (int a = 0; a < 3; ++a) {
-    std::size_t n = 0;
-    const auto next = [&] { return values[slot(static_cast<std::size_t>(a), n++)]; };
-    result.S(a) = next();
-    for (int i = 0; i < 3; ++i) result.N(i, a) = next();
-    for (int pair = 0; pair < 6; ++pair) result.P(pair, a) = next();
+    const AxisMoments& from = moments[static_cast<std::size_t>(a)][i];
+    result.S(a) = from.S;
+    for (int j = 0; j < 3; ++j) result.N(j, a) = from.N[static_cast<std::size_t>(j)];
+    for (int pair = 0; pair < 6; ++pair) result.P(pair, a) = from.P[static_cast<std::size_t>(pair)];
   }
   return result;
 }
 
-MomentTree build_moment_tree(const TriangleMesh& surface) {
-  return Builder(surface).build();
+std::size_t MomentTree::bytes() const {
+  std::size_t sum = bytes_of(nodes) + bytes_of(projected_areas) + bytes_of(leaves) + bytes_of(double_leaves) +
+                    bytes_of(areas);
+  for (const auto& of_axis : moments) sum += bytes_of(of_axis);
+  return sum;
+}
+
+MomentTree build_moment_tree(const TriangleMesh& surface, const Vec3& file_origin) {
+  return Builder(surface, file_origin).build();
 }
 
 }  // namespace buoyancy

@@ -120,8 +120,12 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   const bool has_centroid = !mesh.is_open() && std::abs(mesh.volume) > mesh.volume_tolerance();
   mesh.centroid = has_centroid ? Vec3(totals.elements.moment(Vec3::Zero()) / mesh.volume)
                                : Vec3(0.5 * (mesh.box_min + mesh.box_max));
-  if (with_tree == WithTree::kYes) mesh.tree = build_moment_tree(mesh.surface);
+  if (with_tree == WithTree::kYes) mesh.tree = build_moment_tree(mesh);
   return mesh;
+}
+
+MomentTree build_moment_tree(const HydrostaticMesh& mesh) {
+  return build_moment_tree(mesh.surface, -mesh.center_B);
 }
 
 }  // namespace buoyancy

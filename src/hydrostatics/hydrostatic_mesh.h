@@ -65,4 +65,6 @@ enum class WithTree { kNo, kYes };
 
 HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree = WithTree::kYes);
 
+MomentTree build_moment_tree(const HydrostaticMesh& mesh);
+
 }  // namespace buoyancy

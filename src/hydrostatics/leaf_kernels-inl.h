@@ -24,25 +24,42 @@ class LeafBatch {
  public:
   static constexpr std::size_t kCapacity = 32;
 
+  // Numbers of one leaf's vertices: along b and c, about its centre [m], and over the water [m].
+  struct Vertices {
+    VertexTable b, c, z;
+  };
+
+  HWY_INLINE LeafBatch(const TreeQuery& query, double grid)
+      : axes_(query.axes), start_(-query.h_high, -query.h_low) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      const std::size_t axis = axes_[n];
+      k_[n] = query.k[axis];
+      k_high_[axis] = grid * query.k_high[axis];
+      k_low_[axis] = grid * query.k_low[axis];
+    }
+  }
+
   HWY_INLINE std::size_t cut_leaves() const { return size_; }
-  HWY_INLINE const TreeLeaf& leaf(std::size_t i) const { return *leaf_[i]; }
-  HWY_INLINE const VertexTable& heights(std::size_t i) const { return heights_[i].values; }
+  HWY_INLINE const LeafPatch& leaf(std::size_t i) const { return *leaf_[i]; }
+  HWY_INLINE const Vertices& vertices(std::size_t i) const { return vertices_[i]; }
   HWY_INLINE const LeafWork& work(std::size_t i) const { return work_[i]; }
 
   HWY_INLINE void clear() { size_ = 0; }
 
   // At most kCapacity leaves between calls of clear(). Returns true if the leaf is fully submerged.
-  HWY_INLINE bool add(const TreeLeaf& leaf, const TreeQuery& query) {
-    const auto& c = leaf.center;
-    // Exact: the terms are whole multiples of grid 2^-26, fewer than 2^51 of them (TreeQuery).
-    const double z_high =
-        query.k_high[0] * c[0] + query.k_high[1] * c[1] + query.k_high[2] * c[2] - query.h_high;
-    const double z_low = query.k_low[0] * c[0] + query.k_low[1] * c[1] + query.k_low[2] * c[2] - query.h_low;
-    const std::uint32_t vertices = (1U << leaf.vertices) - 1U;
-    const std::uint32_t wet = find_heights(leaf, query.k, z_high + z_low, heights_[size_].values) & vertices;
+  template <typename Real>
+  HWY_INLINE bool add(const TreeLeaf<Real>& leaf) {
+    const double x = leaf.center[0];
+    const double y = leaf.center[1];
+    const double z = leaf.center[2];
+    // Exact: the terms are whole multiples of grid 2^-26, fewer than 2^53 of them (TreeQuery).
+    const double z_high = k_high_[0] * x + k_high_[1] * y + k_high_[2] * z + start_.high;
+    const double z_low = k_low_[0] * x + k_low_[1] * y + k_low_[2] * z + start_.low;
+    const std::uint32_t all = (1U << leaf.vertices) - 1U;
+    const std::uint32_t wet = place_vertices(leaf, z_high + z_low, vertices_[size_]) & all;
     leaf_[size_] = &leaf;
     wet_[size_] = wet;
-    const bool fully_submerged = wet == vertices;
+    const bool fully_submerged = wet == all;
     size_ += static_cast<std::size_t>(wet != 0) - static_cast<std::size_t>(fully_submerged);
     return fully_submerged;
   }
@@ -55,36 +72,51 @@ class LeafBatch {
   }
 
  private:
-  // Computes start + k . y of the leaf's vertices. Returns a bit for each vertex below the water; bits of
-  // unused vertices are undefined.
-  HWY_INLINE static std::uint32_t find_heights(const TreeLeaf& leaf, const std::array<double, 3>& k,
-                                               double start, VertexTable& heights) {
+  HWY_INLINE static RealVector load(const float* from) {
+    return hn::PromoteTo(Reals(), hn::Load(hn::Rebind<float, Reals>(), from));
+  }
+  HWY_INLINE static RealVector load(const double* from) { return hn::LoadU(Reals(), from); }
+
+  // Writes the vertices' numbers, with heights start + k . y. Returns a bit for each vertex below the water;
+  // bits of unused vertices are undefined.
+  template <typename Real>
+  HWY_INLINE std::uint32_t place_vertices(const TreeLeaf<Real>& leaf, double start,
+                                          Vertices& vertices) const {
     const Reals d;
-    const auto x = hn::Set(d, k[0]);
-    const auto y = hn::Set(d, k[1]);
-    const auto z = hn::Set(d, k[2]);
+    const auto k_a = hn::Set(d, k_[0]);
+    const auto k_b = hn::Set(d, k_[1]);
+    const auto k_c = hn::Set(d, k_[2]);
     const auto from = hn::Set(d, start);
     std::uint32_t wet = 0;
     for (std::size_t i = 0; i < kLeafVertices; i += hn::Lanes(d)) {
       // With narrow vectors, some leaves fill only a few of them.
       if (hn::Lanes(d) < 8 && i >= leaf.vertices) break;
-      const auto value = hn::MulAdd(x, hn::Load(d, leaf.y[0].data() + i),
-                                    hn::MulAdd(y, hn::Load(d, leaf.y[1].data() + i),
-                                               hn::MulAdd(z, hn::Load(d, leaf.y[2].data() + i), from)));
-      hn::Store(value, d, heights.data() + i);
+      const auto b = load(leaf.y[axes_[1]].data() + i);
+      const auto c = load(leaf.y[axes_[2]].data() + i);
+      const auto z =
+          hn::MulAdd(k_a, load(leaf.y[axes_[0]].data() + i), hn::MulAdd(k_b, b, hn::MulAdd(k_c, c, from)));
+      hn::Store(b, d, vertices.b.values.data() + i);
+      hn::Store(c, d, vertices.c.values.data() + i);
+      hn::Store(z, d, vertices.z.values.data() + i);
       std::array<std::uint8_t, 8> bits{};
-      hn::StoreMaskBits(d, hn::Lt(value, hn::Zero(d)), bits.data());
+      hn::StoreMaskBits(d, hn::Lt(z, hn::Zero(d)), bits.data());
       wet |= static_cast<std::uint32_t>(bits[0]) << i;
     }
     return wet;
   }
 
-  struct alignas(64) Heights {
-    VertexTable values;
+  struct Parts {
+    HWY_INLINE Parts(double high_part, double low_part) : high(high_part), low(low_part) {}
+    double high, low;
   };
+
+  const std::array<std::size_t, 3>& axes_;
+  Parts start_;                           // [m], the height of c
+  std::array<double, 3> k_;               // along a, b and c
+  std::array<double, 3> k_high_, k_low_;  // [m], parts of k times MomentTree::grid, by axis of B
   // One element more than is kept: the next leaf overwrites one that is not cut.
-  std::array<Heights, kCapacity + 1> heights_;
-  std::array<const TreeLeaf*, kCapacity + 1> leaf_;
+  std::array<Vertices, kCapacity + 1> vertices_;
+  std::array<const LeafPatch*, kCapacity + 1> leaf_;
   std::array<std::uint32_t, kCapacity + 1> wet_;  // one bit per vertex
   std::array<LeafWork, kCapacity> work_;
   std::size_t size_ = 0;
@@ -102,14 +134,14 @@ class LeafSums {
 
   // Adds the wet part of the cut leaves' triangles, less the leaf's moments where
   // LeafWork::subtract_from_leaf.
-  HWY_INLINE void add(const LeafBatch& batch, const std::array<std::size_t, 3>& axes) {
+  HWY_INLINE void add(const LeafBatch& batch, const std::array<std::size_t, 3>& axes, double grid) {
     LeafSums whole;
     for (std::size_t i = 0; i < batch.cut_leaves(); ++i) {
-      whole.add_whole(batch.work(i), LeafFrame(batch, i, axes));
+      whole.add_whole(batch.work(i), LeafFrame(batch, i, axes, grid));
     }
     LeafSums cut;
     for (std::size_t i = 0; i < batch.cut_leaves(); ++i) {
-      cut.add_cut(batch.work(i), LeafFrame(batch, i, axes));
+      cut.add_cut(batch.work(i), LeafFrame(batch, i, axes, grid));
       rounding_ += static_cast<double>(batch.leaf(i).rounding);
     }
     volume6_ = hn::Add(volume6_, hn::Add(whole.volume6_, cut.volume6_));
@@ -134,12 +166,13 @@ class LeafSums {
   // along a are products of differences of these coordinates, as exact as the mesh; moments are moved to the
   // mesh's centre.
   struct LeafFrame {
-    HWY_INLINE LeafFrame(const LeafBatch& batch, std::size_t i, const std::array<std::size_t, 3>& axes)
-        : b(batch.leaf(i).y[axes[1]]),
-          c(batch.leaf(i).y[axes[2]]),
-          z(batch.heights(i)),
-          center_b4(hn::Set(Reals(), 4.0 * batch.leaf(i).center[axes[1]])),
-          center_c4(hn::Set(Reals(), 4.0 * batch.leaf(i).center[axes[2]])) {}
+    HWY_INLINE LeafFrame(const LeafBatch& batch, std::size_t i, const std::array<std::size_t, 3>& axes,
+                         double grid)
+        : b(batch.vertices(i).b),
+          c(batch.vertices(i).c),
+          z(batch.vertices(i).z),
+          center_b4(hn::Set(Reals(), 4.0 * grid * batch.leaf(i).center[axes[1]])),
+          center_c4(hn::Set(Reals(), 4.0 * grid * batch.leaf(i).center[axes[2]])) {}
 
     const VertexTable& b;
     const VertexTable& c;
@@ -153,11 +186,16 @@ class LeafSums {
     return hn::MulSub(x, y, hn::Mul(z, w));
   }
 
+  // Vectors of eight are nearly always one, so that evaluating one that is empty costs less than a branch.
+  HWY_INLINE static std::size_t at_least_one_of_eight(std::size_t count) {
+    return hn::Lanes(Reals()) == 8 ? std::max<std::size_t>(count, 1) : count;
+  }
+
   HWY_INLINE void add_whole(const LeafWork& work, const LeafFrame& leaf) {
     const Reals d;
     const auto sign = hn::Set(d, work.subtract_from_leaf ? -1.0 : 1.0);
-    // At most half of a leaf: with vectors of eight always exactly one, which needs no branch prediction.
-    const std::size_t num_whole = hn::Lanes(d) == 8 ? 1 : work.num_whole;
+    // At most half of a leaf, nearly always one vector of eight.
+    const std::size_t num_whole = at_least_one_of_eight(work.num_whole);
     for (std::size_t i = 0; i < num_whole; i += hn::Lanes(d)) {
       const CornerIndices at = corner_indices(work.whole.data() + i);
       const auto bp = look_up(leaf.b, at.p);
@@ -192,8 +230,7 @@ class LeafSums {
   HWY_INLINE void add_cut(const LeafWork& work, const LeafFrame& leaf) {
     const Reals d;
     const auto four = hn::Set(d, 4.0);
-    // Nearly always one vector of eight, rarely two; none where a leaf's triangles are not connected.
-    const std::size_t num_cut = hn::Lanes(d) == 8 ? std::max<std::size_t>(work.num_cut, 1) : work.num_cut;
+    const std::size_t num_cut = at_least_one_of_eight(work.num_cut);
     for (std::size_t i = 0; i < num_cut; i += hn::Lanes(d)) {
       const CornerIndices at = corner_indices(work.cut.data() + i);
       const auto bp = look_up(leaf.b, at.p);

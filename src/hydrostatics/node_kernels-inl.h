@@ -23,26 +23,38 @@ using Bounds = hn::CappedTag<float, kTreeWidth>;
 using Reals = hn::CappedTag<double, 8>;
 using RealVector = hn::Vec<Reals>;
 
+// The water plane in units of MomentTree::unit, except where units are stated.
 struct BoundsQuery {
   float kx, ky, kz, h, margin;
+  float unit;               // [m]
   float per_half_diagonal;  // [1/m], 2 / L
   float per_k_a;            // 1 / |k_a|
 };
 
 HWY_INLINE BoundsQuery make_bounds_query(const MomentTree& tree, const TreeQuery& query) {
+  constexpr float kReach = 32768.0F;
   BoundsQuery bounds{};
   bounds.kx = static_cast<float>(query.k[0]);
   bounds.ky = static_cast<float>(query.k[1]);
   bounds.kz = static_cast<float>(query.k[2]);
-  bounds.h = static_cast<float>(query.h_high + query.h_low);
+  bounds.h = static_cast<float>((query.h_high + query.h_low) / tree.unit);
   // float32 rounds k, h and each product and sum: together at most 12 half-ulps of 3 reach + |h|.
-  bounds.margin = 1e-6F * (3.0F * tree.reach + std::abs(bounds.h));
+  bounds.margin = 1e-6F * (3.0F * kReach + std::abs(bounds.h));
+  bounds.unit = static_cast<float>(tree.unit);
   bounds.per_half_diagonal = static_cast<float>(1.0 / query.half_diagonal);
   bounds.per_k_a = static_cast<float>(1.0 / std::abs(query.k[query.axes[0]]));
   return bounds;
 }
 
-// [m], bounds on the heights of some children of a node, rounded outward.
+// Reads 16-bit numbers as float32.
+template <class D, typename Short>
+HWY_INLINE hn::Vec<D> load_short(D d, const std::array<Short, kTreeWidth>& numbers, std::size_t first) {
+  const hn::Rebind<std::int32_t, D> words;
+  const hn::Rebind<Short, D> shorts;
+  return hn::ConvertTo(d, hn::PromoteTo(words, hn::LoadU(shorts, numbers.data() + first)));
+}
+
+// Bounds on the heights of some children of a node, rounded outward, in units of MomentTree::unit.
 template <class D>
 struct HeightBounds {
   hn::Vec<D> low, high;
@@ -54,14 +66,14 @@ HWY_INLINE HeightBounds<D> height_bounds(D d, const TreeNode& node, std::size_t 
   const auto kx = hn::Set(d, query.kx);
   const auto ky = hn::Set(d, query.ky);
   const auto kz = hn::Set(d, query.kz);
-  const auto center = hn::Sub(hn::MulAdd(kx, hn::Load(d, node.center_x.data() + first),
-                                         hn::MulAdd(ky, hn::Load(d, node.center_y.data() + first),
-                                                    hn::Mul(kz, hn::Load(d, node.center_z.data() + first)))),
+  const auto center = hn::Sub(hn::MulAdd(kx, load_short(d, node.center[0], first),
+                                         hn::MulAdd(ky, load_short(d, node.center[1], first),
+                                                    hn::Mul(kz, load_short(d, node.center[2], first)))),
                               hn::Set(d, query.h));
   const auto reach = hn::MulAdd(
-      hn::Abs(kx), hn::Load(d, node.half_x.data() + first),
-      hn::MulAdd(hn::Abs(ky), hn::Load(d, node.half_y.data() + first),
-                 hn::MulAdd(hn::Abs(kz), hn::Load(d, node.half_z.data() + first), hn::Set(d, query.margin))));
+      hn::Abs(kx), load_short(d, node.half[0], first),
+      hn::MulAdd(hn::Abs(ky), load_short(d, node.half[1], first),
+                 hn::MulAdd(hn::Abs(kz), load_short(d, node.half[2], first), hn::Set(d, query.margin))));
   return {hn::Sub(center, reach), hn::Add(center, reach)};
 }
 
@@ -80,6 +92,11 @@ HWY_INLINE ChildMasks child_masks(const TreeNode& node, std::uint32_t wet, std::
   return {wet & present, ~(wet | dry) & present};
 }
 
+// A bit mask of the children that are inner nodes.
+HWY_INLINE std::uint32_t inner_bits(const TreeNode& node) {
+  return (1U << node.inner_nodes) - 1U;
+}
+
 template <class D>
 HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   std::array<std::uint8_t, 8> bits{};
@@ -89,8 +106,7 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
 
 // append() writes those of eight items whose bit in the mask is set, in order; append_places() writes first +
 // i for every set bit i. Both may write up to kTreeWidth elements in all, with undefined values after the
-// last item, and return the number of items. leaf_bits() returns a bit for each of eight children that is a
-// leaf.
+// last item, and return the number of items.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 
 template <class T>
@@ -110,11 +126,6 @@ HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, st
   const EightOf<std::uint32_t> d;
   return append_lanes(d, hn::Add(hn::Iota(d, 0), hn::Set(d, first)), mask, to);
 }
-HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
-  const EightOf<std::int32_t> d;
-  const EightOf<std::uint32_t> words;
-  return mask_bits(d, hn::Lt(hn::BitCast(d, hn::LoadU(words, children)), hn::Zero(d)));
-}
 
 #else
 
@@ -128,11 +139,6 @@ HWY_INLINE std::size_t append_places(std::uint32_t mask, std::uint32_t first, st
   std::size_t count = 0;
   for (; mask != 0; mask &= mask - 1) to[count++] = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
   return count;
-}
-HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
-  std::uint32_t leaves = 0;
-  for (std::size_t i = 0; i < kTreeWidth; ++i) leaves |= children[i] >> 31U << i;
-  return leaves;
 }
 
 #endif
@@ -152,6 +158,7 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
 // The values of PrunableNodes for a node's eight children.
 struct alignas(32) PrunableChildren {
   std::array<float, kTreeWidth> below, above, error, curved;
+  std::array<std::array<float, kTreeWidth>, 3> center;
 };
 
 template <class D>
@@ -183,17 +190,19 @@ HWY_INLINE FitErrors<D> fit_errors(D d, hn::Vec<D> below, hn::Vec<D> above, hn::
           hn::MulAdd(parabola, hn::MulAdd(hn::Set(d, 0.36F), depth, one), hn::Mul(line, lever))};
 }
 
+// In units of MomentTree::unit.
 template <class D>
 HWY_INLINE hn::Vec<D> radius(D d, const TreeNode& node, std::size_t first) {
-  const auto x = hn::Load(d, node.half_x.data() + first);
-  const auto y = hn::Load(d, node.half_y.data() + first);
-  const auto z = hn::Load(d, node.half_z.data() + first);
+  const auto x = load_short(d, node.half[0], first);
+  const auto y = load_short(d, node.half[1], first);
+  const auto z = load_short(d, node.half[2], first);
   return hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))));
 }
 
-HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& query, std::size_t a,
-                                    PrunableChildren& children) {
+HWY_INLINE ChildMasks test_children(const TreeNode& node, const ProjectedAreas& projected,
+                                    const BoundsQuery& query, std::size_t a, PrunableChildren& children) {
   const Bounds d;
+  const auto unit = hn::Set(d, query.unit);
   const auto scale = hn::Set(d, 1.00001F * query.per_k_a);  // covers the rounding of float32
   std::uint32_t wet = 0;
   std::uint32_t dry = 0;
@@ -201,15 +210,18 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
     const auto heights = height_bounds(d, node, i, query);
     wet |= mask_bits(d, hn::Lt(heights.high, hn::Zero(d))) << i;
     dry |= mask_bits(d, hn::Gt(heights.low, hn::Zero(d))) << i;
-    const auto below = hn::Max(hn::Neg(heights.low), hn::Zero(d));
-    const auto above = hn::Max(heights.high, hn::Zero(d));
-    const auto errors = fit_errors(d, below, above, radius(d, node, i), query);
+    const auto below = hn::Mul(unit, hn::Max(hn::Neg(heights.low), hn::Zero(d)));
+    const auto above = hn::Mul(unit, hn::Max(heights.high, hn::Zero(d)));
+    const auto errors = fit_errors(d, below, above, hn::Mul(unit, radius(d, node, i)), query);
     hn::Store(below, d, children.below.data() + i);
     hn::Store(above, d, children.above.data() + i);
-    const auto area = hn::Mul(scale, load_upper_halves(d, node.projected_area[a], i));
+    const auto area = hn::Mul(scale, load_upper_halves(d, projected.values[a], i));
     hn::Store(hn::Mul(area, hn::Min(errors.line, errors.curved)), d, children.error.data() + i);
     hn::Store(hn::IfThenElseZero(hn::Lt(errors.curved, errors.line), hn::Set(d, 1.0F)), d,
               children.curved.data() + i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      hn::Store(hn::Mul(unit, load_short(d, node.center[axis], i)), d, children.center[axis].data() + i);
+    }
   }
   return child_masks(node, wet, dry);
 }
@@ -217,15 +229,25 @@ HWY_INLINE ChildMasks test_children(const TreeNode& node, const BoundsQuery& que
 HWY_INLINE void append_prunable(const TreeNode& node, std::uint32_t mask, const PrunableChildren& children,
                                 PrunableNodes& nodes) {
   const std::size_t at = nodes.size;
-  append(node.child.data(), mask, nodes.child.data() + at);
+  const std::uint32_t inner = mask & inner_bits(node);
+  const std::size_t inners = append_places(inner, node.first_node, nodes.child.data() + at);
+  append_places((mask ^ inner) >> node.inner_nodes, PrunableNodes::kLeafBit + node.first_leaf,
+                nodes.child.data() + at + inners);
   append(children.below.data(), mask, nodes.below.data() + at);
   append(children.above.data(), mask, nodes.above.data() + at);
   append(children.error.data(), mask, nodes.error.data() + at);
   append(children.curved.data(), mask, nodes.curved.data() + at);
-  append(node.center_x.data(), mask, nodes.center[0].data() + at);
-  append(node.center_y.data(), mask, nodes.center[1].data() + at);
-  append(node.center_z.data(), mask, nodes.center[2].data() + at);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    append(children.center[axis].data(), mask, nodes.center[axis].data() + at);
+  }
   nodes.size += append_places(mask, node.first_moments, nodes.moments.data() + at);
+}
+
+// Returns a bit for each of eight elements of PrunableNodes::child that is a leaf.
+HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
+  std::uint32_t leaves = 0;
+  for (std::size_t i = 0; i < kTreeWidth; ++i) leaves |= children[i] >> 31U << i;
+  return leaves;
 }
 
 // Keeps those of the eight nodes from `from` on whose bit in the mask is set: moves them to nodes.size, which
@@ -290,49 +312,48 @@ HWY_INLINE float limit_to_errors(const ErrorSurvey& survey, std::size_t nodes, d
   return limit;
 }
 
-// The layout of the ten moments of axis a in vectors: those of its cache line, then two of the last line.
-// Vectors of eight hold the whole last line, including the moments of the other axes.
+// The ten moments of an axis in vectors; the last one holds the last two and zeros.
 class AxisVectors {
+  static constexpr std::size_t kCount = sizeof(AxisMoments) / sizeof(double);
+  static_assert(kCount == 10);
+
  public:
   static constexpr std::size_t kLanes = hn::MaxLanes(Reals());
-  static constexpr std::size_t kInLine = NodeMoments::kInLine / kLanes;
-  static constexpr std::size_t kVectors = kInLine + (kLanes == 1 ? 2 : 1);
-
-  HWY_INLINE explicit AxisVectors(std::size_t a)
-      : line_(NodeMoments::kInLine * a),
-        rest_(kLanes == 8 ? NodeMoments::kLastLine : NodeMoments::slot(a, NodeMoments::kInLine)),
-        skipped_(kLanes == 8 ? 2 * a : 0) {}
-
-  HWY_INLINE RealVector load(const NodeMoments& moments, std::size_t vector) const {
-    const double* const from = moments.values.data();
-    return vector < kInLine ? hn::Load(Reals(), from + line_ + vector * kLanes)
-                            : hn::LoadU(Reals(), from + rest_ + (vector - kInLine) * kLanes);
-  }
-
-  HWY_INLINE void prefetch(const NodeMoments& moments) const {
-    __builtin_prefetch(moments.values.data() + line_);
-    __builtin_prefetch(moments.values.data() + NodeMoments::kLastLine);
-  }
+  static constexpr std::size_t kVectors = (kCount + kLanes - 1) / kLanes;
 
   struct alignas(64) Values {
     std::array<double, kVectors * kLanes> values{};
   };
-  // Index into Values of moment n of AxisMoments.
-  HWY_INLINE std::size_t slot(std::size_t n) const { return n < NodeMoments::kInLine ? n : n + skipped_; }
+
+  HWY_INLINE static RealVector load(const AxisMoments& moments, std::size_t vector) {
+    const double* const from = &moments.S + vector * kLanes;
+    if (kLanes > 2 && vector + 1 == kVectors) return load_two(from);
+    return hn::LoadU(Reals(), from);
+  }
+
+  HWY_INLINE static void prefetch(const AxisMoments& moments) {
+    __builtin_prefetch(&moments);
+    __builtin_prefetch(reinterpret_cast<const unsigned char*>(&moments + 1) - 1);
+  }
 
  private:
-  std::size_t line_, rest_, skipped_;
+  // A whole vector would read from the next cache line.
+  HWY_INLINE static RealVector load_two(const double* from) {
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+    return RealVector{_mm512_zextpd128_pd512(_mm_loadu_pd(from))};
+#elif HWY_TARGET == HWY_AVX2 && HWY_ARCH_X86
+    return RealVector{_mm256_zextpd128_pd256(_mm_loadu_pd(from))};
+#else
+    return hn::LoadU(Reals(), from);
+#endif
+  }
 };
 
 // Sums the nodes' moments of axis a: plainly within a block of 16, compensated from block to block.
 class AxisSums {
  public:
-  HWY_INLINE explicit AxisSums(std::size_t a) : vectors_(a) {}
-
-  HWY_INLINE void prefetch(const NodeMoments& moments) const { vectors_.prefetch(moments); }
-
   // Adds the listed elements of `moments`.
-  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const std::uint32_t* list, std::size_t count) {
+  HWY_INLINE void add(const AxisMoments* moments, const std::uint32_t* list, std::size_t count) {
     for (std::size_t n = 0; n < count; n += kBlock) add_block(moments, list + n, std::min(kBlock, count - n));
   }
 
@@ -344,8 +365,9 @@ class AxisSums {
   HWY_INLINE void finish(AxisMoments& sum) const {
     std::size_t n = 0;
     const auto next = [&] {
-      const std::size_t slot = vectors_.slot(n++);
-      return total_.values[slot] + rest_.values[slot];
+      const double value = total_.values[n] + rest_.values[n];
+      ++n;
+      return value;
     };
     sum.S = next();
     for (double& value : sum.N) value = next();
@@ -355,14 +377,13 @@ class AxisSums {
  private:
   static constexpr std::size_t kBlock = 16;
 
-  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const std::uint32_t* list,
-                            std::size_t count) {
+  HWY_INLINE void add_block(const AxisMoments* moments, const std::uint32_t* list, std::size_t count) {
     RealVector sum[AxisVectors::kVectors];
     for (RealVector& vector : sum) vector = hn::Zero(Reals());
     for (std::size_t n = 0; n < count; ++n) {
-      const NodeMoments& from = moments[list[n]];
+      const AxisMoments& from = moments[list[n]];
       for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
-        sum[v] = hn::Add(sum[v], vectors_.load(from, v));
+        sum[v] = hn::Add(sum[v], AxisVectors::load(from, v));
       }
     }
     add(sum);
@@ -380,7 +401,6 @@ class AxisSums {
     hn::Store(hn::Add(hn::Load(d, rest), error), d, rest);
   }
 
-  AxisVectors vectors_;
   AxisVectors::Values total_, rest_;
 };
 
@@ -388,24 +408,22 @@ class AxisSums {
 class PrunedSums {
  public:
   HWY_INLINE explicit PrunedSums(const TreeQuery& query)
-      : vectors_(query.axes[0]),
-        z_c_(-(query.h_high + query.h_low)),
-        offsets_(query.axes[0]),
+      : z_c_(-(query.h_high + query.h_low)),
         volume_(hn::Zero(Reals())),
         moment_{hn::Zero(Reals()), hn::Zero(Reals()), hn::Zero(Reals())} {
     const auto& k = query.k;
-    one_.values[vectors_.slot(0)] = 1.0;
+    one_.values[0] = 1.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      height_.values[vectors_.slot(1 + i)] = k[i];
+      height_.values[1 + i] = k[i];
       for (std::size_t j = i; j < 3; ++j) {
         const auto pair = static_cast<std::size_t>(kSymmetricPair[i][j]);
-        height_squared_.values[vectors_.slot(4 + pair)] = (i == j ? 1.0 : 2.0) * k[i] * k[j];
+        height_squared_.values[4 + pair] = (i == j ? 1.0 : 2.0) * k[i] * k[j];
       }
     }
   }
 
   // slopes: receives the nodes' slopes times their moments.
-  HWY_INLINE void add(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes, AxisSums& slopes) {
+  HWY_INLINE void add(const AxisMoments* moments, const PrunableNodes& nodes, AxisSums& slopes) {
     prefetch(moments, nodes, 0, 2 * kBlock);
     for (std::size_t first = 0; first < nodes.size; first += kBlock) {
       prefetch(moments, nodes, first + 2 * kBlock, first + 3 * kBlock);
@@ -432,10 +450,10 @@ class PrunedSums {
     std::array<std::array<double, kBlock>, 3> middle;
   };
 
-  HWY_INLINE void prefetch(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
-                           std::size_t first, std::size_t end) const {
+  HWY_INLINE void prefetch(const AxisMoments* moments, const PrunableNodes& nodes, std::size_t first,
+                           std::size_t end) const {
     for (std::size_t i = first; i < std::min(end, nodes.size); ++i)
-      vectors_.prefetch(moments[nodes.moments[i]]);
+      AxisVectors::prefetch(moments[nodes.moments[i]]);
   }
 
   // Computes the fits of kBlock nodes, including the padding after the last.
@@ -472,8 +490,8 @@ class PrunedSums {
     }
   }
 
-  HWY_INLINE void add_block(const std::vector<NodeMoments>& moments, const PrunableNodes& nodes,
-                            std::size_t first, std::size_t count, AxisSums& slope_sums) {
+  HWY_INLINE void add_block(const AxisMoments* moments, const PrunableNodes& nodes, std::size_t first,
+                            std::size_t count, AxisSums& slope_sums) {
     const Reals d;
     Fits fits;
     fit(nodes, first, fits);
@@ -490,7 +508,7 @@ class PrunedSums {
       height_squared[v] = hn::Load(d, height_squared_.values.data() + v * AxisVectors::kLanes);
     }
     for (std::size_t n = 0; n < count; ++n) {
-      const NodeMoments& node = moments[nodes.moments[first + n]];
+      const AxisMoments& node = moments[nodes.moments[first + n]];
       const auto slope = hn::Set(d, fits.slope[n]);
       const auto offset = hn::Set(d, fits.offset[n]);
       const auto constant = hn::Set(d, fits.constant[n]);
@@ -498,7 +516,7 @@ class PrunedSums {
       const auto quadratic = hn::Set(d, fits.quadratic[n]);
       auto volume = hn::Zero(d);  // int (p2 - p1) n_a dA
       for (std::size_t v = 0; v < AxisVectors::kVectors; ++v) {
-        const auto values = vectors_.load(node, v);
+        const auto values = AxisVectors::load(node, v);
         slopes[v] = hn::MulAdd(slope, values, slopes[v]);
         if (v < kOffsetVectors) offsets[v] = hn::MulAdd(offset, values, offsets[v]);
         const auto weight = hn::MulAdd(constant, one[v],
@@ -514,7 +532,6 @@ class PrunedSums {
     offsets_.add(offsets);
   }
 
-  AxisVectors vectors_;
   double z_c_;
   AxisSums offsets_;
   RealVector volume_;

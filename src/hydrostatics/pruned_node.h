@@ -34,8 +34,10 @@ namespace buoyancy {
 struct PrunableNodes {
   static constexpr std::size_t kPadding = 16;
 
+  static constexpr std::uint32_t kLeafBit = 0x80000000U;
+
   std::size_t size = 0;
-  std::vector<std::uint32_t> child;          // see TreeNode
+  std::vector<std::uint32_t> child;          // index of an inner node, or kLeafBit + index of a leaf
   std::vector<std::uint32_t> moments;        // index of the node's moments
   std::vector<float> below, above;           // [m], >= 0
   std::vector<float> error;                  // [m^3], e
@@ -54,17 +56,17 @@ struct PrunableNodes {
   }
 };
 
-// The working memory of a descent within a budget, one per thread: a level holds every node at most once.
-struct BudgetLists {
+// The working memory of a descent, one per thread: a level holds every node at most once.
+struct DescentLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to expand
   PrunableNodes open;                            // their children that the water may cross
 
-  // Checks each list on its own: of two trees one may have more nodes and the other more inner nodes.
-  void reserve(const MomentTree& tree) {
+  // Checks each list on its own: of two trees one may have more children and the other more inner nodes.
+  void reserve(const MomentTree& tree, bool with_open) {
     const std::size_t inners = tree.nodes.size() + kTreeWidth;
     if (inner.size() < inners) inner.resize(inners);
     if (next_inner.size() < inners) next_inner.resize(inners);
-    open.reserve(tree.moments.size());
+    if (with_open) open.reserve(tree.areas.size());
   }
 };
 

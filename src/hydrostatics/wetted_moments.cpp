@@ -28,7 +28,7 @@ class WettedSurfaceWalk {
  public:
   WettedSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
     constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-    margin_ = 16.0 * kEpsilon * (3.0 * static_cast<double>(tree.reach) + std::abs(plane.h_c));
+    margin_ = 16.0 * kEpsilon * (3.0 * tree.reach + std::abs(plane.h_c));
     visit(tree.nodes[0]);
   }
 
@@ -48,19 +48,24 @@ class WettedSurfaceWalk {
 
  private:
   void visit(const TreeNode& node) {
+    const auto at = [this](const auto& by_axis, std::uint32_t i) {
+      return Vec3(tree_.unit * Vec3(by_axis[0][i], by_axis[1][i], by_axis[2][i]));
+    };
     for (std::uint32_t i = 0; i < node.children; ++i) {
-      const Vec3 center(node.center_x[i], node.center_y[i], node.center_z[i]);
-      const Vec3 half(node.half_x[i], node.half_y[i], node.half_z[i]);
-      const double height = plane_.height(center);
-      const double reach = plane_.up_B.cwiseAbs().dot(half) + margin_;
+      const double height = plane_.height(at(node.center, i));
+      const double reach = plane_.up_B.cwiseAbs().dot(at(node.half, i)) + margin_;
       if (height - reach > 0.0) continue;
-      const std::uint32_t child = node.child[i];
       if (height + reach < 0.0) {
         add_wet_node(node.first_moments + i);
-      } else if ((child & TreeNode::kLeafBit) == 0) {
-        visit(tree_.nodes[child]);
+      } else if (i < node.inner_nodes) {
+        visit(tree_.nodes[node.first_node + i]);
       } else {
-        visit(tree_.leaves[child - TreeNode::kLeafBit]);
+        const std::uint32_t leaf = node.first_leaf + i - node.inner_nodes;
+        if (tree_.leaves.empty()) {
+          visit(tree_.double_leaves[leaf]);
+        } else {
+          visit(tree_.leaves[leaf]);
+        }
       }
     }
   }
@@ -72,8 +77,9 @@ class WettedSurfaceWalk {
     return sum.hi;
   }
 
-  void visit(const TreeLeaf& leaf) {
-    const Vec3 center(leaf.center[0], leaf.center[1], leaf.center[2]);
+  template <typename Real>
+  void visit(const TreeLeaf<Real>& leaf) {
+    const Vec3 center = tree_.center(leaf.center);
     const double center_height = exact_height(center);
     std::array<double, kLeafVertices> heights;
     std::size_t wet = 0;
@@ -95,13 +101,13 @@ class WettedSurfaceWalk {
     }
 
     const Vec3 from_point = center - *point_;
-    const auto corner = [&](std::uint8_t i) {
+    const auto corner = [&](std::size_t i) {
       return ClipVertex<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
     };
     for (std::size_t t = 0; t < leaf.triangles; ++t) {
-      const ClipVertex<double> a = corner(leaf.a[t]);
-      const ClipVertex<double> b = corner(leaf.b[t]);
-      const ClipVertex<double> c = corner(leaf.c[t]);
+      const ClipVertex<double> a = corner(leaf.corners[t].a());
+      const ClipVertex<double> b = corner(leaf.corners[t].b());
+      const ClipVertex<double> c = corner(leaf.corners[t].c());
       const int num_wet = static_cast<int>(a.wet()) + static_cast<int>(b.wet()) + static_cast<int>(c.wet());
       if (num_wet == 3) add(a, b, c);
       if (num_wet == 1 || num_wet == 2) {
@@ -110,10 +116,7 @@ class WettedSurfaceWalk {
     }
   }
 
-  void add_wet_node(std::uint32_t index) {
-    const NodeMoments& node = tree_.moments[index];
-    wet_nodes_.add({node.moments(), node.area()});
-  }
+  void add_wet_node(std::uint32_t index) { wet_nodes_.add({tree_.moments_of(index), tree_.areas[index]}); }
 
   void add(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c) {
     Patch patch{moments_of_triangle<double>(a.y.vec3(), b.y.vec3(), c.y.vec3()), 0.0};

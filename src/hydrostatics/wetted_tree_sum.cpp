@@ -12,6 +12,8 @@
 // The reference without SIMD is Highway's scalar target with every compiler; by default some compilers use
 // its emulation of two lanes instead.
 #define HWY_BROKEN_EMU128 1
+// AVX-512 in two stages: later processors compress 16-bit words in one instruction.
+#define HWY_WANT_AVX3_DL 1
 
 // This file is compiled once per instruction set; the name is how it includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -26,14 +28,14 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Prefetches the first `bytes` of a node, the part that a descent reads.
-HWY_INLINE void prefetch_node(const TreeNode& node, std::size_t bytes) {
-  const auto* const line = reinterpret_cast<const unsigned char*>(&node);
-  for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(line + byte);
+template <typename T>
+HWY_INLINE void prefetch(const T& item) {
+  const auto* const line = reinterpret_cast<const unsigned char*>(&item);
+  for (std::size_t byte = 0; byte < sizeof(T); byte += 64) __builtin_prefetch(line + byte);
 }
 
-// Common part of both descents. Nodes and leaves are queued and evaluated when a queue is full, so that
-// memory is fetched for many at once.
+// Common part of both descents. Leaves and nodes to add are queued and evaluated when a queue is full, so
+// that memory is fetched for many at once.
 class Descent {
  public:
   HWY_INLINE Descent(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum)
@@ -41,65 +43,46 @@ class Descent {
         query_(query),
         sum_(sum),
         bounds_(make_bounds_query(tree, query)),
-        node_sums_(query.axes[0]) {}
+        moments_(tree.moments[query.axes[0]].data()),
+        batch_(query, tree.grid) {}
 
-  // The mask names the crossing ones of up to eight children: queues the leaves among them, writes the others
-  // to `inner` and returns the number of the latter.
-  HWY_INLINE std::size_t add_crossing(const std::uint32_t* children, std::uint32_t mask,
-                                      std::uint32_t* inner) {
-    const std::uint32_t leaves = mask & leaf_bits(children);
-    num_leaves_ += append(children, leaves, leaf_queue_.data() + num_leaves_);
-    return append(children, mask & ~leaves, inner);
-  }
-
-  // Expands a node exactly. Returns the number of children written to `inner`.
+  // Expands a node exactly. Returns the number of children written to `inner`, which are prefetched.
   HWY_INLINE std::size_t expand(const TreeNode& node, std::uint32_t* inner) {
     const ChildMasks masks = test_children(node, bounds_);
     add_wet(node, masks.wet);
-    const std::size_t count = add_crossing(node.child.data(), masks.crossing, inner);
+    const std::uint32_t crossing = masks.crossing & inner_bits(node);
+    num_leaves_ += append_places((masks.crossing ^ crossing) >> node.inner_nodes, node.first_leaf,
+                                 leaf_queue_.data() + num_leaves_);
+    const std::size_t count = append_places(crossing, node.first_node, inner);
+    for (std::size_t i = 0; i < count; ++i) prefetch(tree_.nodes[inner[i]]);
     visited();
     return count;
   }
 
-  // Expands a node and appends the children that the water may cross to `open`.
-  HWY_INLINE void expand(const TreeNode& node, PrunableNodes& open) {
+  // Expands node n and appends the children that the water may cross to `open`.
+  HWY_INLINE void expand(std::uint32_t n, PrunableNodes& open) {
+    const TreeNode& node = tree_.nodes[n];
     PrunableChildren children;
-    const ChildMasks masks = test_children(node, bounds_, query_.axes[0], children);
+    const ChildMasks masks = test_children(node, tree_.projected_areas[n], bounds_, query_.axes[0], children);
     add_wet(node, masks.wet);
     append_prunable(node, masks.crossing, children, open);
     visited();
   }
 
-  // Must be called after every eight children added.
-  HWY_INLINE void drain_if_full() {
-    if (num_leaves_ >= kQueue || num_wet_ >= kQueue) drain();
-  }
-
-  // Not inlined: it runs once per query for all but the longest waterlines.
-  HWY_NOINLINE void drain() {
-    sum_.leaves_clipped += static_cast<std::int64_t>(num_leaves_);
-    sum_.nodes_added += static_cast<std::int64_t>(num_wet_);
-    for (std::size_t i = 0; i < num_wet_; ++i) node_sums_.prefetch(tree_.moments[wet_queue_[i]]);
-    for (std::size_t i = 0; i < std::min(kAhead, num_leaves_); ++i) prefetch_leaf(leaf_queue_[i]);
-    for (std::size_t first = 0; first < num_leaves_; first += LeafBatch::kCapacity) {
-      const std::size_t end = std::min(num_leaves_, first + LeafBatch::kCapacity);
-      batch_.clear();
-      for (std::size_t i = first; i < end; ++i) {
-        if (i + kAhead < num_leaves_) prefetch_leaf(leaf_queue_[i + kAhead]);
-        const TreeLeaf& leaf = tree_.leaves[leaf_queue_[i] & ~TreeNode::kLeafBit];
-        queue_wet(leaf, batch_.add(leaf, query_));
-      }
-      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
-      leaf_sums_.add(batch_, query_.axes);
-      if (num_wet_ >= kQueue) add_queued();
-    }
-    add_queued();
-    num_leaves_ = 0;
+  // The mask names some of eight elements of PrunableNodes::child: queues the leaves among them, writes the
+  // others to `inner` and returns the number of the latter.
+  HWY_INLINE std::size_t add_open(const std::uint32_t* children, std::uint32_t mask, std::uint32_t* inner) {
+    const std::uint32_t leaves = mask & leaf_bits(children);
+    const std::size_t count = append(children, leaves, leaf_queue_.data() + num_leaves_);
+    for (std::size_t i = 0; i < count; ++i) leaf_queue_[num_leaves_ + i] -= PrunableNodes::kLeafBit;
+    num_leaves_ += count;
+    drain_if_full();
+    return append(children, mask & ~leaves, inner);
   }
 
   // error: [m^3], total of all of these nodes.
   HWY_INLINE void add_pruned(const PrunableNodes& nodes, double error, PrunedSums& sums) {
-    sums.add(tree_.moments, nodes, node_sums_);
+    sums.add(moments_, nodes, node_sums_);
     sum_.pruned.error += error;
     sum_.nodes_pruned += static_cast<std::int64_t>(nodes.size);
   }
@@ -112,7 +95,7 @@ class Descent {
 
  private:
   static constexpr std::size_t kQueue = 256;
-  static constexpr std::size_t kAhead = 8;  // leaves
+  static constexpr std::size_t kAhead = 12;  // leaves
 
   HWY_INLINE void add_wet(const TreeNode& node, std::uint32_t mask) {
     num_wet_ += append_places(mask, node.first_moments, wet_queue_.data() + num_wet_);
@@ -123,19 +106,49 @@ class Descent {
     drain_if_full();
   }
 
-  HWY_INLINE void prefetch_leaf(std::uint32_t leaf) const {
-    const auto* const line =
-        reinterpret_cast<const unsigned char*>(&tree_.leaves[leaf & ~TreeNode::kLeafBit]);
-    for (std::size_t byte = 0; byte < sizeof(TreeLeaf); byte += 64) __builtin_prefetch(line + byte);
+  // Must be called after every eight children added.
+  HWY_INLINE void drain_if_full() {
+    if (num_leaves_ >= kQueue || num_wet_ >= kQueue) drain();
   }
 
-  HWY_INLINE void queue_wet(const TreeLeaf& leaf, bool wet) {
+  HWY_INLINE void drain() {
+    if (tree_.leaves.empty()) {
+      drain(tree_.double_leaves.data());
+    } else {
+      drain(tree_.leaves.data());
+    }
+  }
+
+  // Not inlined: it runs once per query for all but the longest waterlines.
+  template <typename Leaf>
+  HWY_NOINLINE void drain(const Leaf* leaves) {
+    sum_.leaves_clipped += static_cast<std::int64_t>(num_leaves_);
+    sum_.nodes_added += static_cast<std::int64_t>(num_wet_);
+    for (std::size_t i = 0; i < num_wet_; ++i) AxisVectors::prefetch(moments_[wet_queue_[i]]);
+    for (std::size_t i = 0; i < std::min(kAhead, num_leaves_); ++i) prefetch(leaves[leaf_queue_[i]]);
+    for (std::size_t first = 0; first < num_leaves_; first += LeafBatch::kCapacity) {
+      const std::size_t end = std::min(num_leaves_, first + LeafBatch::kCapacity);
+      batch_.clear();
+      for (std::size_t i = first; i < end; ++i) {
+        if (i + kAhead < num_leaves_) prefetch(leaves[leaf_queue_[i + kAhead]]);
+        const Leaf& leaf = leaves[leaf_queue_[i]];
+        queue_wet(leaf, batch_.add(leaf));
+      }
+      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
+      leaf_sums_.add(batch_, query_.axes, tree_.grid);
+      if (num_wet_ >= kQueue) add_queued();
+    }
+    add_queued();
+    num_leaves_ = 0;
+  }
+
+  HWY_INLINE void queue_wet(const LeafPatch& leaf, bool wet) {
     wet_queue_[num_wet_] = leaf.moments;
     num_wet_ += static_cast<std::size_t>(wet);
   }
 
   HWY_INLINE void add_queued() {
-    node_sums_.add(tree_.moments, wet_queue_.data(), num_wet_);
+    node_sums_.add(moments_, wet_queue_.data(), num_wet_);
     num_wet_ = 0;
   }
 
@@ -143,6 +156,7 @@ class Descent {
   const TreeQuery& query_;
   WettedTreeSum& sum_;
   BoundsQuery bounds_;
+  const AxisMoments* moments_;
   LeafBatch batch_;
   LeafSums leaf_sums_;
   AxisSums node_sums_;
@@ -151,36 +165,24 @@ class Descent {
   std::array<std::uint32_t, kQueue + 2 * LeafBatch::kCapacity + kTreeWidth> wet_queue_;
 };
 
-// Expands every node that the water crosses, depth first, several at a time so that none waits for the memory
-// of another. Starts with at most kTreeWidth nodes.
-HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nodes, std::size_t count,
-                                Descent& descent) {
-  constexpr std::size_t kTogether = 8;
-  // Nodes of a level are added only when no deeper ones remain: a level holds at most kTogether kTreeWidth.
-  constexpr std::size_t kLevels = 16;
-  constexpr std::size_t kRead = offsetof(TreeNode, projected_area);
-  std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
-  std::array<std::uint32_t, kTogether> together;
-  std::copy_n(nodes, count, stack.data());
-  std::size_t depth = count;
-  while (depth > 0) {
-    count = std::min(depth, kTogether);
-    depth -= count;
-    for (std::size_t n = 0; n < count; ++n) {
-      together[n] = stack[depth + n];
-      prefetch_node(tree.nodes[together[n]], kRead);
+// Expands the listed nodes and, level by level, all below them that the water crosses: a node's memory has a
+// whole level's time to arrive.
+HWY_INLINE void descend_exactly(const MomentTree& tree, std::uint32_t* inner, std::uint32_t* next_inner,
+                                std::size_t count, Descent& descent) {
+  while (count > 0) {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      next += descent.expand(tree.nodes[inner[i]], next_inner + next);
     }
-    for (std::size_t n = 0; n < count; ++n) {
-      depth += descent.expand(tree.nodes[together[n]], stack.data() + depth);
-      assert(depth + kTreeWidth <= stack.size());
-    }
+    std::swap(inner, next_inner);
+    count = next;
   }
 }
 
-void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum) {
+void sum_exactly(const MomentTree& tree, const TreeQuery& query, DescentLists& lists, WettedTreeSum& sum) {
   Descent descent(tree, query, sum);
-  const std::uint32_t root = 0;
-  descend_exactly(tree, &root, 1, descent);
+  lists.inner[0] = 0;
+  descend_exactly(tree, lists.inner.data(), lists.next_inner.data(), 1, descent);
   descent.finish();
 }
 
@@ -202,8 +204,7 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
       kept = hn::Add(kept, hn::PromoteTo(d, hn::IfThenElseZero(fits, error)));
     }
     const std::uint32_t present = first_bits(nodes - first);
-    inners += descent.add_crossing(open.child.data() + first, present & ~within, inner + inners);
-    descent.drain_if_full();
+    inners += descent.add_open(open.child.data() + first, present & ~within, inner + inners);
     keep_prunable(open, first, present & within);
   }
   return hn::GetLane(hn::SumOfLanes(d, kept));
@@ -213,7 +214,7 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
 // of them are pruned. Until then some are pruned (limit_to_errors) and the others are expanded. A level is
 // examined for nodes to prune only if that may succeed: from a level to the next the total error falls about
 // eightfold.
-void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists,
+void sum_within_budget(const MomentTree& tree, const TreeQuery& query, DescentLists& lists,
                        WettedTreeSum& sum) {
   constexpr double kErrorDecay = 8.0;     // total error of a level over that of the next
   constexpr double kMaxErrorRatio = 6.0;  // total error over remaining budget; above, too few would be pruned
@@ -224,14 +225,14 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
   std::size_t to_expand = 0;
   const TreeNode& root = tree.nodes[0];
   open.size = 0;
-  descent.expand(root, open);
+  descent.expand(0, open);
   double left = query.budget;
   ErrorSurvey survey = survey_errors(open, left);
   // Errors are proportional to the square of the size of the nodes, hence to one over their number.
-  const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.leaves.size());
+  const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.num_leaves());
   if (survey.all * per_leaf > kMaxErrorRatio * left) {
-    to_expand = descent.add_crossing(open.child.data(), first_bits(open.size), inner);
-    descend_exactly(tree, inner, to_expand, descent);
+    to_expand = descent.add_open(open.child.data(), first_bits(open.size), inner);
+    descend_exactly(tree, inner, next_inner, to_expand, descent);
     descent.finish();
     return;
   }
@@ -254,13 +255,15 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
     const bool may_fit = error <= kErrorDecay * kMaxErrorRatio * left;
     error = may_fit ? 0.0 : error / kErrorDecay;
     open.size = 0;
-    for (std::size_t i = 0; i < count; ++i) prefetch_node(tree.nodes[inner[i]], sizeof(TreeNode));
-    for (std::size_t i = 0; i < count; ++i) {
-      const TreeNode& node = tree.nodes[inner[i]];
-      if (may_fit) {
-        descent.expand(node, open);
-      } else {
-        to_expand += descent.expand(node, next_inner + to_expand);
+    if (may_fit) {
+      for (std::size_t i = 0; i < count; ++i) {
+        prefetch(tree.nodes[inner[i]]);
+        prefetch(tree.projected_areas[inner[i]]);
+      }
+      for (std::size_t i = 0; i < count; ++i) descent.expand(inner[i], open);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        to_expand += descent.expand(tree.nodes[inner[i]], next_inner + to_expand);
       }
     }
     survey = survey_errors(open, left);
@@ -281,12 +284,12 @@ HWY_EXPORT(sum_within_budget);
 
 WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query) {
   WettedTreeSum sum;
+  thread_local DescentLists lists;
+  lists.reserve(tree, query.budget > 0.0);
   if (query.budget > 0.0) {
-    thread_local BudgetLists lists;
-    lists.reserve(tree);
     HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, lists, sum);
   } else {
-    HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, sum);
+    HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, lists, sum);
   }
   return sum;
 }

@@ -98,7 +98,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     }
     PreparedMesh& prepared = *scene.meshes_[index];
     if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
-      prepared.mesh.tree = build_moment_tree(prepared.mesh.surface);
+      prepared.mesh.tree = build_moment_tree(prepared.mesh);
     }
     scene.index_.emplace(body.id, scene.bodies_.size());
     scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;

@@ -23,7 +23,7 @@ class MeshWithTree {
   explicit MeshWithTree(const HydrostaticMesh& mesh) : mesh_(&mesh) {
     if (mesh.tree) return;
     copy_ = mesh;
-    copy_->tree = build_moment_tree(copy_->surface);
+    copy_->tree = build_moment_tree(*copy_);
     mesh_ = &*copy_;
   }
   MeshWithTree(const MeshWithTree&) = delete;

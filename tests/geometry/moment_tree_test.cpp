@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -11,30 +12,86 @@
 namespace buoyancy {
 namespace {
 
-// Calls visit(child, moments, box) for every child of every node.
+// A leaf without its storage type.
+struct Leaf {
+  LeafPatch patch;
+  std::vector<Vec3> vertices;  // relative to c
+
+  Vec3 a(std::size_t triangle) const { return vertices[patch.corners[triangle].a()]; }
+  Vec3 b(std::size_t triangle) const { return vertices[patch.corners[triangle].b()]; }
+  Vec3 c(std::size_t triangle) const { return vertices[patch.corners[triangle].c()]; }
+};
+
+template <typename Real>
+Leaf read_leaf(const MomentTree& tree, const TreeLeaf<Real>& from) {
+  Leaf leaf{from, {}};
+  for (std::size_t i = 0; i < from.vertices; ++i) {
+    leaf.vertices.push_back(tree.center(from.center) + from.vertex(i));
+  }
+  return leaf;
+}
+
+std::vector<Leaf> read_leaves(const MomentTree& tree) {
+  std::vector<Leaf> leaves;
+  for (const auto& leaf : tree.leaves) leaves.push_back(read_leaf(tree, leaf));
+  for (const auto& leaf : tree.double_leaves) leaves.push_back(read_leaf(tree, leaf));
+  return leaves;
+}
+
+// The numbers of the leaves below child i of a node.
+std::vector<std::uint32_t> leaves_below(const MomentTree& tree, const TreeNode& node, std::uint32_t i) {
+  if (i >= node.inner_nodes) return {node.first_leaf + i - node.inner_nodes};
+  std::vector<std::uint32_t> leaves;
+  const TreeNode& child = tree.nodes[node.first_node + i];
+  for (std::uint32_t j = 0; j < child.children; ++j) {
+    const std::vector<std::uint32_t> more = leaves_below(tree, child, j);
+    leaves.insert(leaves.end(), more.begin(), more.end());
+  }
+  return leaves;
+}
+
+// Calls visit(leaves below the child, its moments, its box) for every child of every node.
 template <typename Visit>
 void visit_children(const MomentTree& tree, const Visit& visit) {
   for (const TreeNode& node : tree.nodes) {
-    for (std::size_t i = 0; i < node.children; ++i) {
-      const Vec3 center(node.center_x[i], node.center_y[i], node.center_z[i]);
-      const Vec3 half(node.half_x[i], node.half_y[i], node.half_z[i]);
-      visit(node.child[i], node.first_moments + i, BoundingBox{center - half, center + half});
+    for (std::uint32_t i = 0; i < node.children; ++i) {
+      const Vec3 center = tree.unit * Vec3(node.center[0][i], node.center[1][i], node.center[2][i]);
+      const Vec3 half = tree.unit * Vec3(node.half[0][i], node.half[1][i], node.half[2][i]);
+      visit(leaves_below(tree, node, i), node.first_moments + i, BoundingBox{center - half, center + half});
     }
   }
 }
 
-// Appends the leaves below a child.
-void collect_leaves(const MomentTree& tree, std::uint32_t child, std::vector<std::uint32_t>& leaves) {
-  if ((child & TreeNode::kLeafBit) != 0) {
-    leaves.push_back(child - TreeNode::kLeafBit);
-    return;
+void round_to_float(TriangleMesh& mesh) {
+  for (std::vector<double>* const coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (double& value : *coordinates) value = static_cast<double>(static_cast<float>(value));
   }
-  const TreeNode& node = tree.nodes[child];
-  for (std::size_t i = 0; i < node.children; ++i) collect_leaves(tree, node.child[i], leaves);
 }
 
-Vec3 leaf_vertex(const TreeLeaf& leaf, std::size_t i) {
-  return leaf.vertex(i) + Vec3(leaf.center[0], leaf.center[1], leaf.center[2]);
+// A sphere of `rows` rings of as many quadrilaterals each, which are strips at the poles.
+TriangleMesh latitude_longitude_sphere(int rows) {
+  TriangleMesh mesh;
+  const auto add = [&](int row, int column) {
+    const double theta = std::numbers::pi * row / rows;
+    const double phi = 2.0 * std::numbers::pi * column / rows;
+    return mesh.add_vertex(
+        {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+  };
+  const std::int32_t top = add(0, 0);
+  for (int row = 1; row < rows; ++row) {
+    for (int column = 0; column < rows; ++column) add(row, column);
+  }
+  const std::int32_t bottom = add(rows, 0);
+  const auto at = [&](int row, int column) { return top + 1 + (row - 1) * rows + column % rows; };
+  for (int column = 0; column < rows; ++column) {
+    mesh.triangles.push_back({top, at(1, column), at(1, column + 1)});
+    for (int row = 1; row < rows - 1; ++row) {
+      mesh.triangles.push_back({at(row, column), at(row + 1, column), at(row + 1, column + 1)});
+      mesh.triangles.push_back({at(row, column), at(row + 1, column + 1), at(row, column + 1)});
+    }
+    mesh.triangles.push_back({at(rows - 1, column), bottom, at(rows - 1, column + 1)});
+  }
+  return mesh;
 }
 
 std::vector<TriangleMesh> surfaces() {
@@ -53,7 +110,7 @@ std::vector<TriangleMesh> surfaces() {
   fan.y = {0, 0, 1};
   fan.z = {0, 0, 0};
   meshes.push_back(fan);
-  TriangleMesh soup;  // no two triangles share a vertex, so that a leaf holds five
+  TriangleMesh soup;  // no two triangles share a vertex, so that a leaf holds eight
   for (int i = 0; i < 100; ++i) {
     const auto first = soup.add_vertex({0.1 * i, 0, 0});
     soup.add_vertex({0.1 * i + 1, 0.3, 0});
@@ -61,6 +118,9 @@ std::vector<TriangleMesh> surfaces() {
     soup.triangles.push_back({first, first + 1, first + 2});
   }
   meshes.push_back(soup);
+  TriangleMesh in_float = make_shape(RockShape{.frequency = 20});
+  round_to_float(in_float);
+  meshes.push_back(in_float);
   return meshes;
 }
 
@@ -82,13 +142,13 @@ TEST(MomentTree, StoresEveryTriangleInOneLeaf) {
     for (const Triangle& t : surface.triangles) {
       expected.insert(corners(surface.vertex(t[0]), surface.vertex(t[1]), surface.vertex(t[2])));
     }
-    for (const TreeLeaf& leaf : tree.leaves) {
-      EXPECT_LE(leaf.triangles, kLeafTriangles);
-      EXPECT_LE(leaf.vertices, kLeafVertices);
-      for (std::size_t i = 0; i < leaf.triangles; ++i) {
-        EXPECT_LT(std::max({leaf.a[i], leaf.b[i], leaf.c[i]}), leaf.vertices);
-        found.insert(corners(leaf_vertex(leaf, leaf.a[i]), leaf_vertex(leaf, leaf.b[i]),
-                             leaf_vertex(leaf, leaf.c[i])));
+    for (const Leaf& leaf : read_leaves(tree)) {
+      EXPECT_LE(leaf.patch.triangles, kLeafTriangles);
+      EXPECT_LE(leaf.patch.vertices, kLeafVertices);
+      for (std::size_t i = 0; i < leaf.patch.triangles; ++i) {
+        const LeafCorners corner = leaf.patch.corners[i];
+        EXPECT_LT(std::max({corner.a(), corner.b(), corner.c()}), leaf.patch.vertices);
+        found.insert(corners(leaf.a(i), leaf.b(i), leaf.c(i)));
       }
     }
     EXPECT_TRUE(found == expected);
@@ -98,18 +158,15 @@ TEST(MomentTree, StoresEveryTriangleInOneLeaf) {
 TEST(MomentTree, BoundsEveryVertexBelowNode) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
-    visit_children(tree, [&](std::uint32_t child, std::size_t, const BoundingBox& box) {
-      std::vector<std::uint32_t> leaves;
-      collect_leaves(tree, child, leaves);
-      for (const std::uint32_t index : leaves) {
-        const TreeLeaf& leaf = tree.leaves[index];
-        for (std::size_t i = 0; i < leaf.vertices; ++i) {
-          const Vec3 at = leaf_vertex(leaf, i);
+    const std::vector<Leaf> leaves = read_leaves(tree);
+    visit_children(tree, [&](const std::vector<std::uint32_t>& below, std::size_t, const BoundingBox& box) {
+      for (const std::uint32_t index : below) {
+        for (const Vec3& at : leaves[index].vertices) {
           EXPECT_TRUE((at.array() >= box.min_B.array()).all() && (at.array() <= box.max_B.array()).all());
         }
       }
-      EXPECT_LE(box.max_B.cwiseAbs().maxCoeff(), static_cast<double>(tree.reach));
-      EXPECT_LE(box.min_B.cwiseAbs().maxCoeff(), static_cast<double>(tree.reach));
+      EXPECT_LE(box.max_B.cwiseAbs().maxCoeff(), tree.reach);
+      EXPECT_LE(box.min_B.cwiseAbs().maxCoeff(), tree.reach);
     });
   }
 }
@@ -117,34 +174,74 @@ TEST(MomentTree, BoundsEveryVertexBelowNode) {
 TEST(MomentTree, StoresMomentsOfSubtree) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
-    visit_children(tree, [&](std::uint32_t child, std::size_t moments_index, const BoundingBox&) {
-      std::vector<std::uint32_t> leaves;
-      collect_leaves(tree, child, leaves);
+    const std::vector<Leaf> leaves = read_leaves(tree);
+    visit_children(tree, [&](const std::vector<std::uint32_t>& below, std::size_t index, const BoundingBox&) {
       SurfaceMoments<double> expected;
       double area = 0.0;
-      for (const std::uint32_t index : leaves) {
-        const TreeLeaf& leaf = tree.leaves[index];
-        for (std::size_t i = 0; i < leaf.triangles; ++i) {
-          const auto one = moments_of_triangle<double>(
-              leaf_vertex(leaf, leaf.a[i]), leaf_vertex(leaf, leaf.b[i]), leaf_vertex(leaf, leaf.c[i]));
+      for (const std::uint32_t leaf : below) {
+        for (std::size_t i = 0; i < leaves[leaf].patch.triangles; ++i) {
+          const auto one =
+              moments_of_triangle<double>(leaves[leaf].a(i), leaves[leaf].b(i), leaves[leaf].c(i));
           expected += one;
           area += one.S.norm();
         }
       }
-      const NodeMoments& node = tree.moments[moments_index];
-      const double reach = static_cast<double>(tree.reach);
-      EXPECT_LE((node.moments().S - expected.S).norm(), 1e-14 * area);
-      EXPECT_LE((node.moments().N - expected.N).norm(), 1e-14 * area * reach);
-      EXPECT_LE((node.moments().P - expected.P).norm(), 1e-14 * area * reach * reach);
-      EXPECT_NEAR(node.area(), area, 1e-14 * area);
+      const SurfaceMoments<double> moments = tree.moments_of(index);
+      EXPECT_LE((moments.S - expected.S).norm(), 1e-14 * area);
+      EXPECT_LE((moments.N - expected.N).norm(), 1e-14 * area * tree.reach);
+      EXPECT_LE((moments.P - expected.P).norm(), 1e-14 * area * tree.reach * tree.reach);
+      EXPECT_NEAR(tree.areas[index], area, 1e-14 * area);
+      if (below.size() == 1) {
+        EXPECT_EQ(leaves[below[0]].patch.moments, index);
+      }
     });
   }
+}
+
+TEST(MomentTree, SplitsLeavesAmongFullNodes) {
+  for (const TriangleMesh& surface : surfaces()) {
+    const MomentTree tree = build_moment_tree(surface);
+    std::size_t children = 0;
+    for (const TreeNode& node : tree.nodes) children += node.children;
+    EXPECT_EQ(children, tree.num_leaves() + tree.nodes.size() - 1);
+    EXPECT_EQ(children, tree.areas.size());
+    EXPECT_LE(tree.nodes.size(), tree.num_leaves() / 6 + 2);
+  }
+}
+
+TEST(MomentTree, HoldsFloat32MeshesExactlyInFloat32) {
+  TriangleMesh rock = make_shape(RockShape{.frequency = 20});
+  for (const double distance : {0.0, 0.9, 7.0, 1e3, 1e6}) {
+    TriangleMesh file = rock;
+    for (double& x : file.x) x += distance;
+    round_to_float(file);
+    const Vec3 c(std::nearbyint(distance), 0.0, 0.0);
+    TriangleMesh surface = file;
+    for (double& x : surface.x) x -= c.x();
+    const MomentTree tree = build_moment_tree(surface, -c);
+    EXPECT_TRUE(tree.double_leaves.empty()) << distance;
+    std::set<std::array<double, 3>> expected;
+    for (std::size_t i = 0; i < surface.vertex_count(); ++i) {
+      expected.insert({surface.x[i], surface.y[i], surface.z[i]});
+    }
+    for (const Leaf& leaf : read_leaves(tree)) {
+      for (const Vec3& at : leaf.vertices) {
+        EXPECT_EQ(expected.count({at.x(), at.y(), at.z()}), 1U) << distance;
+      }
+    }
+  }
+}
+
+TEST(MomentTree, HoldsOtherMeshesInDouble) {
+  const MomentTree tree = build_moment_tree(latitude_longitude_sphere(12));
+  EXPECT_TRUE(tree.leaves.empty());
+  EXPECT_FALSE(tree.double_leaves.empty());
 }
 
 TEST(MomentTree, SumsToVolumeOfClosedSurface) {
   const TriangleMesh rock = make_shape(RockShape{.frequency = 20});
   const MomentTree tree = build_moment_tree(rock);
-  const SurfaceMoments<double> total = tree.total.moments();
+  const SurfaceMoments<double> total = tree.total;
   const double volume = total.N.trace() / 3.0;
   EXPECT_LE(total.S.norm(), 1e-13);
   EXPECT_LE((total.N - volume * Mat3::Identity()).norm(), 1e-13);
@@ -152,21 +249,22 @@ TEST(MomentTree, SumsToVolumeOfClosedSurface) {
 
 TEST(MomentTree, PlacesLeafCentresOnGrid) {
   const MomentTree tree = build_moment_tree(make_shape(RockShape{.radius = 0.3, .frequency = 20}));
-  for (const TreeLeaf& leaf : tree.leaves) {
-    for (const double coordinate : leaf.center) {
-      const double steps = coordinate / tree.grid;
-      EXPECT_EQ(steps, std::nearbyint(steps));
-      EXPECT_LE(std::abs(steps), 0x1p22);
-    }
+  for (const Leaf& leaf : read_leaves(tree)) {
+    for (const std::int32_t steps : leaf.patch.center) EXPECT_LE(std::abs(steps), 1 << 23);
   }
+  int exponent = 0;
+  EXPECT_EQ(std::frexp(tree.grid, &exponent), 0.5);
+  EXPECT_LE(tree.reach, std::ldexp(tree.grid, 23));
 }
 
 TEST(MomentTree, FillsLeavesAndLimitsMemory) {
-  const TriangleMesh rock = make_shape(RockShape{.frequency = 80});
-  const MomentTree tree = build_moment_tree(rock);
-  const auto triangles = static_cast<double>(rock.triangles.size());
-  EXPECT_GT(triangles / static_cast<double>(tree.leaves.size()), 13.0);
-  EXPECT_LT(static_cast<double>(tree.bytes()) / triangles, 80.0);
+  for (TriangleMesh mesh : {make_shape(RockShape{.frequency = 80}), latitude_longitude_sphere(300)}) {
+    round_to_float(mesh);
+    const MomentTree tree = build_moment_tree(mesh);
+    const auto triangles = static_cast<double>(mesh.triangles.size());
+    EXPECT_GT(triangles / static_cast<double>(tree.num_leaves()), 20.0);
+    EXPECT_LT(static_cast<double>(tree.bytes()) / triangles, 34.0);
+  }
 }
 
 }  // namespace

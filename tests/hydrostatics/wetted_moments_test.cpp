@@ -126,7 +126,7 @@ TEST(WettedMoments, KeepsDigitsOfMillionthVolumeCap) {
 TEST(WettedMoments, TakesHeightsFromLeafCentres) {
   const TriangleMesh sphere = make_shape(RockShape{.frequency = 40, .roughness = 0.0});
   const HydrostaticMesh mesh = make_hydrostatic_mesh({sphere, {}});
-  constexpr double kLeaf = 0.1;  // [m], the size of 16 triangles
+  constexpr double kLeaf = 0.1;  // [m], the size of a leaf
   RandomPoses random(46);
   for (int i = 0; i < 8; ++i) {
     Pose pose{Vec3::Zero(), random.rotation()};

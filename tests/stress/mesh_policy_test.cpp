@@ -128,7 +128,7 @@ TEST(StressMeshPolicy, AcceptsOnlyBalancedEdgesAndReportsAll) {
                  "V from x, y, z, " + body.name);
     stress.check(report.area_vector.norm() * body.mesh.diagonal, body.volume_tolerance(),
                  "int n dA, " + body.name);
-    const SurfaceMoments<double> whole = body.mesh.tree->total.moments();
+    const SurfaceMoments<double> whole = body.mesh.tree->total;
     stress.check(whole.S.norm() * body.mesh.diagonal, body.volume_tolerance(), "S, " + body.name);
     stress.check((whole.N - body.mesh.volume * Mat3::Identity()).norm(), body.volume_tolerance(),
                  "N = V I, " + body.name);
