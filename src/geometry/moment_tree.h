@@ -96,7 +96,14 @@ struct alignas(64) TreeLeaf : LeafPatch {
   }
 };
 
+// Lengths are in metres, or in the unit of the mesh file's coordinates: see `scale`.
 struct MomentTree {
+  // The tree's point y is at scale y + offset, B axes, relative to the mesh's centre c. A mesh that a scene
+  // scales keeps the file's coordinates, which float32 holds, in its tree. Otherwise 1 and 0: everything
+  // below is in metres and relative to c.
+  double scale = 1.0;          // [m] per unit of length of the tree
+  Vec3 offset = Vec3::Zero();  // [m]
+
   LargePageArray<TreeNode> nodes;                  // nodes[0] is the root
   LargePageArray<ProjectedAreas> projected_areas;  // of each node's children
   // One of the two is empty. Float32 leaves hold half the memory.

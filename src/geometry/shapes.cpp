@@ -146,6 +146,12 @@ std::optional<Error> find_error(const RockShape& rock) {
   return std::move(check).error();
 }
 
+void round_to_float32(TriangleMesh& mesh) {
+  for (std::vector<double>* const coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (double& value : *coordinates) value = static_cast<double>(static_cast<float>(value));
+  }
+}
+
 }  // namespace
 
 std::string_view type_name(const Shape& shape) {
@@ -161,7 +167,12 @@ Expected<Shape> check_shape(const Shape& shape) {
 }
 
 TriangleMesh make_shape(const Shape& shape) {
-  return std::visit([](const auto& s) { return generate(s); }, shape);
+  TriangleMesh mesh = std::visit([](const auto& s) { return generate(s); }, shape);
+  const bool is_curved = std::holds_alternative<SphereShape>(shape) ||
+                         std::holds_alternative<TorusKnotShape>(shape) ||
+                         std::holds_alternative<RockShape>(shape);
+  if (is_curved) round_to_float32(mesh);
+  return mesh;
 }
 
 }  // namespace buoyancy

@@ -1,7 +1,9 @@
 // Generated closed meshes: shapes whose hydrostatics have a closed form, or that serve as benchmarks.
 //
 // Every mesh is welded, outward oriented, closed and, unless stated otherwise, centred on B's origin. Sizes
-// are in metres, from 1e-9 to 1e9. check_shape checks the arguments; make_shape requires a checked shape.
+// are in metres, from 1e-9 to 1e9. The coordinates of spheres, knots and rocks are rounded to float32, as in
+// a mesh file; those of the other shapes are double, so that their hydrostatics are those of the closed form.
+// check_shape checks the arguments; make_shape requires a checked shape.
 #pragma once
 
 #include <array>
@@ -24,8 +26,8 @@ struct BoxShape {
   bool operator==(const BoxShape&) const = default;
 };
 // n meridians and n + 1 bands of latitude between the poles along z: 2 n^2 triangles for n segments. Vertices
-// lie on the sphere. The two spheres of the paper, section 5, have n = 50 (5,000 triangles) and n = 200
-// (80,000).
+// lie on the sphere to within rounding. The two spheres of the paper, section 5, have n = 50 (5,000
+// triangles) and n = 200 (80,000).
 struct SphereShape {
   double radius = 1;
   std::int32_t segments = 50;

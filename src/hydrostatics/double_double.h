@@ -3,8 +3,9 @@
 //
 // Used once per query to move the water plane into the body frame, where up . p_WB and k . c may cancel
 // almost completely. Source: T. J. Dekker, "A floating-point technique for extending the available
-// precision", Numerische Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as
-// nothing over- or underflows.
+// precision", Numerische Mathematik 18 (1971); sum() is that of T. Ogita, S. M. Rump and S. Oishi, "Accurate
+// sum and dot product", SIAM Journal on Scientific Computing 26 (2005). Relative error of each operation:
+// below 2^-100, as long as nothing over- or underflows.
 #pragma once
 
 namespace buoyancy {
@@ -65,13 +66,19 @@ inline DoubleDouble operator*(DoubleDouble a, DoubleDouble b) {
   return quick_two_sum(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
-inline DoubleDouble operator/(DoubleDouble a, DoubleDouble b) {
-  const double first = a.hi / b.hi;
-  const DoubleDouble rest = a - b * first;
-  const double second = rest.hi / b.hi;
-  const DoubleDouble last = rest - b * second;
-  const DoubleDouble quotient = quick_two_sum(first, second);
-  return quick_two_sum(quotient.hi, quotient.lo + last.hi / b.hi);
+// Returns 1 / a, for finite a other than 0.
+inline DoubleDouble reciprocal(DoubleDouble a) {
+  const double first = 1.0 / a.hi;
+  const DoubleDouble product = two_product(a.hi, first);
+  const double rest = ((1.0 - product.hi) - product.lo) - a.lo * first;
+  return quick_two_sum(first, rest * first);
+}
+
+// Returns the sum of three numbers with an error relative to the largest of them.
+inline DoubleDouble sum(DoubleDouble a, DoubleDouble b, DoubleDouble c) {
+  const DoubleDouble two = two_sum(a.hi, b.hi);
+  const DoubleDouble three = two_sum(two.hi, c.hi);
+  return quick_two_sum(three.hi, (two.lo + three.lo) + ((a.lo + b.lo) + c.lo));
 }
 
 }  // namespace buoyancy

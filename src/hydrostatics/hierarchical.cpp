@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hydrostatics/immersion.h"
+#include "hydrostatics/tree_plane.h"
 #include "hydrostatics/volume_elements.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
@@ -18,6 +19,7 @@ double whole_multiples(double x, double unit) {
   return std::nearbyint(x / unit) * unit;
 }
 
+// plane: of the tree.
 TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   constexpr double kUnit = 0x1p-26;
   const Vec3& k = plane.up_B;
@@ -64,8 +66,11 @@ double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }
 
+// plane: of the tree.
 Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
                              const HydrostaticMesh& mesh) {
+  const double scale = mesh.tree->scale;
+  const double scale_cubed = scale * scale * scale;
   const Vec3& k = plane.up_B;
   const double z_c = -plane.h_c;
   const auto a = static_cast<int>(query.axes[0]);
@@ -84,9 +89,9 @@ Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, c
     wet.volume += rest.offsets.S + rest.volume;
     wet.moment += offset_N + rest.moment;
     wet.z_squared += k.dot(offset_N + rest.moment) + z_c * (rest.offsets.S + rest.volume);
-    result.truncation_bound = rest.error;
+    result.truncation_bound = scale_cubed * rest.error;
   }
-  if (!mesh.meets_volume_tolerance()) result.rounding = kEpsilon * sum.rounding;
+  if (!mesh.meets_volume_tolerance()) result.rounding = kEpsilon * scale_cubed * sum.rounding;
 
   // int z n_a dA = k_a V;  int z y_b n_a dA = k_a M_b, likewise c;  int z^2 n_a dA = 2 k_a H;
   // k . M = H - z_c V.
@@ -95,6 +100,8 @@ Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, c
   result.moment[c] = wet.moment[c] / k[a];
   const double along_k = 0.5 * wet.z_squared / k[a] - z_c * result.volume;
   result.moment[a] = (along_k - k[b] * result.moment[b] - k[c] * result.moment[c]) / k[a];
+  result.volume *= scale_cubed;
+  result.moment = (scale_cubed * scale) * result.moment + result.volume * mesh.tree->offset;
   result.force = result.volume * k;
   result.torque = result.moment.cross(k);
   return result;
@@ -126,11 +133,15 @@ Displacement hierarchical(const HydrostaticMesh& mesh, const WaterPlane& plane, 
     case Immersion::kPiercing:
       break;
   }
-  TreeQuery query = make_tree_query(tree, plane);
+  const WaterPlane tree_plane = plane_of_tree(tree, plane);
+  TreeQuery query = make_tree_query(tree, tree_plane);
   const double from_plane = plane.error > 0.0 ? sensitivity(mesh) * plane.error : 0.0;  // [m^3]
-  if (tolerance > 0.0) query.budget = std::max(budget(mesh, tolerance) - from_plane, 0.0);
-  query.half_diagonal = 0.5 * mesh.diagonal;
-  Displacement result = to_displacement(sum_wetted_tree(tree, query), query, plane, mesh);
+  if (tolerance > 0.0) {
+    query.budget =
+        std::max(budget(mesh, tolerance) - from_plane, 0.0) / (tree.scale * tree.scale * tree.scale);
+  }
+  query.half_diagonal = 0.5 * mesh.diagonal / tree.scale;
+  Displacement result = to_displacement(sum_wetted_tree(tree, query), query, tree_plane, mesh);
   result.truncation_bound += from_plane;
   return result;
 }

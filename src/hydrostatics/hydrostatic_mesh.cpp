@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/pairwise_sum.h"
+#include "hydrostatics/double_double.h"
 #include "hydrostatics/volume_elements.h"
 
 namespace buoyancy {
@@ -51,6 +53,45 @@ Triangle starting_opposite_longest_edge(const Triangle& triangle, const Triangle
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+// A mesh in its file's coordinates, relative to `center`.
+struct FileSurface {
+  TriangleMesh surface;
+  Vec3 center;
+};
+
+// Undoes the scale, for float32 coordinates: the nearest float32 number is the file's coordinate, unless that
+// is so small that it does not matter. Returns nothing if a vertex is not a multiple of a float32 number by
+// the scale, to within the rounding of HydrostaticMesh::surface.
+std::optional<FileSurface> file_surface(const HydrostaticMesh& mesh) {
+  const Vec3 half = 0.5 * (mesh.box_max - mesh.box_min);
+  const Vec3 middle = mesh.center_B + 0.5 * (mesh.box_max + mesh.box_min);
+  FileSurface file;
+  file.center = round_to_coarse_grid(middle / mesh.scale, (middle.cwiseAbs() + half).maxCoeff() / mesh.scale,
+                                     mesh.diagonal / mesh.scale);
+  file.surface.triangles = mesh.surface.triangles;
+  const auto convert = [&mesh](const std::vector<double>& from, double center_B, double center,
+                               std::vector<double>& to) {
+    to.reserve(from.size());
+    for (const double value : from) {
+      const double at_B = value + center_B;
+      const auto in_file = static_cast<double>(static_cast<float>(at_B / mesh.scale));
+      const double max_error = 2.0 * kEpsilon * (std::abs(value) + std::abs(center_B));
+      if (!(std::abs(mesh.scale * in_file - at_B) <= max_error)) return false;
+      to.push_back(in_file - center);
+    }
+    return true;
+  };
+  const bool exact = convert(mesh.surface.x, mesh.center_B.x(), file.center.x(), file.surface.x) &&
+                     convert(mesh.surface.y, mesh.center_B.y(), file.center.y(), file.surface.y) &&
+                     convert(mesh.surface.z, mesh.center_B.z(), file.center.z(), file.surface.z);
+  if (!exact) return std::nullopt;
+  return file;
+}
+
+double cubed(double x) {
+  return x * x * x;
+}
+
 double rounding(double volume, double diagonal, double area) {
   return kEpsilon * (64.0 * std::abs(volume) + diagonal * area);
 }
@@ -70,7 +111,7 @@ double HydrostaticMesh::rounding_bound() const {
 }
 
 double HydrostaticMesh::max_rounding_bound() const {
-  return rounding_bound() + (meets_volume_tolerance() ? 0.0 : kEpsilon * tree->rounding);
+  return rounding_bound() + (meets_volume_tolerance() ? 0.0 : kEpsilon * cubed(tree->scale) * tree->rounding);
 }
 
 double HydrostaticMesh::max_lever_arm(const Vec3& reference_B) const {
@@ -78,10 +119,11 @@ double HydrostaticMesh::max_lever_arm(const Vec3& reference_B) const {
   return (box_min - reference).cwiseAbs().cwiseMax((box_max - reference).cwiseAbs()).norm();
 }
 
-HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree) {
+HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree, double scale) {
   const TriangleMesh& source = validated.mesh;
   const BoundingBox box = bounding_box(source);
   HydrostaticMesh mesh;
+  mesh.scale = scale;
   mesh.center_B = round_to_coarse_grid(
       box.center(), box.min_B.cwiseAbs().cwiseMax(box.max_B.cwiseAbs()).maxCoeff(), box.diagonal());
   mesh.box_min = box.min_B - mesh.center_B;
@@ -125,6 +167,17 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
 }
 
 MomentTree build_moment_tree(const HydrostaticMesh& mesh) {
+  if (mesh.scale != 1.0) {
+    if (std::optional<FileSurface> file = file_surface(mesh)) {
+      MomentTree tree = build_moment_tree(file->surface, -file->center);
+      tree.scale = mesh.scale;
+      for (int i = 0; i < 3; ++i) {
+        const DoubleDouble center = two_product(mesh.scale, file->center[i]);
+        tree.offset[i] = (center.hi - mesh.center_B[i]) + center.lo;
+      }
+      return tree;
+    }
+  }
   return build_moment_tree(mesh.surface, -mesh.center_B);
 }
 

@@ -20,6 +20,7 @@ struct HydrostaticMesh {
   // Vertices in [m], B axes, about center_B. A triangle's first corner lies opposite its longest edge, so
   // that products of the edges from it are as small as possible.
   TriangleMesh surface;
+  double scale = 1.0;                           // by which the mesh file's coordinates were multiplied
   std::optional<MomentTree> tree;               // if requested; `hierarchical` needs it
   std::vector<std::int32_t> boundary_vertices;  // of an accepted open mesh: all must be dry
 
@@ -63,8 +64,11 @@ struct HydrostaticMesh {
 
 enum class WithTree { kNo, kYes };
 
-HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree = WithTree::kYes);
+// scale: by which the mesh file's coordinates were multiplied to give those of `validated`.
+HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree with_tree = WithTree::kYes,
+                                      double scale = 1.0);
 
+// Builds the tree over the mesh file's coordinates where these are float32 numbers, otherwise over `surface`.
 MomentTree build_moment_tree(const HydrostaticMesh& mesh);
 
 }  // namespace buoyancy

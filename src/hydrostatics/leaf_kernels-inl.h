@@ -22,7 +22,7 @@ namespace HWY_NAMESPACE {
 // instructions.
 class LeafBatch {
  public:
-  static constexpr std::size_t kCapacity = 32;
+  static constexpr std::size_t kCapacity = 16;
 
   // Numbers of one leaf's vertices: along b and c, about its centre [m], and over the water [m].
   struct Vertices {
@@ -30,10 +30,8 @@ class LeafBatch {
   };
 
   HWY_INLINE LeafBatch(const TreeQuery& query, double grid)
-      : axes_(query.axes), start_(-query.h_high, -query.h_low) {
-    for (std::size_t n = 0; n < 3; ++n) {
-      const std::size_t axis = axes_[n];
-      k_[n] = query.k[axis];
+      : axes_(query.axes), k_(query.k), start_high_(-query.h_high), start_low_(-query.h_low) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       k_high_[axis] = grid * query.k_high[axis];
       k_low_[axis] = grid * query.k_low[axis];
     }
@@ -53,10 +51,10 @@ class LeafBatch {
     const double y = leaf.center[1];
     const double z = leaf.center[2];
     // Exact: the terms are whole multiples of grid 2^-26, fewer than 2^53 of them (TreeQuery).
-    const double z_high = k_high_[0] * x + k_high_[1] * y + k_high_[2] * z + start_.high;
-    const double z_low = k_low_[0] * x + k_low_[1] * y + k_low_[2] * z + start_.low;
+    const double z_high = k_high_[0] * x + k_high_[1] * y + k_high_[2] * z + start_high_;
+    const double z_low = k_low_[0] * x + k_low_[1] * y + k_low_[2] * z + start_low_;
     const std::uint32_t all = (1U << leaf.vertices) - 1U;
-    const std::uint32_t wet = place_vertices(leaf, z_high + z_low, vertices_[size_]) & all;
+    const std::uint32_t wet = find_heights(leaf, z_high + z_low, vertices_[size_].z) & all;
     leaf_[size_] = &leaf;
     wet_[size_] = wet;
     const bool fully_submerged = wet == all;
@@ -64,10 +62,19 @@ class LeafBatch {
     return fully_submerged;
   }
 
-  // Returns true if the wet part is the sum of the leaf's moments, which the caller adds, and of the
-  // triangles to evaluate.
-  HWY_INLINE bool find_work(std::size_t i) {
-    HWY_NAMESPACE::find_work(*leaf_[i], wet_[i], work_[i]);
+  // Finds the triangles of cut leaf i, a Leaf, and writes its vertices' numbers along b and c. Returns true
+  // if the wet part is the sum of the leaf's moments, which the caller adds, and of the triangles to
+  // evaluate.
+  template <typename Leaf>
+  HWY_INLINE bool prepare(std::size_t i) {
+    const Reals d;
+    const auto& y = static_cast<const Leaf&>(*leaf_[i]).y;
+    for (std::size_t n = 0; n < kLeafVertices; n += hn::Lanes(d)) {
+      if (is_empty(*leaf_[i], n)) break;
+      hn::Store(load(y[axes_[1]].data() + n), d, vertices_[i].b.values.data() + n);
+      hn::Store(load(y[axes_[2]].data() + n), d, vertices_[i].c.values.data() + n);
+    }
+    find_work(*leaf_[i], wet_[i], work_[i]);
     return work_[i].subtract_from_leaf;
   }
 
@@ -77,43 +84,40 @@ class LeafBatch {
   }
   HWY_INLINE static RealVector load(const double* from) { return hn::LoadU(Reals(), from); }
 
-  // Writes the vertices' numbers, with heights start + k . y. Returns a bit for each vertex below the water;
-  // bits of unused vertices are undefined.
+  // True if the vector of vertices from n on holds none. With narrow vectors, some leaves fill only a few of
+  // them; a branch for wide ones could not be predicted.
+  HWY_INLINE static bool is_empty(const LeafPatch& leaf, std::size_t n) {
+    return hn::Lanes(Reals()) < 8 && n >= leaf.vertices;
+  }
+
+  // Computes start + k . y of the leaf's vertices. Returns a bit for each vertex below the water; bits of
+  // unused vertices are undefined.
   template <typename Real>
-  HWY_INLINE std::uint32_t place_vertices(const TreeLeaf<Real>& leaf, double start,
-                                          Vertices& vertices) const {
+  HWY_INLINE std::uint32_t find_heights(const TreeLeaf<Real>& leaf, double start,
+                                        VertexTable& heights) const {
     const Reals d;
-    const auto k_a = hn::Set(d, k_[0]);
-    const auto k_b = hn::Set(d, k_[1]);
-    const auto k_c = hn::Set(d, k_[2]);
+    const auto x = hn::Set(d, k_[0]);
+    const auto y = hn::Set(d, k_[1]);
+    const auto z = hn::Set(d, k_[2]);
     const auto from = hn::Set(d, start);
     std::uint32_t wet = 0;
-    for (std::size_t i = 0; i < kLeafVertices; i += hn::Lanes(d)) {
-      // With narrow vectors, some leaves fill only a few of them.
-      if (hn::Lanes(d) < 8 && i >= leaf.vertices) break;
-      const auto b = load(leaf.y[axes_[1]].data() + i);
-      const auto c = load(leaf.y[axes_[2]].data() + i);
-      const auto z =
-          hn::MulAdd(k_a, load(leaf.y[axes_[0]].data() + i), hn::MulAdd(k_b, b, hn::MulAdd(k_c, c, from)));
-      hn::Store(b, d, vertices.b.values.data() + i);
-      hn::Store(c, d, vertices.c.values.data() + i);
-      hn::Store(z, d, vertices.z.values.data() + i);
+    for (std::size_t n = 0; n < kLeafVertices; n += hn::Lanes(d)) {
+      if (is_empty(leaf, n)) break;
+      const auto value = hn::MulAdd(
+          x, load(leaf.y[0].data() + n),
+          hn::MulAdd(y, load(leaf.y[1].data() + n), hn::MulAdd(z, load(leaf.y[2].data() + n), from)));
+      hn::Store(value, d, heights.values.data() + n);
       std::array<std::uint8_t, 8> bits{};
-      hn::StoreMaskBits(d, hn::Lt(z, hn::Zero(d)), bits.data());
-      wet |= static_cast<std::uint32_t>(bits[0]) << i;
+      hn::StoreMaskBits(d, hn::Lt(value, hn::Zero(d)), bits.data());
+      wet |= static_cast<std::uint32_t>(bits[0]) << n;
     }
     return wet;
   }
 
-  struct Parts {
-    HWY_INLINE Parts(double high_part, double low_part) : high(high_part), low(low_part) {}
-    double high, low;
-  };
-
   const std::array<std::size_t, 3>& axes_;
-  Parts start_;                           // [m], the height of c
-  std::array<double, 3> k_;               // along a, b and c
-  std::array<double, 3> k_high_, k_low_;  // [m], parts of k times MomentTree::grid, by axis of B
+  const std::array<double, 3>& k_;
+  double start_high_, start_low_;         // [m], parts of the height of c
+  std::array<double, 3> k_high_, k_low_;  // [m], parts of k times MomentTree::grid
   // One element more than is kept: the next leaf overwrites one that is not cut.
   std::array<Vertices, kCapacity + 1> vertices_;
   std::array<const LeafPatch*, kCapacity + 1> leaf_;

@@ -8,6 +8,7 @@
 
 #include "geometry/pairwise_sum.h"
 #include "hydrostatics/double_double.h"
+#include "hydrostatics/tree_plane.h"
 #include "hydrostatics/triangle_clip.h"
 
 namespace buoyancy {
@@ -136,7 +137,17 @@ class WettedSurfaceWalk {
 }  // namespace
 
 WettedMoments wetted_moments(const MomentTree& tree, const WaterPlane& plane) {
-  return WettedSurfaceWalk(tree, plane).result();
+  const WaterPlane tree_plane = plane_of_tree(tree, plane);
+  WettedMoments wet = WettedSurfaceWalk(tree, tree_plane).result();
+  const double length = tree.scale;
+  const double area = length * length;
+  wet.moments.S *= area;
+  wet.moments.N *= area * length;
+  wet.moments.P *= area * area;
+  wet.point = length * wet.point + tree.offset;
+  wet.height *= length;
+  wet.area *= area;
+  return wet;
 }
 
 }  // namespace buoyancy

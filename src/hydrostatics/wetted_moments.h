@@ -21,6 +21,8 @@ struct WettedMoments {
   double area = 0.0;               // [m^2], of the wetted surface
 };
 
+// plane: about the mesh's centre, in metres, whatever the tree's unit of length.
+//
 // Errors, each times a few eps, with A_w the wetted surface's area and R the distance from `point` to its
 // farthest part: area and S within A_w, N within A_w L, P within A_w L^2; if no whole node is submerged, R
 // replaces L. Complexity: O(triangles that the water cuts + log n); no heap.

@@ -134,7 +134,8 @@ class Descent {
         const Leaf& leaf = leaves[leaf_queue_[i]];
         queue_wet(leaf, batch_.add(leaf));
       }
-      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i) queue_wet(batch_.leaf(i), batch_.find_work(i));
+      for (std::size_t i = 0; i < batch_.cut_leaves(); ++i)
+        queue_wet(batch_.leaf(i), batch_.template prepare<Leaf>(i));
       leaf_sums_.add(batch_, query_.axes, tree_.grid);
       if (num_wet_ >= kQueue) add_queued();
     }

@@ -68,9 +68,9 @@ Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body
     assert(validation.refusal);
     return make_error(with_body(body, *std::move(validation.refusal)));
   }
-  return std::make_unique<PreparedMesh>(PreparedMesh{std::move(validation.report),
-                                                     make_hydrostatic_mesh(*validation.mesh, WithTree::kNo),
-                                                     mass_properties(validation.mesh->mesh)});
+  return std::make_unique<PreparedMesh>(PreparedMesh{
+      std::move(validation.report), make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, body.scale),
+      mass_properties(validation.mesh->mesh)});
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {

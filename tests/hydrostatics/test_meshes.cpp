@@ -9,6 +9,13 @@ TriangleMesh moved_and_scaled(TriangleMesh mesh, const Vec3& by, double scale) {
   return mesh;
 }
 
+TriangleMesh rounded_to_float32(TriangleMesh mesh) {
+  for (std::vector<double>* const coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+    for (double& value : *coordinates) value = static_cast<double>(static_cast<float>(value));
+  }
+  return mesh;
+}
+
 std::vector<NamedMesh> closed_test_meshes() {
   const TriangleMesh rock = make_shape(RockShape{.radius = 1.0, .frequency = 8, .roughness = 0.4, .seed = 7});
   std::vector<NamedMesh> meshes{

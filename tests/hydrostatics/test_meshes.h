@@ -16,6 +16,9 @@ struct NamedMesh {
 
 TriangleMesh moved_and_scaled(TriangleMesh mesh, const Vec3& by, double scale = 1.0);
 
+// The mesh as a file of float32 coordinates holds it.
+TriangleMesh rounded_to_float32(TriangleMesh mesh);
+
 std::vector<NamedMesh> closed_test_meshes();
 
 }  // namespace buoyancy

@@ -97,6 +97,33 @@ TEST(WettedMoments, MatchesRationalArithmeticToRounding) {
   }
 }
 
+TEST(WettedMoments, AreThoseOfTheBodyWhateverItsScale) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 4});
+  const TriangleMesh file = rounded_to_float32(moved_and_scaled(rock, Vec3(0.75, -3.5, 0.25)));
+  for (const double scale : {1e-3, 0.0254, 7.0}) {
+    const TriangleMesh source = moved_and_scaled(file, Vec3::Zero(), scale);
+    const HydrostaticMesh in_file_units = make_hydrostatic_mesh({source, {}}, WithTree::kYes, scale);
+    const HydrostaticMesh in_metres = make_hydrostatic_mesh({source, {}});
+    ASSERT_EQ(in_file_units.tree->scale, scale);
+    ASSERT_EQ(in_metres.tree->scale, 1.0);
+    RandomPoses random(47);
+    for (int i = 0; i < 20; ++i) {
+      const Pose pose = random.crossing(bounding_box(source), kWater);
+      const WaterPlane plane = water_plane_in_body(pose, kWater, in_metres.center_B);
+      const WettedMoments one = wetted_moments(*in_metres.tree, plane);
+      const WettedMoments other = wetted_moments(*in_file_units.tree, plane);
+      const SurfaceMoments<double> moved = other.moments.moved(one.point - other.point);
+      const double error = 16.0 * kEpsilon * in_metres.area;
+      const double L = in_metres.diagonal;
+      EXPECT_NEAR(other.area, one.area, error);
+      EXPECT_LE((moved.S - one.moments.S).norm(), error);
+      EXPECT_LE((moved.N - one.moments.N).norm(), error * L);
+      EXPECT_LE((moved.P - one.moments.P).norm(), error * L * L);
+      EXPECT_NEAR(other.height, one.height + plane.up_B.dot(other.point - one.point), 16.0 * kEpsilon * L);
+    }
+  }
+}
+
 TEST(WettedMoments, KeepsDigitsOfMillionthVolumeCap) {
   const HydrostaticMesh mesh =
       make_hydrostatic_mesh({make_shape(RockShape{.frequency = 8, .roughness = 0.0}), {}});
