@@ -247,9 +247,13 @@ class Builder {
         reach = std::max(reach, surface_.vertex(vertex).cwiseAbs().maxCoeff());
       }
     }
+    // At least the least normal number: coordinates are then divided by them without overflow.
+    const auto power_of_two = [](int exponent) {
+      return std::ldexp(1.0, std::max(exponent, std::numeric_limits<double>::min_exponent - 1));
+    };
     const int exponent = exponent_above(reach);
-    tree_.grid = std::ldexp(1.0, exponent - 22);
-    tree_.unit = std::ldexp(1.0, exponent - 15);
+    tree_.grid = power_of_two(exponent - 22);
+    tree_.unit = power_of_two(exponent - 15);
   }
 
   void cut_leaves() {
