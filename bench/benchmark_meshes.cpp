@@ -1,19 +1,21 @@
 #include "benchmark_meshes.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <random>
 #include <utility>
 
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
+#include "geometry/shape_generators.h"
 #include "geometry/shapes.h"
 
 namespace buoyancy::bench {
 namespace {
 
-BenchmarkMesh from_shape(const std::string& name, const Shape& shape) {
-  TriangleMesh source = make_shape(shape);
+BenchmarkMesh prepared(const std::string& name, TriangleMesh source) {
   HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
   return {name, std::move(source), std::move(mesh)};
 }
@@ -27,11 +29,39 @@ std::filesystem::path mesh_directory() {
 }  // namespace
 
 BenchmarkMesh torus_knot() {
-  return from_shape("torus knot", TorusKnotShape{});
+  return prepared("torus knot", make_shape(TorusKnotShape{}));
 }
 
 BenchmarkMesh rock(int frequency) {
-  return from_shape("rock", RockShape{.frequency = frequency});
+  return prepared("rock", make_shape(RockShape{.frequency = frequency}));
+}
+
+BenchmarkMesh rock_uv(int longitudes, int bands) {
+  TriangleMesh mesh;
+  const RockShape shape;
+  const auto add = [&](const Vec3& direction) {
+    return mesh.add_vertex(rock_surface_point(shape, direction));
+  };
+  const std::int32_t north = add(Vec3::UnitZ());
+  const std::int32_t south = add(-Vec3::UnitZ());
+  const auto at = [&](int ring, int i) { return 2 + (ring - 1) * longitudes + i % longitudes; };
+  for (int ring = 1; ring < bands; ++ring) {
+    const double polar = std::numbers::pi * ring / bands;
+    for (int i = 0; i < longitudes; ++i) {
+      const double azimuth = 2.0 * std::numbers::pi * i / longitudes;
+      add({std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)});
+    }
+  }
+  for (int i = 0; i < longitudes; ++i) mesh.triangles.push_back({north, at(1, i), at(1, i + 1)});
+  for (int ring = 1; ring + 1 < bands; ++ring) {
+    for (int i = 0; i < longitudes; ++i) {
+      mesh.triangles.push_back({at(ring, i), at(ring + 1, i), at(ring + 1, i + 1)});
+      mesh.triangles.push_back({at(ring, i), at(ring + 1, i + 1), at(ring, i + 1)});
+    }
+  }
+  for (int i = 0; i < longitudes; ++i)
+    mesh.triangles.push_back({at(bands - 1, i), south, at(bands - 1, i + 1)});
+  return prepared("rock uv", std::move(mesh));
 }
 
 BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, int frequency) {
@@ -58,8 +88,7 @@ BenchmarkMesh shuffled(const BenchmarkMesh& model) {
   for (std::size_t i = source.triangles.size(); i > 1; --i) {
     std::swap(source.triangles[i - 1], source.triangles[generator() % i]);
   }
-  HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
-  return {model.name + " shuffled", std::move(source), std::move(mesh)};
+  return prepared(model.name + " shuffled", std::move(source));
 }
 
 std::vector<BenchmarkMesh> paper_meshes() {

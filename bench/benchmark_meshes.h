@@ -25,6 +25,10 @@ BenchmarkMesh model_or_rock(const std::string& name, const std::string& file, in
 BenchmarkMesh torus_knot();
 BenchmarkMesh rock(int frequency);
 
+// "rock uv": the surface of the rock over a grid of longitudes and latitudes, as many tools make spheres: 2
+// longitudes (bands - 1) triangles, which get narrow towards the poles and are slivers there.
+BenchmarkMesh rock_uv(int longitudes, int bands);
+
 // The same mesh with its triangles in a random order that is the same on every machine. Its name ends with
 // "shuffled".
 BenchmarkMesh shuffled(const BenchmarkMesh& model);

@@ -92,28 +92,6 @@ class GradientNoise {
   std::uint64_t seed_;
 };
 
-// Projects vertices of the subdivided icosahedron onto the rock's surface.
-class RockSurface {
- public:
-  explicit RockSurface(const RockShape& rock) : rock_(rock), noise_(rock.seed) {}
-
-  std::int32_t add(TriangleMesh& mesh, double x, double y, double z) const {
-    const Direction u = normalised(x, y, z);
-    double height = 0.0;
-    double frequency = 1.5;
-    for (const double amplitude : {4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0}) {
-      height += amplitude * noise_.at(frequency * u.x, frequency * u.y, frequency * u.z);
-      frequency *= 2.0;
-    }
-    const double radius = rock_.radius * (1.0 + rock_.roughness * height);
-    return mesh.add_vertex({radius * u.x, radius * u.y, radius * u.z});
-  }
-
- private:
-  const RockShape& rock_;
-  GradientNoise noise_;
-};
-
 // The inner vertices of the icosahedron's 30 edges, each created once.
 class EdgeVertices {
  public:
@@ -134,14 +112,29 @@ class EdgeVertices {
 
 }  // namespace
 
+Vec3 rock_surface_point(const RockShape& rock, const Vec3& direction) {
+  const Direction u = normalised(direction.x(), direction.y(), direction.z());
+  const GradientNoise noise(rock.seed);
+  double height = 0.0;
+  double frequency = 1.5;
+  for (const double amplitude : {4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0}) {
+    height += amplitude * noise.at(frequency * u.x, frequency * u.y, frequency * u.z);
+    frequency *= 2.0;
+  }
+  const double radius = rock.radius * (1.0 + rock.roughness * height);
+  return {radius * u.x, radius * u.y, radius * u.z};
+}
+
 TriangleMesh generate(const RockShape& rock) {
   const std::int32_t n = rock.frequency;
   const std::array<Direction, 12> corners = icosahedron_corners();
-  const RockSurface surface(rock);
   const auto corner = [&](std::int32_t i) { return corners[static_cast<std::size_t>(i)]; };
 
   TriangleMesh mesh;
-  for (const Direction& at : corners) surface.add(mesh, at.x, at.y, at.z);
+  const auto add = [&](double x, double y, double z) {
+    return mesh.add_vertex(rock_surface_point(rock, {x, y, z}));
+  };
+  for (const Direction& at : corners) add(at.x, at.y, at.z);
 
   EdgeVertices edges(n);
   for (const Triangle& face : kIcosahedronFaces) {
@@ -153,9 +146,8 @@ TriangleMesh generate(const RockShape& rock) {
       for (std::int32_t step = 1; step < n; ++step) {
         const double there = step;
         const double here = n - step;
-        surface.add(mesh, here * corner(from).x + there * corner(to).x,
-                    here * corner(from).y + there * corner(to).y,
-                    here * corner(from).z + there * corner(to).z);
+        add(here * corner(from).x + there * corner(to).x, here * corner(from).y + there * corner(to).y,
+            here * corner(from).z + there * corner(to).z);
       }
     }
   }
@@ -179,9 +171,9 @@ TriangleMesh generate(const RockShape& rock) {
           const double of_a = n - i;
           const double of_b = i - j;
           const double of_c = j;
-          row.push_back(surface.add(mesh, of_a * corner(a).x + of_b * corner(b).x + of_c * corner(c).x,
-                                    of_a * corner(a).y + of_b * corner(b).y + of_c * corner(c).y,
-                                    of_a * corner(a).z + of_b * corner(b).z + of_c * corner(c).z));
+          row.push_back(add(of_a * corner(a).x + of_b * corner(b).x + of_c * corner(c).x,
+                            of_a * corner(a).y + of_b * corner(b).y + of_c * corner(c).y,
+                            of_a * corner(a).z + of_b * corner(b).z + of_c * corner(c).z));
         }
       }
     }

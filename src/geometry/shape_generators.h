@@ -1,4 +1,4 @@
-// Internal to make_shape and check_shape (shapes.h): one generator per shape.
+// Internal to make_shape and check_shape (shapes.h), and to the benchmarks: one generator per shape.
 //
 // Contract: each takes a checked shape and returns an outward oriented mesh without unused vertices whose
 // edges are each used once in each direction. Vertices are shared by construction, not by comparing
@@ -16,6 +16,9 @@ TriangleMesh generate(const ConeShape& cone);
 TriangleMesh generate(const TorusKnotShape& knot);
 TriangleMesh generate(const WigleyShape& hull);
 TriangleMesh generate(const RockShape& rock);
+
+// Returns the point of the rock's surface [m] in a direction from its centre. direction: of any length but 0.
+Vec3 rock_surface_point(const RockShape& rock, const Vec3& direction);
 
 // Returns the maximum radius [m] of a smooth tube around the knot's curve that does not touch itself: the
 // minimum radius of all circles that are tangent to the curve at one point and pass through another (O.

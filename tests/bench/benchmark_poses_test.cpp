@@ -8,6 +8,7 @@
 #include "bench/pose_sweep.h"
 #include "bench/trajectory_poses.h"
 #include "bench/unit_water.h"
+#include "geometry/mesh_validation.h"
 #include "hydrostatics/buoyancy.h"
 
 namespace buoyancy::bench {
@@ -30,6 +31,23 @@ TEST(ShuffledMesh, PermutesTrianglesReproducibly) {
   std::sort(triangles.begin(), triangles.end());
   std::sort(permuted.begin(), permuted.end());
   EXPECT_EQ(triangles, permuted);
+}
+
+TEST(RockUv, IsClosedRockWithSliversAtPoles) {
+  const BenchmarkMesh model = rock_uv(60, 41);
+  EXPECT_EQ(model.name, "rock uv");
+  EXPECT_EQ(model.source.triangles.size(), 4800U);
+  EXPECT_TRUE(validate_mesh({model.source, {}}, "rock uv").mesh);
+  EXPECT_NEAR(model.mesh.volume, rock(16).mesh.volume, 0.01 * model.mesh.volume);
+  double max_ratio = 0.0;
+  for (const Triangle& triangle : model.mesh.surface.triangles) {
+    // The first corner lies opposite the longest edge.
+    const Vec3 a = model.mesh.vertex(triangle[0]);
+    const Vec3 b = model.mesh.vertex(triangle[1]);
+    const Vec3 c = model.mesh.vertex(triangle[2]);
+    max_ratio = std::max(max_ratio, (c - b).squaredNorm() / (b - a).cross(c - a).norm());
+  }
+  EXPECT_GT(max_ratio, 8.0);
 }
 
 TEST(BenchmarkMesh, SubstitutesNamedRockForMissingModel) {
