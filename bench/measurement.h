@@ -2,15 +2,20 @@
 //
 //   mesh,triangles,method,tolerance,target,regime,median_ns,force_error,torque_error,bound
 //
-// method      one of the six, or `read`: the time to read vertices and indices once
+// method      one of the six; `plain`: the paper's exact method in plain C++ (plain_exact.h); `read`: the
+// time
+//             to read vertices and indices once
 // tolerance   of the solver; 0: exact, or a method without a tolerance
 // target      the instruction set of `hierarchical`; -: a method without SIMD code of its own
 // regime      independent: 100 poses from almost dry to almost submerged with random rotations;
-//             coherent: 100 steps of a floating body's trajectory
+//             coherent: 100 steps of a floating body's trajectory; both with the caches as the method's own
+//             queries leave them;
+//             cold: every fourth pose of `independent`, with the caches flushed before every query; only
+//             `read`, `plain`, `exact` and `hierarchical` at tolerance 0 on the best instruction set
 // median_ns   median time of a whole query over the poses
 // *_error     largest error over the poses, relative to the whole: of force to rho g V_T, of torque to rho g
 //             V_T L; nan for `read`
-// bound       largest published force error bound over rho g V_T; nan for `read`
+// bound       largest published force error bound over rho g V_T; nan for `read` and `plain`
 #pragma once
 
 #include <cstdio>
@@ -22,7 +27,12 @@
 namespace buoyancy::bench {
 
 inline constexpr const char* kMemoryReadRow = "read";
+inline constexpr const char* kPlainRow = "plain";
 inline constexpr const char* kNoTarget = "-";
+
+inline constexpr const char* kIndependentRegime = "independent";
+inline constexpr const char* kCoherentRegime = "coherent";
+inline constexpr const char* kColdRegime = "cold";
 
 struct Measurement {
   std::string mesh;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "base/format.h"
@@ -95,6 +96,22 @@ Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& 
   errors.force_median = median(force_errors);
   errors.bound = *std::max_element(bounds.begin(), bounds.end());
   errors.bound_median = median(bounds);
+  return errors;
+}
+
+SolverErrors measure_errors(const BenchmarkMesh& model, PlainExact& plain, const PoseSet& set) {
+  const double whole = model.mesh.volume;  // rho g V_T
+  SolverErrors errors;
+  std::vector<double> force_errors;
+  for (std::size_t i = 0; i < set.poses.size(); ++i) {
+    const PlainWrench wrench = plain(set.poses[i], kUnitWater, Vec3::Zero());
+    const double torque_error = (wrench.torque_W - set.truth[i].torque_W).norm();
+    force_errors.push_back((wrench.force_W - set.truth[i].force_W).norm() / whole);
+    errors.torque = std::max(errors.torque, torque_error / (whole * model.mesh.diagonal));
+  }
+  errors.force = *std::max_element(force_errors.begin(), force_errors.end());
+  errors.force_median = median(force_errors);
+  errors.bound = errors.bound_median = std::numeric_limits<double>::quiet_NaN();
   return errors;
 }
 

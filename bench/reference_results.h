@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "benchmark_meshes.h"
 #include "hydrostatics/buoyancy.h"
+#include "plain_exact.h"
 
 namespace buoyancy::bench {
 
@@ -22,7 +23,7 @@ struct ReferenceResult {
 
 // Poses with their reference results.
 struct PoseSet {
-  std::string regime;  // "independent" or "coherent"
+  std::string regime;  // as in measurement.h
   std::vector<Pose> poses;
   std::vector<ReferenceResult> truth;
 };
@@ -34,8 +35,8 @@ struct SolverErrors {
   double force = 0.0;         // maximum over the poses
   double torque = 0.0;        // maximum over the poses
   double force_median = 0.0;  // median over the poses
-  double bound = 0.0;         // maximum of the published force error bounds
-  double bound_median = 0.0;  // median of the published force error bounds
+  double bound = 0.0;         // maximum of the published force error bounds; NaN if none are published
+  double bound_median = 0.0;  // median of the published force error bounds; NaN if none are published
 };
 
 // Evaluates the solver at every pose and compares. Every error must be within its published bound. The force
@@ -45,5 +46,8 @@ struct SolverErrors {
 // Errors: a result whose error exceeds its own bound, or whose bound is too large. The error names the mesh,
 // the method and the pose.
 Expected<SolverErrors> measure_errors(const BenchmarkMesh& model, const Solver& solver, const PoseSet& set);
+
+// Evaluates the plain method, which publishes no bound, at every pose.
+SolverErrors measure_errors(const BenchmarkMesh& model, PlainExact& plain, const PoseSet& set);
 
 }  // namespace buoyancy::bench

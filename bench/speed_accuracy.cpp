@@ -1,4 +1,4 @@
-// Time and error of every method on meshes of 1,760 to 1,003,520 triangles, in two regimes.
+// Time and error of every method on meshes of 1,760 to 1,003,520 triangles, in three regimes.
 //
 //   speed_accuracy [--quick | --smoke] [--csv FILE]
 //
@@ -44,11 +44,15 @@ constexpr std::array kPlan{
     PlannedMesh{[] { return model_or_rock("armadillo", "armadillo_86482.ply", 66); }, false, true, false,
                 false},
     PlannedMesh{[] { return rock(4); }, true, false, false, true},
+    PlannedMesh{[] { return rock_uv(20, 9); }, false, false, false, true},
     PlannedMesh{[] { return rock(16); }, true, true, true, false},
     PlannedMesh{[] { return rock(39); }, true, true, true, false},
     PlannedMesh{[] { return rock(122); }, true, true, false, false},
     PlannedMesh{[] { return rock(122); }, false, false, true, false},
     PlannedMesh{[] { return rock(224); }, true, true, false, false},
+    PlannedMesh{[] { return rock_uv(150, 101); }, false, true, true, false},
+    PlannedMesh{[] { return rock_uv(500, 301); }, false, true, false, false},
+    PlannedMesh{[] { return rock_uv(1000, 501); }, false, true, false, false},
 };
 
 bool is_part_of(const PlannedMesh& planned, Extent extent) {
@@ -75,6 +79,21 @@ int sweeps_of(Extent extent, std::size_t triangles) {
   return extent == Extent::kFull ? std::clamp(affordable, 7, 51) : std::clamp(affordable, 3, 15);
 }
 
+// Flushing the caches takes longer than most queries.
+int cold_sweeps_of(Extent extent) {
+  return extent == Extent::kFull ? 3 : 1;
+}
+
+// Every fourth pose.
+PoseSet cold_set(const PoseSet& independent) {
+  PoseSet set{kColdRegime, {}, {}};
+  for (std::size_t i = 0; i < independent.poses.size(); i += 4) {
+    set.poses.push_back(independent.poses[i]);
+    set.truth.push_back(independent.truth[i]);
+  }
+  return set;
+}
+
 TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
   using Clock = std::chrono::steady_clock;
   const auto triangles = static_cast<double>(model.source.triangles.size());
@@ -89,12 +108,13 @@ TreeCost tree_cost(const BenchmarkMesh& model, Extent extent) {
 }
 
 Expected<void> measure(const BenchmarkMesh& model, const std::vector<PoseSet>& sets, Extent extent,
-                       BenchmarkResults& results) {
+                       CacheFlush& flush, BenchmarkResults& results) {
   for (const PoseSet& set : sets) {
-    const int sweeps = sweeps_of(extent, model.source.triangles.size());
+    const bool cold = set.regime == kColdRegime;
+    const int sweeps = cold ? cold_sweeps_of(extent) : sweeps_of(extent, model.source.triangles.size());
     std::fprintf(stderr, "%s of %zu triangles, %s: %zu poses, %d sweeps\n", model.name.c_str(),
                  model.source.triangles.size(), set.regime.c_str(), set.poses.size(), sweeps);
-    auto rows = time_queries(model, set, sweeps);
+    auto rows = cold ? time_cold_queries(model, set, sweeps, flush) : time_queries(model, set, sweeps);
     if (!rows) return tl::unexpected(rows.error());
     std::move(rows->begin(), rows->end(), std::back_inserter(results.measurements));
   }
@@ -104,28 +124,31 @@ Expected<void> measure(const BenchmarkMesh& model, const std::vector<PoseSet>& s
 
 Expected<BenchmarkResults> measure_all(Extent extent) {
   BenchmarkResults results;
+  CacheFlush flush;
   for (const PlannedMesh& planned : kPlan) {
     if (!is_part_of(planned, extent)) continue;
     const BenchmarkMesh model = planned.make();
     const int poses = poses_of(extent);
     const Pose floating = floating_pose(Solver(model.mesh, Method::kHierarchical));
-    const std::vector<PoseSet> sets{
-        with_reference_results("independent", sweep_of_poses(model.source, poses), model.source),
-        with_reference_results("coherent", coherent_poses(model.mesh, floating, poses), model.source)};
-    if (const auto done = measure(model, sets, extent, results); !done) return tl::unexpected(done.error());
+    std::vector<PoseSet> sets{
+        with_reference_results(kIndependentRegime, sweep_of_poses(model.source, poses), model.source),
+        with_reference_results(kCoherentRegime, coherent_poses(model.mesh, floating, poses), model.source)};
+    sets.push_back(cold_set(sets.front()));
+    if (const auto done = measure(model, sets, extent, flush, results); !done)
+      return tl::unexpected(done.error());
     if (!planned.with_shuffled) continue;
-    if (const auto done = measure(shuffled(model), sets, extent, results); !done)
+    if (const auto done = measure(shuffled(model), sets, extent, flush, results); !done)
       return tl::unexpected(done.error());
   }
   return results;
 }
 
 int run(int argc, char** argv) {
-  ToolCommandLine command_line("Measure time and error of every method in two regimes");
+  ToolCommandLine command_line("Measure time and error of every method in three regimes");
   bool quick = false;
   bool smoke = false;
   std::string csv_path;
-  command_line.add_flag("--quick", quick, "Use fewer meshes and sweeps: under a minute");
+  command_line.add_flag("--quick", quick, "Use fewer meshes and sweeps: a minute or two");
   command_line.add_flag("--smoke", smoke,
                         "Use two small meshes, 8 poses and one sweep: times are meaningless", "--quick");
   command_line.add_option("--csv", csv_path, "Write a row per measurement to this file");

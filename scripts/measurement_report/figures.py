@@ -84,7 +84,7 @@ class Point:
 def series(best, meshes):
     """Returns pairs of style and points: the methods, then hierarchical with its tolerances."""
     tolerances = sorted({t for (_, _, m, t) in best if m == "hierarchical" and float(t) > 0}, key=float)
-    kinds = [(m, "0", METHODS[m]) for m in METHOD_ORDER]
+    kinds = [(m, "0", METHODS[m]) for m in ("plain", *METHOD_ORDER)]
     kinds += [("hierarchical", t, tolerance_style(t, i)) for i, t in enumerate(tolerances)]
     made = []
     for method, tolerance, style in kinds:

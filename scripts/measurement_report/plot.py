@@ -36,6 +36,7 @@ MARKERS = {
 STROKED_MARKERS = {"cross", "plus", "star"}
 
 METHODS = {
+    "plain": Style("plain", "#999999", "cross", "m-plain", "4 3"),
     "fast": Style("fast", "#d55e00", "square", "m-fast"),
     "improved": Style("improved", "#e69f00", "diamond", "m-improved"),
     "fast_surface": Style("fast_surface", "#009e73", "triangle", "m-fast_surface"),
