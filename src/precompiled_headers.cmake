@@ -1,6 +1,8 @@
 # Precompiled headers: third-party headers that many sources include are parsed once instead of once per source. They
 # only save compile time: every source still includes what it uses, and -DBUOYANCY_PRECOMPILED_HEADERS=OFF builds the
-# same programs. The top-level CMakeLists.txt includes this file last, when all targets are known.
+# same programs. A header is listed if most sources of its kind include it: each header costs every source time, since
+# g++ instantiates again what the header's inline functions use, half a second for <nlohmann/json.hpp>. The top-level
+# CMakeLists.txt includes this file last, when all targets are known.
 set(standard_headers
     <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory> <mutex>
     <optional> <sstream> <string> <string_view> <thread> <utility> <vector> <Eigen/Geometry> <tl/expected.hpp>)
@@ -19,14 +21,10 @@ endfunction()
 # Targets of one kind are compiled with the same options and the same macro definitions.
 buoyancy_precompiled_headers(library)
 set_target_properties(buoyancy_precompiled_library PROPERTIES POSITION_INDEPENDENT_CODE ON)
-buoyancy_precompiled_headers(
-  program
-  HEADERS <nlohmann/json.hpp>
-  LIBRARIES nlohmann_json::nlohmann_json)
+buoyancy_precompiled_headers(program)
 if(BUOYANCY_BUILD_TESTS)
   find_package(GTest REQUIRED)
-  buoyancy_precompiled_headers(test HEADERS <gtest/gtest.h> <random> <nlohmann/json.hpp>
-                               LIBRARIES GTest::gtest nlohmann_json::nlohmann_json)
+  buoyancy_precompiled_headers(test HEADERS <gtest/gtest.h> <random> LIBRARIES GTest::gtest)
   target_compile_options(buoyancy_precompiled_test PRIVATE $<$<CONFIG:Release>:-O1>)  # see tests/CMakeLists.txt
 endif()
 
