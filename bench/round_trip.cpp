@@ -20,18 +20,15 @@
 #include <string>
 #include <vector>
 
-#include "client/client.h"
-#include "engine/request_handler.h"
 #include "markdown_table.h"
 #include "median.h"
 #include "quick_option.h"
-#include "service_process.h"
+#include "service_requests.h"
 
 namespace buoyancy::bench {
 namespace {
 
 using Times = std::vector<double>;  // [us]
-using States = std::vector<BodyState>;
 
 constexpr std::size_t kRuns = 5;
 constexpr std::size_t kBlock = 250;    // number of requests before switching between service and echo
@@ -41,66 +38,25 @@ constexpr double kMaxOverheadRatio = 1.5;    // with 100 bodies, without the sol
 constexpr double kRequiredSteps = 20'000.0;  // per second
 constexpr double kRealTimeSteps = 1000.0;    // per second
 
-// A box of 1,200 triangles.
-const std::string kCrate = R"(shape = { type = "box", size = [1, 1, 1], segments = [10, 10, 10] })";
 const std::string kRock = R"(shape = { type = "rock", radius = 1, frequency = 39 })";  // 30,420 triangles
 
-double microseconds(Clock::duration duration) {
-  return std::chrono::duration<double, std::micro>(duration).count();
-}
-
-Client client_at(int port) {
-  ClientOptions options;
-  options.channel.lcm_url = url_of_port(port);
-  return value_or_exit(Client::open(options));
-}
-
-// Every body crosses the water surface at every step and turns; no two steps are equal, so that no result is
-// cached. sink [m] is subtracted from every height.
+// The states of all bodies, see state_at().
 States states_at(const Scene& scene, std::size_t step, double sink = 0.0) {
   States states;
-  for (const Body& body : scene.bodies()) {
-    const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
-    const double angle = 0.1 * body.id + 1e-3 * static_cast<double>(step);
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Vec3(0.6, 0.8, std::sin(angle)).normalized()));
-    Vec3 position = Vec3(5.0 * body.id, 0.0, 0.1 * mesh.box_max.minCoeff() * std::sin(7.0 * angle) - sink);
-    position -= q * mesh.center_B;
-    states.push_back({.body_id = body.id,
-                      .position = {position.x(), position.y(), position.z()},
-                      .quaternion_wxyz = {q.w(), q.x(), q.y(), q.z()},
-                      .linear_velocity = {},
-                      .angular_velocity = {}});
-  }
+  for (const Body& body : scene.bodies()) states.push_back(state_at(body, step, sink));
   return states;
 }
 
-WrenchResponse send_request(Client& client, std::size_t step, const States& states) {
-  return *value_or_exit(client.request(static_cast<std::int64_t>(step), states));
-}
-
-// Fully submerged bodies must have the force rho g V upwards; the response for surface-piercing bodies must
-// equal that of the handler in this process bit for bit, with forces between 0 and rho g V.
+// Fully submerged bodies must have the force rho g V upwards, surface-piercing bodies a force between 0 and
+// rho g V and the handler's bits.
 void check_responses(Client& client, const Scene& scene) {
-  constexpr double kRelative = 1e-12;
   const WrenchResponse deep = send_request(client, 0, states_at(scene, 0, 1000.0));
   const States states = states_at(scene, 1);
   const WrenchResponse crossing = send_request(client, 1, states);
-  std::vector<std::uint8_t> request;
-  encode(WrenchRequest{.id = crossing.id, .lead_time = 0.0, .bodies = states}, request);
-  RequestHandler handler(scene, {.threads = 1});
-  const Bytes expected = handler.handle(request);
-  std::vector<std::uint8_t> actual;
-  encode(crossing, actual);
-  if (!std::equal(actual.begin(), actual.end(), expected.begin(), expected.end())) {
-    fail("the service's response differs from the handler's");
-  }
+  check_equals_handler(crossing, states, scene);
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    const Water& water = scene.water();
-    const double whole =
-        water.density * water.gravity * scene.bodies()[i].prepared_mesh->mass_properties.volume;
-    const double force = crossing.bodies[i].force[2];
-    if (std::abs(deep.bodies[i].force[2] - whole) > kRelative * whole) fail("a wrong force under water");
-    if (force <= 0.0 || force >= whole) fail("a body does not cross the surface");
+    check_submerged_force(scene.bodies()[i], scene.water(), deep.bodies[i]);
+    check_piercing_force(scene.bodies()[i], scene.water(), crossing.bodies[i]);
   }
 }
 
