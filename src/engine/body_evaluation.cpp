@@ -76,6 +76,11 @@ PoseBits pose_bits(const Pose& pose) {
           bits(pose.q_WB.x()), bits(pose.q_WB.y()), bits(pose.q_WB.z())};
 }
 
+Pose to_pose(const PoseBits& bits) {
+  const auto value = [&bits](std::size_t i) { return std::bit_cast<double>(bits[i]); };
+  return {.p_WB = {value(0), value(1), value(2)}, .q_WB = {value(3), value(4), value(5), value(6)}};
+}
+
 bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
   std::uint64_t difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i) difference |= a[i] ^ b[i];

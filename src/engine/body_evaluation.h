@@ -33,6 +33,7 @@ ValidatedPose validate_pose(const BodyState& state, double lead_time);
 // The bits of p_WB and q_WB: poses with equal bits have the same result.
 using PoseBits = std::array<std::uint64_t, 7>;
 PoseBits pose_bits(const Pose& pose);
+Pose to_pose(const PoseBits& bits);
 // Compares without a branch per component: every body of every request makes this test.
 bool equal_branch_free(const PoseBits& a, const PoseBits& b);
 

@@ -1,7 +1,15 @@
 #include "engine/body_evaluator.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cassert>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "messages/wire_views.h"
 
 namespace buoyancy {
 namespace {
@@ -11,105 +19,211 @@ namespace {
 constexpr double kMinParallelWork = 5e4;
 constexpr double kMinTaskWork = 1e4;
 
+// A chunk takes about kMinTaskWork.
+constexpr std::size_t kChunkStates = 256;
+constexpr double kBoundsTime = 40.0;  // [ns], rough cost of a state that needs no more than its bounds
+
 // [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
 double estimated_time(const Solver& solver) {
   const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
   return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 4.0 * triangles;
 }
 
+std::size_t chunks_of(std::size_t states) {
+  return (states + kChunkStates - 1) / kChunkStates;
+}
+
+// Is the calling thread the first that marks this body in this request? The mark orders no other memory.
+bool mark_first(std::uint32_t& last_request, std::uint32_t request) {
+  return std::atomic_ref(last_request).exchange(request, std::memory_order_relaxed) != request;
+}
+
 }  // namespace
 
 void BodyEvaluator::set_scene(const Scene& scene) {
+  using Key = std::tuple<const PreparedMesh*, Method, double, double, double, double>;
   scene_ = &scene;
-  cached_.assign(scene.bodies().size(), {});
-  pending_.clear();
-  estimated_time_.clear();
-  fully_submerged_.clear();
-  estimated_time_.reserve(scene.bodies().size());
-  fully_submerged_.reserve(scene.bodies().size());
+  kinds_.clear();
+  kind_of_.clear();
+  kind_of_.reserve(scene.bodies().size());
+  std::map<Key, std::uint32_t> known;
   for (const Body& body : scene.bodies()) {
-    estimated_time_.push_back(estimated_time(body.solver));
-    fully_submerged_.push_back(submerged_constants(body.solver.mesh(), scene.water(), body.reference_B));
-  }
-}
-
-void BodyEvaluator::CachedResult::set_pose(const Pose& evaluated) {
-  valid = outcome.status == BodyStatus::kOk;
-  pose = pose_bits(evaluated);
-}
-
-void BodyEvaluator::evaluate_all(const WrenchRequest& request, std::vector<BodyWrench>& wrenches,
-                                 ServiceCounters& counters) {
-  const std::size_t bodies = request.bodies.size();
-  pending_.clear();
-  wrenches.resize(bodies);
-  for (std::size_t i = 0; i < bodies; ++i) {
-    const BodyState& state = request.bodies[i];
-    if (const BodyOutcome* outcome = evaluate_or_defer(state, request.lead_time, i)) {
-      wrenches[i] = to_wrench(state.body_id, *outcome);
-      add_to_counters(*outcome, counters);
+    const Vec3& reference = body.reference_B;
+    const Key key{body.prepared_mesh, body.solver.method(), body.solver.tolerance(),
+                  reference.x(),      reference.y(),        reference.z()};
+    const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds_.size()));
+    if (is_new) {
+      kinds_.push_back({.example = &body,
+                        .submerged = submerged_constants(body.solver.mesh(), scene.water(), reference),
+                        .estimated_time = estimated_time(body.solver)});
     }
+    kind_of_.push_back(kind->second);
   }
-  compute_pending();
-  // In the request's order, since a request may contain a body twice: the last outcome stays cached.
-  for (const Pending& pending : pending_) {
-    wrenches[pending.state] = to_wrench(request.bodies[pending.state].body_id, pending.outcome);
-    add_to_counters(pending.outcome, counters);
-    CachedResult& last = cached_[pending.body];
-    last.outcome = pending.outcome;
-    last.set_pose(pending.validated.pose);
-  }
+  last_.assign(scene.bodies().size(), {});
+  results_.assign(scene.bodies().size(), {});
 }
 
 void BodyEvaluator::clear_cache() {
-  for (CachedResult& last : cached_) last.valid = false;
+  for (LastPose& last : last_) last.cached = Cached::kNothing;
 }
 
-std::optional<std::size_t> BodyEvaluator::find_body(std::int32_t id, std::size_t i) const {
-  // Fast path: requests for a whole scene usually list the bodies in the scene's order.
-  if (i < scene_->bodies().size() && scene_->bodies()[i].id == id) return i;
-  return scene_->index_of(id);
+void BodyEvaluator::prepare_buffers(std::size_t states) {
+  // A number that was used 2^32 requests ago must not be taken for this request's.
+  if (++request_number_ == 0) {
+    for (LastPose& last : last_) last.request = 0;
+    request_number_ = 1;
+  }
+  // Buffers only grow: shrinking and growing again would initialise them again.
+  if (states <= pending_.size()) return;
+  pending_.resize(states);
+  repeated_.resize(states);
+  pending_order_.reserve(states);
+  task_results_.resize(std::max(chunks_of(states), max_pending_tasks()));
 }
 
-const BodyOutcome* BodyEvaluator::evaluate_or_defer(const BodyState& state, double lead_time, std::size_t i) {
-  const std::optional<std::size_t> index = find_body(state.body_id, i);
-  if (!index) {
-    rejected_ = {.status = BodyStatus::kUnknownBody, .result = {}};
-    return &rejected_;
+std::size_t BodyEvaluator::max_pending_tasks() const {
+  constexpr std::size_t kTasksPerThread = 64;  // more would not balance the threads' work noticeably better
+  return kTasksPerThread * thread_count();
+}
+
+template <typename Task>
+void BodyEvaluator::run(std::size_t tasks, double time, const Task& task) {
+  if (tasks > 1 && time > kMinParallelWork && thread_pool_.thread_count() > 1) {
+    thread_pool_.run(tasks, 1, std::cref(task));  // a copy of the task would need the heap
+  } else {
+    for (std::size_t i = 0; i < tasks; ++i) task(i);
+  }
+}
+
+void BodyEvaluator::evaluate_all(const RequestView& request, ResponseWriter& response,
+                                 ServiceCounters& counters) {
+  assert(request.size() == response.size());
+  const std::size_t states = request.size();
+  const std::size_t chunks = chunks_of(states);
+  prepare_buffers(states);
+  run(chunks, kBoundsTime * static_cast<double>(states),
+      [&](std::size_t chunk) { evaluate_chunk(request, response, chunk); });
+  pending_order_.clear();
+  repeated_order_.clear();
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    const TaskResult& result = task_results_[chunk];
+    counters += result.counters;
+    const auto begin = static_cast<std::uint32_t>(chunk * kChunkStates);
+    for (std::uint32_t n = 0; n < result.pending; ++n) pending_order_.push_back(begin + n);
+    for (std::uint32_t n = 0; n < result.repeated; ++n) repeated_order_.push_back(begin + n);
+  }
+  compute_pending(request, response, counters);
+  for (const std::uint32_t n : repeated_order_) evaluate_repeated(request, response, repeated_[n], counters);
+}
+
+void BodyEvaluator::evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk) {
+  const std::size_t begin = chunk * kChunkStates;
+  const std::size_t end = std::min(begin + kChunkStates, request.size());
+  TaskResult& result = task_results_[chunk];
+  result = {};
+  for (std::size_t i = begin; i < end; ++i) {
+    const BodyState state = request.body(i);
+    BodyOutcome outcome;
+    switch (evaluate_cheaply(state, request.lead_time(), i, pending_[begin + result.pending], outcome)) {
+      case Progress::kDone:
+        response.set(i, to_wrench(state.body_id, outcome));
+        add_to_counters(outcome, result.counters);
+        break;
+      case Progress::kPending:
+        ++result.pending;
+        break;
+      case Progress::kRepeated:
+        repeated_[begin + result.repeated++] = static_cast<std::uint32_t>(i);
+        break;
+    }
+  }
+}
+
+BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, double lead_time,
+                                                        std::size_t i, Pending& pending,
+                                                        BodyOutcome& outcome) {
+  const std::optional<std::size_t> body = scene_->index_of(state.body_id, i);
+  if (!body) {
+    outcome.status = BodyStatus::kUnknownBody;
+    return Progress::kDone;
   }
   const ValidatedPose validated = validate_pose(state, lead_time);
   if (validated.status != BodyStatus::kOk) {
-    rejected_ = {
-        .status = validated.status, .quaternion_normalised = validated.quaternion_normalised, .result = {}};
-    return &rejected_;
+    outcome.status = validated.status;
+    outcome.quaternion_normalised = validated.quaternion_normalised;
+    return Progress::kDone;
   }
-  CachedResult& last = cached_[*index];
-  if (last.valid && equal_branch_free(last.pose, pose_bits(validated.pose))) {
-    last.outcome.unchanged = true;
-    return &last.outcome;
-  }
-  if (try_evaluate_from_bounds(scene_->bodies()[*index], fully_submerged_[*index], scene_->water(), validated,
-                               last.outcome)) {
-    last.set_pose(validated.pose);
-    return &last.outcome;
-  }
-  pending_.push_back({.state = i, .body = *index, .validated = validated, .outcome = {}});
-  return nullptr;
+  if (!mark_first(last_[*body].request, request_number_)) return Progress::kRepeated;
+  if (evaluate_cheaply(validated, *body, outcome)) return Progress::kDone;
+  pending = {.state = static_cast<std::uint32_t>(i),
+             .body = static_cast<std::uint32_t>(*body),
+             .quaternion_normalised = validated.quaternion_normalised};
+  return Progress::kPending;
 }
 
-void BodyEvaluator::compute_pending() {
-  double work = 0.0;
-  for (const Pending& pending : pending_) work += estimated_time_[pending.body];
-  const auto compute = [this](std::size_t n) {
-    Pending& pending = pending_[n];
-    evaluate(scene_->bodies()[pending.body], scene_->water(), pending.validated, pending.outcome);
-  };
-  if (pending_.size() > 1 && work > kMinParallelWork && thread_pool_.thread_count() > 1) {
-    const double each = work / static_cast<double>(pending_.size());
-    thread_pool_.run(pending_.size(), static_cast<std::size_t>(std::max(1.0, kMinTaskWork / each)), compute);
-  } else {
-    for (std::size_t n = 0; n < pending_.size(); ++n) compute(n);
+bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome) {
+  LastPose& last = last_[body];
+  const PoseBits pose = pose_bits(validated.pose);
+  const bool unchanged = last.cached != Cached::kNothing && equal_branch_free(last.pose, pose);
+  if (unchanged && last.cached == Cached::kResult) {
+    outcome = results_[body];
+    outcome.quaternion_normalised = validated.quaternion_normalised;
+    outcome.unchanged = true;
+    return true;
   }
+  const BodyKind& kind = kinds_[kind_of_[body]];
+  last.pose = pose;
+  last.cached = Cached::kNothing;
+  if (!try_evaluate_from_bounds(*kind.example, kind.submerged, scene_->water(), validated, outcome)) {
+    return false;
+  }
+  outcome.unchanged = unchanged;
+  if (outcome.status == BodyStatus::kOk) last.cached = Cached::kPose;
+  return true;
+}
+
+const BodyOutcome& BodyEvaluator::compute(std::size_t body, const ValidatedPose& validated) {
+  BodyOutcome& outcome = results_[body];
+  evaluate(*kinds_[kind_of_[body]].example, scene_->water(), validated, outcome);
+  if (outcome.status == BodyStatus::kOk) last_[body].cached = Cached::kResult;
+  return outcome;
+}
+
+void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& response,
+                                    ServiceCounters& counters) {
+  if (pending_order_.empty()) return;
+  double work = 0.0;
+  for (const std::uint32_t n : pending_order_) work += kinds_[kind_of_[pending_[n].body]].estimated_time;
+  const std::size_t count = pending_order_.size();
+  const double each = work / static_cast<double>(count);
+  const std::size_t grain = std::max({std::size_t{1}, static_cast<std::size_t>(kMinTaskWork / each),
+                                      (count + max_pending_tasks() - 1) / max_pending_tasks()});
+  const std::size_t tasks = (count + grain - 1) / grain;
+  run(tasks, work, [&](std::size_t t) {
+    TaskResult& result = task_results_[t];
+    result = {};
+    for (std::size_t n = t * grain; n < std::min((t + 1) * grain, count); ++n) {
+      const Pending& pending = pending_[pending_order_[n]];
+      const BodyOutcome& outcome =
+          compute(pending.body, {.status = BodyStatus::kOk,
+                                 .pose = to_pose(last_[pending.body].pose),
+                                 .quaternion_normalised = pending.quaternion_normalised});
+      response.set(pending.state, to_wrench(request.body_id(pending.state), outcome));
+      add_to_counters(outcome, result.counters);
+    }
+  });
+  for (std::size_t t = 0; t < tasks; ++t) counters += task_results_[t].counters;
+}
+
+void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
+                                      ServiceCounters& counters) {
+  const BodyState state = request.body(i);
+  const std::size_t body = scene_->index_of(state.body_id, i).value();
+  const ValidatedPose validated = validate_pose(state, request.lead_time());
+  BodyOutcome outcome;
+  if (!evaluate_cheaply(validated, body, outcome)) outcome = compute(body, validated);
+  response.set(i, to_wrench(state.body_id, outcome));
+  add_to_counters(outcome, counters);
 }
 
 }  // namespace buoyancy

@@ -1,20 +1,22 @@
 // Computes the wrenches on the bodies of one request and skips the work that the scene does not need.
 //
 // A body whose pose equals, bit for bit, that of its last result gets that result again. A dry or a fully
-// submerged body is evaluated from its bounds. The other bodies are computed, on several threads where the
-// estimated work justifies it. One thread computes each body's result from that body's state alone, so the
-// result's bits do not depend on the number of threads.
+// submerged body is evaluated from its bounds. The other bodies are computed. Large requests are shared among
+// threads where the estimated work justifies it. One thread computes each body's result from that body's
+// state alone, so the result's bits do not depend on the number of threads.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "engine/body_evaluation.h"
 #include "engine/thread_pool.h"
 
 namespace buoyancy {
+
+class RequestView;
+class ResponseWriter;
 
 class BodyEvaluator {
  public:
@@ -26,10 +28,11 @@ class BodyEvaluator {
   // Replaces the scene and clears the cached results. The previous scene is not accessed again.
   void set_scene(const Scene& scene);
 
-  // Replaces wrenches by one wrench per state, in the request's order. Makes no heap allocation of its own
-  // once all buffers are as large as the largest request needs.
-  void evaluate_all(const WrenchRequest& request, std::vector<BodyWrench>& wrenches,
-                    ServiceCounters& counters);
+  // Sets one wrench per state of the request, in its order. Makes no heap allocation of its own once all
+  // buffers are as large as the largest request needs. If a large request contains a body more than once, it
+  // is unspecified which of its poses is cached, which shows in counters.bodies_unchanged only. Precondition:
+  // response has as many bodies as request.
+  void evaluate_all(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
 
   // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
@@ -37,34 +40,81 @@ class BodyEvaluator {
   unsigned thread_count() const { return thread_pool_.thread_count(); }
 
  private:
-  struct CachedResult {
-    bool valid = false;  // outcome.status is kOk and outcome belongs to pose
+  // What bodies with the same mesh, method, tolerance and reference point share.
+  struct BodyKind {
+    const Body* example = nullptr;  // one of the bodies
+    FullySubmerged submerged;
+    double estimated_time = 0.0;  // [ns], rough cost of a surface-piercing query
+  };
+
+  enum class Cached : std::uint8_t {
+    kNothing,
+    kPose,    // the bounds decided: evaluating them again is as quick as storing a result
+    kResult,  // results_ holds the outcome
+  };
+  // What a body keeps from one request to the next. A large scene is limited by memory: one cache line for a
+  // body that does not cross the surface.
+  struct alignas(64) LastPose {
     PoseBits pose{};
-    BodyOutcome outcome;
-
-    void set_pose(const Pose& evaluated);  // records the pose that outcome belongs to
+    std::uint32_t request = 0;  // number of the request that contained the body last
+    Cached cached = Cached::kNothing;
   };
-  // A body that compute_pending() has to compute.
+  static_assert(sizeof(LastPose) == 64);
+
+  // A state whose body has to be computed.
   struct Pending {
-    std::size_t state = 0;  // index into the request's bodies
-    std::size_t body = 0;   // index into the scene's
-    ValidatedPose validated;
-    BodyOutcome outcome;
+    std::uint32_t state = 0;  // index into the request's bodies
+    std::uint32_t body = 0;   // index into the scene's
+    bool quaternion_normalised = false;
   };
 
-  // Returns the outcome, valid until the next call, or nullptr after deferring the body to compute_pending().
-  const BodyOutcome* evaluate_or_defer(const BodyState& state, double lead_time, std::size_t i);
-  void compute_pending();
-  // Index into the scene's bodies of the body with this id, which is the i-th body of the request.
-  std::optional<std::size_t> find_body(std::int32_t id, std::size_t i) const;
+  // What one task of a parallel loop counts on its own.
+  struct alignas(64) TaskResult {
+    ServiceCounters counters;
+    std::uint32_t pending = 0;   // number of states that it added to pending_
+    std::uint32_t repeated = 0;  // number of states that it added to repeated_
+  };
+
+  enum class Progress {
+    kDone,
+    kPending,   // the body has to be computed
+    kRepeated,  // the request contains the body twice, and another state of it was first
+  };
+
+  void prepare_buffers(std::size_t states);
+  std::size_t max_pending_tasks() const;
+  // Calls task(i) for every i in [0, tasks), on several threads if that pays. time: estimated, of all [ns].
+  template <typename Task>
+  void run(std::size_t tasks, double time, const Task& task);
+
+  // Evaluates the states of a chunk as far as cached results and bounds go; adds the others to pending_ and
+  // repeated_.
+  void evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk);
+  // state: the i-th of the request. Sets outcome if done, and pending if that is the result.
+  Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
+                            BodyOutcome& outcome);
+  // False: neither the cached result nor the bounds suffice; the body has to be computed.
+  bool evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
+  const BodyOutcome& compute(std::size_t body, const ValidatedPose& validated);
+  void compute_pending(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  // Evaluates the i-th state, whose body another state of the request has, after that one.
+  void evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
+                         ServiceCounters& counters);
 
   const Scene* scene_;
   ThreadPool thread_pool_;
-  std::vector<FullySubmerged> fully_submerged_;  // by body
-  std::vector<double> estimated_time_;           // [ns], by body: rough cost of a partially submerged query
-  std::vector<CachedResult> cached_;             // by body
-  std::vector<Pending> pending_;                 // bodies of the current request
-  BodyOutcome rejected_;                         // outcome of a state with an unknown body or an invalid pose
+  std::vector<BodyKind> kinds_;
+  std::vector<std::uint32_t> kind_of_;  // by body: index into kinds_
+  std::vector<LastPose> last_;          // by body
+  std::vector<BodyOutcome> results_;    // by body
+  std::uint32_t request_number_ = 0;
+
+  // Of the current request. Chunk c's part of pending_ and repeated_ begins at the chunk's first state.
+  std::vector<Pending> pending_;
+  std::vector<std::uint32_t> repeated_;        // indices of states
+  std::vector<std::uint32_t> pending_order_;   // indices into pending_, without gaps
+  std::vector<std::uint32_t> repeated_order_;  // indices into repeated_, without gaps
+  std::vector<TaskResult> task_results_;
 };
 
 }  // namespace buoyancy

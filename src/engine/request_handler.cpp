@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/body_evaluation.h"
+#include "messages/wire_views.h"
 
 namespace buoyancy {
 namespace {
@@ -34,32 +35,33 @@ void RequestHandler::set_scene(const Scene& scene) {
   cached_hydrostatics_.assign(hydrostatics_cache_size(scene), {});
 }
 
-Bytes RequestHandler::handle(Bytes request) {
+Bytes RequestHandler::handle(Bytes bytes) {
   ++counters_.requests;
   last_session_.reset();
-  const auto id = peek_request_id(request);
-  if (!id) {
-    count_decode_error(id.error());
+  const auto request = RequestView::of(bytes);
+  if (!request) {
+    count_decode_error(request.error());
     return {};
   }
 
-  const auto known = std::ranges::find(sessions_, id->session_id, &Session::id);
+  const RequestId& id = request->id();
+  const auto known = std::ranges::find(sessions_, id.session_id, &Session::id);
   const bool is_new = known == sessions_.end();
-  Session& session = is_new ? start_session(*id) : *known;
+  Session& session = is_new ? start_session(id) : *known;
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   if (!is_new) {
-    if (same_bytes(session.last_request, request)) {
+    if (same_bytes(session.last_request, bytes)) {
       ++counters_.retries;
       last_session_ = index;
       return session.last_response;
     }
-    if (id->seq == session.last_seq) ++counters_.conflicting_retries;
-    if (id->seq < session.newest_seq) ++counters_.stale;
+    if (id.seq == session.last_seq) ++counters_.conflicting_retries;
+    if (id.seq < session.newest_seq) ++counters_.stale;
   }
-  session.last_seq = id->seq;
-  session.newest_seq = std::max(session.newest_seq, id->seq);
-  compute(request, session);
+  session.last_seq = id.seq;
+  session.newest_seq = std::max(session.newest_seq, id.seq);
+  compute(bytes, *request, session);
   ++counters_.computed;
   last_session_ = index;
   return session.last_response;
@@ -109,31 +111,28 @@ RequestHandler::Session& RequestHandler::start_session(const RequestId& first) {
   return *session;
 }
 
-void RequestHandler::compute(Bytes request, Session& session) {
+void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& session) {
   // The request is stored only when its response is complete. Otherwise, if memory ran out in between, a
   // retry of the previous request would get parts of the new response.
   session.last_request.clear();
-  [[maybe_unused]] const auto error = decode(request, request_);
-  assert(!error);  // peek_request_id() made the same checks
-  response_.id = request_.id;
-  evaluator_.evaluate_all(request_, response_.bodies, counters_);
-  compute_hydrostatics();
-  encode(response_, session.last_response);
+  ResponseWriter response(request.id(), request.size(), session.last_response);
+  evaluator_.evaluate_all(request, response, counters_);
+  compute_hydrostatics(request, response);
   session.last_hydrostatics.clear();
   if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
-  session.last_request.assign(request.begin(), request.end());
+  session.last_request.assign(bytes.begin(), bytes.end());
 }
 
-void RequestHandler::compute_hydrostatics() {
-  hydrostatics_.id = request_.id;
+void RequestHandler::compute_hydrostatics(const RequestView& request, const ResponseWriter& response) {
+  hydrostatics_.id = request.id();
   hydrostatics_.bodies.clear();
-  for (std::size_t i = 0; scene_->any_hydrostatics() && i < request_.bodies.size(); ++i) {
-    const BodyState& state = request_.bodies[i];
-    const std::optional<std::size_t> index = scene_->index_of(state.body_id);
+  for (std::size_t i = 0; scene_->any_hydrostatics() && i < request.size(); ++i) {
+    const BodyState state = request.body(i);
+    const std::optional<std::size_t> index = scene_->index_of(state.body_id, i);
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;
-    const BodyStatus status = response_.bodies[i].status;
+    const BodyStatus status = response.wrench(i).status;
     CachedHydrostatics& cached = cached_hydrostatics_[*index];
-    const Pose pose = validate_pose(state, request_.lead_time).pose;
+    const Pose pose = validate_pose(state, request.lead_time()).pose;
     const PoseBits bits = pose_bits(pose);
     if (status != BodyStatus::kOk || !cached.valid || !equal_branch_free(cached.pose, bits)) {
       cached.hydrostatics =

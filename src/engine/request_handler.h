@@ -83,8 +83,8 @@ class RequestHandler {
 
   void count_decode_error(DecodeError error);
   Session& start_session(const RequestId& first);  // evicts the least recently used session if necessary
-  void compute(Bytes request, Session& session);
-  void compute_hydrostatics();
+  void compute(Bytes bytes, const RequestView& request, Session& session);
+  void compute_hydrostatics(const RequestView& request, const ResponseWriter& response);
 
   const Scene* scene_;
   std::size_t max_sessions_;
@@ -92,8 +92,6 @@ class RequestHandler {
   std::uint64_t use_ = 0;
   ServiceCounters counters_;
   BodyEvaluator evaluator_;
-  WrenchRequest request_;            // reused
-  WrenchResponse response_;          // reused
   BodiesHydrostatics hydrostatics_;  // reused
   struct CachedHydrostatics {
     bool valid = false;

@@ -9,6 +9,7 @@
 #include <buoyancy/body_wrenches_t.hpp>
 
 #include "messages/wire_layout.h"
+#include "messages/wire_views.h"
 
 namespace buoyancy {
 namespace {
@@ -33,10 +34,7 @@ std::size_t fixed_size() {
 
 template <typename Message>
 std::size_t body_size() {
-  const typename decltype(Message::bodies)::value_type body;
-  LayoutSize layout;
-  visit_fields(body, layout);
-  return layout.size();
+  return encoded_body_size<typename decltype(Message::bodies)::value_type>();
 }
 
 // Returns the number of bodies.
@@ -70,14 +68,22 @@ std::optional<DecodeError> decode_message(Bytes bytes, Message& message) {
   return std::nullopt;
 }
 
+// Replaces bytes by the encoded fixed fields of a message, which takes none of its bodies from `message`, and
+// room for this number of bodies. Returns where they begin.
 template <typename Message>
-void encode_message(const Message& message, std::vector<std::uint8_t>& bytes) {
-  assert(message.bodies.size() <= std::numeric_limits<std::int32_t>::max());
-  bytes.resize(fixed_size<Message>() + message.bodies.size() * body_size<Message>());
+std::uint8_t* encode_fixed(const Message& message, std::size_t bodies, std::vector<std::uint8_t>& bytes) {
+  assert(bodies <= std::numeric_limits<std::int32_t>::max());
+  bytes.resize(fixed_size<Message>() + bodies * body_size<Message>());
   BigEndianWriter writer(bytes.data());
   writer(fingerprint<Message>());
   visit_header(message, writer);
-  writer(static_cast<std::int32_t>(message.bodies.size()));
+  writer(static_cast<std::int32_t>(bodies));
+  return bytes.data() + fixed_size<Message>();
+}
+
+template <typename Message>
+void encode_message(const Message& message, std::vector<std::uint8_t>& bytes) {
+  BigEndianWriter writer(encode_fixed(message, message.bodies.size(), bytes));
   for (const auto& body : message.bodies) visit_fields(body, writer);
 }
 
@@ -108,13 +114,27 @@ std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics)
 }
 
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes) {
+  const auto view = RequestView::of(bytes);
+  if (!view) return tl::unexpected(view.error());
+  return view->id();
+}
+
+tl::expected<RequestView, DecodeError> RequestView::of(Bytes bytes) {
   const auto bodies = validate<WrenchRequest>(bytes);
   if (!bodies) return tl::unexpected(bodies.error());
-  RequestId id;
+  WrenchRequest fixed;
   BigEndianReader reader(bytes.data() + sizeof(std::int64_t));
-  visit_fields(id, reader);
-  return id;
+  visit_header(fixed, reader);
+  RequestView view;
+  view.id_ = fixed.id;
+  view.lead_time_ = fixed.lead_time;
+  view.size_ = *bodies;
+  view.bodies_ = bytes.data() + fixed_size<WrenchRequest>();
+  return view;
 }
+
+ResponseWriter::ResponseWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes)
+    : size_(bodies), bodies_(encode_fixed(WrenchResponse{.id = id, .bodies = {}}, bodies, bytes)) {}
 
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes) {
   encode_message(request, bytes);

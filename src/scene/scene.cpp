@@ -100,12 +100,14 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh);
     }
-    scene.index_.emplace(body.id, scene.bodies_.size());
     scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
                              body.hydrostatics, center_of_mass(body.dynamics, prepared), body.dynamics});
   }
+  std::vector<std::int32_t> ids;
+  for (const Body& body : scene.bodies_) ids.push_back(body.id);
+  scene.index_ = IdIndex(std::move(ids));
   return scene;
 }
 
@@ -118,12 +120,6 @@ Expected<Scene> Scene::load(const std::filesystem::path& path, const PrepareOpti
 const Body* Scene::find(std::int32_t id) const {
   const std::optional<std::size_t> index = index_of(id);
   return index ? &bodies_[*index] : nullptr;
-}
-
-std::optional<std::size_t> Scene::index_of(std::int32_t id) const {
-  const auto entry = index_.find(id);
-  if (entry == index_.end()) return std::nullopt;
-  return entry->second;
 }
 
 }  // namespace buoyancy

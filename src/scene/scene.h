@@ -6,13 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "base/error.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_report.h"
 #include "hydrostatics/solver.h"
+#include "scene/id_index.h"
 #include "scene/scene_file.h"
 
 namespace buoyancy {
@@ -54,8 +54,11 @@ class Scene {
   const Water& water() const { return water_; }
   const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
-  const Body* find(std::int32_t id) const;                     // nullptr if unknown; O(1)
-  std::optional<std::size_t> index_of(std::int32_t id) const;  // index into bodies()
+  const Body* find(std::int32_t id) const;  // nullptr if unknown; O(1)
+  // Index into bodies(), or nullopt if unknown. likely: an index that is tried first, see IdIndex. O(1).
+  std::optional<std::size_t> index_of(std::int32_t id, std::size_t likely = 0) const {
+    return index_.find(id, likely);
+  }
   bool any_hydrostatics() const { return any_hydrostatics_; }  // whether any body has them
 
  private:
@@ -63,7 +66,7 @@ class Scene {
   Water water_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;
-  std::unordered_map<std::int32_t, std::size_t> index_;  // index into bodies_ by id
+  IdIndex index_;  // into bodies_
   bool any_hydrostatics_ = false;
 };
 

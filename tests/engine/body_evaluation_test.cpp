@@ -11,7 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "tests/engine/box_scene.h"
-#include "tests/engine/evaluate_alone.h"
+#include "tests/engine/evaluate.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {

@@ -389,6 +389,30 @@ TEST(RequestHandler, DoesNotAllocateAfterWarmUp) {
   EXPECT_EQ(after_scene_change.count(), 0);
 }
 
+TEST(RequestHandler, DoesNotAllocateForManyBodiesAfterWarmUp) {
+  constexpr int kBodies = 5'000;
+  std::string text;
+  for (int id = 1; id <= kBodies; ++id) {
+    text += "[[body]]\nid = " + std::to_string(id) + "\nshape = { type = \"box\", size = [1, 1, 1] }\n";
+  }
+  const Scene crates = scene_of(text);
+  std::vector<ByteVector> requests;
+  for (std::int64_t seq = 0; seq < 6; ++seq) {
+    std::vector<BodyState> states;
+    for (int id = 1; id <= kBodies; ++id) {
+      states.push_back(upright(id, 2.0 * std::sin(0.7 * id + 0.1 * static_cast<double>(seq))));
+    }
+    requests.push_back(request_bytes({.session_id = 1, .seq = seq}, states));
+  }
+  RequestHandler handler(crates, {.threads = 2});
+  handler.handle(requests.front());
+  const AllocationCount allocations;
+  for (const ByteVector& bytes : requests) handler.handle(bytes);
+  EXPECT_EQ(allocations.count(), 0);
+  EXPECT_EQ(handler.counters().computed, 6);
+  EXPECT_GT(handler.counters().bodies_crossing, 1'000);
+}
+
 // A simple model of the session contract in request_handler.h: a list of whole requests, most recently used
 // first.
 class SessionModel {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "messages/wire_views.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/random_messages.h"
 #include "tests/support/allocation_count.h"
@@ -174,6 +175,44 @@ RC_GTEST_PROP(Wire, DecodesOrRejectsRandomBytesAfterValidFingerprint, ()) {
   bytes.insert(bytes.end(), garbage.begin(), garbage.end());
   WrenchRequest request;
   RC_ASSERT(decode(bytes, request).has_value() == !peek_request_id(bytes).has_value());
+}
+
+RC_GTEST_PROP(RequestView, ReadsSameBodiesAsDecode, ()) {
+  const WrenchRequest request = random_request();
+  const ByteVector bytes = encoded(request);
+  const auto view = RequestView::of(bytes);
+  RC_ASSERT(view.has_value());
+  WrenchRequest read{.id = view->id(), .lead_time = view->lead_time(), .bodies = {}};
+  for (std::size_t i = 0; i < view->size(); ++i) {
+    read.bodies.push_back(view->body(i));
+    RC_ASSERT(view->body_id(i) == request.bodies[i].body_id);
+  }
+  RC_ASSERT(encoded(read) == bytes);
+}
+
+RC_GTEST_PROP(RequestView, RejectsSameBytesAsDecode, ()) {
+  ByteVector bytes = encoded(random_request());
+  bytes.resize(*rc::gen::inRange<std::size_t>(0, bytes.size() + 2));
+  for (int flips = *rc::gen::inRange(0, 3); flips > 0 && !bytes.empty(); --flips) {
+    bytes[*rc::gen::inRange<std::size_t>(0, bytes.size())] ^= 1U;
+  }
+  WrenchRequest decoded;
+  const std::optional<DecodeError> error = decode(bytes, decoded);
+  const auto view = RequestView::of(bytes);
+  RC_ASSERT(view.has_value() == !error.has_value());
+  if (error) RC_ASSERT(view.error() == *error);
+}
+
+RC_GTEST_PROP(ResponseWriter, WritesSameBytesAsEncode, ()) {
+  const WrenchResponse response = random_response();
+  ByteVector bytes(*rc::gen::inRange<std::size_t>(0, 1000), 0xab);
+  ResponseWriter writer(response.id, response.bodies.size(), bytes);
+  for (std::size_t i = response.bodies.size(); i-- > 0;) writer.set(i, response.bodies[i]);
+  RC_ASSERT(bytes == encoded(response));
+  for (std::size_t i = 0; i < response.bodies.size(); ++i) {
+    RC_ASSERT(encoded(WrenchResponse{.id = {}, .bodies = {writer.wrench(i)}}) ==
+              encoded(WrenchResponse{.id = {}, .bodies = {response.bodies[i]}}));
+  }
 }
 
 TEST(Wire, EncodesToSizesOfMessageDefinitions) {

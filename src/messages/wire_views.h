@@ -1,0 +1,94 @@
+// A request's bytes and a response's bytes, read and written in place, body by body: large requests are not
+// copied into core types first, and several threads may share one message.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "messages/request.h"
+#include "messages/wire.h"
+#include "messages/wire_layout.h"
+
+namespace buoyancy {
+
+// Size [bytes] of a body in a message.
+template <typename Body>
+std::size_t encoded_body_size() {
+  const Body body;
+  LayoutSize layout;
+  visit_fields(body, layout);
+  return layout.size();
+}
+
+class RequestView {
+ public:
+  // Makes the checks of decode(). bytes must outlive the view. O(1).
+  static tl::expected<RequestView, DecodeError> of(Bytes bytes);
+
+  const RequestId& id() const { return id_; }
+  double lead_time() const { return lead_time_; }  // [s]
+  std::size_t size() const { return size_; }       // number of bodies
+
+  // Precondition: i < size().
+  BodyState body(std::size_t i) const {
+    assert(i < size_);
+    BodyState state;
+    BigEndianReader reader(bodies_ + i * body_size_);
+    visit_fields(state, reader);
+    return state;
+  }
+
+  // body(i).body_id
+  std::int32_t body_id(std::size_t i) const {
+    assert(i < size_);
+    std::int32_t id = 0;
+    BigEndianReader reader(bodies_ + i * body_size_);
+    reader(id);
+    return id;
+  }
+
+ private:
+  RequestView() = default;
+
+  RequestId id_;
+  double lead_time_ = 0.0;
+  std::size_t size_ = 0;
+  std::size_t body_size_ = encoded_body_size<BodyState>();
+  const std::uint8_t* bodies_ = nullptr;
+};
+
+class ResponseWriter {
+ public:
+  // Replaces bytes by a response with this number of bodies, all of which must be set; no heap allocation
+  // once its capacity suffices. bytes must outlive the writer.
+  ResponseWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes);
+
+  std::size_t size() const { return size_; }  // number of bodies
+
+  // Several threads may set different bodies at once. Precondition: i < size().
+  void set(std::size_t i, const BodyWrench& wrench) {
+    assert(i < size_);
+    BigEndianWriter writer(bodies_ + i * body_size_);
+    visit_fields(wrench, writer);
+  }
+
+  // Precondition: i < size(), and body i has been set.
+  BodyWrench wrench(std::size_t i) const {
+    assert(i < size_);
+    BodyWrench wrench;
+    BigEndianReader reader(bodies_ + i * body_size_);
+    visit_fields(wrench, reader);
+    return wrench;
+  }
+
+ private:
+  std::size_t size_;
+  std::size_t body_size_ = encoded_body_size<BodyWrench>();
+  std::uint8_t* bodies_;
+};
+
+}  // namespace buoyancy

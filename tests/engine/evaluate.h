@@ -1,0 +1,36 @@
+// Evaluates core types with a BodyEvaluator, which reads and writes messages in place.
+#pragma once
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "engine/body_evaluator.h"
+#include "messages/wire_views.h"
+
+namespace buoyancy {
+
+// Replaces wrenches by one wrench per state of the request.
+inline void evaluate_all(BodyEvaluator& evaluator, const WrenchRequest& request,
+                         std::vector<BodyWrench>& wrenches, ServiceCounters& counters) {
+  std::vector<std::uint8_t> request_bytes;
+  std::vector<std::uint8_t> response_bytes;
+  encode(request, request_bytes);
+  const RequestView view = RequestView::of(request_bytes).value();
+  ResponseWriter writer(view.id(), view.size(), response_bytes);
+  evaluator.evaluate_all(view, writer, counters);
+  WrenchResponse response;
+  if (decode(response_bytes, response)) throw std::logic_error("an invalid response");
+  wrenches = std::move(response.bodies);
+}
+
+// Evaluates one body on its own, with a BodyEvaluator that has no cached results.
+inline BodyWrench evaluate_alone(const Scene& scene, const BodyState& state, double lead_time,
+                                 ServiceCounters& counters) {
+  BodyEvaluator evaluator(scene, 1);
+  std::vector<BodyWrench> wrenches;
+  evaluate_all(evaluator, {.id = {}, .lead_time = lead_time, .bodies = {state}}, wrenches, counters);
+  return wrenches.at(0);
+}
+
+}  // namespace buoyancy
