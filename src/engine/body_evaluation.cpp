@@ -36,13 +36,6 @@ BodyStatus to_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
-// Sets the fields that accompany outcome.result.
-void complete_outcome(const ValidatedPose& validated, BodyOutcome& outcome) {
-  outcome.status = to_body_status(outcome.result.status);
-  outcome.quaternion_normalised = validated.quaternion_normalised;
-  outcome.unchanged = false;
-}
-
 }  // namespace
 
 ValidatedPose validate_pose(const BodyState& state, double lead_time) {
@@ -89,14 +82,20 @@ bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
 
 void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome) {
   outcome.result = buoyancy(body.solver, validated.pose, water, body.reference_B);
-  complete_outcome(validated, outcome);
+  complete_outcome(validated.quaternion_normalised, outcome);
 }
 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
   if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, water, outcome.result)) return false;
-  complete_outcome(validated, outcome);
+  complete_outcome(validated.quaternion_normalised, outcome);
   return true;
+}
+
+void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
+  outcome.status = to_body_status(outcome.result.status);
+  outcome.quaternion_normalised = quaternion_normalised;
+  outcome.unchanged = false;
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {

@@ -51,6 +51,8 @@ void evaluate(const Body& body, const Water& water, const ValidatedPose& validat
 // outcome unchanged, where the bounds do not suffice.
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
+// Sets the fields of outcome that accompany its result, which was computed at a valid pose.
+void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 

@@ -1,6 +1,7 @@
 #include "engine/body_evaluator.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cmath>
@@ -21,6 +22,8 @@ constexpr double kMinTaskWork = 1e4;
 
 // A chunk takes about kMinTaskWork.
 constexpr std::size_t kChunkStates = 256;
+constexpr std::size_t kGroup = 8;     // bodies that are computed together
+constexpr std::size_t kMinGroup = 3;  // fewer are quicker one by one
 constexpr double kBoundsTime = 40.0;  // [ns], rough cost of a state that needs no more than its bounds
 
 // [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
@@ -182,13 +185,6 @@ bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t
   return true;
 }
 
-const BodyOutcome& BodyEvaluator::compute(std::size_t body, const ValidatedPose& validated) {
-  BodyOutcome& outcome = results_[body];
-  evaluate(*kinds_[kind_of_[body]].example, scene_->water(), validated, outcome);
-  if (outcome.status == BodyStatus::kOk) last_[body].cached = Cached::kResult;
-  return outcome;
-}
-
 void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& response,
                                     ServiceCounters& counters) {
   if (pending_order_.empty()) return;
@@ -202,17 +198,52 @@ void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& 
   run(tasks, work, [&](std::size_t t) {
     TaskResult& result = task_results_[t];
     result = {};
-    for (std::size_t n = t * grain; n < std::min((t + 1) * grain, count); ++n) {
-      const Pending& pending = pending_[pending_order_[n]];
-      const BodyOutcome& outcome =
-          compute(pending.body, {.status = BodyStatus::kOk,
-                                 .pose = to_pose(last_[pending.body].pose),
-                                 .quaternion_normalised = pending.quaternion_normalised});
-      response.set(pending.state, to_wrench(request.body_id(pending.state), outcome));
-      add_to_counters(outcome, result.counters);
+    const std::size_t end = std::min((t + 1) * grain, count);
+    std::size_t n = t * grain;
+    while (end - n >= kMinGroup) {
+      const std::size_t size = std::min(kGroup, end - n);
+      compute_group({&pending_order_[n], size}, request, response, result.counters);
+      n += size;
     }
+    for (; n < end; ++n) compute(pending_[pending_order_[n]], request, response, result.counters);
   });
   for (std::size_t t = 0; t < tasks; ++t) counters += task_results_[t].counters;
+}
+
+void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const RequestView& request,
+                                  ResponseWriter& response, ServiceCounters& counters) {
+  std::array<BuoyancyQuery, kGroup> queries;
+  std::array<BuoyancyResult, kGroup> results;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Pending& pending = pending_[order[i]];
+    const Body& example = example_of(pending.body);
+    queries[i] = {.solver = &example.solver,
+                  .pose = to_pose(last_[pending.body].pose),
+                  .reference_B = example.reference_B};
+  }
+  buoyancy(std::span(queries).first(order.size()), scene_->water(), std::span(results).first(order.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    set_result(pending_[order[i]], results[i], request, response, counters);
+  }
+}
+
+void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
+                            ServiceCounters& counters) {
+  const Body& example = example_of(pending.body);
+  const Pose pose = to_pose(last_[pending.body].pose);
+  set_result(pending, buoyancy(example.solver, pose, scene_->water(), example.reference_B), request, response,
+             counters);
+}
+
+void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result,
+                               const RequestView& request, ResponseWriter& response,
+                               ServiceCounters& counters) {
+  BodyOutcome& outcome = results_[pending.body];
+  outcome.result = result;
+  complete_outcome(pending.quaternion_normalised, outcome);
+  if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
+  response.set(pending.state, to_wrench(request.body_id(pending.state), outcome));
+  add_to_counters(outcome, counters);
 }
 
 void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
@@ -221,9 +252,15 @@ void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter
   const std::size_t body = scene_->index_of(state.body_id, i).value();
   const ValidatedPose validated = validate_pose(state, request.lead_time());
   BodyOutcome outcome;
-  if (!evaluate_cheaply(validated, body, outcome)) outcome = compute(body, validated);
-  response.set(i, to_wrench(state.body_id, outcome));
-  add_to_counters(outcome, counters);
+  if (evaluate_cheaply(validated, body, outcome)) {
+    response.set(i, to_wrench(state.body_id, outcome));
+    add_to_counters(outcome, counters);
+  } else {
+    compute({.state = static_cast<std::uint32_t>(i),
+             .body = static_cast<std::uint32_t>(body),
+             .quaternion_normalised = validated.quaternion_normalised},
+            request, response, counters);
+  }
 }
 
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/body_evaluation.h"
@@ -95,8 +96,15 @@ class BodyEvaluator {
                             BodyOutcome& outcome);
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
   bool evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
-  const BodyOutcome& compute(std::size_t body, const ValidatedPose& validated);
   void compute_pending(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  // Computes the bodies of a few elements of pending_ together. order: their indices.
+  void compute_group(std::span<const std::uint32_t> order, const RequestView& request,
+                     ResponseWriter& response, ServiceCounters& counters);
+  void compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
+               ServiceCounters& counters);
+  void set_result(const Pending& pending, const BuoyancyResult& result, const RequestView& request,
+                  ResponseWriter& response, ServiceCounters& counters);
+  const Body& example_of(std::size_t body) const { return *kinds_[kind_of_[body]].example; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
   void evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
                          ServiceCounters& counters);

@@ -1,9 +1,12 @@
 #include "hydrostatics/buoyancy.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 
 #include "hydrostatics/volume_elements.h"
+#include "hydrostatics/water_planes.h"
 
 namespace buoyancy {
 namespace {
@@ -159,6 +162,28 @@ void set_result_from_bounds(const FullySubmerged& submerged, Immersion immersion
   if (!finite(result)) result = failed_result(BuoyancyStatus::kOutOfRange, immersion);
 }
 
+// buoyancy(), without the quick bounds. plane: solver.plane_in_body(pose, water).
+BuoyancyResult buoyancy_at_plane(const Solver& solver, const WaterPlane& plane, const Pose& pose,
+                                 const Water& water, const Vec3& reference_B) {
+  const HydrostaticMesh& mesh = solver.mesh();
+  if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
+    return failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
+  }
+  const Immersion where = immersion(mesh, plane);
+  if (where != Immersion::kDry && mesh.is_open() && !boundary_is_dry(mesh, plane)) {
+    return failed_result(BuoyancyStatus::kOpenEdgeWet, where);
+  }
+  BuoyancyResult result;
+  if (is_decided_by_bounds(solver, where)) {
+    set_result_from_bounds(submerged_constants(mesh, water, reference_B), where, pose, water, result);
+    return result;
+  }
+  result.immersion = where;
+  set_result_from_displacement(solver, plane, pose, water, reference_B, result);
+  if (!finite(result)) return failed_result(BuoyancyStatus::kOutOfRange, where);
+  return result;
+}
+
 }  // namespace
 
 FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
@@ -184,27 +209,36 @@ bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& submer
 }
 
 BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  const HydrostaticMesh& mesh = solver.mesh();
-  BuoyancyResult result;
-  const auto by_bounds = [&](Immersion immersion) {
-    set_result_from_bounds(submerged_constants(mesh, water, reference_B), immersion, pose, water, result);
+  const Immersion quick = quick_immersion(solver.mesh(), pose, water);
+  if (is_decided_by_bounds(solver, quick)) {
+    BuoyancyResult result;
+    set_result_from_bounds(submerged_constants(solver.mesh(), water, reference_B), quick, pose, water,
+                           result);
     return result;
-  };
-  const Immersion quick = quick_immersion(mesh, pose, water);
-  if (is_decided_by_bounds(solver, quick)) return by_bounds(quick);
-  const WaterPlane plane = solver.plane_in_body(pose, water);
-  if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite()) {
-    return failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
-  const Immersion where = immersion(mesh, plane);
-  if (where != Immersion::kDry && mesh.is_open() && !boundary_is_dry(mesh, plane)) {
-    return failed_result(BuoyancyStatus::kOpenEdgeWet, where);
+  return buoyancy_at_plane(solver, solver.plane_in_body(pose, water), pose, water, reference_B);
+}
+
+void buoyancy(std::span<const BuoyancyQuery> queries, const Water& water, std::span<BuoyancyResult> results) {
+  constexpr std::size_t kGroup = 8;
+  assert(queries.size() == results.size());
+  std::array<Pose, kGroup> poses;
+  std::array<Vec3, kGroup> centers_B;
+  std::array<WaterPlane, kGroup> planes;
+  for (std::size_t first = 0; first < queries.size(); first += kGroup) {
+    const std::size_t count = std::min(kGroup, queries.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      poses[i] = queries[first + i].pose;
+      centers_B[i] = queries[first + i].solver->mesh().center_B;
+    }
+    water_planes_in_body(std::span(poses).first(count), water, std::span(centers_B).first(count),
+                         std::span(planes).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const BuoyancyQuery& query = queries[first + i];
+      if (!query.solver->has_exact_planes()) planes[i] = query.solver->plane_in_body(query.pose, water);
+      results[first + i] = buoyancy_at_plane(*query.solver, planes[i], query.pose, water, query.reference_B);
+    }
   }
-  if (is_decided_by_bounds(solver, where)) return by_bounds(where);
-  result.immersion = where;
-  set_result_from_displacement(solver, plane, pose, water, reference_B, result);
-  if (!finite(result)) return failed_result(BuoyancyStatus::kOutOfRange, where);
-  return result;
 }
 
 }  // namespace buoyancy

@@ -2,6 +2,8 @@
 // buoyancy().
 #pragma once
 
+#include <span>
+
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/solver.h"
 
@@ -36,6 +38,17 @@ struct BuoyancyResult {
 // add. The bounds of the approximations, and of `hierarchical` with a tolerance, include what was left out
 // (docs/mathematics.md, "Error bounds").
 BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
+
+// What buoyancy() computes for one of several bodies.
+struct BuoyancyQuery {
+  const Solver* solver = nullptr;
+  Pose pose;
+  Vec3 reference_B = Vec3::Zero();  // [m]
+};
+
+// Sets results[i] to buoyancy() of queries[i], the same bits; quicker for bodies that cross the surface,
+// since their water planes are computed together. The spans have the same size.
+void buoyancy(std::span<const BuoyancyQuery> queries, const Water& water, std::span<BuoyancyResult> results);
 
 // The part of a fully submerged body's result that does not depend on the pose.
 struct FullySubmerged {

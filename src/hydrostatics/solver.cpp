@@ -41,7 +41,7 @@ Solver::Solver(const HydrostaticMesh& mesh, Method method, double tolerance)
 }
 
 WaterPlane Solver::plane_in_body(const Pose& pose, const Water& water) const {
-  if (plane_error_ > 0.0) {
+  if (!has_exact_planes()) {
     const RoughWaterPlane rough = rough_water_plane_in_body(pose, water, mesh_->center_B, mesh_->diagonal);
     if (rough.norm_squared > 1e-100 && rough.norm_squared < 1e100 &&
         rough.error <= plane_error_ * rough.norm_squared) {

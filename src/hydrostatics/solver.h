@@ -49,6 +49,8 @@ class Solver {
   // The water plane as the method needs it: exact or, where a tolerance allows it, in plain double, which
   // saves a tenth of a query.
   WaterPlane plane_in_body(const Pose& pose, const Water& water) const;
+  // Whether plane_in_body() is exact for every pose: equal to water_plane_in_body().
+  bool has_exact_planes() const { return plane_error_ == 0.0; }
 
   const HydrostaticMesh& mesh() const { return *mesh_; }
   Method method() const { return method_; }
