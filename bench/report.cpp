@@ -32,7 +32,7 @@ constexpr std::size_t kReadGoalTriangles = 30'000;  // from this size on a query
 constexpr double kToleranceGoal = 1e-3;
 constexpr double kMaxToleranceGrowth = 3.0;  // of the query time from the smallest to the largest rock
 constexpr double kMaxBuildNs = 1000.0;       // per triangle
-constexpr double kMaxTreeBytes = 250.0;      // per triangle
+constexpr double kMaxTreeBytes = 34.0;       // per triangle
 
 // Three significant digits without an exponent.
 std::string microseconds(double ns) {

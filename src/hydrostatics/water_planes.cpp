@@ -81,8 +81,12 @@ HWY_INLINE DoubleDoubles add(DoubleDoubles a, DoubleDoubles b) {
   return quick_two_sum(middle.hi, hn::Add(middle.lo, lo.lo));
 }
 
+HWY_INLINE DoubleDoubles negated(DoubleDoubles a) {
+  return {hn::Neg(a.hi), hn::Neg(a.lo)};
+}
+
 HWY_INLINE DoubleDoubles subtract(DoubleDoubles a, DoubleDoubles b) {
-  return add(a, {hn::Neg(b.hi), hn::Neg(b.lo)});
+  return add(a, negated(b));
 }
 
 HWY_INLINE DoubleDoubles multiply(DoubleDoubles a, Vector b) {
@@ -90,17 +94,29 @@ HWY_INLINE DoubleDoubles multiply(DoubleDoubles a, Vector b) {
   return quick_two_sum(product.hi, hn::Add(product.lo, hn::Mul(a.lo, b)));
 }
 
-HWY_INLINE DoubleDoubles divide(DoubleDoubles a, DoubleDoubles b) {
-  const Vector first = hn::Div(a.hi, b.hi);
-  const DoubleDoubles rest = subtract(a, multiply(b, first));
-  const Vector second = hn::Div(rest.hi, b.hi);
-  const DoubleDoubles last = subtract(rest, multiply(b, second));
-  const DoubleDoubles quotient = quick_two_sum(first, second);
-  return quick_two_sum(quotient.hi, hn::Add(quotient.lo, hn::Div(last.hi, b.hi)));
+HWY_INLINE DoubleDoubles multiply(DoubleDoubles a, DoubleDoubles b) {
+  const DoubleDoubles product = two_product(a.hi, b.hi);
+  const Vector cross = hn::Add(hn::Mul(a.hi, b.lo), hn::Mul(a.lo, b.hi));
+  return quick_two_sum(product.hi, hn::Add(product.lo, cross));
+}
+
+HWY_INLINE DoubleDoubles reciprocal(DoubleDoubles a) {
+  const Vector one = hn::Set(Tag(), 1.0);
+  const Vector first = hn::Div(one, a.hi);
+  const DoubleDoubles product = two_product(a.hi, first);
+  const Vector rest = hn::Sub(hn::Sub(hn::Sub(one, product.hi), product.lo), hn::Mul(a.lo, first));
+  return quick_two_sum(first, hn::Mul(rest, first));
+}
+
+HWY_INLINE DoubleDoubles sum(DoubleDoubles a, DoubleDoubles b, DoubleDoubles c) {
+  const DoubleDoubles two = two_sum(a.hi, b.hi);
+  const DoubleDoubles three = two_sum(two.hi, c.hi);
+  const Vector low = hn::Add(hn::Add(a.lo, b.lo), c.lo);
+  return quick_two_sum(three.hi, hn::Add(hn::Add(two.lo, three.lo), low));
 }
 
 HWY_INLINE DoubleDoubles dot(const Vector a[3], const Vector b[3]) {
-  return add(add(two_product(a[0], b[0]), two_product(a[1], b[1])), two_product(a[2], b[2]));
+  return sum(two_product(a[0], b[0]), two_product(a[1], b[1]), two_product(a[2], b[2]));
 }
 
 // rotate_into_body() and water_plane_in_body() of water_plane.cpp, for the lanes from `lane` on.
@@ -118,7 +134,7 @@ HWY_INLINE void compute_planes_from(const Water& water, std::size_t lane, PlaneL
   }
   const DoubleDoubles w_squared = two_product(w, w);
   const DoubleDoubles u_squared = dot(u, u);
-  const DoubleDoubles norm_squared = add(w_squared, u_squared);
+  const DoubleDoubles per_norm_squared = reciprocal(add(w_squared, u_squared));
   const DoubleDoubles along = subtract(w_squared, u_squared);
   const DoubleDoubles u_dot_up = dot(u, up);
 
@@ -129,15 +145,15 @@ HWY_INLINE void compute_planes_from(const Water& water, std::size_t lane, PlaneL
     const DoubleDoubles cross = subtract(two_product(u[j], up[l]), two_product(u[l], up[j]));
     const DoubleDoubles twice =
         subtract(multiply(u_dot_up, hn::Mul(two, u[i])), multiply(cross, hn::Mul(two, w)));
-    k[i] = divide(add(multiply(along, up[i]), twice), norm_squared);
+    k[i] = multiply(add(multiply(along, up[i]), twice), per_norm_squared);
     hn::Store(k[i].hi, d, &lanes.up[i][lane]);
     hn::Store(k[i].lo, d, &lanes.up_rest[i][lane]);
   }
-  DoubleDoubles k_dot_c = multiply(k[0], hn::Load(d, &lanes.c[0][lane]));
-  k_dot_c = add(k_dot_c, multiply(k[1], hn::Load(d, &lanes.c[1][lane])));
-  k_dot_c = add(k_dot_c, multiply(k[2], hn::Load(d, &lanes.c[2][lane])));
+  DoubleDoubles k_times_c[3];
+  for (std::size_t i = 0; i < 3; ++i) k_times_c[i] = multiply(k[i], hn::Load(d, &lanes.c[i][lane]));
+  const DoubleDoubles k_dot_c = sum(k_times_c[0], k_times_c[1], k_times_c[2]);
   const DoubleDoubles level{hn::Set(d, water.level), hn::Zero(d)};
-  const DoubleDoubles h = subtract(subtract(level, dot(up, p)), k_dot_c);
+  const DoubleDoubles h = sum(level, negated(dot(up, p)), negated(k_dot_c));
   hn::Store(h.hi, d, &lanes.h[lane]);
   hn::Store(h.lo, d, &lanes.h_rest[lane]);
 }
