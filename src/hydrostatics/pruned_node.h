@@ -56,17 +56,17 @@ struct PrunableNodes {
   }
 };
 
-// The working memory of a descent, one per thread: a level holds every node at most once.
-struct DescentLists {
+// The working memory of a descent within a budget, one per thread: a level holds every node at most once.
+struct BudgetLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to expand
   PrunableNodes open;                            // their children that the water may cross
 
   // Checks each list on its own: of two trees one may have more children and the other more inner nodes.
-  void reserve(const MomentTree& tree, bool with_open) {
+  void reserve(const MomentTree& tree) {
     const std::size_t inners = tree.nodes.size() + kTreeWidth;
     if (inner.size() < inners) inner.resize(inners);
     if (next_inner.size() < inners) next_inner.resize(inners);
-    if (with_open) open.reserve(tree.areas.size());
+    open.reserve(tree.areas.size());
   }
 };
 

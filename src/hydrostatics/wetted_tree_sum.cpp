@@ -166,24 +166,33 @@ class Descent {
   std::array<std::uint32_t, kQueue + 2 * LeafBatch::kCapacity + kTreeWidth> wet_queue_;
 };
 
-// Expands the listed nodes and, level by level, all below them that the water crosses: a node's memory has a
-// whole level's time to arrive.
-HWY_INLINE void descend_exactly(const MomentTree& tree, std::uint32_t* inner, std::uint32_t* next_inner,
-                                std::size_t count, Descent& descent) {
-  while (count > 0) {
-    std::size_t next = 0;
+// Expands every node that the water crosses, below the given ones, which are at most kTreeWidth: a level of
+// the tree after the other if levels are small, and otherwise depth first, many nodes at a time. A node is
+// prefetched when it is found, so that its memory arrives while others are expanded.
+HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nodes, std::size_t count,
+                                Descent& descent) {
+  constexpr std::size_t kTogether = 64;
+  // Nodes of a level are added only when no deeper ones remain: a level holds at most kTogether kTreeWidth.
+  constexpr std::size_t kLevels = 16;
+  std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
+  std::array<std::uint32_t, kTogether> together;
+  std::copy_n(nodes, count, stack.data());
+  std::size_t depth = count;
+  while (depth > 0) {
+    count = std::min(depth, kTogether);
+    depth -= count;
+    std::copy_n(stack.data() + depth, count, together.data());
     for (std::size_t i = 0; i < count; ++i) {
-      next += descent.expand(tree.nodes[inner[i]], next_inner + next);
+      depth += descent.expand(tree.nodes[together[i]], stack.data() + depth);
+      assert(depth + kTreeWidth <= stack.size());
     }
-    std::swap(inner, next_inner);
-    count = next;
   }
 }
 
-void sum_exactly(const MomentTree& tree, const TreeQuery& query, DescentLists& lists, WettedTreeSum& sum) {
+void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum) {
   Descent descent(tree, query, sum);
-  lists.inner[0] = 0;
-  descend_exactly(tree, lists.inner.data(), lists.next_inner.data(), 1, descent);
+  const std::uint32_t root = 0;
+  descend_exactly(tree, &root, 1, descent);
   descent.finish();
 }
 
@@ -215,7 +224,7 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
 // of them are pruned. Until then some are pruned (limit_to_errors) and the others are expanded. A level is
 // examined for nodes to prune only if that may succeed: from a level to the next the total error falls about
 // eightfold.
-void sum_within_budget(const MomentTree& tree, const TreeQuery& query, DescentLists& lists,
+void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists,
                        WettedTreeSum& sum) {
   constexpr double kErrorDecay = 8.0;     // total error of a level over that of the next
   constexpr double kMaxErrorRatio = 6.0;  // total error over remaining budget; above, too few would be pruned
@@ -233,7 +242,7 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, DescentLi
   const double per_leaf = static_cast<double>(root.children) / static_cast<double>(tree.num_leaves());
   if (survey.all * per_leaf > kMaxErrorRatio * left) {
     to_expand = descent.add_open(open.child.data(), first_bits(open.size), inner);
-    descend_exactly(tree, inner, next_inner, to_expand, descent);
+    descend_exactly(tree, inner, to_expand, descent);
     descent.finish();
     return;
   }
@@ -285,12 +294,12 @@ HWY_EXPORT(sum_within_budget);
 
 WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query) {
   WettedTreeSum sum;
-  thread_local DescentLists lists;
-  lists.reserve(tree, query.budget > 0.0);
   if (query.budget > 0.0) {
+    thread_local BudgetLists lists;
+    lists.reserve(tree);
     HWY_DYNAMIC_DISPATCH(sum_within_budget)(tree, query, lists, sum);
   } else {
-    HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, lists, sum);
+    HWY_DYNAMIC_DISPATCH(sum_exactly)(tree, query, sum);
   }
   return sum;
 }

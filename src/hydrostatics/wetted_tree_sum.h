@@ -55,8 +55,8 @@ struct WettedTreeSum {
   std::int64_t nodes_visited = 0, leaves_clipped = 0, nodes_added = 0, nodes_pruned = 0;
 };
 
-// Descends from the root. Postcondition: pruned.error <= budget. With budget 0 no node is pruned. No heap is
-// used once the thread has seen a tree as large.
+// Descends from the root. Postcondition: pruned.error <= budget. With budget 0 no node is pruned and no heap
+// is used; otherwise no heap is used once the thread has seen a tree as large.
 WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query);
 
 // The targets that this processor can run, the best first; "SCALAR" is always among them.

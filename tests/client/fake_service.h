@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
+#include "client/lcm_request_channel.h"
 #include "client/retry_policy.h"
 #include "messages/wire.h"
 #include "tests/support/timeouts.h"

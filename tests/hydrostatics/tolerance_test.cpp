@@ -135,11 +135,9 @@ TriangleMesh nested_tetrahedra(int count) {
 TEST(Tolerance, ReservesRoomForLargerTree) {
   const HydrostaticMesh small = make_hydrostatic_mesh({make_shape(RockShape{.frequency = 8}), {}});
   const HydrostaticMesh large = make_hydrostatic_mesh({nested_tetrahedra(2030), {}});
-  DescentLists lists;
-  lists.reserve(*small.tree, false);
-  EXPECT_EQ(lists.open.child.size(), 0U);
+  BudgetLists lists;
   for (const HydrostaticMesh* const mesh : {&small, &large, &small}) {
-    lists.reserve(*mesh->tree, true);
+    lists.reserve(*mesh->tree);
     EXPECT_GE(lists.inner.size(), mesh->tree->nodes.size());
     EXPECT_GE(lists.next_inner.size(), mesh->tree->nodes.size());
     EXPECT_GE(lists.open.child.size(), mesh->tree->areas.size());
