@@ -94,6 +94,8 @@ struct LeafVertices {
   }
 };
 
+constexpr std::size_t kRun = std::size_t{8} * kLeafTriangles;
+
 // Cuts the triangles into leaves.
 //
 // A run of kRun triangles is cut into equal parts, as few as possible. Patches of some meshes have many
@@ -133,8 +135,6 @@ class LeafCutter {
   }
 
  private:
-  static constexpr std::size_t kRun = std::size_t{8} * kLeafTriangles;
-
   // Cuts a range into leaves of at most `size` triangles; halves those with too many vertices. Returns false
   // if there were such.
   bool cut_run(const Range& range, std::size_t size) {
@@ -263,7 +263,7 @@ class Builder {
         tasks.push_back(range);
         return;
       }
-      const auto [left, right] = split(items_, range, left_share(range.size(), 8 * kLeafTriangles));
+      const auto [left, right] = split(items_, range, left_share(range.size(), kRun));
       self(self, left);
       self(self, right);
     };
