@@ -29,7 +29,7 @@ constexpr double kBoundsTime = 40.0;  // [ns], rough cost of a state that needs 
 // [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
 double estimated_time(const Solver& solver) {
   const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
-  return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 4.0 * triangles;
+  return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 1.5 * triangles;
 }
 
 std::size_t chunks_of(std::size_t states) {

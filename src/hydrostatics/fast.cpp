@@ -5,51 +5,34 @@
 #include "hydrostatics/wetted_surface.h"
 
 namespace buoyancy {
-namespace {
 
-struct ElementSum {
-  double volume = 0.0;
-  Vec3 moment = Vec3::Zero();
-  double truncation_bound = 0.0;  // [m^3], sum |V_i| of the cut triangles
-  std::size_t wet_triangles = 0;
-
-  ElementSum& operator+=(const ElementSum& other) {
-    volume += other.volume;
-    moment += other.moment;
-    truncation_bound += other.truncation_bound;
-    wet_triangles += other.wet_triangles;
-    return *this;
-  }
-};
-
-}  // namespace
-
-FastTable::FastTable(const HydrostaticMesh& mesh) {
-  elements_.reserve(mesh.surface.triangles.size());
+FastTable::FastTable(const HydrostaticMesh& mesh, const Meshlets& meshlets) {
+  elements_.reserve(kGroupTriangles * meshlets.groups.size());
   const Vec3 origin = -mesh.center_B;  // [m], B's origin about c
-  for (const Triangle& triangle : mesh.surface.triangles) {
-    VolumeElements element;
-    element.add(mesh.point(triangle[0]), mesh.point(triangle[1]), mesh.point(triangle[2]),
-                Point<double>::from(origin));
-    elements_.push_back({element.volume(), element.moment(origin)});
+  for (const Meshlet& meshlet : meshlets.meshlets) {
+    const auto point = [&](std::uint8_t corner) {
+      const std::size_t i = meshlet.first_vertex + corner / 4U;
+      return Point<double>{meshlets.x[i], meshlets.y[i], meshlets.z[i]};
+    };
+    for (std::size_t group = 0; group < meshlet.groups; ++group) {
+      const CornerGroup& corners = meshlets.groups[meshlet.first_group + group];
+      for (std::size_t i = 0; i < kGroupTriangles; ++i) {
+        VolumeElements element;
+        element.add(point(corners.a[i]), point(corners.b[i]), point(corners.c[i]),
+                    Point<double>::from(origin));
+        const Vec3 moment = element.moment(origin);
+        elements_.push_back({element.volume(), moment.x(), moment.y(), moment.z()});
+      }
+    }
   }
 }
 
-Displacement FastTable::displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const {
-  const VertexHeights heights = vertex_heights(mesh.surface, plane);
-  const auto total = sum_over_blocks<ElementSum>(mesh.surface, heights,
-                                                 [this](ElementSum& sum, TriangleList wet, TriangleList cut) {
-                                                   for (const std::uint32_t i : wet) {
-                                                     sum.volume += elements_[i].volume;
-                                                     sum.moment += elements_[i].moment;
-                                                   }
-                                                   for (const std::uint32_t i : cut)
-                                                     sum.truncation_bound += std::abs(elements_[i].volume);
-                                                   sum.wet_triangles += wet.size();
-                                                 });
-  Displacement result = displacement_of_volume(total.volume, total.moment, plane);
-  result.truncation_bound = total.truncation_bound;
-  if (total.wet_triangles < mesh.surface.triangles.size()) {
+Displacement FastTable::displacement(const HydrostaticMesh& mesh, const Meshlets& meshlets,
+                                     const WaterPlane& plane) const {
+  const TableSum sum = sum_table(meshlets, plane, elements_);
+  Displacement result = displacement_of_volume(sum.wet[0], Vec3(sum.wet[1], sum.wet[2], sum.wet[3]), plane);
+  result.truncation_bound = sum.cut_bound;
+  if (!sum.fully_submerged) {
     // The cone over the waterplane is missing; the waterplane's area is at most that of the wetted surface
     // and at most that of the dry surface.
     const double waterplane_area = mesh.is_open() ? mesh.area : 0.5 * mesh.area;

@@ -6,10 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "geometry/mesh_validation.h"
+#include "geometry/meshlets.h"
 #include "geometry/moment_tree.h"
 #include "hydrostatics/point.h"
 #include "hydrostatics/water_plane.h"
@@ -60,6 +62,10 @@ struct HydrostaticMesh {
   // [m], L_r: the largest distance from a reference point to a corner of the bounding box. The tolerance of
   // torque/(rho g) is G_V L_r.
   double max_lever_arm(const Vec3& reference_B) const;
+
+  // The surface in meshlets, which the paper's methods need. Null until someone sets it: a solver then makes
+  // its own.
+  std::shared_ptr<const Meshlets> meshlets;
 };
 
 enum class WithTree { kNo, kYes };

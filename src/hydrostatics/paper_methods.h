@@ -2,14 +2,17 @@
 // meshes", section 4, as published: the baselines that `hierarchical` (hierarchical.h) is compared with. One
 // source file each.
 //
-// Contract of all five: mesh coordinates and water plane are about the mesh's centre c
-// (water_plane_in_body()); a triangle is fully submerged if its three vertices have z < 0. Heights are plain
-// dot products. Complexity: O(vertices + triangles) per query; no heap once the thread has seen a mesh as
-// large (wetted_surface.h). Error bounds: docs/mathematics.md, "Error bounds".
+// Contract of all five: `meshlets` were made from the mesh's surface (build_meshlets()); mesh coordinates and
+// water plane are about the mesh's centre c (water_plane_in_body()); a triangle is fully submerged if its
+// three vertices have z < 0. Heights are plain dot products. The results are the same bits on every
+// instruction set. Complexity: O(vertices + triangles) per query; no heap. Error bounds: docs/mathematics.md,
+// "Error bounds".
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "geometry/meshlets.h"
 #include "hydrostatics/displacement.h"
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/water_plane.h"
@@ -25,17 +28,15 @@ namespace buoyancy {
 // is refined; it depends on how far B's origin lies from the water.
 class FastTable {
  public:
-  explicit FastTable(const HydrostaticMesh& mesh);
+  FastTable(const HydrostaticMesh& mesh, const Meshlets& meshlets);
 
-  // mesh: the one that the table was made from.
-  Displacement displacement(const HydrostaticMesh& mesh, const WaterPlane& plane) const;
+  // mesh, meshlets: those that the table was made from.
+  Displacement displacement(const HydrostaticMesh& mesh, const Meshlets& meshlets,
+                            const WaterPlane& plane) const;
 
  private:
-  struct Element {
-    double volume;  // [m^3], V_i about B's origin
-    Vec3 moment;    // [m^4], V_i (C_i - c)
-  };
-  std::vector<Element> elements_;  // one per triangle
+  // V_i about B's origin [m^3] and V_i (C_i - c) [m^4], one per triangle of the meshlets' groups
+  std::vector<std::array<double, 4>> elements_;
 };
 
 // `improved` (section 4.2): volume elements of the fully submerged triangles about an apex on the water
@@ -43,27 +44,27 @@ class FastTable {
 //
 // The surface that closes the submerged part then contributes nothing, and only the cut triangles are
 // missing. Published error: that of the cut triangles' wet parts; it shrinks as the mesh is refined.
-Displacement improved(const HydrostaticMesh& mesh, const WaterPlane& plane);
+Displacement improved(const HydrostaticMesh& mesh, const Meshlets& meshlets, const WaterPlane& plane);
 
 // `exact` (section 4.3): `improved`, and the wet parts of the triangles that the water cuts.
 //
 // Exact to rounding in volume, centre, force and torque for every closed mesh: within
 // G_V = eps (64 V_T + L A_s) and G_V L (HydrostaticMesh), times 1 + depth/L for bodies deeper than L, whose
 // apex lies that far away.
-Displacement exact(const HydrostaticMesh& mesh, const WaterPlane& plane);
+Displacement exact(const HydrostaticMesh& mesh, const Meshlets& meshlets, const WaterPlane& plane);
 
 // `fast_surface` (section 4.4): pressure on the fully submerged triangles.
 //
 // No closing surface is needed. The pressure on the wet parts of the cut triangles is missing; it is small
 // because they lie near the water surface, so the error shrinks as the mesh is refined. Force and torque are
 // published as computed, with the horizontal part that the missing triangles leave.
-Displacement fast_surface(const HydrostaticMesh& mesh, const WaterPlane& plane);
+Displacement fast_surface(const Meshlets& meshlets, const WaterPlane& plane);
 
 // `exact_surface` (section 4.4): `fast_surface`, and the wet parts of the triangles that the water cuts, that
 // is, pressure on the whole wetted surface.
 //
 // Exact to rounding in volume, centre, force and torque, within the same bounds as `exact`; the moment is
 // integrated per triangle, not taken at its centroid.
-Displacement exact_surface(const HydrostaticMesh& mesh, const WaterPlane& plane);
+Displacement exact_surface(const HydrostaticMesh& mesh, const Meshlets& meshlets, const WaterPlane& plane);
 
 }  // namespace buoyancy

@@ -1,7 +1,7 @@
-// Points and vectors as three named scalars, for the loops that run once per triangle.
+// Points and vectors as three named scalars, for loops that run once per triangle.
 //
-// Compilers keep named scalars in registers and Eigen's arrays of three in memory: the exact methods are 1.2
-// to 2 times faster with this type (docs/measurements.md). All other code uses Vec3.
+// Compilers keep named scalars in registers and Eigen's arrays of three in memory: such loops are 1.2 to 2
+// times faster with this type. All other code uses Vec3.
 #pragma once
 
 #include "base/vec3.h"

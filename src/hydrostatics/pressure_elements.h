@@ -10,11 +10,12 @@
 #pragma once
 
 #include "hydrostatics/displacement.h"
-#include "hydrostatics/triangle_clip.h"
+#include "hydrostatics/point.h"
 #include "hydrostatics/water_plane.h"
 
 namespace buoyancy {
 
+// Sums over triangles; the kernels of meshlet_kernels-inl.h add to them.
 struct PressureElements {
   Point<double> force6{0, 0, 0};    // [m^3], 6 F/(rho g)
   Point<double> torque24{0, 0, 0};  // [m^4], 24 tau_c/(rho g)
@@ -25,20 +26,6 @@ struct PressureElements {
     torque24 += other.torque24;
     z_squared12 += other.z_squared12;
     return *this;
-  }
-
-  void add(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c,
-           const Point<double>& up_B) {
-    const Point<double> twice_area = cross(b.y - a.y, c.y - a.y);
-    const double z_sum = a.z + b.z + c.z;
-    const Point<double> force = z_sum * twice_area;
-    // sum z sum y + sum z_i y_i
-    const Point<double> zy = (z_sum + a.z) * a.y + (z_sum + b.z) * b.y + (z_sum + c.z) * c.y;
-    // 1/2 ((sum z)^2 + sum z_i^2) = sum of squares and products
-    const double zz = a.z * a.z + b.z * b.z + c.z * c.z + a.z * b.z + b.z * c.z + c.z * a.z;
-    force6 += force;
-    torque24 += cross(zy, twice_area);
-    z_squared12 += zz * dot(up_B, twice_area);
   }
 
   // Volume and centre of buoyancy follow from the pressure: V = k . F, the horizontal part of V (c_B - c)

@@ -30,13 +30,21 @@ std::optional<Method> method_from_name(std::string_view text) {
   return std::nullopt;
 }
 
+bool is_of_paper(Method method) {
+  return method != Method::kHierarchical;
+}
+
 bool is_exact(Method method) {
   return method == Method::kExact || method == Method::kExactSurface || method == Method::kHierarchical;
 }
 
 Solver::Solver(const HydrostaticMesh& mesh, Method method, double tolerance)
     : mesh_(&mesh), method_(method), tolerance_(tolerance) {
-  if (method == Method::kFast) fast_.emplace(mesh);
+  if (is_of_paper(method)) {
+    meshlets_ =
+        mesh.meshlets ? mesh.meshlets : std::make_shared<const Meshlets>(build_meshlets(mesh.surface));
+  }
+  if (method == Method::kFast) fast_.emplace(mesh, *meshlets_);
   if (method == Method::kHierarchical) plane_error_ = allowed_plane_error(mesh, tolerance);
 }
 
@@ -58,15 +66,15 @@ WaterPlane Solver::plane_in_body(const Pose& pose, const Water& water) const {
 Displacement Solver::displacement(const WaterPlane& plane) const {
   switch (method_) {
     case Method::kFast:
-      return fast_->displacement(*mesh_, plane);
+      return fast_->displacement(*mesh_, *meshlets_, plane);
     case Method::kImproved:
-      return improved(*mesh_, plane);
+      return improved(*mesh_, *meshlets_, plane);
     case Method::kExact:
-      return exact(*mesh_, plane);
+      return exact(*mesh_, *meshlets_, plane);
     case Method::kFastSurface:
-      return fast_surface(*mesh_, plane);
+      return fast_surface(*meshlets_, plane);
     case Method::kExactSurface:
-      return exact_surface(*mesh_, plane);
+      return exact_surface(*mesh_, *meshlets_, plane);
     case Method::kHierarchical:
       return hierarchical(*mesh_, plane, tolerance_);
   }

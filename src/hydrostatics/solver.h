@@ -14,11 +14,12 @@
 // A triangle is fully submerged if its three vertices are below the water (z < 0).
 //
 // A Solver is immutable after construction: any number of threads may use it at once. A query allocates
-// nothing, except a thread's first on a mesh (paper's methods) or, within a tolerance, on a tree
-// (`hierarchical`) larger than the thread has seen. Complexity: O(vertices + triangles) per query.
+// nothing, except, within a tolerance, a thread's first on a tree larger than the thread has seen.
+// Complexity: O(vertices + triangles) per query.
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -36,11 +37,13 @@ inline constexpr std::array kAllMethods{Method::kFast,        Method::kImproved,
 
 std::string_view to_string(Method method);                      // "exact_surface"
 std::optional<Method> method_from_name(std::string_view name);  // nullopt if there is no such method
+bool is_of_paper(Method method);                                // true for the first five
 bool is_exact(Method method);  // true if exact to rounding in volume, force and torque
 
 class Solver {
  public:
-  // mesh must outlive the solver. Precomputes only what the method needs. tolerance: 0 (exact) or more,
+  // mesh must outlive the solver. Precomputes only what the method needs: for the paper's methods the mesh's
+  // meshlets unless it has them, in O(n log n) for n triangles. tolerance: 0 (exact) or more,
   // relative to the whole displacement; only `hierarchical` uses it.
   Solver(const HydrostaticMesh& mesh, Method method, double tolerance = 0.0);
 
@@ -60,7 +63,8 @@ class Solver {
   const HydrostaticMesh* mesh_;
   Method method_;
   double tolerance_;
-  double plane_error_ = 0.0;  // [m], the largest allowed
+  double plane_error_ = 0.0;                  // [m], the largest allowed
+  std::shared_ptr<const Meshlets> meshlets_;  // of the paper's methods
   std::optional<FastTable> fast_;
 };
 

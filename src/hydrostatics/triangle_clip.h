@@ -1,4 +1,5 @@
-// Clips a triangle to its wet part: the single definition of what is wet, for any number type.
+// Clips a triangle to its wet part: the definition of what is wet, for any number type. The SIMD kernels
+// follow it.
 //
 // Rules: a vertex is wet where its signed height z < 0; a vertex on the plane is dry. A cut point has height
 // exactly 0 and is interpolated from the wet vertex to the dry one, so that the two triangles of an edge find

@@ -7,7 +7,7 @@
 
 #include "hydrostatics/displacement.h"
 #include "hydrostatics/hydrostatic_mesh.h"
-#include "hydrostatics/triangle_clip.h"
+#include "hydrostatics/point.h"
 #include "hydrostatics/water_plane.h"
 
 namespace buoyancy {

@@ -100,6 +100,9 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh);
     }
+    if (is_of_paper(body.method) && !prepared.mesh.meshlets) {
+      prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
+    }
     scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/hierarchical.h"
-#include "hydrostatics/paper_methods.h"
+#include "hydrostatics/solver.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
 
@@ -37,6 +37,7 @@ inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, c
   const double lever = mesh.max_lever_arm(mesh.center_B);
   std::vector<Agreement> found;
   for (const std::string& target : simd_targets()) found.push_back({.target = target});
+  const Solver exact(mesh, Method::kExact);
   RandomPoses random(seed);
   for (int i = 0; i < poses; ++i) {
     Water water{.level = 0.25, .density = 1.0, .gravity = 1.0};
@@ -45,7 +46,7 @@ inline std::vector<Agreement> agreement_with_exact(const TriangleMesh& source, c
     const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
     // `hierarchical` evaluates a submerged body from its constants; `exact` loses digits with depth.
     const double depth = std::max(1.0, std::abs(plane.h_c) / mesh.diagonal);
-    const Displacement brute = exact(mesh, plane);
+    const Displacement brute = exact.displacement(plane);
     for (Agreement& agreement : found) {
       EXPECT_TRUE(force_simd_target(agreement.target));
       const Displacement fast = hierarchical(mesh, plane);

@@ -71,6 +71,20 @@ TEST(Scene, BuildsTreeForRequestedHydrostatics) {
   EXPECT_TRUE(with->meshes()[0]->mesh.tree);
 }
 
+TEST(Scene, BuildsMeshletsOnceForMethodsOfPaper) {
+  const TempDir directory;
+  const std::string box = "shape = { type = \"box\" }\n";
+  const auto without = load(directory, body_with(1, box));
+  ASSERT_TRUE(without) << without.error().message();
+  EXPECT_FALSE(without->meshes()[0]->mesh.meshlets);
+  const auto with = load(directory, body_with(1, box + "method = \"exact\"") +
+                                        body_with(2, box + "method = \"fast\"") + body_with(3, box));
+  ASSERT_TRUE(with) << with.error().message();
+  ASSERT_EQ(with->meshes().size(), 1U);
+  ASSERT_TRUE(with->meshes()[0]->mesh.meshlets);
+  EXPECT_EQ(with->meshes()[0]->mesh.meshlets.use_count(), 3) << "the mesh and two solvers";
+}
+
 TEST(Scene, DerivesCentreOfMassFromDynamics) {
   const TempDir directory;
   const std::string open_mesh =
