@@ -6,7 +6,7 @@
 // time
 //             to read vertices and indices once
 // tolerance   of the solver; 0: exact, or a method without a tolerance
-// target      the instruction set of `hierarchical`; -: a method without SIMD code of its own
+// target      the instruction set of `hierarchical` and `exact`; -: another method, on the best one
 // regime      independent: 100 poses from almost dry to almost submerged with random rotations;
 //             coherent: 100 steps of a floating body's trajectory; both with the caches as the method's own
 //             queries leave them;

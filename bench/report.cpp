@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kRock = "rock";
 
-// The methods that visit every triangle and are exact to rounding.
+// The methods whose time is proportional to the mesh and that are exact to rounding.
 constexpr std::array kLinearExactMethods{kPlainRow, "exact", "exact_surface"};
 
 // Limits and goals of the speedup of hierarchical over the fastest of them, by the number of triangles.
@@ -113,10 +113,11 @@ class Report {
     std::fprintf(file_, "### Speedup over the fastest O(N) method\n\n");
     std::fprintf(
         file_,
-        "Time of the fastest method that visits every triangle and is exact to rounding, over time of "
+        "Time of the fastest method that visits the whole mesh and is exact to rounding, over time of "
         "`hierarchical` at\ntolerance 0; poses far apart, caches warm. `plain` is the paper's exact method "
         "as a user would write it: 40 lines of\nC++ in double precision, with the same compiler flags "
-        "(`bench/plain_exact.cpp`).\n\n");
+        "(`bench/plain_exact.cpp`). On the slowest target, the fastest of\n`plain` and `exact` there "
+        "counts.\n\n");
     MarkdownTable table({"mesh", "triangles", "fastest O(N)", "its time, us", "hierarchical, us", "target",
                          "ratio", "required", "goal", "slowest target", "ratio", "required", ""});
     for (const MeshName& mesh : meshes_) {
@@ -124,7 +125,8 @@ class Report {
       const Measurement* const best = find(mesh, "hierarchical", 0.0);
       const Measurement* const slowest = slowest_target(mesh);
       const double ratio = linear->median_ns / best->median_ns;
-      const double slowest_ratio = linear->median_ns / slowest->median_ns;
+      const double slowest_ratio =
+          fastest_linear(mesh, kIndependentRegime, slowest->target)->median_ns / slowest->median_ns;
       std::vector<std::string> cells{mesh.name,
                                      std::to_string(mesh.triangles),
                                      linear->method,
@@ -169,7 +171,7 @@ class Report {
 
   void targets() const {
     std::fprintf(file_, "### Instruction sets\n\n");
-    std::fprintf(file_, "Median time of `hierarchical` at tolerance 0, us, poses far apart.\n\n");
+    std::fprintf(file_, "Median times of `exact` / `hierarchical` at tolerance 0, us, poses far apart.\n\n");
     std::vector<std::string> header{"mesh", "triangles"};
     std::vector<std::string> names;
     for (const Measurement& row : measurements_) {
@@ -181,9 +183,12 @@ class Report {
     for (const MeshName& mesh : meshes_) {
       std::vector<std::string> cells{mesh.name, std::to_string(mesh.triangles)};
       for (const std::string& target : names) {
-        cells.push_back(microseconds(find_measurement(measurements_, mesh.name, mesh.triangles,
-                                                      "hierarchical", 0.0, target, kIndependentRegime)
-                                         ->median_ns));
+        const auto time = [&](const std::string& method) {
+          return microseconds(find_measurement(measurements_, mesh.name, mesh.triangles, method, 0.0, target,
+                                               kIndependentRegime)
+                                  ->median_ns);
+        };
+        cells.push_back(time("exact") + " / " + time("hierarchical"));
       }
       table.add(std::move(cells));
     }
@@ -241,10 +246,15 @@ class Report {
     return find_measurement(measurements_, mesh.name, mesh.triangles, method, tolerance, "", regime);
   }
 
-  const Measurement* fastest_linear(const MeshName& mesh, const std::string& regime) const {
+  // target: "" for the best instruction set; with another one, methods that are not measured on it do not
+  // count. `plain` counts on all.
+  const Measurement* fastest_linear(const MeshName& mesh, const std::string& regime,
+                                    const std::string& target = "") const {
     const Measurement* fastest = nullptr;
     for (const char* const method : kLinearExactMethods) {
-      const Measurement* const row = find(mesh, method, 0.0, regime);
+      const Measurement* const row =
+          find_measurement(measurements_, mesh.name, mesh.triangles, method, 0.0,
+                           target.empty() || method == kPlainRow ? "" : target, regime);
       if (row != nullptr && (fastest == nullptr || row->median_ns < fastest->median_ns)) fastest = row;
     }
     return fastest;

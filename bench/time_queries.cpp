@@ -64,7 +64,7 @@ class QueryTimer {
   // solver must outlive the timer.
   void add(const Solver& solver, const std::string& forced_target = "") {
     add(&solver, nullptr, forced_target, std::string(to_string(solver.method())));
-    if (solver.method() != Method::kHierarchical) return;
+    if (solver.method() != Method::kHierarchical && solver.method() != Method::kExact) return;
     force_simd_target(forced_target);
     queries_.back().row.target = simd_target();
     queries_.back().row.tolerance = solver.tolerance();
@@ -169,9 +169,11 @@ Expected<std::vector<Measurement>> time_queries(const BenchmarkMesh& model, cons
   timer.add_plain();
   for (const Solver& solver : solvers) timer.add(solver);
   const std::vector<std::string> targets = simd_targets();
-  const auto exact_hierarchical = std::find_if(
-      solvers.begin(), solvers.end(), [](const Solver& s) { return s.method() == Method::kHierarchical; });
-  for (std::size_t i = 1; i < targets.size(); ++i) timer.add(*exact_hierarchical, targets[i]);
+  for (const Method method : {Method::kExact, Method::kHierarchical}) {
+    const auto solver =
+        std::find_if(solvers.begin(), solvers.end(), [&](const Solver& s) { return s.method() == method; });
+    for (std::size_t i = 1; i < targets.size(); ++i) timer.add(*solver, targets[i]);
+  }
   if (const auto checked = timer.check(); !checked) return tl::unexpected(checked.error());
 
   timer.run(sweeps, [&](TimedQuery& query) {

@@ -20,9 +20,9 @@ namespace buoyancy::bench {
 
 inline constexpr std::array kMeasuredTolerances{0.0, 1e-6, 1e-4, 1e-3, 1e-2};
 
-// Rows: `read`; `plain`; the five methods of the paper; `hierarchical` at each tolerance on the best
-// instruction set, and at tolerance 0 on each of the others. The results of all are checked before anything
-// is timed. Errors: those of measure_errors().
+// Rows: `read`; `plain`; the five methods of the paper and `hierarchical` at each tolerance on the best
+// instruction set; `exact`, and `hierarchical` at tolerance 0, on each of the others. The results of all are
+// checked before anything is timed. Errors: those of measure_errors().
 Expected<std::vector<Measurement>> time_queries(const BenchmarkMesh& model, const PoseSet& set, int sweeps);
 
 // Rows: `read`, `plain`, `exact` and `hierarchical` at tolerance 0. Errors: as above.

@@ -9,7 +9,7 @@ from parts import card, details, file_of, not_measured, picture, read_text, sour
 from plot import METHODS
 
 
-# The methods that visit every triangle and are exact to rounding.
+# The methods that visit the whole mesh and are exact to rounding.
 LINEAR_EXACT = ("plain", "exact", "exact_surface")
 
 
@@ -42,7 +42,7 @@ def speed_card(part):
     linear = min(LINEAR_EXACT, key=time.get)
     return card(claim, microseconds(time["hierarchical"]), "µs",
                 f"{grouped(triangles)} triangles, median over independent poses, caches warm, one thread. In the same run "
-                f"the fastest exact method that visits every triangle, {linear}, takes {microseconds(time[linear])} µs, "
+                f"the fastest exact method that visits the whole mesh, {linear}, takes {microseconds(time[linear])} µs, "
                 f"{time[linear] / time['hierarchical']:.0f} "
                 f"times as long, and reading the mesh once {microseconds(time['read'])} µs.", part)
 
