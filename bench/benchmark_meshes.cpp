@@ -39,8 +39,9 @@ BenchmarkMesh rock(int frequency) {
 BenchmarkMesh rock_uv(int longitudes, int bands) {
   TriangleMesh mesh;
   const RockShape shape;
+  // float32, as in a mesh file.
   const auto add = [&](const Vec3& direction) {
-    return mesh.add_vertex(rock_surface_point(shape, direction));
+    return mesh.add_vertex(rock_surface_point(shape, direction).cast<float>().cast<double>());
   };
   const std::int32_t north = add(Vec3::UnitZ());
   const std::int32_t south = add(-Vec3::UnitZ());
