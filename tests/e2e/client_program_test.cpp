@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/json.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

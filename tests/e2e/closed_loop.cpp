@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/support/json.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {

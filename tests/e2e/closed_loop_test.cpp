@@ -12,6 +12,7 @@
 
 #include "hydrostatics/buoyancy.h"
 #include "scene/scene.h"
+#include "tests/support/json.h"
 #include "tests/support/running_program.h"
 
 namespace buoyancy {

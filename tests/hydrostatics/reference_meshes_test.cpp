@@ -3,16 +3,16 @@
 // these tests are skipped.
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
 #include "hydrostatics/buoyancy.h"
 #include "tests/geometry/shared_mesh_files.h"
 #include "tests/hydrostatics/agreement.h"
+#include "tests/support/json.h"
+#include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 namespace {
@@ -41,7 +41,7 @@ class ReferenceMeshes : public testing::Test {
 };
 
 TEST_F(ReferenceMeshes, MatchesReferenceVolumesAndCentres) {
-  const auto oracles = nlohmann::json::parse(std::ifstream(shared_mesh_file("oracles.json")));
+  const auto oracles = parse_json(read_file(shared_mesh_file("oracles.json")));
   int planes = 0;
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;
@@ -123,7 +123,7 @@ TEST_F(ReferenceMeshes, RefusesDirtyWamVWithReasons) {
 }
 
 TEST_F(ReferenceMeshes, MatchesExactWithHierarchical) {
-  const auto oracles = nlohmann::json::parse(std::ifstream(shared_mesh_file("oracles.json")));
+  const auto oracles = parse_json(read_file(shared_mesh_file("oracles.json")));
   for (const auto& [file, oracle] : oracles.items()) {
     if (oracle.at("status") == "open") continue;
     const MeshValidation validation = load(file);

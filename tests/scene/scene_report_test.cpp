@@ -3,10 +3,10 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/geometry/mesh_files.h"
 #include "tests/scene/scene_texts.h"
+#include "tests/support/json.h"
 
 namespace buoyancy {
 namespace {
@@ -45,7 +45,7 @@ mass = 3000
 )";
 
 TEST(SceneReport, WritesWaterAndBodiesAsJson) {
-  const Json report = Json::parse(scene_report_json(prepared(kThreeBodies)));
+  const Json report = parse_json(scene_report_json(prepared(kThreeBodies)));
   EXPECT_EQ(report["scene"], "pool.toml");
   EXPECT_EQ(report["water"]["level"], 1.5);
   EXPECT_EQ(report["water"]["density"], 1000.0);
@@ -67,7 +67,7 @@ TEST(SceneReport, WritesWaterAndBodiesAsJson) {
 }
 
 TEST(SceneReport, WritesMassUsedBySimulator) {
-  const Json report = Json::parse(scene_report_json(prepared(kThreeBodies)));
+  const Json report = parse_json(scene_report_json(prepared(kThreeBodies)));
   EXPECT_NEAR(report["bodies"][0]["mass"], 1800.0, 1e-11);
   EXPECT_EQ(report["bodies"][0]["density"], 300.0);
   EXPECT_EQ(report["bodies"][1]["density"], 500.0);
@@ -78,7 +78,7 @@ TEST(SceneReport, WritesMassUsedBySimulator) {
 
 TEST(SceneReport, WritesMeshesWithTheirBodiesAsJson) {
   const Scene scene = prepared(kThreeBodies);
-  const Json report = Json::parse(scene_report_json(scene));
+  const Json report = parse_json(scene_report_json(scene));
   ASSERT_EQ(report["meshes"].size(), 2U);
   const Json& box = report["meshes"][0];
   EXPECT_EQ(box["name"], "box");
@@ -108,7 +108,7 @@ TEST(SceneReport, WritesUnknownMassForOpenMeshes) {
   const std::string mesh =
       directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const Scene scene = prepared("[[body]]\nid = 1\nmesh = \"" + mesh + "\"\nopen = \"dry_boundary\"\n");
-  const Json report = Json::parse(scene_report_json(scene));
+  const Json report = parse_json(scene_report_json(scene));
   EXPECT_EQ(report["bodies"][0]["mass"], nullptr);
   EXPECT_EQ(report["meshes"][0]["closed"], false);
   EXPECT_EQ(report["meshes"][0]["holes"][0]["edges"], 3);
@@ -133,7 +133,7 @@ TEST(SceneReport, WritesNullForNonFiniteNumbers) {
   const Scene scene = prepared(
       "[[body]]\nid = 1\nshape = { type = \"box\", size = [1e-9, 1e-9, 1e-9] }\n[body.client]\nmass = "
       "1e300\n");
-  const Json body = Json::parse(scene_report_json(scene))["bodies"][0];
+  const Json body = parse_json(scene_report_json(scene))["bodies"][0];
   EXPECT_EQ(body["mass"], 1e300);
   EXPECT_EQ(body["density"], nullptr);
 }

@@ -4,9 +4,9 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/service/running_service.h"
+#include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 
@@ -243,7 +243,7 @@ TEST(Buoyancyd, ChecksSceneWithoutNetwork) {
   EXPECT_NE(text.standard_output.find("volume"), std::string::npos) << text.standard_output;
   const FinishedProcess json = run({"--scene", scene, "--check", "--json"});
   EXPECT_EQ(json.exit_code, 0);
-  EXPECT_TRUE(nlohmann::json::parse(json.standard_output).is_object());
+  EXPECT_TRUE(parse_json(json.standard_output).is_object());
 }
 
 TEST(Buoyancyd, FailsIfItsReportCannotBeWritten) {

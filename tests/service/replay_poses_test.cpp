@@ -5,11 +5,11 @@
 #include <bot_core/rigid_transform_t.hpp>
 #include <bot_core/six_axis_force_torque_t.hpp>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/replay_fixture.h"
+#include "tests/support/json.h"
 
 namespace buoyancy {
 namespace {
@@ -137,7 +137,7 @@ TEST_F(ReplayPoses, ReportsAndCountsInvalidPoses) {
       << finished.standard_error;
   EXPECT_NE(finished.standard_error.find("event at 3 us is not a valid pose: fingerprint"), std::string::npos)
       << finished.standard_error;
-  const auto summary = nlohmann::json::parse(finished.standard_output);
+  const auto summary = parse_json(finished.standard_output);
   EXPECT_EQ(summary["requests"], 4);
   EXPECT_EQ(summary["computed"], 2);
   EXPECT_EQ(summary["rejected"]["truncated"], 1);
@@ -205,7 +205,7 @@ TEST_F(ReplayPoses, ComparesWithBaselineBodyByBody) {
     const FinishedProcess finished =
         replay(path("in.lcmlog"), "/dev/null", {"--pose", "POSE=1", "--compare", path(baseline), "--json"});
     EXPECT_EQ(finished.exit_code, exit_code) << finished.standard_error << finished.standard_output;
-    return nlohmann::json::parse(finished.standard_output)["compared"];
+    return parse_json(finished.standard_output)["compared"];
   };
   const auto same = compared("baseline.lcmlog", 0);
   EXPECT_EQ(same["agrees"], true);
@@ -226,7 +226,7 @@ TEST_F(ReplayPoses, ComparesWithBaselineBodyByBody) {
   EXPECT_EQ(denser["agrees"], false);
   EXPECT_NEAR(denser["bodies"][0]["force"], 24.0 * 10.0, 1e-6) << "a thousandth of the full displacement";
   EXPECT_EQ(denser["bodies"][0]["volume"], 0.0);
-  EXPECT_GT(denser["bodies"][0]["force_in_bounds"], 1e6);
+  EXPECT_GT(denser["bodies"][0]["force_in_bounds"].get<double>(), 1e6);
   write("scene.toml", scene);
 
   const std::string baseline = read_file(path("baseline.lcmlog"));

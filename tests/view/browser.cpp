@@ -274,7 +274,7 @@ json Browser::send(const std::string& path, const std::string& body) {
     fail("no response from chromedriver to " + path + ": " + httplib::to_string(result.error()) +
          "; output: " + chromedriver_.standard_output() + chromedriver_.standard_error());
   }
-  json value = json::parse(result->body).at("value");
+  json value = parse_json(result->body).at("value");
   if (result->status != 200) {
     // The lines after the first are chromedriver's stack trace.
     const std::string message = value.at("message").get<std::string>();

@@ -5,13 +5,13 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <rapidcheck/gtest.h>
 
 #include "tests/engine/box_scene.h"
 #include "tests/engine/malformed_messages.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/json.h"
 #include "view/live/snapshot_json.h"
 
 namespace buoyancy::view {
@@ -48,7 +48,7 @@ class BusMonitorTest : public testing::Test {
  protected:
   explicit BusMonitorTest(PoseChannels poses = {}) : monitor_(scene_, 0.0, std::move(poses)) {}
   ArrivalTime at(double now) { return {static_cast<std::int64_t>(1e6 * now), now}; }
-  json snapshot(double now) { return json::parse(snapshot_json(monitor_, 1, 0.0, now, now)); }
+  json snapshot(double now) { return parse_json(snapshot_json(monitor_, 1, 0.0, now, now)); }
 
   const Scene scene_ = box_scene();
   BusMonitor monitor_;
@@ -248,7 +248,7 @@ TEST_F(BusMonitorTest, KeepsOneMinuteAndSkipsPauses) {
   monitor_.tick(1e6);
   monitor_.tick(1e6 + 0.5);
   EXPECT_EQ(monitor_.seconds().back().number, 100);
-  EXPECT_EQ(json::parse(history_json(monitor_)).size(), BusMonitor::kSecondsKept);
+  EXPECT_EQ(parse_json(history_json(monitor_)).size(), BusMonitor::kSecondsKept);
 }
 
 TEST_F(BusMonitorTest, ReportsServiceState) {
@@ -293,7 +293,7 @@ TEST_F(BusMonitorTest, ReplacesInvalidUtf8InSceneName) {
   monitor_.on_status(status_bytes(7, "sc\xff\n\"ene"), 0.0);
   const std::string text = snapshot_json(monitor_, 1, 0.0, 0.0, 0.0);
   EXPECT_EQ(text.find('\n'), std::string::npos) << "an event is a single line";
-  EXPECT_EQ(json::parse(text)["status"]["scene"], "sc\xEF\xBF\xBD\n\"ene");
+  EXPECT_EQ(parse_json(text)["status"]["scene"], "sc\xEF\xBF\xBD\n\"ene");
 }
 
 // Messages with one random byte, some truncated, as from an untrusted network.

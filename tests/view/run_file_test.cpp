@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "engine/request_handler.h"
 #include "recording/event_log.h"
@@ -15,6 +14,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
+#include "tests/support/json.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "view/report/body_list.h"
@@ -430,7 +430,7 @@ TEST_F(RunFileManyBodies, RejectsRunWithoutSelectedBodies) {
 
 TEST_F(RunFileManyBodies, WritesAllBodiesToPageData) {
   const RecordedRun run = read(poses()).value();
-  const auto data = nlohmann::json::parse(report_data(scene_, run, {.file = "run.csv", .version = "1"}));
+  const auto data = parse_json(report_data(scene_, run, {.file = "run.csv", .version = "1"}));
   ASSERT_EQ(data["bodies"].size(), 1'002U);
   const nlohmann::json& other = data["bodies"][1];
   EXPECT_EQ(other["id"], 2);

@@ -7,11 +7,11 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <sched.h>
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/running_view.h"
@@ -37,7 +37,7 @@ json wait_for_snapshot(EventReader& events, Condition&& condition) {
   while (std::chrono::steady_clock::now() < deadline) {
     const std::optional<std::string> text = events.next(kWaitTimeout);
     if (!text) break;
-    snapshot = json::parse(*text);
+    snapshot = parse_json(*text);
     if (condition(snapshot)) return snapshot;
   }
   throw std::runtime_error("no such snapshot; the last one: " + snapshot.dump());
