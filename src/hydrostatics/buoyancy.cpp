@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hydrostatics/volume_elements.h"
-#include "hydrostatics/water_planes.h"
+#include "hydrostatics/water_plane.h"
 
 namespace buoyancy {
 namespace {

@@ -1,5 +1,4 @@
-#include "hydrostatics/water_planes.h"
-
+// Water planes of many bodies at once, and on every instruction set.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hydrostatics/water_plane.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/support/allocation_count.h"
@@ -39,23 +39,24 @@ struct PlaneRequests {
   }
 };
 
-void expect_same_bits(const PlaneRequests& requests, const Water& water) {
-  std::vector<PlaneBits> expected;
+std::vector<PlaneBits> bits_one_by_one(const PlaneRequests& requests, const Water& water) {
+  std::vector<PlaneBits> bits;
   for (std::size_t i = 0; i < requests.poses.size(); ++i) {
-    expected.push_back(bits_of(water_plane_in_body(requests.poses[i], water, requests.centers_B[i])));
+    bits.push_back(bits_of(water_plane_in_body(requests.poses[i], water, requests.centers_B[i])));
   }
-  for (const std::string& target : simd_targets()) {
-    ASSERT_TRUE(force_simd_target(target));
-    std::vector<WaterPlane> planes(requests.poses.size());
-    water_planes_in_body(requests.poses, water, requests.centers_B, planes);
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      ASSERT_EQ(bits_of(planes[i]), expected[i]) << target << ", plane " << i;
-    }
-  }
-  force_simd_target("");
+  return bits;
 }
 
-TEST(WaterPlanes, EqualsPlaneOfEachBodyForRandomPoses) {
+// Checks planes computed together on the current instruction set.
+void expect_bits(const std::vector<PlaneBits>& expected, const PlaneRequests& requests, const Water& water) {
+  std::vector<WaterPlane> planes(requests.poses.size());
+  water_planes_in_body(requests.poses, water, requests.centers_B, planes);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    ASSERT_EQ(bits_of(planes[i]), expected[i]) << simd_target() << ", plane " << i;
+  }
+}
+
+TEST(WaterPlanes, HaveSameBitsOneByOneAndOnEveryTarget) {
   RandomPoses random(1);
   for (int set = 0; set < 200; ++set) {
     Water water;
@@ -68,7 +69,13 @@ TEST(WaterPlanes, EqualsPlaneOfEachBodyForRandomPoses) {
       pose.q_WB.coeffs() *= i % 3 == 0 ? std::pow(10.0, random.uniform(-100.0, 100.0)) : 1.0;
       requests.add(pose, random.direction() * std::pow(10.0, random.uniform(-3.0, 6.0)));
     }
-    expect_same_bits(requests, water);
+    const std::vector<PlaneBits> expected = bits_one_by_one(requests, water);
+    for (const std::string& target : simd_targets()) {
+      ASSERT_TRUE(force_simd_target(target));
+      ASSERT_EQ(bits_one_by_one(requests, water), expected) << target;
+      ASSERT_NO_FATAL_FAILURE(expect_bits(expected, requests, water));
+    }
+    force_simd_target("");
   }
 }
 
@@ -85,7 +92,12 @@ TEST(WaterPlanes, EqualsPlaneOfEachBodyAtLimitsOfDouble) {
       requests.add({.p_WB = {0.0, 0.0, size}, .q_WB = {1.0, 0.0, 0.0, other}}, {size, 0.0, -size});
     }
   }
-  expect_same_bits(requests, Water());
+  // Where products underflow, an instruction set with fused multiply-add gives other bits than one without.
+  for (const std::string& target : simd_targets()) {
+    ASSERT_TRUE(force_simd_target(target));
+    ASSERT_NO_FATAL_FAILURE(expect_bits(bits_one_by_one(requests, Water()), requests, Water()));
+  }
+  force_simd_target("");
 }
 
 TEST(WaterPlanes, DoNotAllocate) {
