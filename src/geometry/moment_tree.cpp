@@ -47,8 +47,8 @@ Item make_item(const Vec3& position, std::size_t index) {
       static_cast<std::uint32_t>(index)};
 }
 
-// Splits the range along the axis on which its items spread most; `left` of them go to the first part.
-std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, std::size_t left) {
+// Returns the axes, that on which the items of the range spread most first.
+std::array<std::size_t, 3> axes_by_spread(const std::vector<Item>& items, const Range& range) {
   std::array<float, 3> low = items[range.begin].position;
   std::array<float, 3> high = low;
   for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -57,17 +57,29 @@ std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, std:
       high[axis] = std::max(high[axis], items[i].position[axis]);
     }
   }
-  std::size_t axis = 0;
-  for (std::size_t other = 1; other < 3; ++other) {
-    if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
-  }
-  const auto at = [&items](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(
-      at(range.begin), at(range.begin + left), at(range.end), [axis](const Item& a, const Item& b) {
-        // The index breaks ties, so that the tree depends on the mesh alone.
-        return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis] : a.index < b.index;
-      });
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(),
+                   [&](std::size_t a, std::size_t b) { return high[a] - low[a] > high[b] - low[b]; });
+  return axes;
+}
+
+// Orders items along an axis. The index breaks ties, so that the tree depends on the mesh alone.
+auto before_along(std::size_t axis) {
+  return [axis](const Item& a, const Item& b) {
+    return a.position[axis] != b.position[axis] ? a.position[axis] < b.position[axis] : a.index < b.index;
+  };
+}
+
+std::pair<Range, Range> halves_at(const Range& range, std::size_t left) {
   return {{range.begin, range.begin + left}, {range.begin + left, range.end}};
+}
+
+// Splits the range along the axis on which its items spread most; `left` of them go to the first part.
+std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, std::size_t left) {
+  const auto at = [&items](std::size_t i) { return items.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(range.begin), at(range.begin + left), at(range.end),
+                   before_along(axes_by_spread(items, range)[0]));
+  return halves_at(range, left);
 }
 
 // About half of `size`, a multiple of `unit` where that splits it.
@@ -98,11 +110,12 @@ constexpr std::size_t kRun = std::size_t{8} * kLeafTriangles;
 
 // Cuts the triangles into leaves.
 //
-// A run of kRun triangles is cut into equal parts, as few as possible. Patches of some meshes have many
+// A run of kRun triangles is cut into about equal parts, as few as possible. Patches of some meshes have many
 // vertices (a strip of n triangles has n + 2), so that a leaf cannot hold kLeafTriangles of them. Halving
-// such a leaf would leave it half empty. Therefore the run is cut into more parts instead, and that number of
-// parts is chosen whose leaves have the least total width, which is proportional to the number of leaves that
-// a random plane crosses.
+// such a leaf would leave it half empty. Therefore the last cuts are moved, or made along another axis, until
+// the vertices fit. Where that is not possible everywhere, the run is also cut into more parts, and that
+// number of parts is chosen whose leaves have the least total width, which is proportional to the number of
+// leaves that a random plane crosses.
 class LeafCutter {
  public:
   LeafCutter(const TriangleMesh& surface, std::vector<Item>& items) : surface_(surface), items_(items) {}
@@ -119,38 +132,100 @@ class LeafCutter {
     const std::size_t min_parts = (range.size() + kLeafTriangles - 1) / kLeafTriangles;
     const auto first = items_.begin() + static_cast<std::ptrdiff_t>(range.begin);
     const auto last = items_.begin() + static_cast<std::ptrdiff_t>(range.end);
-    for (std::size_t parts = min_parts; parts <= 2 * min_parts; ++parts) {
+    std::size_t parts = min_parts;
+    while (parts <= 2 * min_parts) {
       leaves_.clear();
       width_ = 0.0;
-      const bool all_fit = cut_run(range, (range.size() + parts - 1) / parts);
+      const bool all_fit = cut_run(range, parts);
       if (width_ < min_width) {
         min_width = width_;
         best_leaves_ = leaves_;
         best_items_.assign(first, last);
       }
       if (all_fit) break;
+      // Only a few more parts than asked for can be avoided by other cuts.
+      parts = std::max(parts + 1, 3 * leaves_.size() / 4);
     }
     std::copy(best_items_.begin(), best_items_.end(), first);
     leaves.insert(leaves.end(), best_leaves_.begin(), best_leaves_.end());
   }
 
  private:
-  // Cuts a range into leaves of at most `size` triangles; halves those with too many vertices. Returns false
-  // if there were such.
-  bool cut_run(const Range& range, std::size_t size) {
-    if (range.size() > size) {
-      const auto [left, right] = split(items_, range, left_share(range.size(), size));
-      const bool left_fits = cut_run(left, size);
-      return cut_run(right, size) && left_fits;
+  // Cuts a range into `parts` leaves of about the same number of triangles, or into more if these have too
+  // many vertices. Returns false if there were such.
+  bool cut_run(const Range& range, std::size_t parts) {
+    if (parts == 1) {
+      if (add_leaf(range)) return true;
+      cut_run(range, 2);
+      return false;
     }
+    if (parts == 2) {
+      if (cut_in_two(range)) return true;
+      cut_run(range, 3);
+      return false;
+    }
+    if (parts == 3 && cut_in_three(range)) return true;
+    const std::size_t left_parts = parts / 2;
+    // As many whole leaves as there are parts, where the range has so many triangles.
+    const std::size_t size = (range.size() + parts - 1) / parts;
+    const std::size_t left = std::min(left_parts * size, range.size() - (parts - left_parts));
+    const auto [first, second] = split(items_, range, left);
+    const bool first_fits = cut_run(first, left_parts);
+    return cut_run(second, parts - left_parts) && first_fits;
+  }
+
+  // Cuts a range into two leaves, as near its middle as their vertices allow. Returns false if that is not
+  // possible along any axis.
+  bool cut_in_two(const Range& range) {
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto last = items_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    for (const std::size_t axis : axes_by_spread(items_, range)) {
+      std::sort(first, last, before_along(axis));
+      const std::size_t max_left = count_that_fit(first, last);
+      const std::size_t max_right =
+          count_that_fit(std::make_reverse_iterator(last), std::make_reverse_iterator(first));
+      if (max_left + max_right < range.size()) continue;
+      const std::size_t left = std::clamp(range.size() / 2, range.size() - max_right, max_left);
+      const auto [one, other] = halves_at(range, left);
+      return add_leaf(one) && add_leaf(other);
+    }
+    return false;
+  }
+
+  // Cuts a range into three leaves, of about the same size as far as their vertices allow. Returns false if
+  // that is not possible along any axis.
+  bool cut_in_three(const Range& range) {
+    const auto first = items_.begin() + static_cast<std::ptrdiff_t>(range.begin);
+    const auto last = items_.begin() + static_cast<std::ptrdiff_t>(range.end);
+    for (const std::size_t axis : axes_by_spread(items_, range)) {
+      std::sort(first, last, before_along(axis));
+      const std::size_t left = std::min((range.size() + 2) / 3, count_that_fit(first, last));
+      const auto [one, others] = halves_at(range, left);
+      if (cut_in_two(others)) return add_leaf(one);
+    }
+    return false;
+  }
+
+  // How many of the items from the first on fit into one leaf.
+  template <typename Iterator>
+  std::size_t count_that_fit(Iterator first, Iterator last) const {
+    LeafVertices vertices;
+    const auto max = std::min<std::ptrdiff_t>(last - first, kLeafTriangles);
+    for (std::ptrdiff_t i = 0; i < max; ++i) {
+      for (const std::int32_t vertex : surface_.triangles[first[i].index]) {
+        if (!vertices.add(vertex)) return static_cast<std::size_t>(i);
+      }
+    }
+    return static_cast<std::size_t>(max);
+  }
+
+  // Returns false, without adding it, if the leaf is too large.
+  bool add_leaf(const Range& range) {
+    if (range.size() > kLeafTriangles) return false;
     LeafVertices vertices;
     for (std::size_t i = range.begin; i < range.end; ++i) {
       for (const std::int32_t vertex : surface_.triangles[items_[i].index]) {
-        if (vertices.add(vertex)) continue;
-        const auto [left, right] = split(items_, range, range.size() / 2);
-        cut_run(left, size);
-        cut_run(right, size);
-        return false;
+        if (!vertices.add(vertex)) return false;
       }
     }
     Bounds bounds;
