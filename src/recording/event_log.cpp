@@ -47,8 +47,9 @@ Expected<EventLogReader> EventLogReader::open(const std::filesystem::path& path,
 EventLogReader::EventLogReader(FileWindow file, ChannelFilter wanted)
     : file_(std::move(file)), wanted_(std::move(wanted)) {}
 
-LogItem EventLogReader::next() {
+LogItem EventLogReader::next(std::int64_t limit) {
   while (offset_ < size()) {
+    if (reached(limit)) return LimitReached{};
     const tl::expected<Frame, std::string> frame = frame_at(offset_);
     if (!frame) return skip_corrupt_section(frame.error());
     const std::int64_t start = offset_;
@@ -110,18 +111,31 @@ bool EventLogReader::header_or_end_at(std::int64_t offset) {
   return offset == size() || starts_with_magic(file_.read_at(offset, kMagic.size()));
 }
 
-CorruptSection EventLogReader::skip_corrupt_section(const std::string& reason) {
-  const std::int64_t start = offset_;
-  for (++offset_; offset_ < size();) {
+void EventLogReader::seek(std::int64_t offset, std::int64_t distance) {
+  offset_ = std::max<std::int64_t>(offset - distance, 0);
+  if (offset_ > 0) find_header();
+  while (true) {
+    const LogItem item = next(offset);
+    if (std::holds_alternative<LimitReached>(item) || std::holds_alternative<EndOfLog>(item)) return;
+  }
+}
+
+void EventLogReader::find_header() {
+  while (offset_ < size()) {
     const Bytes window = file_.read_at(offset_, kMagic.size());
     const auto found = std::search(window.begin(), window.end(), kMagic.begin(), kMagic.end());
     offset_ += found - window.begin();
-    if (found != window.end()) break;
+    if (found != window.end()) return;
     // The window may end within the first bytes of a header, which are then searched again. It is shorter
     // than those only at the end of the file or after a read error.
     const bool more = offset_ < size() && window.size() >= kMagic.size();
     offset_ = more ? offset_ - static_cast<std::int64_t>(kMagic.size()) + 1 : size();
   }
+}
+
+CorruptSection EventLogReader::skip_corrupt_section(const std::string& reason) {
+  const std::int64_t start = offset_++;
+  find_header();
   return {"corrupt at byte " + std::to_string(start) + ": " + reason + "; " +
           std::to_string(offset_ - start) + " bytes skipped"};
 }

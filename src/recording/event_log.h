@@ -6,11 +6,23 @@
 // many bytes as a corrupt length states, and does not distinguish corruption from the end of the file.
 // Contract of this reader: an event is valid if the header of another event or the end of the file follows
 // it, or if it is a valid request or pose; anything else is skipped up to the next such event and reported.
+//
+// Cuts (log_item.h). The reader's only state is its offset, so that reading a log follows a chain of offsets
+// from 0 to its size, each of which depends on the one before and on the file alone. The cut for an offset is
+// the first link of that chain at or after it; next() stops there. seek() does not read the chain from its
+// start: it follows another one, from the first header in the kSeekDistance bytes before the offset. Two
+// chains with one offset in common are the same from there on. If the data of the events there holds no
+// header, that first header is a link of the log's own chain. If it does (a log inside a message), the chain
+// through that data ends with it, as a rule at the next event. The two can stay apart only around an event
+// longer than kSeekDistance, around damage that looks like one, or in a log made for that purpose. A piece is
+// therefore known to be right if it starts where the piece before it ended, or at 0; otherwise it must be
+// read again from there, with seek_to().
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,14 +38,25 @@ namespace buoyancy {
 using ChannelFilter = std::function<bool(std::string_view channel)>;
 ChannelFilter only_channel(std::string channel);
 
+// Longer than an event that LCM's UDP multicast can deliver: its receivers assemble at most 16 MB [bytes].
+inline constexpr std::int64_t kSeekDistance = 17'000'000;
+
 class EventLogReader {
  public:
   // Reads the events of the wanted channels and skips the others.
   static Expected<EventLogReader> open(const std::filesystem::path& path, ChannelFilter wanted);
 
-  LogItem next();
+  LogItem next(std::int64_t limit = kNoLimit);
+  bool reached(std::int64_t limit) const { return offset_ >= limit; }
+  std::int64_t position() const { return offset_; }
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
+  const std::optional<Error>& read_error() const { return file_.read_error(); }
+
+  // Moves to the cut for `offset`, as far as the events of the `distance` bytes before show it. O(distance).
+  void seek(std::int64_t offset, std::int64_t distance = kSeekDistance);
+  // Moves to an offset at which another reader of this log, with the same filter, stopped.
+  void seek_to(std::int64_t position) { offset_ = position; }
 
  private:
   struct Frame {
@@ -47,6 +70,7 @@ class EventLogReader {
   EventLogReader(FileWindow file, ChannelFilter wanted);
   tl::expected<Frame, std::string> frame_at(std::int64_t offset);  // or the reason why it is invalid
   bool header_or_end_at(std::int64_t offset);
+  void find_header();  // moves to the first header at or after the offset, or to the end
   CorruptSection skip_corrupt_section(const std::string& reason);
 
   FileWindow file_;

@@ -1,7 +1,16 @@
-// What a reader of recorded messages returns: an event, a corrupt section or the end.
+// What a reader of recorded messages returns: an event, a corrupt section, the limit or the end.
+//
+// A recording can be read in pieces. Every reader has
+//   LogItem next(limit)     the next item, or LimitReached if a cut for `limit` comes first;
+//   bool reached(limit)     whether that is so;
+//   void seek(offset)       moves to the cut for `offset`;
+//   position()              where the next item starts.
+// Each reader defines its cuts (event_log.h, state_csv.h) by the same rule for both sides: a piece that is
+// read up to the cut for an offset, and a piece that is read from there on, hold the items of the whole.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -19,8 +28,11 @@ struct RecordedEvent {
 struct CorruptSection {
   std::string description;  // what could not be read, where, and how much was skipped
 };
+struct LimitReached {};  // returned only if next() was called with a limit
 struct EndOfLog {};
 
-using LogItem = std::variant<RecordedEvent, CorruptSection, EndOfLog>;
+using LogItem = std::variant<RecordedEvent, CorruptSection, LimitReached, EndOfLog>;
+
+inline constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace buoyancy

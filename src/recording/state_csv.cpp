@@ -66,9 +66,20 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
                      "the file has no header, or its columns are in another order", ""});
 }
 
-LogItem StateCsvReader::next() {
+bool StateCsvReader::reached(std::int64_t limit) const {
+  if (corrupt_line_) return corrupt_line_->start >= limit;
+  return pending_ && last_row_start_ >= limit;
+}
+
+std::int64_t StateCsvReader::position() const {
+  if (corrupt_line_) return corrupt_line_->start;
+  return pending_ ? pending_->start : offset_;
+}
+
+LogItem StateCsvReader::next(std::int64_t limit) {
+  if (reached(limit)) return LimitReached{};
   if (corrupt_line_) {
-    CorruptSection corrupt = std::move(*corrupt_line_);
+    CorruptSection corrupt = std::move(corrupt_line_->section);
     corrupt_line_.reset();
     return corrupt;
   }
@@ -76,6 +87,8 @@ LogItem StateCsvReader::next() {
   const auto append = [this](const Row& row) {
     request_.id.utime = row.utime;
     request_.bodies.push_back(row.state);
+    run_utime_ = row.utime;
+    last_row_start_ = row.start;
   };
   if (pending_) append(*pending_);
   pending_.reset();
@@ -85,10 +98,11 @@ LogItem StateCsvReader::next() {
     if (trim(*text).empty() && !line_too_long_) continue;
     const tl::expected<Row, std::string> row = parse_row(*text);
     if (!row) {
-      corrupt_line_ = {"line " + std::to_string(line_number_) + ": " + row.error() + "; skipped"};
+      corrupt_line_ = {{describe_line() + ": " + row.error() + "; skipped"}, line_start_};
+      run_utime_.reset();
       break;
     }
-    if (!request_.bodies.empty() && row->utime != request_.id.utime) {
+    if (run_utime_ && row->utime != *run_utime_) {
       pending_ = *row;
       break;
     }
@@ -99,7 +113,7 @@ LogItem StateCsvReader::next() {
     ++request_.id.seq;
     return RecordedEvent{request_.id.utime, {}, bytes_};
   }
-  if (corrupt_line_) return next();
+  if (corrupt_line_ || pending_) return next(limit);
   if (file_.read_error() && offset_ < size()) {
     offset_ = size();
     return CorruptSection{file_.read_error()->message()};
@@ -107,10 +121,30 @@ LogItem StateCsvReader::next() {
   return EndOfLog{};
 }
 
+void StateCsvReader::seek(std::int64_t offset) {
+  if (offset > offset_) {
+    offset_ = offset - 1;  // a line starts at the offset if its last newline is there
+    skip_to_newline();
+  }
+  counted_from_ = offset_;
+  line_number_ = 0;
+  while (true) {
+    const LogItem item = next(offset);
+    if (std::holds_alternative<LimitReached>(item) || std::holds_alternative<EndOfLog>(item)) break;
+  }
+  request_.id.seq = 0;
+}
+
+std::string StateCsvReader::describe_line() const {
+  const std::string number = "line " + std::to_string(line_number_);
+  return counted_from_ == 0 ? number : number + " after byte " + std::to_string(counted_from_);
+}
+
 std::optional<std::string_view> StateCsvReader::read_line() {
   const Bytes window = file_.read_at(offset_, kMaxLineLength + 1);
   if (window.empty()) return std::nullopt;
   ++line_number_;
+  line_start_ = offset_;
   const auto longest = window.subspan(0, std::min(window.size(), kMaxLineLength + 1));
   const auto newline = std::find(longest.begin(), longest.end(), '\n');
   const std::string_view text(reinterpret_cast<const char*>(window.data()),
@@ -141,6 +175,7 @@ void StateCsvReader::skip_to_newline() {
 tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::string_view text) const {
   if (line_too_long_) return tl::unexpected("more than " + std::to_string(kMaxLineLength) + " characters");
   Row row;
+  row.start = line_start_;
   std::array<double, kTwistColumns - 2> numbers{};
   std::size_t column = 0;
   for (std::string_view rest = text;; ++column) {

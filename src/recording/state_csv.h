@@ -6,6 +6,12 @@
 //
 // Consecutive rows with equal utime, up to kMaxRowsPerRequest, form one request with session 0, lead_time 0
 // and seq counted from 0.
+//
+// Cuts (log_item.h). A run is a sequence of rows with equal utime, with nothing but blank lines between them.
+// The cut for an offset is the first line at or after it that is malformed, or that starts a run after a row
+// at or after the offset. A request never extends over a cut, whatever its limit of rows, and a cut depends
+// only on the header and on what follows the offset. The rows of a run that lies around the offset belong
+// to the piece in front. A piece numbers its requests from 0.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +34,25 @@ class StateCsvReader {
   // Errors: not readable, an invalid header. An empty file has no rows and is valid.
   static Expected<StateCsvReader> open(const std::filesystem::path& path);
 
-  LogItem next();
+  LogItem next(std::int64_t limit = kNoLimit);
+  bool reached(std::int64_t limit) const;
+  std::int64_t position() const;
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
+  const std::optional<Error>& read_error() const { return file_.read_error(); }
+
+  // Lines are counted from here on in the descriptions of malformed lines. O(rows of the run around offset).
+  void seek(std::int64_t offset);
 
  private:
   struct Row {
     std::int64_t utime = 0;
     BodyState state;
+    std::int64_t start = 0;  // [bytes]
+  };
+  struct CorruptLine {
+    CorruptSection section;
+    std::int64_t start = 0;  // [bytes]
   };
 
   explicit StateCsvReader(FileWindow file) : file_(std::move(file)) {}
@@ -43,16 +60,21 @@ class StateCsvReader {
   void skip_to_newline();
   Expected<std::size_t> parse_header(std::string_view text, const std::filesystem::path& path);
   tl::expected<Row, std::string> parse_row(std::string_view text) const;  // or the reason why it is invalid
+  std::string describe_line() const;                                      // the line read last, for a report
 
   FileWindow file_;
   std::int64_t offset_ = 0;
-  std::int64_t line_number_ = 0;  // of the line read last; the header is line 1
+  std::int64_t line_start_ = 0;    // of the line read last [bytes]
+  std::int64_t line_number_ = 0;   // of the line read last, counted from counted_from_; the header is line 1
+  std::int64_t counted_from_ = 0;  // [bytes]
   bool line_too_long_ = false;
   std::size_t columns_ = 0;
-  std::optional<Row> pending_;                  // read ahead: the first row of the next request
-  std::optional<CorruptSection> corrupt_line_;  // found after the request that was returned
-  WrenchRequest request_;                       // reused
-  std::vector<std::uint8_t> bytes_;             // reused
+  std::optional<std::int64_t> run_utime_;    // nullopt: the next row starts a run
+  std::int64_t last_row_start_ = 0;          // of the run [bytes]
+  std::optional<Row> pending_;               // read ahead: the first row of the next run
+  std::optional<CorruptLine> corrupt_line_;  // read ahead
+  WrenchRequest request_;                    // reused
+  std::vector<std::uint8_t> bytes_;          // reused
 };
 
 }  // namespace buoyancy
