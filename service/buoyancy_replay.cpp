@@ -8,15 +8,18 @@
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
 #include "cli/termination_signals.h"
+#include "recording/file_window.h"
 #include "scene/scene.h"
+#include "service/replay/part_output.h"
 #include "service/replay/replay.h"
+#include "service/replay/replay_join.h"
 #include "service/replay/replay_options.h"
 #include "service/replay/replay_summary.h"
 
 namespace buoyancy::service {
 namespace {
 
-constexpr int kMaxErrorsShown = 20;
+constexpr std::size_t kMaxErrorsShown = 20;
 // A constant, so that every replay writes the same bytes: "pose" in ASCII, which no client is likely to draw.
 constexpr std::int64_t kFirstPoseSession = 0x706f736500000000;
 
@@ -27,46 +30,113 @@ bool stdout_is_writable() {
   return ::poll(&writable, 1, kTimeoutMs) != 0;
 }
 
-int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
+// Prints the first input errors and keeps them for a manifest.
+class InputErrors {
+ public:
+  InputErrors(const CLI::App& app, const std::filesystem::path& input) : app_(&app), input_(input.string()) {}
+
+  void add(const std::string& error) {
+    if (first_.size() == kMaxErrorsShown) return;
+    first_.push_back(error);
+    print_error(*app_, input_ + ": " + error);
+    if (first_.size() == kMaxErrorsShown) print_error(*app_, "further errors are counted but not shown");
+  }
+  bool shows_next() const { return first_.size() < kMaxErrorsShown; }
+  const std::vector<std::string>& first() const { return first_; }
+
+ private:
+  const CLI::App* app_;
+  std::string input_;
+  std::vector<std::string> first_;
+};
+
+void warn_of_unseen(const CLI::App& app, const ReplayOptions& options,
+                    const std::vector<std::string>& channels) {
+  if (options.input.extension() != ".lcmlog") return;
+  for (const std::string& channel : channels) {
+    print_error(app, Warning{"warning: channel " + channel, "no events in " + options.input.string(),
+                             "requests or poses", "the channel has another name in the log",
+                             "See --states-channel and --pose"});
+  }
+}
+
+// part: nullptr for a replay of the whole.
+int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task, PartOutput* part) {
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes a write error with a message
   ProgressBar progress("requests");
-  int errors = 0;
+  InputErrors errors(app, options.input);
   const ReplayCallbacks callbacks{[&](const std::string& error) {
-                                    ++errors;
-                                    if (errors > kMaxErrorsShown) return;
-                                    progress.clear();
-                                    print_error(app, options.input.string() + ": " + error);
-                                    if (errors == kMaxErrorsShown)
-                                      print_error(app, "further errors are counted but not shown");
+                                    if (errors.shows_next()) progress.clear();
+                                    errors.add(error);
                                   },
                                   [&](std::int64_t done, std::int64_t total, std::int64_t requests) {
                                     progress.update(done, total, requests);
                                   }};
   const Expected<ReplaySummary> summary = replay(task, signals, callbacks);
   progress.clear();
+  const bool stopped = summary && *summary->stopped_by != '\0';
+  Expected<void> completed;
+  if (part != nullptr && summary && !stopped) completed = part->complete(task, *summary, errors.first());
   signals.unblock();  // writing the summary may block on its reader
-  if (!summary) {
-    print_error(app, summary.error());
+  if (!summary || !completed) {
+    print_error(app, summary ? completed.error() : summary.error());
     return kFailure;
   }
-  if (*summary->stopped_by != '\0') {
-    print_error(app, std::string("terminated by ") + summary->stopped_by + "; " + options.output.string() +
-                         " holds the responses written until then");
+  if (stopped) {
+    print_error(app, std::string("terminated by ") + summary->stopped_by +
+                         (part != nullptr
+                              ? "; nothing was kept of part " + options.part + ": run it again"
+                              : "; " + options.output.string() + " holds the responses written until then"));
   }
-  if (*summary->stopped_by == '\0' && options.input.extension() == ".lcmlog") {
-    for (const std::string& channel : task.channels.unseen_channels()) {
-      print_error(app, Warning{"warning: channel " + channel, "no events in " + options.input.string(),
-                               "requests or poses", "the channel has another name in the log",
-                               "See --states-channel and --pose"});
-    }
-  }
+  // A channel may have no events in one part only.
+  if (!stopped && part == nullptr) warn_of_unseen(app, options, task.channels.unseen_channels());
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
-  if (*summary->stopped_by != '\0' && !stdout_is_writable()) return kFailure;
+  if (stopped && !stdout_is_writable()) return kFailure;
   if (!print_output(app, text)) return kFailure;
+  // A complete part need not be run again, whatever its input is like: that is for the join to report.
+  if (part != nullptr) return stopped ? kFailure : kSuccess;
   const bool agrees = task.comparison == nullptr || task.comparison->agrees();
   return summary->complete() && agrees ? kSuccess : kFailure;
+}
+
+int run_join(const CLI::App& app, const ReplayOptions& options) {
+  if (const Expected<void> checked = check_join(app, options); !checked) {
+    print_error(app, checked.error());
+    return kUsageError;
+  }
+  Expected<FileWindow> input = FileWindow::open(options.input);
+  if (!input) {
+    print_error(app, input.error());
+    return kUsageError;
+  }
+  ProgressBar progress("MB");
+  const Expected<JoinResult> joined = join_parts(
+      options.join, std::move(*input), options.output,
+      [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total, done / 1'000'000); });
+  progress.clear();
+  if (!joined) {
+    print_error(app, joined.error());
+    return kFailure;
+  }
+  InputErrors errors(app, options.input);
+  for (const std::string& error : joined->input_errors) errors.add(error);
+  warn_of_unseen(app, options, joined->unseen_channels);
+  const ReplaySummary& summary = joined->summary;
+  if (!print_output(app, options.json ? summary_json(summary, nullptr) : summary_text(summary, nullptr))) {
+    return kFailure;
+  }
+  return summary.complete() ? kSuccess : kFailure;
+}
+
+// The channels that are searched for the beginning of a part are not seen in it.
+Expected<void> restrict_input(const ReplayOptions& options, const Part& part, const ReplayFacts& facts,
+                              ReplayInput& input, ReplayChannels& channels) {
+  const ReplayChannels unseen = channels;
+  Expected<void> restricted = input.restrict_to(part, end_of_part_before(part, options.output, facts));
+  channels = unseen;
+  return restricted;
 }
 
 int run(int argc, char** argv) {
@@ -74,6 +144,7 @@ int run(int argc, char** argv) {
   ReplayOptions options;
   add_options(app, options);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  if (options.join > 0) return run_join(app, options);
   const auto fail = [&app](const Error& error, ExitCode exit_code) {
     print_error(app, error);
     return exit_code;
@@ -98,17 +169,31 @@ int run(int argc, char** argv) {
     if (!opened) return fail(opened.error(), kUsageError);
     comparison = *std::move(opened);
   }
+  const auto run_with = [&](ReplayOutput& output, PartOutput* part) {
+    return run_replay(
+        app, options,
+        {.scene = *scene,
+         .input = *input,
+         .channels = channels,
+         .poses = poses,
+         .output = output,
+         .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
+         .comparison = comparison ? &*comparison : nullptr,
+         .jobs = options.jobs},
+        part);
+  };
+  if (plan->part) {
+    const Expected<ReplayFacts> facts = replay_facts(options, *scene, poses.channels(), input->size());
+    if (!facts) return fail(facts.error(), kUsageError);
+    const Expected<void> restricted = restrict_input(options, *plan->part, *facts, *input, channels);
+    if (!restricted) return fail(restricted.error(), kUsageError);
+    Expected<PartOutput> part = PartOutput::create(options.output, plan->output_format, *plan->part, *facts);
+    if (!part) return fail(part.error(), kFailure);
+    return run_with(part->responses(), &*part);
+  }
   Expected<ReplayOutput> output = ReplayOutput::create(options.output, plan->output_format);
   if (!output) return fail(output.error(), kFailure);
-  return run_replay(app, options,
-                    {.scene = *scene,
-                     .input = *input,
-                     .channels = channels,
-                     .poses = poses,
-                     .output = *output,
-                     .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
-                     .comparison = comparison ? &*comparison : nullptr,
-                     .jobs = options.jobs});
+  return run_with(*output, nullptr);
 }
 
 }  // namespace

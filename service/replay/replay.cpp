@@ -21,12 +21,22 @@ struct Round {
   std::size_t filled = 0;  // the first `filled` batches are in use
 };
 
-void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch) {
+bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
+  if (poses.channels().empty()) return false;
+  const auto id = peek_request_id(request);
+  return id && poses.channel_of_session(id->session_id) != nullptr;
+}
+
+void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch,
+               ReplaySummary& summary) {
   // CSV has no channels: every event is a request.
   const ReplayChannels::Role role = event.channel.empty() ? ReplayChannels::Role{.request = true, .pose = {}}
                                                           : task.channels.role_of(event.channel);
   if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
-  if (role.request) batch.add_request(event.timestamp, event.bytes, {});
+  if (role.request) {
+    batch.add_request(event.timestamp, event.bytes, {});
+    if (is_in_pose_session(task.poses, event.bytes)) ++summary.requests_in_pose_sessions;
+  }
   if (!role.pose) return;
   if (const auto request = task.poses.make_request(*role.pose, event.bytes)) {
     batch.add_request(event.timestamp, *request, task.poses.channels()[*role.pose].force_torque_channel);
@@ -35,17 +45,19 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& 
   }
 }
 
-// False: the input has ended.
-bool fill(const ReplayTask& task, ReplayBatch& batch, std::int64_t& corrupt_sections) {
+// Fills the batch with items of one block. False: the input has ended.
+bool fill(const ReplayTask& task, ReplayBatch& batch, ReplaySummary& summary) {
   batch.clear();
   while (!batch.full()) {
     LogItem item = task.input.next();
     if (std::holds_alternative<EndOfLog>(item)) return false;
-    if (auto* corrupt = std::get_if<CorruptSection>(&item)) {
-      ++corrupt_sections;
+    if (std::holds_alternative<LimitReached>(item)) {
+      if (!batch.empty()) return true;
+    } else if (auto* corrupt = std::get_if<CorruptSection>(&item)) {
+      ++summary.corrupt_sections;
       batch.add_input_error(std::move(corrupt->description));
     } else {
-      add_event(task, std::get<RecordedEvent>(item), batch);
+      add_event(task, std::get<RecordedEvent>(item), batch, summary);
     }
   }
   return true;
@@ -62,7 +74,7 @@ void read(const ReplayTask& task, const TerminationSignals& signals, Round& roun
     if (signals.pending()) {
       state = ReadState::kStopped;
     } else {
-      const bool more = fill(task, round.batches[round.filled++], summary.corrupt_sections);
+      const bool more = fill(task, round.batches[round.filled++], summary);
       if (!more) state = ReadState::kAtEnd;
     }
   }
@@ -132,7 +144,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
       }
     });
     if (!written) return tl::unexpected(written.error());
-    callbacks.on_progress(task.input.offset(), task.input.size(), total().counters.requests);
+    callbacks.on_progress(task.input.bytes_read(), task.input.bytes_expected(), total().counters.requests);
   }
   Round& last = rounds[(number + 2) % 3];
   report_input_errors(last, callbacks);

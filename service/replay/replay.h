@@ -23,7 +23,9 @@ struct ReplaySummary {
   ServiceCounters counters;
   std::int64_t copied = 0;            // events
   std::int64_t corrupt_sections = 0;  // of the input
-  const char* stopped_by = "";        // the name of a signal; empty: the end of the input
+  // Recorded requests in a session that the replay numbers itself: a part cannot have any (replay_part.h).
+  std::int64_t requests_in_pose_sessions = 0;
+  const char* stopped_by = "";  // the name of a signal; empty: the end of the input
   double seconds = 0.0;
 
   // Does the output hold a response to every request of the input?

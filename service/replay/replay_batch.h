@@ -23,6 +23,7 @@ class ReplayBatch {
   ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
   void clear();
+  bool empty() const { return items_.empty(); }
   // Is the batch large enough to be evaluated on a thread? Then no further event should be added.
   bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
 

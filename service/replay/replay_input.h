@@ -1,15 +1,20 @@
-// The input of a replay: recorded messages from an LCM log, or requests from CSV, and a description of each
-// section that could not be read.
+// The input of a replay, or of a part of it: recorded messages from an LCM log, or requests from CSV, block
+// by block (replay_part.h), and a description of each section that could not be read.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
 #include <variant>
 
 #include "base/error.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "recording/state_csv.h"
+#include "service/replay/range_hash.h"
+#include "service/replay/replay_part.h"
 
 namespace buoyancy::service {
 
@@ -21,20 +26,49 @@ class ReplayInput {
   static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
                                     ChannelFilter wanted);
 
-  LogItem next() {
-    return std::visit([](auto& reader) { return reader.next(); }, reader_);
+  // Restricts the input to a part and hashes what it reads from then on; to be called before next(). start:
+  // where the part before ended, if that is known; otherwise the events before the part are searched for it.
+  // Errors: not readable.
+  Expected<void> restrict_to(const Part& part, std::optional<std::int64_t> start);
+
+  // LimitReached: the block has ended. EndOfLog: the input or the part has ended.
+  LogItem next();
+
+  // For a progress bar: bytes read of the input or part, of about bytes_expected().
+  std::int64_t bytes_read() const { return position() - begin_; }
+  std::int64_t bytes_expected() const;
+
+  std::int64_t size() const { return file().size(); }  // of the file [bytes]
+  FileFormat format() const {
+    return std::holds_alternative<StateCsvReader>(reader_) ? FileFormat::kCsv : FileFormat::kLcmLog;
   }
-  std::int64_t offset() const {
-    return std::visit([](const auto& reader) { return reader.offset(); }, reader_);
+  // The range of bytes that was read [bytes], from begin() to before position(). The first part begins at 0.
+  std::int64_t begin() const { return begin_; }
+  std::int64_t position() const {
+    return std::visit([](const auto& reader) { return reader.position(); }, reader_);
   }
-  std::int64_t size() const {
-    return std::visit([](const auto& reader) { return reader.size(); }, reader_);
-  }
+  // The hash of that range; only of a part. Errors: bytes of the input could not be read.
+  Expected<std::string> hash();
 
  private:
   using Reader = std::variant<EventLogReader, StateCsvReader>;
-  explicit ReplayInput(Reader reader) : reader_(std::move(reader)) {}
+  explicit ReplayInput(Reader reader);
+
+  const FileWindow& file() const {
+    return std::visit([](const auto& reader) -> const FileWindow& { return reader.file(); }, reader_);
+  }
+  void update_hash();
+  bool reached(std::int64_t limit) const {
+    return std::visit([limit](const auto& reader) { return reader.reached(limit); }, reader_);
+  }
+
   Reader reader_;
+  std::int64_t block_size_;
+  std::int64_t block_end_;
+  std::int64_t begin_ = 0;
+  std::int64_t end_ = kNoLimit;  // of the last block
+  std::optional<RangeHash> hash_;
+  std::optional<Error> hash_error_;
 };
 
 }  // namespace buoyancy::service

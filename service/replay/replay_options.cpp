@@ -51,11 +51,45 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
     return make_error({"--copy", options.input.string() + " to " + options.output.string(),
                        "an .lcmlog as INPUT and as OUTPUT", "", ""});
   }
+  if (!options.baseline.empty() && plan.part) {
+    return make_error({"--compare", "together with --part", "a replay of the whole log",
+                       "responses are matched along the whole log",
+                       "Compare in a replay of its own, without --part"});
+  }
   if (!options.baseline.empty() && !options.poses.force_torques.empty()) {
     return make_error({"--compare", "together with --force-torque", "responses as body_wrenches_t",
                        "a six_axis_force_torque_t has no error bound to compare by", ""});
   }
   return {};
+}
+
+// A part must be able to begin anywhere in INPUT, and be renamed when it is complete.
+Expected<void> check_regular_files(const std::string& option, const std::filesystem::path& input,
+                                   const std::filesystem::path& output) {
+  std::error_code no_such_file;
+  if (std::filesystem::is_other(input, no_such_file)) {
+    return make_error({option, "INPUT " + input.string() + " is a pipe or device", "a regular file",
+                       "a pipe can be read only once and from its beginning; parts begin anywhere in it",
+                       "Save the recording to a file first"});
+  }
+  if (std::filesystem::exists(output, no_such_file) &&
+      !std::filesystem::is_regular_file(output, no_such_file)) {
+    return make_error(
+        {option, "OUTPUT " + output.string() + " is not a regular file", "the name of a regular file",
+         "the output appears under its name when it is complete, which a pipe or device cannot", ""});
+  }
+  return {};
+}
+
+Expected<void> plan_part(const ReplayOptions& options, ReplayPlan& plan) {
+  if (options.part.empty()) return {};
+  plan.part = parse_part(options.part);
+  if (!plan.part) {
+    return make_error({"--part", "'" + options.part + "'",
+                       "I/N, such as 3/7, with I from 1 to N and N at most " + std::to_string(kMaxParts), "",
+                       ""});
+  }
+  return check_regular_files("--part", options.input, options.output);
 }
 
 }  // namespace
@@ -66,11 +100,12 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       "CSV input: utime,body_id,px,py,pz,qw,qx,qy,qz[,vx,vy,vz,wx,wy,wz]; rows with equal utime are one\n"
       "request; writes one row per input row. LCM log input: requests on one channel, poses of single\n"
       "bodies on others (--pose); responses keep the timestamps of their requests; --copy copies other\n"
-      "channels.\n" +
-      exit_status_help({.success = "if every request of INPUT has its response in OUTPUT",
-                        .failure = "on a runtime error, or if some requests have no response or --compare "
-                                   "found differences",
-                        .usage_error = "on invalid arguments, scene, mesh or INPUT"}));
+      "channels. Several machines can share a replay (--part, --join).\n" +
+      exit_status_help(
+          {.success = "if every request of INPUT has its response in OUTPUT, or the part is complete",
+           .failure = "on a runtime error, or if some requests have no response or --compare "
+                      "found differences",
+           .usage_error = "on invalid arguments, scene, mesh or INPUT"}));
   app.set_version_flag("--version", "buoyancy-replay " BUOYANCY_VERSION);
   auto* from = app.add_option_group("scene", "Input geometry (exactly one)");
   from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
@@ -117,6 +152,19 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N")
       ->capture_default_str();
+  app.add_option("--part", options.part,
+                 "Compute only part I of N, into a file beside OUTPUT named after it, such as "
+                 "wrenches.part-3-of-7.lcmlog. Together the parts are what one replay writes")
+      ->option_text("I/N");
+  app.add_option_function<int>(
+         "--join",
+         [&options, from](const int& parts) {
+           options.join = parts;
+           from->require_option(0);
+         },
+         "Join the N parts that were computed from INPUT to OUTPUT, if they are complete and belong together")
+      ->check(CLI::Range(1, kMaxParts))
+      ->option_text("N");
   app.add_flag("--json", options.json, "Print the summary as JSON");
   app.add_option("INPUT", options.input, ".csv or .lcmlog file")->required();
   app.add_option("OUTPUT", options.output, ".csv or .lcmlog file; overwritten")->required();
@@ -130,12 +178,15 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   const Expected<FileFormat> written_format = output_format(options.output, *input_format);
   if (!written_format) return tl::unexpected(written_format.error());
   plan.output_format = *written_format;
+  if (const Expected<void> planned = plan_part(options, plan); !planned)
+    return tl::unexpected(planned.error());
 
   if (const Expected<void> checked = check_formats(options, plan); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (const Expected<void> checked = check_output_not_input(
-          options.output, {options.input, options.scene, options.mesh, options.baseline});
+  if (const Expected<void> checked =
+          check_output_not_input(plan.part ? part_path(options.output, *plan.part) : options.output,
+                                 {options.input, options.scene, options.mesh, options.baseline});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -153,6 +204,28 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
     plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance, options.open);
   }
   return plan;
+}
+
+Expected<void> check_join(const CLI::App& app, const ReplayOptions& options) {
+  std::vector<const CLI::Option*> given = app.get_options();
+  const CLI::App* scene_group = app.get_option_group("scene");
+  const std::vector<const CLI::Option*> scene = scene_group->get_options();
+  given.insert(given.end(), scene.begin(), scene.end());
+  for (const CLI::Option* option : given) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "--join" || name == "--json" || option->get_positional()) continue;
+    return make_error({"--join", "together with " + name, "only INPUT, OUTPUT and --json",
+                       "the parts are joined as they were computed", ""});
+  }
+  for (const std::filesystem::path& path : {options.input, options.output}) {
+    if (const Expected<FileFormat> format = format_by_extension(path); !format) {
+      return tl::unexpected(format.error());
+    }
+  }
+  if (Expected<void> checked = check_regular_files("--join", options.input, options.output); !checked) {
+    return checked;
+  }
+  return check_output_not_input(options.output, {options.input});
 }
 
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {

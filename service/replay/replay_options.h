@@ -15,6 +15,7 @@
 #include "scene/scene_file.h"
 #include "service/replay/replay_channels.h"
 #include "service/replay/replay_input.h"
+#include "service/replay/replay_part.h"
 
 namespace buoyancy::service {
 
@@ -33,6 +34,8 @@ struct ReplayOptions {
   std::vector<std::string> copied;  // regular expressions
   std::filesystem::path baseline;   // an earlier OUTPUT to compare with; empty: none
   unsigned jobs = 0;                // 0: number of hardware threads
+  std::string part;                 // "I/N"; empty: the whole
+  int join = 0;                     // number of parts to join; 0: replay
   bool json = false;
 };
 
@@ -44,11 +47,17 @@ struct ReplayPlan {
   std::optional<SceneDescription> single_mesh;  // nullopt: use the scene file
   FileFormat input_format = FileFormat::kCsv;
   FileFormat output_format = FileFormat::kCsv;
+  std::optional<Part> part;
 };
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
-// carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file.
+// carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file, a
+// part of what is no regular file.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
+
+// Checks the options of --join, which app has parsed. Errors: an option that belongs to a replay, an
+// extension other than .csv and .lcmlog, an output that is the input.
+Expected<void> check_join(const CLI::App& app, const ReplayOptions& options);
 
 // The channels of a log's events.
 struct ReplayRoutes {

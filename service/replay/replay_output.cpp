@@ -54,12 +54,29 @@ void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes h
 Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format) {
   Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
-  if (format == FileFormat::kCsv) {
-    if (const Expected<void> written = file->append(bytes_of(kWrenchCsvHeader)); !written) {
-      return tl::unexpected(written.error());
-    }
+  ReplayOutput output(std::move(*file), format, false);
+  if (const Expected<void> written = output.write_csv_header(); !written) {
+    return tl::unexpected(written.error());
   }
-  return ReplayOutput(std::move(*file), format);
+  return output;
+}
+
+Expected<ReplayOutput> ReplayOutput::create_part(const std::filesystem::path& path, FileFormat format,
+                                                 const Part& part) {
+  Expected<RecordWriter> file = RecordWriter::create(path);
+  if (!file) return tl::unexpected(file.error());
+  ReplayOutput output(std::move(*file), format, true);
+  if (part.number > 1) return output;
+  if (const Expected<void> written = output.write_csv_header(); !written) {
+    return tl::unexpected(written.error());
+  }
+  return output;
+}
+
+Expected<void> ReplayOutput::write_csv_header() {
+  if (format_ != FileFormat::kCsv) return {};
+  if (is_part_) count(bytes_of(kWrenchCsvHeader));
+  return file_.append(bytes_of(kWrenchCsvHeader));
 }
 
 Expected<void> ReplayOutput::write(OutputRecords& records) {
@@ -67,11 +84,17 @@ Expected<void> ReplayOutput::write(OutputRecords& records) {
   std::size_t start = 0;
   for (const std::size_t end : records.ends_) {
     const std::span<std::uint8_t> record = bytes.subspan(start, end - start);
-    if (format_ == FileFormat::kLcmLog) renumber_event(events_++, record);
+    if (format_ == FileFormat::kLcmLog) renumber_event(contents_.events++, record);
     if (Expected<void> written = file_.append(record); !written) return written;
     start = end;
   }
+  if (is_part_) count(bytes);
   return {};
+}
+
+void ReplayOutput::count(Bytes bytes) {
+  contents_.hash.update(bytes);
+  contents_.bytes += static_cast<std::int64_t>(bytes.size());
 }
 
 }  // namespace buoyancy::service

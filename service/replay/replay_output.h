@@ -13,7 +13,9 @@
 #include "messages/request.h"
 #include "messages/wire.h"
 #include "recording/record_writer.h"
+#include "service/replay/content_hash.h"
 #include "service/replay/replay_input.h"
+#include "service/replay/replay_part.h"
 
 namespace buoyancy::service {
 
@@ -53,8 +55,18 @@ class OutputRecords {
 
 class ReplayOutput {
  public:
+  // What was written.
+  struct Contents {
+    std::int64_t bytes = 0;
+    std::int64_t events = 0;  // of a log
+    ContentHash hash;
+  };
+
   // Creates or truncates the file. Errors: see RecordWriter.
   static Expected<ReplayOutput> create(const std::filesystem::path& path, FileFormat format);
+  // Creates the output of a part (replay_part.h), which keeps account of its contents.
+  static Expected<ReplayOutput> create_part(const std::filesystem::path& path, FileFormat format,
+                                            const Part& part);
 
   // See RecordWriter.
   void give_up_after(int signal) { file_.give_up_after(signal); }
@@ -63,12 +75,18 @@ class ReplayOutput {
   Expected<void> write(OutputRecords& records);
   Expected<void> flush() { return file_.flush(); }
 
+  const Contents& contents() const { return contents_; }  // of a part
+
  private:
-  ReplayOutput(RecordWriter file, FileFormat format) : file_(std::move(file)), format_(format) {}
+  ReplayOutput(RecordWriter file, FileFormat format, bool is_part)
+      : file_(std::move(file)), format_(format), is_part_(is_part) {}
+  Expected<void> write_csv_header();
+  void count(Bytes bytes);
 
   RecordWriter file_;
   FileFormat format_;
-  std::int64_t events_ = 0;
+  bool is_part_;
+  Contents contents_;  // bytes and hash: of a part only
 };
 
 }  // namespace buoyancy::service

@@ -95,27 +95,51 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   return text;
 }
 
-std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
+nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
   const ServiceCounters& counters = summary.counters;
   nlohmann::ordered_json bodies;
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[i];
   }
-  nlohmann::ordered_json json{{"complete", summary.complete()},
-                              {"stopped_by", summary.stopped_by},
-                              {"requests", counters.requests},
-                              {"computed", counters.computed},
-                              {"retries", counters.retries},
-                              {"rejected",
-                               {{"truncated", counters.rejected_truncated},
-                                {"fingerprint", counters.rejected_fingerprint},
-                                {"count", counters.rejected_count},
-                                {"length", counters.rejected_length}}},
-                              {"bodies", bodies},
-                              {"copied", summary.copied},
-                              {"corrupt_sections", summary.corrupt_sections},
-                              {"seconds", summary.seconds},
-                              {"requests_per_second", per_second(counters.requests, summary.seconds)}};
+  return {{"complete", summary.complete()},
+          {"stopped_by", summary.stopped_by},
+          {"requests", counters.requests},
+          {"computed", counters.computed},
+          {"retries", counters.retries},
+          {"rejected",
+           {{"truncated", counters.rejected_truncated},
+            {"fingerprint", counters.rejected_fingerprint},
+            {"count", counters.rejected_count},
+            {"length", counters.rejected_length}}},
+          {"bodies", bodies},
+          {"copied", summary.copied},
+          {"corrupt_sections", summary.corrupt_sections},
+          {"seconds", summary.seconds},
+          {"requests_per_second", per_second(counters.requests, summary.seconds)}};
+}
+
+ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
+  ReplaySummary summary;
+  ServiceCounters& counters = summary.counters;
+  json.at("requests").get_to(counters.requests);
+  json.at("computed").get_to(counters.computed);
+  json.at("retries").get_to(counters.retries);
+  const nlohmann::ordered_json& rejected = json.at("rejected");
+  rejected.at("truncated").get_to(counters.rejected_truncated);
+  rejected.at("fingerprint").get_to(counters.rejected_fingerprint);
+  rejected.at("count").get_to(counters.rejected_count);
+  rejected.at("length").get_to(counters.rejected_length);
+  for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
+    json.at("bodies").at(to_string(static_cast<BodyStatus>(i))).get_to(counters.bodies[i]);
+  }
+  json.at("copied").get_to(summary.copied);
+  json.at("corrupt_sections").get_to(summary.corrupt_sections);
+  json.at("seconds").get_to(summary.seconds);
+  return summary;
+}
+
+std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
+  nlohmann::ordered_json json = summary_to_json(summary);
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }

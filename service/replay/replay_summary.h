@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "service/replay/replay.h"
 #include "service/replay/replay_comparison.h"
 
@@ -12,5 +14,10 @@ namespace buoyancy::service {
 std::string summary_text(const ReplaySummary& summary, const ReplayComparison* comparison);
 // One JSON object, with a final newline. The ratio of a difference to a bound of 0 is null.
 std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison);
+
+// The same object without the comparison, and back. Reading it throws nlohmann::json::exception if a field is
+// missing or of another type; stopped_by is not read.
+nlohmann::ordered_json summary_to_json(const ReplaySummary& summary);
+ReplaySummary summary_from_json(const nlohmann::ordered_json& json);
 
 }  // namespace buoyancy::service

@@ -43,11 +43,14 @@ const PoseChannel* PoseRequestAdapter::channel_of_session(std::int64_t session_i
   return index < poses_.channels.size() ? &poses_.channels[index] : nullptr;
 }
 
+std::int64_t PoseRequestAdapter::session_of(std::size_t index) const {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(first_session_) + index);
+}
+
 tl::expected<Bytes, DecodeError> PoseRequestAdapter::make_request(std::size_t index, Bytes pose) {
   const tl::expected<StampedBodyState, DecodeError> stamped = decode_pose(poses_, index, pose);
   if (!stamped) return tl::unexpected(stamped.error());
-  const auto session = static_cast<std::uint64_t>(first_session_) + index;
-  request_.id = {stamped->utime, static_cast<std::int64_t>(session), next_seq_[index]++};
+  request_.id = {stamped->utime, session_of(index), next_seq_[index]++};
   request_.bodies.front() = stamped->state;
   encode(request_, bytes_);
   return Bytes(bytes_);

@@ -46,6 +46,9 @@ class PoseRequestAdapter {
   // The channel of this session, or nullptr. O(1).
   const PoseChannel* channel_of_session(std::int64_t session_id) const;
 
+  std::int64_t session_of(std::size_t index) const;
+  std::int64_t next_seq(std::size_t index) const { return next_seq_[index]; }
+
   // Converts a message of channel channels()[index] into a request's bytes, with the pose's utime and the
   // next seq of its session. Valid until the next call. No heap allocation after the first call.
   tl::expected<Bytes, DecodeError> make_request(std::size_t index, Bytes pose);

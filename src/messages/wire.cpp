@@ -146,4 +146,15 @@ void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& b
   encode_message(hydrostatics, bytes);
 }
 
+RequestId response_id(Bytes bytes) {
+  RequestId id;
+  BigEndianReader reader(bytes.data() + sizeof(std::int64_t));
+  visit_fields(id, reader);
+  return id;
+}
+
+void set_response_seq(std::int64_t seq, std::span<std::uint8_t> bytes) {
+  BigEndianWriter{bytes.data() + kResponseHeaderSize - sizeof(seq)}(seq);
+}
+
 }  // namespace buoyancy

@@ -48,4 +48,10 @@ void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);
 
+// Reads the id of an encoded WrenchResponse or BodiesHydrostatics, or changes its seq. Precondition: bytes
+// hold such a message, or at least kResponseHeaderSize bytes. O(1).
+inline constexpr std::size_t kResponseHeaderSize = 32;  // [bytes], fingerprint and id
+RequestId response_id(Bytes bytes);
+void set_response_seq(std::int64_t seq, std::span<std::uint8_t> bytes);
+
 }  // namespace buoyancy

@@ -10,7 +10,6 @@ namespace buoyancy {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
-constexpr std::size_t kHeaderSize = 28;
 constexpr std::int32_t kMaxChannelLength = 999;            // liblcm's own limit for logs
 constexpr std::int32_t kMaxMessageBytes = 64 * 1'048'576;  // LCM itself delivers at most 16 MB
 
@@ -67,7 +66,7 @@ LogItem EventLogReader::next(std::int64_t limit) {
       return skip_corrupt_section("no event follows");
     }
     offset_ = frame->next;
-    const Bytes channel = event.subspan(kHeaderSize, frame->data_start - kHeaderSize);
+    const Bytes channel = event.subspan(kEventHeaderSize, frame->data_start - kEventHeaderSize);
     return RecordedEvent{frame->timestamp, as_text(channel), data};
   }
   if (file_.read_error()) {
@@ -80,9 +79,9 @@ LogItem EventLogReader::next(std::int64_t limit) {
 
 tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::int64_t offset) {
   using Reason = tl::unexpected<std::string>;
-  const Bytes header = file_.read_at(offset, kHeaderSize + kMaxChannelLength);
+  const Bytes header = file_.read_at(offset, kEventHeaderSize + kMaxChannelLength);
   if (!starts_with_magic(header)) return Reason("no event header");
-  if (header.size() < kHeaderSize) return Reason("the file ends within an event header");
+  if (header.size() < kEventHeaderSize) return Reason("the file ends within an event header");
   std::int64_t number = 0;
   std::int32_t channel_size = 0;
   std::int32_t data_size = 0;
@@ -93,14 +92,14 @@ tl::expected<EventLogReader::Frame, std::string> EventLogReader::frame_at(std::i
     return Reason("a channel length of " + std::to_string(channel_size));
   }
   if (data_size < 0) return Reason("a data length of " + std::to_string(data_size));
-  frame.data_start = kHeaderSize + static_cast<std::size_t>(channel_size);
+  frame.data_start = kEventHeaderSize + static_cast<std::size_t>(channel_size);
   frame.data_size = static_cast<std::size_t>(data_size);
   frame.next = offset + static_cast<std::int64_t>(frame.data_start + frame.data_size);
   if (frame.next > size()) {
     return Reason("the file ends within an event: " + std::to_string(frame.next - size()) +
                   " bytes are missing");
   }
-  frame.wanted = wanted_(as_text(header.subspan(kHeaderSize, static_cast<std::size_t>(channel_size))));
+  frame.wanted = wanted_(as_text(header.subspan(kEventHeaderSize, static_cast<std::size_t>(channel_size))));
   if (frame.wanted && data_size > kMaxMessageBytes) {
     return Reason("a message of " + std::to_string(data_size) + " bytes");
   }
@@ -142,18 +141,31 @@ CorruptSection EventLogReader::skip_corrupt_section(const std::string& reason) {
 
 void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view channel, Bytes data,
                   std::vector<std::uint8_t>& bytes) {
-  bytes.resize(kHeaderSize + channel.size() + data.size());
+  bytes.resize(kEventHeaderSize + channel.size() + data.size());
   std::copy(kMagic.begin(), kMagic.end(), bytes.begin());
   BigEndianWriter writer(bytes.data() + kMagic.size());
   writer(number, timestamp, static_cast<std::int32_t>(channel.size()),
          static_cast<std::int32_t>(data.size()));
-  const auto after_header = bytes.begin() + static_cast<std::ptrdiff_t>(kHeaderSize);
+  const auto after_header = bytes.begin() + static_cast<std::ptrdiff_t>(kEventHeaderSize);
   const auto after_channel = std::copy(channel.begin(), channel.end(), after_header);
   std::copy(data.begin(), data.end(), after_channel);
 }
 
 void renumber_event(std::int64_t number, std::span<std::uint8_t> event) {
   BigEndianWriter{event.data() + kMagic.size()}(number);
+}
+
+std::optional<EventLayout> event_layout(Bytes bytes) {
+  if (bytes.size() < kEventHeaderSize || !starts_with_magic(bytes)) return std::nullopt;
+  std::int64_t number = 0;
+  std::int64_t timestamp = 0;
+  std::int32_t channel_size = 0;
+  std::int32_t data_size = 0;
+  BigEndianReader reader(bytes.data() + kMagic.size());
+  reader(number, timestamp, channel_size, data_size);
+  if (channel_size < 0 || data_size < 0) return std::nullopt;
+  const std::size_t data = kEventHeaderSize + static_cast<std::size_t>(channel_size);
+  return EventLayout{kEventHeaderSize, data, data + static_cast<std::size_t>(data_size)};
 }
 
 }  // namespace buoyancy

@@ -51,7 +51,7 @@ class EventLogReader {
   std::int64_t position() const { return offset_; }
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
-  const std::optional<Error>& read_error() const { return file_.read_error(); }
+  const FileWindow& file() const { return file_; }
 
   // Moves to the cut for `offset`, as far as the events of the `distance` bytes before show it. O(distance).
   void seek(std::int64_t offset, std::int64_t distance = kSeekDistance);
@@ -84,5 +84,15 @@ void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view 
 
 // Changes the number of an encoded event.
 void renumber_event(std::int64_t number, std::span<std::uint8_t> event);
+
+// Where an encoded event holds what: offsets from its start [bytes].
+struct EventLayout {
+  std::size_t channel = 0;
+  std::size_t data = 0;
+  std::size_t end = 0;
+};
+inline constexpr std::size_t kEventHeaderSize = 28;  // [bytes], all before the channel
+// Reads the lengths in the header that bytes begin with. nullopt: there is none, or it is not a whole one.
+std::optional<EventLayout> event_layout(Bytes bytes);
 
 }  // namespace buoyancy

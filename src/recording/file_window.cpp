@@ -11,8 +11,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kReadAhead = 1'048'576;
-
 tl::unexpected<Error> unreadable(const std::filesystem::path& path, int error) {
   return make_error({path.string(), std::generic_category().message(error), "a readable file", "", ""});
 }
@@ -28,11 +26,17 @@ Expected<FileWindow> FileWindow::open(const std::filesystem::path& path) {
     return make_error({path.string(), S_ISDIR(status.st_mode) ? "is a directory" : "is not a regular file",
                        "a regular file", "", ""});
   }
-  return FileWindow(path, std::move(file), status.st_size);
+  return FileWindow(path, std::move(file), status.st_size, kReadAhead);
 }
 
-FileWindow::FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size)
-    : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+FileWindow::FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size, std::size_t read_ahead)
+    : path_(std::move(path)), file_(std::move(file)), size_(size), read_ahead_(read_ahead) {}
+
+Expected<FileWindow> FileWindow::duplicate(std::size_t read_ahead) const {
+  UniqueFd file(::fcntl(file_.value(), F_DUPFD_CLOEXEC, 0));
+  if (!file.valid()) return unreadable(path_, errno);
+  return FileWindow(path_, std::move(file), size_, read_ahead);
+}
 
 Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
   assert(offset >= 0);
@@ -42,7 +46,7 @@ Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
   const auto window_end = start_ + static_cast<std::int64_t>(window_.size());
   if (offset < start_ || offset + static_cast<std::int64_t>(count) > window_end) {
     start_ = offset;
-    window_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kReadAhead), left)));
+    window_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, read_ahead_), left)));
     std::size_t filled = 0;
     while (filled < window_.size()) {
       const ssize_t got = ::pread(file_.value(), window_.data() + filled, window_.size() - filled,
@@ -57,6 +61,12 @@ Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
     window_.resize(filled);
   }
   return Bytes(window_).subspan(std::min(static_cast<std::size_t>(offset - start_), window_.size()));
+}
+
+Bytes FileWindow::buffered(std::int64_t offset) const {
+  const auto end = start_ + static_cast<std::int64_t>(window_.size());
+  if (offset < start_ || offset >= end) return {};
+  return Bytes(window_).subspan(static_cast<std::size_t>(offset - start_));
 }
 
 }  // namespace buoyancy

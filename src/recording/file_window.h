@@ -17,21 +17,31 @@ class FileWindow {
   // Errors: no such file, not a regular file, not readable.
   static Expected<FileWindow> open(const std::filesystem::path& path);
 
+  // Returns another window on the same open file, which reads at least `read_ahead` bytes at a time. Errors:
+  // the process has too many open files.
+  Expected<FileWindow> duplicate(std::size_t read_ahead = kReadAhead) const;
+
   // Returns the bytes from offset on: at least `count`, or all that are left of the file. Valid until the
   // next call. Memory: the largest count requested, or 1 MB.
   Bytes read_at(std::int64_t offset, std::size_t count);
+  // Returns the bytes from offset on as far as the last read_at() has left them in memory; perhaps none.
+  Bytes buffered(std::int64_t offset) const;
 
   // The file's size when it was opened; bytes appended later are not read.
   std::int64_t size() const { return size_; }
+  const std::filesystem::path& path() const { return path_; }
   // Set once read_at() returned fewer bytes than it should have.
   const std::optional<Error>& read_error() const { return read_error_; }
 
  private:
-  FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size);
+  static constexpr std::size_t kReadAhead = 1'048'576;  // [bytes]
+
+  FileWindow(std::filesystem::path path, UniqueFd file, std::int64_t size, std::size_t read_ahead);
 
   std::filesystem::path path_;
   UniqueFd file_;
   std::int64_t size_;
+  std::size_t read_ahead_;  // [bytes]
   std::int64_t start_ = 0;  // offset of the window in the file
   std::vector<std::uint8_t> window_;
   std::optional<Error> read_error_;

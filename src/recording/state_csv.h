@@ -4,8 +4,8 @@
 // (including nan and inf, for which the service has a status). Blank lines are ignored; malformed lines are
 // reported with their number and skipped.
 //
-// Consecutive rows with equal utime, up to kMaxRowsPerRequest, form one request with session 0, lead_time 0
-// and seq counted from 0.
+// Consecutive rows with equal utime, up to kMaxRowsPerRequest, form one request with session kCsvSession,
+// lead_time 0 and seq counted from 0.
 //
 // Cuts (log_item.h). A run is a sequence of rows with equal utime, with nothing but blank lines between them.
 // The cut for an offset is the first line at or after it that is malformed, or that starts a run after a row
@@ -28,6 +28,7 @@
 namespace buoyancy {
 
 inline constexpr std::size_t kMaxRowsPerRequest = 65'536;
+inline constexpr std::int64_t kCsvSession = 0;
 
 class StateCsvReader {
  public:
@@ -39,7 +40,7 @@ class StateCsvReader {
   std::int64_t position() const;
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
-  const std::optional<Error>& read_error() const { return file_.read_error(); }
+  const FileWindow& file() const { return file_; }
 
   // Lines are counted from here on in the descriptions of malformed lines. O(rows of the run around offset).
   void seek(std::int64_t offset);

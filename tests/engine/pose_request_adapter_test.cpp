@@ -88,6 +88,17 @@ TEST(PoseRequestAdapter, KeepsVelocitiesOfUnknownFrame) {
   EXPECT_EQ(stamped->state.linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
 }
 
+TEST(PoseRequestAdapter, CountsRequestsOfEachChannel) {
+  PoseRequestAdapter poses = two_channels(VelocityFrame::kBody, 0.0);
+  const std::vector<std::uint8_t> pose = encoded_by_lcm(upright_pose(0.0, 1));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(poses.make_request(1, pose));
+  EXPECT_FALSE(poses.make_request(1, std::vector<std::uint8_t>{1}));
+  EXPECT_EQ(poses.next_seq(0), 0);
+  EXPECT_EQ(poses.next_seq(1), 3);
+  EXPECT_EQ(poses.session_of(1), poses.session_of(0) + 1);
+  EXPECT_EQ(poses.channel_of_session(poses.session_of(1)), &poses.channels()[1]);
+}
+
 TEST(PoseRequestAdapter, DoesNotAllocateAfterWarmUp) {
   const Scene scene = box_scene();
   RequestHandler handler(scene, {.threads = 1});

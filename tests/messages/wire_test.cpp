@@ -315,6 +315,29 @@ TEST(Wire, LeavesRequestUnchangedOnDecodeError) {
   EXPECT_EQ(encoded(request), request_of(3));
 }
 
+TEST(Wire, ChangesOnlySeqOfEncodedResponses) {
+  WrenchResponse response;
+  response.id = {.utime = -5, .session_id = 6, .seq = 7};
+  response.bodies.resize(2);
+  BodiesHydrostatics hydrostatics;
+  hydrostatics.id = response.id;
+  hydrostatics.bodies.resize(1);
+  const auto check = [](auto message) {
+    std::vector<std::uint8_t> bytes;
+    encode(message, bytes);
+    EXPECT_EQ(response_id(bytes).utime, -5);
+    EXPECT_EQ(response_id(bytes).session_id, 6);
+    EXPECT_EQ(response_id(bytes).seq, 7);
+    set_response_seq(std::int64_t{1} << 40, bytes);
+    message.id.seq = std::int64_t{1} << 40;
+    std::vector<std::uint8_t> expected;
+    encode(message, expected);
+    EXPECT_EQ(bytes, expected);
+  };
+  check(response);
+  check(hydrostatics);
+}
+
 TEST(Wire, DoesNotAllocateForHugeCount) {
   ByteVector bytes = request_of(0);
   set_count(bytes, kRequestFixed, INT_MAX);

@@ -201,6 +201,21 @@ TEST(EventLog, PassesInvalidRequestsToCaller) {
   EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 1}));
 }
 
+TEST(EventLog, FindsLayoutOfEncodedEvents) {
+  std::vector<std::uint8_t> event;
+  encode_event(1, 2, "CHANNEL", std::vector<std::uint8_t>(5), event);
+  const auto layout = event_layout(event);
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->channel, kEventHeaderSize);
+  EXPECT_EQ(layout->data, kEventHeaderSize + 7);
+  EXPECT_EQ(layout->end, event.size());
+  EXPECT_TRUE(event_layout(Bytes(event).first(kEventHeaderSize))) << "the header is enough";
+  EXPECT_FALSE(event_layout(Bytes(event).first(kEventHeaderSize - 1)));
+  EXPECT_FALSE(event_layout(Bytes(event).subspan(1)));
+  event[kEventHeaderSize - 4] = 0x80;
+  EXPECT_FALSE(event_layout(event)) << "a negative length";
+}
+
 TEST(EventLog, RejectsPathsThatAreNotRegularFiles) {
   const TempDir directory;
   EXPECT_FALSE(EventLogReader::open(directory.path("missing.lcmlog"), only_channel("A")));
