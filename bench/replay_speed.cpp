@@ -5,24 +5,34 @@
 //   replay_speed DIRECTORY [LARGE_LOG_MB]
 //
 // The responses are checked before anything is timed. Finally a log of LARGE_LOG_MB (default 2048) is
-// replayed to measure the growth of the process's memory. Exits with 1 if a response is wrong or the disk is
-// full.
+// replayed to measure the growth of the process's memory, and with the program as a whole and in parts, to
+// measure what the division costs. Exits with 1 if a response is wrong, if the joined parts differ from the
+// whole or if the disk is full.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
+#include <fcntl.h>
 #include <lcm/lcm-cpp.hpp>
+#include <spawn.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "fail.h"
 #include "median.h"
+#include "service/replay/range_hash.h"
 #include "service/replay/replay.h"
 
 namespace buoyancy::bench {
@@ -31,6 +41,10 @@ namespace {
 constexpr int kRuns = 5;
 constexpr std::int64_t kEvents = 300'000;
 constexpr double kMinSpeedRatio = 0.5;
+constexpr int kParts = 7;
+constexpr int kPartRuns = 3;
+constexpr double kMaxPartsRatio = 1.1;
+const std::string kScene = "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 2] }\n";
 
 double height_at(std::int64_t event) {
   return 0.9 * std::sin(1e-3 * static_cast<double>(event));
@@ -174,9 +188,72 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+// Runs buoyancy-replay and returns its processor time [s].
+double program_seconds(std::vector<std::string> arguments) {
+  std::string program = BUOYANCY_REPLAY;
+  std::vector<char*> argv{program.data()};
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions{};
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t pid = -1;
+  if (::posix_spawn(&pid, program.c_str(), &actions, nullptr, argv.data(), environ) != 0) {
+    fail("buoyancy-replay could not be started");
+  }
+  ::posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  rusage usage{};
+  if (::wait4(pid, &status, 0, &usage) != pid || status != 0) fail("buoyancy-replay failed");
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::string hash_of(const std::string& path) {
+  FileWindow file = value_or_exit(FileWindow::open(path));
+  const std::int64_t size = file.size();
+  service::RangeHash hash(std::move(file), 0);
+  value_or_exit(hash.extend_to(size));
+  return hash.hash();
+}
+
+// Compares the processor time of a replay in parts with that of the whole, and their outputs.
+void measure_parts(const std::string& directory, const std::string& input) {
+  const std::string scene = directory + "/scene.toml";
+  std::ofstream(scene) << kScene;
+  const std::string output = directory + "/out.lcmlog";
+  const std::vector<std::string> arguments{"--scene", scene, "--jobs", "1", input, output};
+  double whole = std::numeric_limits<double>::infinity();
+  double parts = whole;
+  double join = whole;
+  for (int run = 0; run < kPartRuns; ++run) {
+    whole = std::min(whole, program_seconds(arguments));
+    const std::string hash = hash_of(output);
+    std::filesystem::remove(output);
+    double sum = 0.0;
+    for (int number = 1; number <= kParts; ++number) {
+      std::vector<std::string> part{"--part", std::to_string(number) + "/" + std::to_string(kParts)};
+      part.insert(part.end(), arguments.begin(), arguments.end());
+      sum += program_seconds(part);
+    }
+    parts = std::min(parts, sum);
+    join = std::min(join, program_seconds({"--join", std::to_string(kParts), input, output}));
+    if (hash_of(output) != hash) fail("the joined parts differ from the whole");
+    for (int number = 1; number <= kParts; ++number) {
+      std::filesystem::remove(service::part_path(output, {number, kParts}));
+    }
+  }
+  std::printf(
+      "\nThe same log in %d parts took %.2f times the processor time of the whole (at most %.1f: %s), and "
+      "joining them %.2f times. The joined output is the same.\n",
+      kParts, parts / whole, kMaxPartsRatio, parts / whole <= kMaxPartsRatio ? "met" : "MISSED",
+      join / whole);
+}
+
 void run(const std::string& directory, std::int64_t large_megabytes) {
-  SceneDescription description = value_or_exit(
-      parse_scene("[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 2] }\n", "a box", directory));
+  SceneDescription description = value_or_exit(parse_scene(kScene, "a box", directory));
   const Scene scene = value_or_exit(Scene::prepare(description));
   const std::string input = directory + "/in.lcmlog";
   const std::string output = directory + "/out.lcmlog";
@@ -223,6 +300,7 @@ void run(const std::string& directory, std::int64_t large_megabytes) {
   const double large = seconds_of([&] { replay_log(scene, input, output, 0); }).wall;
   std::printf("\nA log of %lld MB took %.0f s; the peak memory use grew from %.1f to %.1f MB.\n",
               static_cast<long long>(large_megabytes), large, before, peak_megabytes());
+  measure_parts(directory, input);
 }
 
 }  // namespace
