@@ -1,12 +1,13 @@
 // Fuzz target: bytes as a CSV file of recorded poses. Every line must be accounted for exactly once: as the
-// header, as blank, as a body of a request, or as reported; and the rows written with 17 digits must be read
-// as the same rows.
+// header, as blank, as a body of a request, or as reported; the rows written with 17 digits must be read as
+// the same rows; and two pieces of the file must hold the requests of the whole.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -139,6 +140,28 @@ void check_same_rows(const std::vector<WrenchRequest>& first, const std::vector<
   require(row == rows.size(), "a rewritten file is read completely");
 }
 
+// Appends the sizes of the requests up to the limit and returns where the next item starts.
+std::int64_t read_piece(StateCsvReader reader, std::int64_t limit, std::vector<std::size_t>& sizes) {
+  while (true) {
+    const LogItem item = reader.next(limit);
+    if (std::holds_alternative<LimitReached>(item) || std::holds_alternative<EndOfLog>(item)) break;
+    if (const auto* recorded = std::get_if<RecordedEvent>(&item)) sizes.push_back(recorded->bytes.size());
+  }
+  return reader.position();
+}
+
+void check_pieces(const std::string& path, std::int64_t cut) {
+  std::vector<std::size_t> whole;
+  read_piece(*StateCsvReader::open(path), kNoLimit, whole);
+  std::vector<std::size_t> pieces;
+  const std::int64_t end = read_piece(*StateCsvReader::open(path), cut, pieces);
+  Expected<StateCsvReader> back = StateCsvReader::open(path);
+  back->seek(cut);
+  require(back->position() == end, "a piece begins where the one before ends");
+  read_piece(*std::move(back), kNoLimit, pieces);
+  require(pieces == whole, "two pieces hold the requests of the whole");
+}
+
 void check(std::string_view text) {
   Expected<StateCsvReader> reader = StateCsvReader::open(path_of_file_with(text));
   if (!reader) {
@@ -146,6 +169,9 @@ void check(std::string_view text) {
     return;
   }
   const std::vector<WrenchRequest> requests = read_all(*reader, data_lines(text));
+  for (const std::size_t cut : {text.size() / 3, text.size() / 2, text.size() - text.size() / 5}) {
+    check_pieces(path_of_file_with(text), static_cast<std::int64_t>(cut));
+  }
 
   const std::string again = rewrite(requests);
   Expected<StateCsvReader> second = StateCsvReader::open(path_of_file_with(again));
