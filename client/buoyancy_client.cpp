@@ -148,10 +148,15 @@ int report(const Error& error, int exit_code) {
   return exit_code;
 }
 
-Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene) {
+// bodies: number of bodies of a request. Sets warning if their responses may be lost.
+Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene, std::size_t bodies,
+                                       std::optional<Warning>& warning) {
   if (arguments.embedded) return SimulationClient(InProcessClient(scene));
   Expected<LcmRequestChannel> channel = LcmRequestChannel::open(arguments.channel);
   if (!channel) return make_error(channel.error());
+  Expected<std::optional<Warning>> reserved = channel->reserve(bodies);
+  if (!reserved) return make_error(reserved.error());
+  warning = std::move(*reserved);
   if (!arguments.rate) return SimulationClient(LockstepClient(std::move(*channel), arguments.retry_policy));
   return SimulationClient(
       FreeRunningClient(std::move(*channel), arguments.retry_policy, 1.0 / *arguments.rate));
@@ -184,7 +189,9 @@ int simulate(Arguments arguments) {
     if (!created) return report(created.error(), kFailure);
     csv = std::move(*created);
   }
-  Expected<SimulationClient> client = make_client(arguments, *scene);
+  std::optional<Warning> size_warning;
+  Expected<SimulationClient> client =
+      make_client(arguments, *scene, simulation->bodies().size(), size_warning);
   if (!client) return report(client.error(), kFailure);
 
   RunSummary summary;
@@ -193,6 +200,7 @@ int simulate(Arguments arguments) {
     std::fprintf(stderr, "buoyancy-client: warning: %s\n", warning->message().c_str());
     summary.warnings.push_back(std::move(*warning));
   };
+  warn(std::move(size_warning));
   warn(step_warning(*simulation));
   warn(latency_warning(*simulation, static_cast<double>(options.delay_steps) * options.step));
   LatencyMonitor latency;

@@ -11,9 +11,9 @@
 #include "cli/signal_fd.h"
 #include "cli/termination_signals.h"
 #include "scene/scene.h"
-#include "scene/scene_report.h"
 #include "service/daemon/daemon.h"
 #include "service/daemon/daemon_options.h"
+#include "service/daemon/message_sizes.h"
 
 namespace buoyancy::service {
 namespace {
@@ -66,7 +66,10 @@ int run(int argc, char** argv) {
     return kUsageError;
   }
   if (options.check) {
-    const std::string report = options.json ? scene_report_json(*scene) + "\n" : scene_report_text(*scene);
+    const LargestMessages messages = largest_messages(*scene, channels);
+    const std::optional<ReceiveBuffer> buffer = expected_receive_buffer(messages, options.lcm_url);
+    const std::string report = options.json ? check_report_json(*scene, messages, buffer)
+                                            : check_report_text(*scene, messages, buffer);
     return print_output(app, report) ? kSuccess : kFailure;
   }
   return serve(app, options, std::move(*scene), std::move(*poses), *reload);

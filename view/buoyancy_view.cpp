@@ -93,6 +93,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   SnapshotBroadcaster broadcaster;
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, broadcaster);
   if (!view) return report(app, view.error(), kFailure);
+  if (view->buffer_warning()) print_warning(app, *view->buffer_warning());
   const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), broadcaster);
   if (!server) return report(app, server.error(), kFailure);
 

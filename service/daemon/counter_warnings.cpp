@@ -32,12 +32,17 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
   return warnings;
 }
 
-std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now) {
+std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,
+                                     const BufferLimit& receive_buffer_limit) {
   std::vector<LogEvent> warnings;
   if (now.packets > before.packets) {
     warnings.push_back({"packets dropped by the kernel (receive buffer full)", now.packets - before.packets,
-                        "raise the limit with 'sysctl -w net.core.rmem_max=4194304' and restart, or use a "
-                        "port with less traffic"});
+                        fmt::format("{}, or use a port with less traffic", receive_buffer_limit.remedy)});
+  }
+  if (now.oversized_messages > before.oversized_messages) {
+    warnings.push_back({fmt::format("messages of more than {} bytes dropped", kMaxMessageBytes),
+                        now.oversized_messages - before.oversized_messages,
+                        "let their sender distribute the bodies over several requests"});
   }
   if (now.fragments > before.fragments) {
     warnings.push_back(

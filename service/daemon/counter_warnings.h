@@ -14,7 +14,8 @@ namespace buoyancy::service {
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now);
 
 // One event per kind of loss whose counter has grown.
-std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now);
+std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,
+                                     const BufferLimit& receive_buffer_limit);
 
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".
 std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency);

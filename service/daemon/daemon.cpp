@@ -17,6 +17,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "messages/status.h"
 #include "service/daemon/counter_warnings.h"
+#include "service/daemon/message_sizes.h"
 
 namespace buoyancy::service {
 namespace {
@@ -87,6 +88,15 @@ Expected<void> Daemon::subscribe() {
                                [this](Bytes status, std::string_view) { instances_.observe(status); });
 }
 
+void Daemon::prepare_for_messages() {
+  const LargestMessages messages = largest_messages(*scene_, channels_);
+  const std::size_t request_bytes = std::min(messages.request.bytes, kMaxMessageBytes);
+  const auto buffer = connection_.reserve_receive_buffer(request_bytes);
+  if (!buffer) return;
+  receive_buffer_limit_ = buffer_limit(*buffer, request_bytes);
+  for (const Warning& warning : size_warnings(messages, *buffer)) spdlog::warn("{}", warning.message());
+}
+
 Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   const UniqueFd status_timer = make_timer(std::chrono::seconds(1));
   // Without a watchdog the timer is not needed: its interval is long enough to cost nothing.
@@ -102,6 +112,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
                        "too many open files", ""});
   }
   if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
+  prepare_for_messages();
   spdlog::info(
       "ready: {}; requests on {}, responses on {}, hydrostatics on {}, status on {}; {}, mode {}, "
       "instance {}",
@@ -237,6 +248,7 @@ void Daemon::end_reload() {
     loader_.release(std::exchange(scene_, std::move(**loaded)));
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
+    prepare_for_messages();
   }
   if (!loader_.is_loading()) systemd_.ready();
 }
@@ -268,7 +280,9 @@ void Daemon::publish_status() {
                               pluralize(counters.computed + counters.retries, "request", "requests"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : ""));
   for (const LogEvent& warning : warnings_since(reported_, counters)) warnings_.add(warning, now);
-  for (const LogEvent& warning : warnings_since(reported_drops_, drops)) warnings_.add(warning, now);
+  for (const LogEvent& warning : warnings_since(reported_drops_, drops, receive_buffer_limit_)) {
+    warnings_.add(warning, now);
+  }
   for (const std::string& line : warnings_.drain(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : instances_.take_new()) {
     spdlog::warn(

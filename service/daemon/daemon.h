@@ -62,6 +62,7 @@ class Daemon {
 
  private:
   Expected<void> subscribe();
+  void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
   void receive();
   void record_queue_delay();
   void on_request(Bytes request);
@@ -96,6 +97,7 @@ class Daemon {
   SystemdNotifier systemd_;
   ServiceCounters reported_;
   DropCounts reported_drops_;
+  BufferLimit receive_buffer_limit_;              // for the largest request about the scene
   std::vector<std::uint8_t> status_bytes_;        // reused
   WrenchResponse response_;                       // reused, for poses
   std::vector<std::uint8_t> force_torque_bytes_;  // reused

@@ -12,6 +12,14 @@
 #include "cli/logging.h"
 
 namespace buoyancy {
+namespace {
+
+// level: the prefix that names the line's level in the journal.
+void print_line(const char* level, const CLI::App& app, const std::string& text) {
+  std::fprintf(stderr, "%s%s: %s\n", stderr_is_journal() ? level : "", app.get_name().c_str(), text.c_str());
+}
+
+}  // namespace
 
 std::string exit_status_help(const ExitStatusHelp& help) {
   return "Exit status: 0 " + help.success + ";\n1 " + help.failure + ";\n2 " + help.usage_error + ".";
@@ -44,12 +52,15 @@ Expected<void> check_output_not_input(const std::filesystem::path& output,
 }
 
 void print_error(const CLI::App& app, const std::string& message) {
-  const char* priority = stderr_is_journal() ? "<3>" : "";
-  std::fprintf(stderr, "%s%s: %s\n", priority, app.get_name().c_str(), message.c_str());
+  print_line("<3>", app, message);
 }
 
 void print_error(const CLI::App& app, const Error& error) {
   print_error(app, error.message());
+}
+
+void print_warning(const CLI::App& app, const Warning& warning) {
+  print_line("<4>", app, "warning: " + warning.message());
 }
 
 bool print_output(const CLI::App& app, const std::string& text) {

@@ -40,6 +40,8 @@ Expected<void> check_output_not_input(const std::filesystem::path& output,
 // Prints "<program>: <message>" on standard error, after the log level if that is the journal (logging.h).
 void print_error(const CLI::App& app, const std::string& message);
 void print_error(const CLI::App& app, const Error& error);
+// Prints "<program>: warning: <message>" likewise.
+void print_warning(const CLI::App& app, const Warning& warning);
 
 // Writes text to standard output. Returns false, after one line on standard error, if that fails, for
 // instance because the disk is full.

@@ -21,6 +21,10 @@ Client::Client(ClientVariant client, std::int64_t session_id) : client_(std::mov
   request_.id.session_id = session_id;
 }
 
+Expected<std::optional<Warning>> Client::reserve(std::size_t bodies) {
+  return std::visit([bodies](auto& client) { return client.reserve(bodies); }, client_);
+}
+
 Expected<const WrenchResponse*> Client::request(std::int64_t utime, std::span<const BodyState> states,
                                                 double lead_time) {
   request_.id.utime = utime;

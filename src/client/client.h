@@ -34,6 +34,10 @@ class Client {
   // Errors: those of LcmConnection::open.
   static Expected<Client> open(const ClientOptions& options = {});
 
+  // Prepares for requests about this many bodies, and says before the first one whether they can arrive: see
+  // LcmRequestChannel::reserve(). request() does the same, without the warning.
+  Expected<std::optional<Warning>> reserve(std::size_t bodies);
+
   // Requests the wrenches on bodies in these states and returns one per state, in the same order, valid until
   // the next call. utime: simulation time [us], which the response's id repeats. lead_time: [s], evaluates
   // at the poses extrapolated by this much; 0: as given. A body that cannot be evaluated has zeros and a

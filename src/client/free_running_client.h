@@ -20,6 +20,9 @@ class FreeRunningClient {
   // interval: [s], > 0.
   FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval);
 
+  // See LcmRequestChannel::reserve().
+  Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }
+
   // Waits for the start of the next interval, sends the request, and returns the newest response once it is
   // the request's own or the interval is over. The first request waits as in lock-step mode, since there is
   // no earlier response to use.

@@ -5,6 +5,8 @@
 
 #include <poll.h>
 
+#include "base/format.h"
+
 namespace buoyancy {
 namespace {
 
@@ -47,7 +49,51 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
   return channel;
 }
 
+Expected<void> LcmRequestChannel::check_size(std::size_t bodies) const {
+  const std::size_t bytes = request_size(bodies);
+  if (!connection_.is_network() || bytes <= kMaxMessageBytes) return {};
+  return check_message_size("request for " + std::to_string(bodies) + " bodies", bytes);
+}
+
+Expected<std::optional<Warning>> LcmRequestChannel::reserve(std::size_t bodies) {
+  if (const Expected<void> checked = check_size(bodies); !checked) return make_error(checked.error());
+  reserved_bodies_ = std::max(reserved_bodies_, bodies);
+  const std::size_t bytes = response_size(bodies);
+  buffer_warning_.reset();
+  if (const std::optional<ReceiveBuffer> buffer = connection_.reserve_receive_buffer(bytes)) {
+    buffer_warning_ = receive_buffer_warning("response for " + std::to_string(bodies) + " bodies", bytes,
+                                             options_.wrenches_channel, *buffer);
+  }
+  return buffer_warning_;
+}
+
+LcmRequestChannel::Explanation LcmRequestChannel::explain_no_response() const {
+  const std::int64_t dropped = connection_.drop_counts().packets;
+  if (buffer_warning_ && dropped > 0) {
+    return {"the kernel dropped " + pluralize(dropped, "packet", "packets") +
+                " because this program's receive buffer was full; it is too small for the " +
+                buffer_warning_->subject,
+            buffer_warning_->hint};
+  }
+  Explanation explanation{
+      "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
+      "Start buoyancyd with the same scene, URL and channels; if it is still loading its meshes, allow more "
+      "retries"};
+  constexpr std::size_t kMaxPacketsInAnyBuffer = 3;  // of the kernel's default size
+  const std::size_t packets = packet_count(request_bytes_.size(), options_.states_channel);
+  if (packets > kMaxPacketsInAnyBuffer) {
+    explanation.cause += ", or its receive buffer is too small for a request of " +
+                         std::to_string(request_bytes_.size()) + " bytes in " + std::to_string(packets) +
+                         " packets";
+    explanation.hint += "; if it is running, see its log, which says what its receive buffer holds";
+  }
+  return explanation;
+}
+
 Expected<void> LcmRequestChannel::send(const WrenchRequest& request) {
+  if (request.bodies.size() > reserved_bodies_) {
+    if (const auto reserved = reserve(request.bodies.size()); !reserved) return make_error(reserved.error());
+  }
   inbox_->session_id = request.id.session_id;
   inbox_->last_sent = request.id.seq;
   encode(request, request_bytes_);

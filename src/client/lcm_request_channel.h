@@ -38,8 +38,16 @@ class LcmRequestChannel {
   // Errors: those of LcmConnection::open.
   static Expected<LcmRequestChannel> open(const ChannelOptions& options);
 
+  // Errors: a message cannot carry this many bodies.
+  Expected<void> check_size(std::size_t bodies) const;
+
+  // Prepares for requests about this many bodies: enlarges the receive buffer for their responses. Returns a
+  // warning if responses may lose packets because the kernel grants a smaller buffer. send() does the same,
+  // without the warning. Errors: those of check_size().
+  Expected<std::optional<Warning>> reserve(std::size_t bodies);
+
   // Encodes and publishes the request. Precondition: session_id is constant, seq does not decrease. Errors:
-  // those of LcmConnection::publish.
+  // those of check_size() and of LcmConnection::publish.
   Expected<void> send(const WrenchRequest& request);
   // Publishes the bytes of the last request again.
   Expected<void> resend();
@@ -53,6 +61,12 @@ class LcmRequestChannel {
   bool has_response() const { return inbox_->has_response; }
   const WrenchResponse& latest_response() const { return inbox_->latest; }  // requires has_response()
   bool cancelled() const { return cancelled_ != nullptr && cancelled_->load(); }
+
+  // Why the response to the last request may not have arrived, in parts of an Error.
+  struct Explanation {
+    std::string cause, hint;
+  };
+  Explanation explain_no_response() const;
 
   // "udpm://239.255.76.67:7667?ttl=0, channels BUOYANCY_STATES and BUOYANCY_WRENCHES", for errors.
   std::string describe_endpoint() const;
@@ -77,6 +91,8 @@ class LcmRequestChannel {
   std::unique_ptr<Inbox> inbox_;
   LcmConnection connection_;
   std::vector<std::uint8_t> request_bytes_;
+  std::size_t reserved_bodies_ = 0;
+  std::optional<Warning> buffer_warning_;  // of the last reserve()
 };
 
 }  // namespace buoyancy

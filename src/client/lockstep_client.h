@@ -15,6 +15,9 @@ class LockstepClient {
  public:
   LockstepClient(LcmRequestChannel channel, RetryPolicy retry_policy);
 
+  // See LcmRequestChannel::reserve().
+  Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }
+
   Expected<const WrenchResponse*> request(const WrenchRequest& request);
   const ClientStats& statistics() const { return statistics_; }
 

@@ -17,6 +17,9 @@ std::string subject(const LcmRequestChannel& channel, std::int64_t seq) {
 Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel, const WrenchRequest& request,
                                                      const RetryPolicy& retry_policy,
                                                      ClientStats& statistics) {
+  if (const Expected<void> checked = channel.check_size(request.bodies.size()); !checked) {
+    return make_error(checked.error());
+  }
   const Clock::time_point sent_at = Clock::now();
   ++statistics.requests;
   Expected<void> sent = channel.send(request);
@@ -52,11 +55,8 @@ Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
 tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited) {
   std::array<char, 64> actual{};
   std::snprintf(actual.data(), actual.size(), "no response for %.3g s", waited);
-  return make_error(
-      {subject(channel, seq), actual.data(), "a response from buoyancyd",
-       "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
-       "Start buoyancyd with the same scene, URL and channels; if it is still loading its meshes, "
-       "allow more retries"});
+  const auto [cause, hint] = channel.explain_no_response();
+  return make_error({subject(channel, seq), actual.data(), "a response from buoyancyd", cause, hint});
 }
 
 tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq) {

@@ -37,6 +37,11 @@ std::size_t body_size() {
   return encoded_body_size<typename decltype(Message::bodies)::value_type>();
 }
 
+template <typename Message>
+std::size_t encoded_size(std::size_t bodies) {
+  return fixed_size<Message>() + bodies * body_size<Message>();
+}
+
 // Returns the number of bodies.
 template <typename Message>
 tl::expected<std::size_t, DecodeError> validate(Bytes bytes) {
@@ -68,12 +73,12 @@ std::optional<DecodeError> decode_message(Bytes bytes, Message& message) {
   return std::nullopt;
 }
 
-// Replaces bytes by the encoded fixed fields of a message, which takes none of its bodies from `message`, and
-// room for this number of bodies. Returns where they begin.
+// Replaces bytes by the fixed fields of `message` and room for this number of bodies, whatever its own are.
+// Returns the address of the first body.
 template <typename Message>
 std::uint8_t* encode_fixed(const Message& message, std::size_t bodies, std::vector<std::uint8_t>& bytes) {
   assert(bodies <= std::numeric_limits<std::int32_t>::max());
-  bytes.resize(fixed_size<Message>() + bodies * body_size<Message>());
+  bytes.resize(encoded_size<Message>(bodies));
   BigEndianWriter writer(bytes.data());
   writer(fingerprint<Message>());
   visit_header(message, writer);
@@ -135,6 +140,16 @@ tl::expected<RequestView, DecodeError> RequestView::of(Bytes bytes) {
 
 ResponseWriter::ResponseWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes)
     : size_(bodies), bodies_(encode_fixed(WrenchResponse{.id = id, .bodies = {}}, bodies, bytes)) {}
+
+std::size_t request_size(std::size_t bodies) {
+  return encoded_size<WrenchRequest>(bodies);
+}
+std::size_t response_size(std::size_t bodies) {
+  return encoded_size<WrenchResponse>(bodies);
+}
+std::size_t hydrostatics_size(std::size_t bodies) {
+  return encoded_size<BodiesHydrostatics>(bodies);
+}
 
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes) {
   encode_message(request, bytes);

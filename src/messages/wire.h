@@ -42,6 +42,11 @@ std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics)
 // Makes the same checks and decodes the request's id only. O(1).
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 
+// Sizes [bytes] of encoded messages with this number of bodies.
+std::size_t request_size(std::size_t bodies);
+std::size_t response_size(std::size_t bodies);
+std::size_t hydrostatics_size(std::size_t bodies);
+
 // Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest
 // message.
 void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);

@@ -16,6 +16,7 @@
 #include <sched.h>
 
 #include "transport/adaptive_spin.h"
+#include "transport/message_limits.h"
 #include "transport/multicast_probe.h"
 #include "transport/udpm_url.h"
 
@@ -187,15 +188,28 @@ Expected<void> LcmConnection::subscribe(const std::string& channel, Handler hand
   return {};
 }
 
+bool LcmConnection::is_network() const {
+  return impl_->receiver.has_value();
+}
+
+std::optional<ReceiveBuffer> LcmConnection::reserve_receive_buffer(std::size_t message_bytes) {
+  if (!impl_->receiver) return std::nullopt;
+  impl_->receiver->reserve(message_bytes);
+  return impl_->receiver->receive_buffer();
+}
+
 Expected<void> LcmConnection::publish(const std::string& channel, Bytes bytes) {
   if (Expected<void> checked = check_channel(channel); !checked) return checked;
+  if (impl_->receiver && bytes.size() > kMaxMessageBytes) {
+    return check_message_size("LCM channel '" + channel + "'", bytes.size());
+  }
   errno = 0;
   if (lcm_publish(impl_->lcm, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
     return make_error({"LCM channel '" + channel + "'",
                        "a message of " + std::to_string(bytes.size()) + " bytes was not sent (" +
                            std::generic_category().message(errno) + ")",
                        "a network that accepts it",
-                       "the multicast route is gone, or the message is larger than the network accepts",
+                       "the multicast route is gone, or the network accepts only smaller messages",
                        send_hint(url_)});
   }
   return {};

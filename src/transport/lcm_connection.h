@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,8 +54,8 @@ class LcmConnection {
 
   // url: "" for the default, "udpm://239.255.76.67:7667?ttl=1", or "memq://" (within this connection only, no
   // network). LCM's other providers are rejected: the death of a tcpq server aborts its clients. Requests a
-  // receive buffer of 4 MB from the kernel unless the URL gives a size. Errors: an invalid URL, no multicast
-  // route (at once), or a route that does not loop packets back (after 2 s).
+  // receive buffer of kMinReceiveBuffer from the kernel unless the URL gives a size. Errors: an invalid URL,
+  // no multicast route (at once), or a route that does not loop packets back (after 2 s).
   static Expected<LcmConnection> open(const std::string& url, const ConnectionOptions& options = {});
 
   LcmConnection(LcmConnection&&) noexcept;
@@ -64,7 +65,12 @@ class LcmConnection {
   // channel: an exact name (regular-expression characters are literal) that is not yet subscribed to.
   Expected<void> subscribe(const std::string& channel, Handler handler);
 
-  // Errors: the transport rejected the message (too large, route gone).
+  // Enlarges the receive buffer for messages of this size [bytes], unless the URL fixes its size, and returns
+  // what the kernel granted (see receive_buffer_warning()); nullopt: memq://, which has no such limit.
+  std::optional<ReceiveBuffer> reserve_receive_buffer(std::size_t message_bytes);
+
+  // Errors: over UDP, a message larger than kMaxMessageBytes; the transport rejected the message (route
+  // gone).
   Expected<void> publish(const std::string& channel, Bytes bytes);
 
   int fileno() const;  // for poll(): readable when a packet is pending, perhaps of another channel
@@ -76,9 +82,10 @@ class LcmConnection {
   // When the message that was handled last arrived [us since 1970]; 0: none has been handled yet. The time
   // from then to its handling is the time that it was queued.
   std::int64_t received_utime() const;
-  // Counts packets and fragments that were lost; always 0 with memq://.
+  // Counts packets, fragments and messages that were lost; always 0 with memq://.
   DropCounts drop_counts() const;
   const std::string& url() const { return url_; }
+  bool is_network() const;  // false: memq://
 
  private:
   struct Impl;

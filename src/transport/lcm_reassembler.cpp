@@ -67,6 +67,7 @@ std::optional<LcmReassembler::Message> LcmReassembler::push_fragment(Bytes rest,
     if (!channel) return std::nullopt;
     if (size > kMaxMessageBytes) {
       ++fragments_dropped_;
+      ++oversized_messages_;
       return std::nullopt;
     }
     if (message == nullptr) {

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "messages/wire.h"
+#include "transport/message_limits.h"
 
 namespace buoyancy {
 
 class LcmReassembler {
  public:
-  static constexpr std::size_t kMaxMessageBytes = std::size_t{16} << 20U;  // 155,000 bodies
   static constexpr std::size_t kMaxPartialMessages = 4;
 
   struct Message {
@@ -40,6 +40,8 @@ class LcmReassembler {
   // Fragments of messages on the added channels that were too large, inconsistent or discarded for newer
   // ones.
   std::int64_t fragments_dropped() const { return fragments_dropped_; }
+  // Messages on the added channels that were larger than kMaxMessageBytes.
+  std::int64_t oversized_messages() const { return oversized_messages_; }
 
  private:
   struct Fragment {
@@ -72,6 +74,7 @@ class LcmReassembler {
   std::array<PartialMessage, kMaxPartialMessages> partial_;
   std::size_t oldest_ = 0;  // slot of partial_ that is discarded next if none is free
   std::int64_t fragments_dropped_ = 0;
+  std::int64_t oversized_messages_ = 0;
 };
 
 }  // namespace buoyancy

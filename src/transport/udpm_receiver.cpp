@@ -22,8 +22,6 @@
 namespace buoyancy {
 namespace {
 
-// Holds 5,000 small messages; the kernel's default holds 270.
-constexpr std::int32_t kReceiveBufferBytes = 4'194'304;
 constexpr std::size_t kMaxPacket = 65'536;
 
 template <typename T>
@@ -40,7 +38,8 @@ T data_of(cmsghdr* message) {
 
 }  // namespace
 
-UdpmReceiver::UdpmReceiver(UniqueFd socket) : socket_(std::move(socket)), packet_(kMaxPacket) {}
+UdpmReceiver::UdpmReceiver(UniqueFd socket, const ReceiveBuffer& receive_buffer)
+    : socket_(std::move(socket)), receive_buffer_(receive_buffer), packet_(kMaxPacket) {}
 
 Expected<UdpmReceiver> UdpmReceiver::open(const std::string& url) {
   const Expected<UdpmUrl> parsed = parse_udpm_url(resolve_lcm_url(url));
@@ -57,16 +56,16 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
   ip_mreq membership{};
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
-  const std::int32_t buffer = url.recv_buf_size.value_or(kReceiveBufferBytes);
-  // Root gets the requested buffer size, others at most net.core.rmem_max. The socket is bound to the group's
-  // address to exclude packets that were sent to the port at another address; IP_MULTICAST_ALL = 0 excludes
-  // those from interfaces on which only another program has joined the group.
-  const bool ready =
-      socket.valid() && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
-      (set(socket, SOL_SOCKET, SO_RCVBUFFORCE, buffer) || set(socket, SOL_SOCKET, SO_RCVBUF, buffer)) &&
-      set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
-      ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
-      set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
+  ReceiveBuffer buffer{.requested = static_cast<std::size_t>(url.recv_buf_size.value_or(kMinReceiveBuffer)),
+                       .fixed_by_url = url.recv_buf_size.has_value()};
+  if (socket.valid()) buffer.max_message = set_receive_buffer(socket.value(), buffer.requested);
+  // The socket is bound to the group's address to exclude packets that were sent to the port at another
+  // address; IP_MULTICAST_ALL = 0 excludes those from interfaces on which only another program has joined the
+  // group.
+  const bool ready = buffer.max_message > 0 && set(socket, SOL_SOCKET, SO_REUSEADDR, 1) &&
+                     set(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) && set(socket, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
+                     ::bind(socket.value(), reinterpret_cast<const sockaddr*>(&group), sizeof group) == 0 &&
+                     set(socket, IPPROTO_IP, IP_MULTICAST_ALL, 0);
   if (!ready) {
     return make_error(
         {to_string(url), std::generic_category().message(errno), "a UDP socket bound to the group",
@@ -74,7 +73,7 @@ Expected<UdpmReceiver> UdpmReceiver::open(const UdpmUrl& url) {
          "Give the LCM URL of every program another port, or end the program that uses this one"});
   }
   if (!set(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, membership)) return no_multicast_route(url, errno);
-  return UdpmReceiver(std::move(socket));
+  return UdpmReceiver(std::move(socket), buffer);
 }
 
 Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
@@ -85,6 +84,12 @@ Expected<std::size_t> UdpmReceiver::subscribe(const std::string& channel) {
                        "one subscription per channel", "", ""});
   }
   return *number;
+}
+
+void UdpmReceiver::reserve(std::size_t message_bytes) {
+  if (receive_buffer_.fixed_by_url || message_bytes <= receive_buffer_.max_message) return;
+  receive_buffer_.requested = receive_buffer_for(message_bytes);
+  receive_buffer_.max_message = set_receive_buffer(socket_.value(), receive_buffer_.requested);
 }
 
 std::optional<UdpmReceiver::Packet> UdpmReceiver::read_packet() {

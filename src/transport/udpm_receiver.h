@@ -19,6 +19,7 @@
 #include "base/unique_fd.h"
 #include "messages/wire.h"
 #include "transport/lcm_reassembler.h"
+#include "transport/message_limits.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy {
@@ -27,6 +28,7 @@ namespace buoyancy {
 struct DropCounts {
   std::int64_t packets = 0;    // of any channel, dropped by the kernel because its receive buffer was full
   std::int64_t fragments = 0;  // of incomplete or inconsistent messages on the subscribed channels
+  std::int64_t oversized_messages = 0;  // larger than kMaxMessageBytes, on the subscribed channels
 };
 
 class UdpmReceiver {
@@ -39,14 +41,19 @@ class UdpmReceiver {
 
   // url: "" for the default, see LcmConnection::open. Joins the group on the interface that the routing table
   // selects for it. Receives what is sent to the group on that interface or by this machine, and nothing else
-  // that arrives at the port. Requests a buffer of 4 MB unless the URL gives a size. Sends nothing. Errors:
-  // not a udpm URL, no multicast route.
+  // that arrives at the port. Requests a receive buffer of kMinReceiveBuffer unless the URL gives a size.
+  // Sends nothing. Errors: not a udpm URL, no multicast route.
   static Expected<UdpmReceiver> open(const std::string& url);
   static Expected<UdpmReceiver> open(const UdpmUrl& url);
 
   // channel: an exact name of 1 to 63 characters. Returns its number: 0, 1, ... Errors: an invalid name, a
   // channel that is already subscribed to.
   Expected<std::size_t> subscribe(const std::string& channel);
+
+  // Enlarges the receive buffer for messages of this size [bytes], unless the URL fixes its size. The kernel
+  // may grant less: see receive_buffer().
+  void reserve(std::size_t message_bytes);
+  const ReceiveBuffer& receive_buffer() const { return receive_buffer_; }
 
   // Reads up to max_packets pending packets until one completes a message of a subscribed channel. nullopt:
   // none did.
@@ -68,7 +75,9 @@ class UdpmReceiver {
   bool truncate_packets_of(const Sender& sender);
 
   int fileno() const { return socket_.value(); }  // readable when a packet of any channel is pending
-  DropCounts drop_counts() const { return {packets_dropped_, reassembler_.fragments_dropped()}; }
+  DropCounts drop_counts() const {
+    return {packets_dropped_, reassembler_.fragments_dropped(), reassembler_.oversized_messages()};
+  }
 
  private:
   struct Packet {
@@ -77,11 +86,12 @@ class UdpmReceiver {
     std::int64_t arrived = 0;  // [us since 1970]
   };
 
-  explicit UdpmReceiver(UniqueFd socket);
+  UdpmReceiver(UniqueFd socket, const ReceiveBuffer& receive_buffer);
   // nullopt: none is pending, or a signal interrupted the call (errno EINTR). Counts what the kernel dropped.
   std::optional<Packet> read_packet();
 
   UniqueFd socket_;
+  ReceiveBuffer receive_buffer_;
   LcmReassembler reassembler_;
   std::vector<std::uint8_t> packet_;  // reused
   std::int64_t packets_dropped_ = 0;

@@ -102,6 +102,48 @@ TEST(Client, ReturnsNewestResponseInFreeRunningMode) {
   EXPECT_EQ(client.statistics().late, 4);
 }
 
+TEST(Client, RefusesMoreBodiesThanOneMessageCarriesAtOnce) {
+  Client client = value_or_die(Client::open());
+  const std::vector<BodyState> states(160'000);
+  EXPECT_FALSE(client.reserve(states.size()));
+  const Expected<const WrenchResponse*> response = client.request(0, states);
+  ASSERT_FALSE(response);
+  const std::string message = response.error().message();
+  EXPECT_TRUE(
+      message.starts_with("request for 160000 bodies: a message of 17280044 bytes; expected at most "))
+      << message;
+  EXPECT_EQ(client.statistics().requests, 0);
+  EXPECT_EQ(client.statistics().retries, 0);
+}
+
+TEST(Client, WarnsBeforeResponsesThatDoNotFitItsReceiveBuffer) {
+  ClientOptions options;
+  options.channel.lcm_url = "udpm://239.255.76.67:7667?recv_buf_size=100000";
+  options.retry_policy = {.timeout = 0.05, .max_retries = 3};
+  Client client = value_or_die(Client::open(options));
+  EXPECT_FALSE(value_or_die(client.reserve(900)));
+  const std::optional<Warning> warning = value_or_die(client.reserve(10'000));
+  ASSERT_TRUE(warning);
+  EXPECT_TRUE(
+      warning->message().starts_with("response for 10000 bodies: a message of 1040036 bytes in 16 "
+                                     "packets, some of which may be lost"))
+      << warning->message();
+
+  // The client reads nothing while this arrives. The kernel reports what it dropped with the next packet,
+  // which is a retry.
+  LcmConnection bus = value_or_die(LcmConnection::open(""));
+  const WrenchResponse lost{.id = {}, .bodies = std::vector<BodyWrench>(10'000)};
+  ASSERT_TRUE(bus.publish(std::string(kWrenchesChannel), encoded(lost)));
+  const Expected<const WrenchResponse*> response = client.request(0, std::vector<BodyState>(10'000));
+  ASSERT_FALSE(response);
+  const std::string message = response.error().message();
+  EXPECT_NE(message.find("this program's receive buffer was full; it is too small for the response for 10000 "
+                         "bodies"),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("leave recv_buf_size out of the LCM URL"), std::string::npos) << message;
+}
+
 TEST(Client, FindsFirstFailedBody) {
   WrenchResponse response;
   response.bodies.resize(3);

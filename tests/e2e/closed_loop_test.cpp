@@ -27,6 +27,22 @@ nlohmann::json simulate_with_service(const std::string& scene, Options options) 
   return simulate(scene, options);
 }
 
+TEST(ClosedLoop, WarnsIfResponsesMayNotFitReceiveBuffer) {
+  const TempDir directory;
+  std::string scene;
+  for (int id = 1; id <= 30; ++id) {
+    scene += "[[body]]\nid = " + std::to_string(id) +
+             "\nshape = { type = \"box\", size = [1, 1, 1] }\n[body.client]\ndensity = 500\n";
+  }
+  const std::string path = directory.write("boxes.toml", scene);
+  const RunningProgram service(service_command(path, {"-l", kServiceUrl}));
+  const nlohmann::json summary = simulate_with_warnings(
+      path,
+      {"-l", kServiceUrl + std::string("&recv_buf_size=3000"), "--retries", "10000", "--duration", "0.01"});
+  const std::string warning = summary["warnings"].at(0);
+  EXPECT_TRUE(warning.starts_with("response for 30 bodies: a message of 3156 bytes in 1 packet")) << warning;
+}
+
 TEST(ClosedLoop, SettlesAtExpectedDrafts) {
   const TempDir directory;
   const std::string path = directory.write("drafts.toml", R"(

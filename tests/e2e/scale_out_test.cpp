@@ -52,13 +52,17 @@ class Share {
             directory.write(name + ".toml", scene_of(ids)),
             {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
              "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
-    ClientOptions options;
-    options.channel.states_channel = name + "_STATES";
-    options.channel.wrenches_channel = name + "_WRENCHES";
-    options.retry_policy.max_retries = 10'000;  // effectively unlimited
-    Expected<Client> client = Client::open(options);
+    options_.channel.states_channel = name + "_STATES";
+    options_.channel.wrenches_channel = name + "_WRENCHES";
+    options_.retry_policy.max_retries = 10'000;  // effectively unlimited
+    client_.emplace(connect());
+  }
+
+  // A client of this service with a session of its own.
+  Client connect() const {
+    Expected<Client> client = Client::open(options_);
     if (!client) throw std::runtime_error(client.error().message());
-    client_.emplace(std::move(*client));
+    return std::move(*client);
   }
 
   std::vector<BodyWrench> request(int step, const std::vector<BodyState>& states) {
@@ -71,6 +75,7 @@ class Share {
 
  private:
   RunningProgram service_;
+  ClientOptions options_;
   std::optional<Client> client_;
 };
 
@@ -102,6 +107,23 @@ TEST(ScaleOut, MatchesOneServiceBitForBit) {
   }
   for (const Share* share : {&all, &odd, &even}) {
     EXPECT_EQ(share->log().find("another buoyancyd"), std::string::npos) << share->log();
+  }
+}
+
+TEST(ScaleOut, MatchesWholeRequestInSeveralSessionsOfOneService) {
+  const TempDir directory;
+  Share all(directory, "ALL", {1, 2, 3, 4, 5, 6});
+  std::vector<Client> sessions;
+  for (int i = 0; i < 3; ++i) sessions.push_back(all.connect());
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<BodyWrench> parts;
+    for (const int first : {1, 3, 5}) {
+      const auto part =
+          sessions[static_cast<std::size_t>(first / 2)].request(step, states_of({first, first + 1}, step));
+      ASSERT_TRUE(part) << part.error().message();
+      parts.insert(parts.end(), (*part)->bodies.begin(), (*part)->bodies.end());
+    }
+    ASSERT_EQ(bytes_of(parts), bytes_of(all.request(step, states_of({1, 2, 3, 4, 5, 6}, step)))) << step;
   }
 }
 

@@ -1,6 +1,7 @@
 // Runs over real UDP multicast; every test has its own network namespace (see tests/CMakeLists.txt).
 #include "transport/lcm_connection.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -131,12 +132,87 @@ TEST(LcmConnection, TransmitsMessagesOfAnyLengthUnchanged) {
     EXPECT_EQ(channel, "A");
     received.assign(bytes.begin(), bytes.end());
   }));
-  for (const std::size_t size : {0U, 1U, 1'000U, 65'000U, 65'499U, 65'500U, 1'000'000U}) {
+  // Users other than root may get a smaller receive buffer than they ask for.
+  const std::size_t largest =
+      std::min<std::size_t>(receiver.reserve_receive_buffer(0)->max_message, 1'000'000);
+  for (const std::size_t size : {0UL, 1UL, 1'000UL, 65'000UL, 65'499UL, 65'500UL, largest}) {
     const auto sent = pattern(size);
     ASSERT_TRUE(sender.publish("A", sent)) << size;
     ASSERT_TRUE(wait_and_handle(receiver)) << size;
     EXPECT_EQ(received, sent) << size;
   }
+}
+
+TEST(LcmConnection, SendsAsManyPacketsAsCounted) {
+  LcmConnection sender = open_or_abort();
+  for (const std::string& channel : {std::string("A"), std::string(63, 'x')}) {
+    const std::size_t name = channel.size() + 1;
+    for (const std::size_t size : {std::size_t{0}, 65'499 - name, 65'500 - name, 2 * 65'487 - name,
+                                   2 * 65'487 + 1 - name, std::size_t{1'000'000}}) {
+      const std::int64_t before = packets_sent();
+      ASSERT_TRUE(sender.publish(channel, pattern(size)));
+      EXPECT_EQ(packets_sent() - before, static_cast<std::int64_t>(packet_count(size, channel))) << size;
+    }
+  }
+}
+
+TEST(LcmConnection, KeepsMessageThatFillsReceiveBufferUntilItIsRead) {
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort();
+  std::size_t received = 0;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view) { received = bytes.size(); }));
+  const std::optional<ReceiveBuffer> buffer = receiver.reserve_receive_buffer(11'000'000);
+  ASSERT_TRUE(buffer);
+  EXPECT_FALSE(buffer->fixed_by_url);
+  // Users other than root may get less than they ask for; the promise holds for what they get.
+  const auto sent = pattern(std::min<std::size_t>(buffer->max_message, kMaxMessageBytes));
+  ASSERT_TRUE(sender.publish("A", sent));
+  ASSERT_TRUE(wait_and_handle(receiver));
+  EXPECT_EQ(received, sent.size());
+  EXPECT_EQ(receiver.drop_counts().packets, 0);
+  EXPECT_EQ(receiver.reserve_receive_buffer(1)->max_message, buffer->max_message) << "it never shrinks";
+}
+
+TEST(LcmConnection, WarnsBeforeAndCountsAfterReceiveBufferOverflow) {
+  LcmConnection sender = open_or_abort();
+  LcmConnection receiver = open_or_abort("udpm://239.255.76.67:7667?recv_buf_size=100000");
+  std::size_t received = 0;
+  ASSERT_TRUE(receiver.subscribe("A", [&](Bytes bytes, std::string_view) { received = bytes.size(); }));
+  const auto large = pattern(1'000'000);
+  const std::optional<ReceiveBuffer> buffer = receiver.reserve_receive_buffer(large.size());
+  ASSERT_TRUE(buffer);
+  EXPECT_TRUE(buffer->fixed_by_url);
+  EXPECT_EQ(buffer->requested, 100'000U) << "the size in the URL is kept";
+  EXPECT_EQ(buffer->max_message, 100'000U);
+  EXPECT_TRUE(receive_buffer_warning("message", large.size(), "A", *buffer));
+
+  ASSERT_TRUE(sender.publish("A", large));
+  while (receiver.handle_one() || becomes_readable(receiver.fileno(), 0.01)) {
+  }
+  EXPECT_EQ(received, 0U);
+  // The kernel reports what it dropped with the next packet.
+  ASSERT_TRUE(sender.publish("A", pattern(10)));
+  ASSERT_TRUE(wait_and_handle(receiver));
+  EXPECT_EQ(received, 10U);
+  const auto lost = receiver.drop_counts().packets;
+  EXPECT_GT(lost, 0);
+  EXPECT_LT(lost, static_cast<std::int64_t>(packet_count(large.size(), "A")));
+}
+
+TEST(LcmConnection, RefusesToSendWhatReceiversDrop) {
+  LcmConnection connection = open_or_abort();
+  const std::vector<std::uint8_t> largest(kMaxMessageBytes);
+  const std::vector<std::uint8_t> larger(kMaxMessageBytes + 1);
+  EXPECT_TRUE(connection.publish("A", largest));
+  const std::int64_t before = packets_sent();
+  const Expected<void> refused = connection.publish("A", larger);
+  EXPECT_EQ(packets_sent(), before);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message().find("16777217 bytes"), std::string::npos) << refused.error().message();
+  LcmConnection in_process = open_or_abort("memq://");
+  EXPECT_TRUE(in_process.publish("A", larger)) << "no packets, no limit";
+  EXPECT_FALSE(in_process.is_network());
+  EXPECT_FALSE(in_process.reserve_receive_buffer(larger.size()));
 }
 
 TEST(LcmConnection, DeliversEveryMessageOfABurstInOrder) {

@@ -160,6 +160,7 @@ TEST(LcmReassembler, RejectsOversizedMessages) {
   for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // the size field
   EXPECT_FALSE(reassembler.push(first, 1));
   EXPECT_EQ(reassembler.fragments_dropped(), 1);
+  EXPECT_EQ(reassembler.oversized_messages(), 1);
 }
 
 RC_GTEST_PROP(LcmReassembler, RecoversAfterCorruptPackets, ()) {

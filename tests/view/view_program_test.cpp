@@ -210,6 +210,19 @@ TEST(ViewProgram, UsesIdleSchedulingByDefault) {
   EXPECT_EQ(policies_of(normal.child()), std::set<int>{SCHED_OTHER});
 }
 
+TEST(ViewProgram, WarnsIfMessagesMayNotFitReceiveBuffer) {
+  std::string scene;
+  for (int id = 1; id <= 30; ++id) {
+    scene += "[[body]]\nid = " + std::to_string(id) + "\nshape = { type = \"box\", size = [1, 1, 1] }\n";
+  }
+  RunningView view(scene, {"-l", "udpm://239.255.76.67:7667?recv_buf_size=3000"});
+  EXPECT_TRUE(view.child().wait_for_text(
+      "buoyancy-view: warning: the messages of a step of all 30 bodies: 6440 bytes", kWaitTimeout))
+      << view.child().standard_error();
+  RunningView enough(scene);
+  EXPECT_EQ(enough.child().standard_error(), "");
+}
+
 TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
   TempDir directory;
   const std::string scene = directory.write("scene.toml", kScene);

@@ -9,6 +9,8 @@
 #include <sched.h>
 #include <time.h>
 
+#include "base/format.h"
+#include "transport/message_limits.h"
 #include "view/live/snapshot_json.h"
 
 namespace buoyancy::view {
@@ -32,6 +34,27 @@ timespec to_timespec(double seconds) {
   return {whole, static_cast<long>(1e9 * (seconds - static_cast<double>(whole)))};
 }
 
+// Request, response and hydrostatics of all bodies [bytes]. They may all arrive before the first is read.
+std::size_t largest_step(const Scene& scene) {
+  const std::size_t bodies = scene.bodies().size();
+  const auto with_hydrostatics = static_cast<std::size_t>(
+      std::ranges::count_if(scene.bodies(), [](const Body& body) { return body.hydrostatics; }));
+  return request_size(bodies) + response_size(bodies) +
+         (with_hydrostatics > 0 ? hydrostatics_size(with_hydrostatics) : 0);
+}
+
+std::optional<Warning> step_warning(const Scene& scene, std::size_t bytes, const ReceiveBuffer& buffer) {
+  if (bytes <= buffer.max_message) return std::nullopt;
+  const BufferLimit limit = buffer_limit(buffer, bytes);
+  return Warning{"the messages of a step of all " +
+                     pluralize(static_cast<std::int64_t>(scene.bodies().size()), "body", "bodies"),
+                 std::to_string(bytes) + " bytes, some of which may not reach this view",
+                 "at most " + std::to_string(buffer.max_message) +
+                     " bytes, which the kernel's receive buffer holds until they are read",
+                 limit.cause,
+                 "To show every step, " + limit.remedy + "; service and clients are not affected"};
+}
+
 }  // namespace
 
 void use_idle_scheduling() {
@@ -52,6 +75,8 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
                                   const ObservedChannels& channels, SnapshotBroadcaster& broadcaster) {
   Expected<UdpmReceiver> receiver = UdpmReceiver::open(lcm_url);
   if (!receiver) return tl::unexpected(receiver.error());
+  const std::size_t bytes_per_step = largest_step(scene);
+  receiver->reserve(bytes_per_step);
   std::vector<std::pair<std::string, Route>> subscriptions{
       {channels.states, {MessageKind::kRequest}},
       {channels.wrenches, {MessageKind::kResponse}},
@@ -73,7 +98,10 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
     if (!subscribed) return tl::unexpected(subscribed.error());
     routes.push_back(route);
   }
-  return LiveView(scene, std::move(*receiver), std::move(routes), channels.poses, broadcaster);
+  std::optional<Warning> warning = step_warning(scene, bytes_per_step, receiver->receive_buffer());
+  LiveView view(scene, std::move(*receiver), std::move(routes), channels.poses, broadcaster);
+  view.buffer_warning_ = std::move(warning);
+  return view;
 }
 
 void LiveView::run(const TerminationSignals& termination, const std::function<bool()>& keep_running) {

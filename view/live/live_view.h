@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ class LiveView {
   static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
                                  const ObservedChannels& channels, SnapshotBroadcaster& broadcaster);
 
+  // That messages about all bodies of the scene may be lost to this view because the kernel grants it too
+  // small a receive buffer; nullopt: they fit.
+  const std::optional<Warning>& buffer_warning() const { return buffer_warning_; }
+
   // Runs until a termination signal arrives or keep_running returns false; to be called once.
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
@@ -58,6 +63,7 @@ class LiveView {
 
   UdpmReceiver receiver_;
   std::vector<Route> routes_;  // by the receiver's channel number
+  std::optional<Warning> buffer_warning_;
   SnapshotBroadcaster* broadcaster_;
   double start_;  // [s], steady clock
   double now_;

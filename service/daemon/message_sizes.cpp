@@ -1,0 +1,115 @@
+#include "service/daemon/message_sizes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "base/format.h"
+#include "messages/wire.h"
+#include "scene/scene_report.h"
+#include "service/daemon/daemon.h"
+#include "transport/lcm_connection.h"
+#include "transport/udpm_url.h"
+
+namespace buoyancy::service {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+LargestMessage make_message(const std::string& name, std::size_t bodies, std::size_t bytes,
+                            const std::string& channel) {
+  return {.subject = name + " for all " + pluralize(static_cast<std::int64_t>(bodies), "body", "bodies"),
+          .channel = channel,
+          .bytes = bytes,
+          .packets = packet_count(bytes, channel)};
+}
+
+std::string to_text(const LargestMessage& message) {
+  return "  " + message.subject + ": " + std::to_string(message.bytes) + " bytes in " +
+         pluralize(static_cast<std::int64_t>(message.packets), "packet", "packets") + "\n";
+}
+
+Json to_json(const LargestMessage& message) {
+  return {{"bytes", message.bytes}, {"packets", message.packets}};
+}
+
+std::vector<Warning> warnings_of(const LargestMessages& messages,
+                                 const std::optional<ReceiveBuffer>& buffer) {
+  return buffer ? size_warnings(messages, *buffer) : std::vector<Warning>();
+}
+
+}  // namespace
+
+LargestMessages largest_messages(const Scene& scene, const ChannelNames& channels) {
+  const std::size_t bodies = scene.bodies().size();
+  const auto with_hydrostatics = static_cast<std::size_t>(
+      std::ranges::count_if(scene.bodies(), [](const Body& body) { return body.hydrostatics; }));
+  LargestMessages messages{
+      .request = make_message("request", bodies, request_size(bodies), channels.states),
+      .response = make_message("response", bodies, response_size(bodies), channels.wrenches),
+      .hydrostatics = std::nullopt};
+  if (with_hydrostatics > 0) {
+    messages.hydrostatics = make_message("hydrostatics", with_hydrostatics,
+                                         hydrostatics_size(with_hydrostatics), channels.hydrostatics);
+  }
+  return messages;
+}
+
+std::vector<Warning> size_warnings(const LargestMessages& messages, const ReceiveBuffer& buffer) {
+  std::vector<Warning> warnings;
+  const auto fits = [&warnings](const LargestMessage& message) {
+    Expected<void> checked = check_message_size(message.subject, message.bytes);
+    if (!checked) warnings.push_back(std::move(checked.error()));
+    return checked.has_value();
+  };
+  const LargestMessage& request = messages.request;
+  if (fits(request)) {
+    const std::optional<Warning> warning =
+        receive_buffer_warning(request.subject, request.bytes, request.channel, buffer);
+    if (warning) warnings.push_back(*warning);
+  }
+  if (messages.hydrostatics) fits(*messages.hydrostatics);
+  return warnings;
+}
+
+std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& messages,
+                                                     const std::string& lcm_url) {
+  const Expected<UdpmUrl> url = parse_udpm_url(resolve_lcm_url(lcm_url));
+  if (!url) return std::nullopt;  // memq://, since the options have been checked
+  const std::optional<std::int32_t> fixed = url->recv_buf_size;
+  const std::size_t requested =
+      fixed ? static_cast<std::size_t>(*fixed) : receive_buffer_for(messages.request.bytes);
+  return ReceiveBuffer{.max_message = grantable_receive_buffer(requested),
+                       .requested = requested,
+                       .fixed_by_url = fixed.has_value()};
+}
+
+std::string check_report_text(const Scene& scene, const LargestMessages& messages,
+                              const std::optional<ReceiveBuffer>& buffer) {
+  std::string text = scene_report_text(scene) + "\nmessages\n";
+  text += to_text(messages.request) + to_text(messages.response);
+  if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
+  if (buffer) {
+    text += "  receive buffer that this machine grants this user: " + std::to_string(buffer->max_message) +
+            " bytes\n";
+  }
+  for (const Warning& warning : warnings_of(messages, buffer)) text += "warning: " + warning.message() + "\n";
+  return text;
+}
+
+std::string check_report_json(const Scene& scene, const LargestMessages& messages,
+                              const std::optional<ReceiveBuffer>& buffer) {
+  Json report = Json::parse(scene_report_json(scene));
+  report["messages"] = {
+      {"request", to_json(messages.request)},
+      {"response", to_json(messages.response)},
+      {"hydrostatics", messages.hydrostatics ? to_json(*messages.hydrostatics) : Json(nullptr)}};
+  report["receive_buffer"] = buffer ? Json(buffer->max_message) : Json(nullptr);
+  report["warnings"] = Json::array();
+  for (const Warning& warning : warnings_of(messages, buffer))
+    report["warnings"].push_back(warning.message());
+  return report.dump(2) + "\n";
+}
+
+}  // namespace buoyancy::service
