@@ -23,10 +23,9 @@
 namespace buoyancy::bench {
 namespace {
 
-constexpr std::size_t kBlock = 5;          // number of requests before switching between service and echo
-constexpr double kGoalSteps = 60.0;        // per second
-constexpr double kFarAway = 10.0;          // [m], of a dry or fully submerged body from the surface
-constexpr int kDefaultBuffer = 4'194'304;  // [bytes], what service and client request for themselves
+constexpr std::size_t kBlock = 5;    // number of requests before switching between service and echo
+constexpr double kGoalSteps = 60.0;  // per second
+constexpr double kFarAway = 10.0;    // [m], of a dry or fully submerged body from the surface
 
 struct LargeScene {
   std::string name;
@@ -122,7 +121,7 @@ struct Figures {
 Figures measure(const LargeScene& large, std::size_t runs, std::size_t requests) {
   const std::string text = bodies_of(large.bodies, kCrate);
   ServiceProcess service(text);
-  const EchoProcess echo(large.bodies, kDefaultBuffer);
+  const EchoProcess echo(large.bodies);
   const Scene scene = scene_of(text);
   const RetryPolicy retry_policy{.timeout = 0.5, .max_retries = 20};
   Clients clients{client_at(kServicePort, retry_policy), client_at(kEchoPort, retry_policy),

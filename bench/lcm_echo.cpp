@@ -16,6 +16,7 @@
 #include <lcm/lcm.h>
 
 #include "messages/wire.h"
+#include "transport/message_limits.h"
 
 namespace {
 
@@ -29,6 +30,15 @@ std::vector<std::uint8_t> make_response(std::int32_t bodies) {
   std::vector<std::uint8_t> bytes;
   encode(response, bytes);
   return bytes;
+}
+
+// Gives liblcm's sockets the receive buffer that buoyancyd has. liblcm asks for at most net.core.rmem_max and
+// does not disclose its sockets; other descriptors reject the option.
+void enlarge_receive_buffers(std::size_t message_bytes) {
+  constexpr int kDescriptors = 64;
+  for (int fd = 3; fd < kDescriptors; ++fd) {
+    buoyancy::set_receive_buffer(fd, buoyancy::receive_buffer_for(message_bytes));
+  }
 }
 
 extern "C" void echo_request(const lcm_recv_buf_t* request, const char* /*channel*/, void* response) {
@@ -50,6 +60,7 @@ int main(int argc, char** argv) {
   std::vector<std::uint8_t> response = make_response(bodies);
   lcm_t* lcm = lcm_create(argv[1]);
   if (lcm == nullptr || lcm_get_fileno(lcm) < 0) return 1;
+  enlarge_receive_buffers(buoyancy::request_size(static_cast<std::size_t>(bodies)));
   lcm_subscribe(lcm, std::string(buoyancy::kStatesChannel).c_str(), echo_request, &response);
   std::fprintf(stderr, "ready\n");
   while (lcm_handle(lcm) == 0) {

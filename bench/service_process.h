@@ -83,10 +83,6 @@ class ServiceProcess {
 class EchoProcess {
  public:
   explicit EchoProcess(int bodies) : process_({LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)}) {}
-  // receive_buffer: [bytes], for messages that do not fit into the kernel's default.
-  EchoProcess(int bodies, int receive_buffer)
-      : process_({LCM_ECHO, url_of_port(kEchoPort) + "&recv_buf_size=" + std::to_string(receive_buffer),
-                  std::to_string(bodies)}) {}
 
  private:
   ReadyProcess process_;
