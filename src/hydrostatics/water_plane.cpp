@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 // As in wetted_tree_sum.cpp.
 #define HWY_BROKEN_EMU128 1
@@ -233,15 +234,24 @@ Eigen::Quaterniond within_range(const Eigen::Quaterniond& q) {
   return {scaled(q.w()), scaled(q.x()), scaled(q.y()), scaled(q.z())};
 }
 
+// Returns the point, or NaN where arithmetic without fused multiply-add would overflow: otherwise the
+// instruction set would decide whether there is a result.
+Vec3 nan_if_out_of_range(const Vec3& point) {
+  const bool in_range = point.cwiseAbs().maxCoeff() < 0x1p996;
+  return in_range ? point : Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
 void load(std::size_t lane, const Pose& pose, const Vec3& c_B, PlaneLanes& lanes) {
   const Eigen::Quaterniond q = within_range(pose.q_WB);
   lanes.q[0][lane] = q.w();
   lanes.q[1][lane] = q.x();
   lanes.q[2][lane] = q.y();
   lanes.q[3][lane] = q.z();
+  const Vec3 p = nan_if_out_of_range(pose.p_WB);
+  const Vec3 c = nan_if_out_of_range(c_B);
   for (std::size_t i = 0; i < 3; ++i) {
-    lanes.p[i][lane] = pose.p_WB[static_cast<Eigen::Index>(i)];
-    lanes.c[i][lane] = c_B[static_cast<Eigen::Index>(i)];
+    lanes.p[i][lane] = p[static_cast<Eigen::Index>(i)];
+    lanes.c[i][lane] = c[static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -261,7 +271,8 @@ WaterPlane plane_of(std::size_t lane, const PlaneLanes& lanes) {
 
 WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B) {
   WaterPlane plane;
-  HWY_DYNAMIC_DISPATCH(compute_plane)(within_range(pose.q_WB), pose.p_WB, c_B, water, plane);
+  HWY_DYNAMIC_DISPATCH(compute_plane)
+  (within_range(pose.q_WB), nan_if_out_of_range(pose.p_WB), nan_if_out_of_range(c_B), water, plane);
   return plane;
 }
 

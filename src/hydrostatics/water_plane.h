@@ -49,6 +49,7 @@ struct WaterPlane {
   double height(const Vec3& y) const { return up_B.dot(y) - h_c; }
 };
 
+// h_c is NaN where a coordinate of the position or of c is 2^996 m (7e299 m) or more.
 WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B);
 
 // Sets planes[i] to water_plane_in_body(poses[i], water, centers_B[i]), the same bits in a fraction of the

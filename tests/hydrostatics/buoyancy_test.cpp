@@ -7,7 +7,9 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/immersion.h"
+#include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
@@ -116,14 +118,17 @@ TEST(Buoyancy, HasRoundingBoundForExactMethodsAndSubmergedBodies) {
 
 TEST(Buoyancy, ReportsOutOfRangeInsteadOfInfinity) {
   const Solver solver(unit_box(), Method::kExact);
-  for (const double z : {1e308, -1e308}) {
-    Pose pose = at_height(z);
-    Water water;
-    water.up_W = Vec3(0.6, 0, 0.8);
-    pose.p_WB.x() = z;
-    const BuoyancyResult result = buoyancy(solver, pose, water, Vec3::Zero());
-    EXPECT_EQ(result.status, BuoyancyStatus::kOutOfRange);
-    EXPECT_EQ(result.force_W, Vec3::Zero());
+  for (const std::string& target : simd_targets()) {
+    const ForcedTarget forced(target);
+    for (const double z : {1e308, -1e308}) {
+      Pose pose = at_height(z);
+      Water water;
+      water.up_W = Vec3(0.6, 0, 0.8);
+      pose.p_WB.x() = z;
+      const BuoyancyResult result = buoyancy(solver, pose, water, Vec3::Zero());
+      EXPECT_EQ(result.status, BuoyancyStatus::kOutOfRange) << target << ' ' << z;
+      EXPECT_EQ(result.force_W, Vec3::Zero());
+    }
   }
   Water heavy;
   heavy.density = 1e300;

@@ -18,6 +18,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/agreement.h"
 #include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
@@ -26,15 +27,6 @@ namespace buoyancy {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-// Forces an instruction set for one scope.
-class ForcedTarget {
- public:
-  explicit ForcedTarget(const std::string& name) { EXPECT_TRUE(force_simd_target(name)) << name; }
-  ForcedTarget(const ForcedTarget&) = delete;
-  ForcedTarget& operator=(const ForcedTarget&) = delete;
-  ~ForcedTarget() { force_simd_target(""); }
-};
 
 TEST(SimdTargets, IncludesScalarAndCanBeForcedByName) {
   const std::vector<std::string> targets = simd_targets();

@@ -11,6 +11,7 @@
 
 #include "hydrostatics/water_plane.h"
 #include "hydrostatics/wetted_tree_sum.h"
+#include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/support/allocation_count.h"
 
@@ -71,11 +72,10 @@ TEST(WaterPlanes, HaveSameBitsOneByOneAndOnEveryTarget) {
     }
     const std::vector<PlaneBits> expected = bits_one_by_one(requests, water);
     for (const std::string& target : simd_targets()) {
-      ASSERT_TRUE(force_simd_target(target));
+      const ForcedTarget forced(target);
       ASSERT_EQ(bits_one_by_one(requests, water), expected) << target;
       ASSERT_NO_FATAL_FAILURE(expect_bits(expected, requests, water));
     }
-    force_simd_target("");
   }
 }
 
@@ -94,10 +94,9 @@ TEST(WaterPlanes, EqualsPlaneOfEachBodyAtLimitsOfDouble) {
   }
   // Where products underflow, an instruction set with fused multiply-add gives other bits than one without.
   for (const std::string& target : simd_targets()) {
-    ASSERT_TRUE(force_simd_target(target));
+    const ForcedTarget forced(target);
     ASSERT_NO_FATAL_FAILURE(expect_bits(bits_one_by_one(requests, Water()), requests, Water()));
   }
-  force_simd_target("");
 }
 
 TEST(WaterPlanes, DoNotAllocate) {
