@@ -18,7 +18,7 @@ Expected<Client> Client::open(const ClientOptions& options) {
 }
 
 Client::Client(ClientVariant client, std::int64_t session_id) : client_(std::move(client)) {
-  request_.id.session_id = session_id;
+  next_.session_id = session_id;
 }
 
 Expected<std::optional<Warning>> Client::reserve(std::size_t bodies) {
@@ -27,12 +27,11 @@ Expected<std::optional<Warning>> Client::reserve(std::size_t bodies) {
 
 Expected<const WrenchResponse*> Client::request(std::int64_t utime, std::span<const BodyState> states,
                                                 double lead_time) {
-  request_.id.utime = utime;
-  request_.lead_time = lead_time;
-  request_.bodies.assign(states.begin(), states.end());
+  next_.utime = utime;
+  const BorrowedRequest request(next_, lead_time, states);
   Expected<const WrenchResponse*> response =
-      std::visit([this](auto& client) { return client.request(request_); }, client_);
-  ++request_.id.seq;
+      std::visit([&](auto& client) { return client.request(request); }, client_);
+  ++next_.seq;
   return response;
 }
 

@@ -52,7 +52,7 @@ class Client {
   Client(ClientVariant client, std::int64_t session_id);
 
   ClientVariant client_;
-  WrenchRequest request_;  // reused; its id is the next request's
+  RequestId next_;  // of the next request
 };
 
 // A random session_id >= 0. The probability that it equals a given other one is 2^-63.

@@ -11,7 +11,7 @@ namespace buoyancy {
 FreeRunningClient::FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval)
     : channel_(std::move(channel)), retry_policy_(retry_policy), interval_(to_duration(interval)) {}
 
-Expected<const WrenchResponse*> FreeRunningClient::request(const WrenchRequest& request) {
+Expected<const WrenchResponse*> FreeRunningClient::request(const BorrowedRequest& request) {
   if (!channel_.has_response()) {
     Expected<const WrenchResponse*> first =
         request_with_retries(channel_, request, retry_policy_, statistics_);

@@ -26,7 +26,7 @@ class FreeRunningClient {
   // Waits for the start of the next interval, sends the request, and returns the newest response once it is
   // the request's own or the interval is over. The first request waits as in lock-step mode, since there is
   // no earlier response to use.
-  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  Expected<const WrenchResponse*> request(const BorrowedRequest& request);
   ClientStats statistics() const;
 
  private:

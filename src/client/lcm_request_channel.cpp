@@ -90,7 +90,7 @@ LcmRequestChannel::Explanation LcmRequestChannel::explain_no_response() const {
   return explanation;
 }
 
-Expected<void> LcmRequestChannel::send(const WrenchRequest& request) {
+Expected<void> LcmRequestChannel::send(const BorrowedRequest& request) {
   if (request.bodies.size() > reserved_bodies_) {
     if (const auto reserved = reserve(request.bodies.size()); !reserved) return make_error(reserved.error());
   }

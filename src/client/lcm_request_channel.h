@@ -48,7 +48,7 @@ class LcmRequestChannel {
 
   // Encodes and publishes the request. Precondition: session_id is constant, seq does not decrease. Errors:
   // those of check_size() and of LcmConnection::publish.
-  Expected<void> send(const WrenchRequest& request);
+  Expected<void> send(const BorrowedRequest& request);
   // Publishes the bytes of the last request again.
   Expected<void> resend();
 

@@ -9,7 +9,7 @@ namespace buoyancy {
 LockstepClient::LockstepClient(LcmRequestChannel channel, RetryPolicy retry_policy)
     : channel_(std::move(channel)), retry_policy_(retry_policy) {}
 
-Expected<const WrenchResponse*> LockstepClient::request(const WrenchRequest& request) {
+Expected<const WrenchResponse*> LockstepClient::request(const BorrowedRequest& request) {
   return request_with_retries(channel_, request, retry_policy_, statistics_);
 }
 

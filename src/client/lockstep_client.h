@@ -18,7 +18,7 @@ class LockstepClient {
   // See LcmRequestChannel::reserve().
   Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }
 
-  Expected<const WrenchResponse*> request(const WrenchRequest& request);
+  Expected<const WrenchResponse*> request(const BorrowedRequest& request);
   const ClientStats& statistics() const { return statistics_; }
 
  private:

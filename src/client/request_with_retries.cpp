@@ -14,7 +14,8 @@ std::string subject(const LcmRequestChannel& channel, std::int64_t seq) {
 
 }  // namespace
 
-Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel, const WrenchRequest& request,
+Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
+                                                     const BorrowedRequest& request,
                                                      const RetryPolicy& retry_policy,
                                                      ClientStats& statistics) {
   if (const Expected<void> checked = channel.check_size(request.bodies.size()); !checked) {
@@ -39,7 +40,8 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
   }
 }
 
-Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel, const WrenchRequest& request,
+Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
+                                               const BorrowedRequest& request,
                                                const WrenchResponse& response) {
   const bool same_bodies = std::equal(
       request.bodies.begin(), request.bodies.end(), response.bodies.begin(), response.bodies.end(),

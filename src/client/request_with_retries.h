@@ -12,12 +12,14 @@ namespace buoyancy {
 
 // Sends the request, and the same bytes again after each timeout, until its response arrives or the retries
 // are used up. A failed sending counts as a lost request, since network interfaces may come back.
-Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel, const WrenchRequest& request,
+Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
+                                                     const BorrowedRequest& request,
                                                      const RetryPolicy& retry_policy,
                                                      ClientStats& statistics);
 
 // Returns the response, or an error if it does not hold the request's bodies in the request's order.
-Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel, const WrenchRequest& request,
+Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
+                                               const BorrowedRequest& request,
                                                const WrenchResponse& response);
 
 // waited: time without a response [s].

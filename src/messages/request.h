@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace buoyancy {
@@ -26,6 +27,19 @@ struct WrenchRequest {
   RequestId id;
   double lead_time = 0.0;  // [s]
   std::vector<BodyState> bodies;
+};
+
+// A request whose bodies are stored by the caller, so that they need not be copied.
+struct BorrowedRequest {
+  RequestId id;
+  double lead_time = 0.0;  // [s]
+  std::span<const BodyState> bodies;
+
+  BorrowedRequest(const RequestId& of, double lead, std::span<const BodyState> states)
+      : id(of), lead_time(lead), bodies(states) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): a request lends its bodies wherever they may be borrowed
+  BorrowedRequest(const WrenchRequest& request)
+      : id(request.id), lead_time(request.lead_time), bodies(request.bodies) {}
 };
 
 // The values equal the constants of body_wrench_t.lcm.

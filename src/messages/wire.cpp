@@ -151,8 +151,10 @@ std::size_t hydrostatics_size(std::size_t bodies) {
   return encoded_size<BodiesHydrostatics>(bodies);
 }
 
-void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes) {
-  encode_message(request, bytes);
+void encode(const BorrowedRequest& request, std::vector<std::uint8_t>& bytes) {
+  const WrenchRequest fixed{.id = request.id, .lead_time = request.lead_time, .bodies = {}};
+  BigEndianWriter writer(encode_fixed(fixed, request.bodies.size(), bytes));
+  for (const BodyState& body : request.bodies) visit_fields(body, writer);
 }
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes) {
   encode_message(response, bytes);

@@ -49,7 +49,7 @@ std::size_t hydrostatics_size(std::size_t bodies);
 
 // Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest
 // message.
-void encode(const WrenchRequest& request, std::vector<std::uint8_t>& bytes);
+void encode(const BorrowedRequest& request, std::vector<std::uint8_t>& bytes);
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);
 
