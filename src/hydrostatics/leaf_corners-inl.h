@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -62,7 +63,6 @@ HWY_INLINE std::uint32_t choose_whole(const LeafPatch& leaf, std::uint32_t mostl
 
 HWY_INLINE void find_work(const LeafPatch& leaf, std::uint32_t wet, LeafWork& work) {
   // Index: the lowest three bits tell which of a, b and c are wet.
-  constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
   constexpr std::array<std::uint8_t, 8> kMostlyWet{0, 0, 0, 1, 0, 1, 1, 1};
   constexpr std::array<std::uint8_t, 8> kCut{0, 1, 1, 1, 1, 1, 1, 0};
   std::uint32_t mostly_wet = 0;

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "geometry/meshlets.h"
+#include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/wetted_surface.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -167,10 +168,43 @@ HWY_INLINE double sum_of_lanes(const std::array<Lane, kParts>& parts) {
     hn::Store(parts[part], Lanes(), values.data() + kLanes * part);
   return (values[0] + values[1]) + (values[2] + values[3]);
 }
-HWY_INLINE Point<double> sum_of_lanes(const std::array<Lane, kParts>& x, const std::array<Lane, kParts>& y,
-                                      const std::array<Lane, kParts>& z) {
-  return {sum_of_lanes(x), sum_of_lanes(y), sum_of_lanes(z)};
-}
+
+// Sums one number per triangle.
+class LaneSum {
+ public:
+  HWY_INLINE LaneSum() { clear(); }
+  HWY_INLINE void add(std::size_t part, Lane value) { parts_[part] = parts_[part] + value; }
+
+  // Returns what was added since the last call.
+  HWY_INLINE double take() {
+    const double total = sum_of_lanes(parts_);
+    clear();
+    return total;
+  }
+
+ private:
+  HWY_INLINE void clear() {
+    for (Lane& part : parts_) part = lane(0.0);
+  }
+
+  std::array<Lane, kParts> parts_;
+};
+
+// Sums one vector per triangle.
+class LanePointSum {
+ public:
+  // An implicit constructor would not be compiled for the instruction set.
+  HWY_INLINE LanePointSum() {}  // NOLINT(modernize-use-equals-default)
+  HWY_INLINE void add(std::size_t part, LanePoint value) {
+    x_.add(part, value.x);
+    y_.add(part, value.y);
+    z_.add(part, value.z);
+  }
+  HWY_INLINE Point<double> take() { return {x_.take(), y_.take(), z_.take()}; }
+
+ private:
+  LaneSum x_, y_, z_;
+};
 
 // The triangles that a sum includes: all, or those of a mask.
 struct IncludeAll {
@@ -186,45 +220,33 @@ class VolumeLanes {
  public:
   using Total = VolumeElementSum;
 
-  HWY_INLINE explicit VolumeLanes(const Vec3& apex) : apex_(lane_point(apex)) { clear(); }
+  HWY_INLINE explicit VolumeLanes(const Vec3& apex) : apex_(lane_point(apex)) {}
 
   template <typename Include>
   HWY_INLINE void add(std::size_t part, const LaneVertex& a, const LaneVertex& b, const LaneVertex& c,
                       const Include& include) {
     const Lane v6 = include(six_volumes(a.y, b.y, c.y));
-    const LanePoint moment = v6 * (a.y + b.y + c.y);
-    volume6_[part] = volume6_[part] + v6;
-    moment_x_[part] = moment_x_[part] + moment.x;
-    moment_y_[part] = moment_y_[part] + moment.y;
-    moment_z_[part] = moment_z_[part] + moment.z;
+    volume6_.add(part, v6);
+    moment6_.add(part, v6 * (a.y + b.y + c.y));
   }
 
   // A part of a tetrahedron is smaller than the tetrahedron.
   HWY_INLINE void add_bound(std::size_t part, const LaneVertex& a, const LaneVertex& b, const LaneVertex& c,
                             const IncludeSome& include) {
-    bound_[part] = bound_[part] + include(hn::Abs(six_volumes(a.y, b.y, c.y)));
+    bound_.add(part, include(hn::Abs(six_volumes(a.y, b.y, c.y))));
   }
 
   // Returns what was added since the last call.
-  HWY_INLINE Total take() {
-    const Total total{{sum_of_lanes(volume6_), sum_of_lanes(moment_x_, moment_y_, moment_z_)},
-                      sum_of_lanes(bound_)};
-    clear();
-    return total;
-  }
+  HWY_INLINE Total take() { return {{volume6_.take(), moment6_.take()}, bound_.take()}; }
 
  private:
   HWY_INLINE Lane six_volumes(LanePoint a, LanePoint b, LanePoint c) const {
     return dot(a - apex_, cross(b - a, c - a));
   }
 
-  HWY_INLINE void clear() {
-    for (std::size_t part = 0; part < kParts; ++part)
-      volume6_[part] = moment_x_[part] = moment_y_[part] = moment_z_[part] = bound_[part] = lane(0.0);
-  }
-
   LanePoint apex_;
-  std::array<Lane, kParts> volume6_, moment_x_, moment_y_, moment_z_, bound_;
+  LaneSum volume6_, bound_;
+  LanePointSum moment6_;
 };
 
 // Pressure on the wetted surface (pressure_elements.h).
@@ -232,7 +254,7 @@ class PressureLanes {
  public:
   using Total = PressureElementSum;
 
-  HWY_INLINE explicit PressureLanes(const Vec3& up) : up_(lane_point(up)) { clear(); }
+  HWY_INLINE explicit PressureLanes(const Vec3& up) : up_(lane_point(up)) {}
 
   template <typename Include>
   HWY_INLINE void add(std::size_t part, const LaneVertex& a, const LaneVertex& b, const LaneVertex& c,
@@ -242,17 +264,11 @@ class PressureLanes {
     const Lane b_z = include(b.z);
     const Lane c_z = include(c.z);
     const Lane z_sum = a_z + b_z + c_z;
-    const LanePoint force = z_sum * twice_area;
     const LanePoint zy = (z_sum + a_z) * a.y + (z_sum + b_z) * b.y + (z_sum + c_z) * c.y;
-    const LanePoint torque = cross(zy, twice_area);
     const Lane zz = a_z * a_z + b_z * b_z + c_z * c_z + a_z * b_z + b_z * c_z + c_z * a_z;
-    force_x_[part] = force_x_[part] + force.x;
-    force_y_[part] = force_y_[part] + force.y;
-    force_z_[part] = force_z_[part] + force.z;
-    torque_x_[part] = torque_x_[part] + torque.x;
-    torque_y_[part] = torque_y_[part] + torque.y;
-    torque_z_[part] = torque_z_[part] + torque.z;
-    z_squared_[part] = z_squared_[part] + zz * dot(up_, twice_area);
+    force6_.add(part, z_sum * twice_area);
+    torque24_.add(part, cross(zy, twice_area));
+    z_squared12_.add(part, zz * dot(up_, twice_area));
   }
 
   // The integral of a convex function is at most that of the plane through its corner values:
@@ -261,31 +277,18 @@ class PressureLanes {
                             const IncludeSome& include) {
     const LanePoint twice_area = cross(b.y - a.y, c.y - a.y);
     const Lane depths = depth(a.z) + depth(b.z) + depth(c.z);
-    bound_[part] = bound_[part] + include(depths * hn::Sqrt(dot(twice_area, twice_area)));
+    bound_.add(part, include(depths * hn::Sqrt(dot(twice_area, twice_area))));
   }
 
   // Returns what was added since the last call.
-  HWY_INLINE Total take() {
-    const Total total{{sum_of_lanes(force_x_, force_y_, force_z_),
-                       sum_of_lanes(torque_x_, torque_y_, torque_z_), sum_of_lanes(z_squared_)},
-                      sum_of_lanes(bound_)};
-    clear();
-    return total;
-  }
+  HWY_INLINE Total take() { return {{force6_.take(), torque24_.take(), z_squared12_.take()}, bound_.take()}; }
 
  private:
-  HWY_INLINE void clear() {
-    for (std::size_t part = 0; part < kParts; ++part) {
-      force_x_[part] = force_y_[part] = force_z_[part] = lane(0.0);
-      torque_x_[part] = torque_y_[part] = torque_z_[part] = lane(0.0);
-      z_squared_[part] = bound_[part] = lane(0.0);
-    }
-  }
-
   HWY_INLINE static Lane depth(Lane height) { return hn::IfThenElseZero(is_wet(height), lane(0.0) - height); }
 
   LanePoint up_;
-  std::array<Lane, kParts> force_x_, force_y_, force_z_, torque_x_, torque_y_, torque_z_, z_squared_, bound_;
+  LanePointSum force6_, torque24_;
+  LaneSum z_squared12_, bound_;
 };
 
 // Adds all triangles of a fully submerged meshlet.
@@ -346,7 +349,6 @@ class CutBatch {
   // wet: one bit per vertex of the meshlet.
   HWY_INLINE void add(const CornerGroup* groups, const TriangleBits& chosen, const VertexRows& rows,
                       std::uint64_t wet) {
-    constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
     for (std::size_t word = 0; word < chosen.size(); ++word) {
       for (std::uint64_t bits = chosen[word]; bits != 0; bits &= bits - 1) {
         const std::size_t triangle = 64 * word + static_cast<std::size_t>(__builtin_ctzll(bits));
@@ -369,8 +371,7 @@ class CutBatch {
   // squares of their longest edges.
   template <typename Elements>
   HWY_INLINE double drain(Elements& elements) {
-    std::array<Lane, kParts> edges_squared;
-    for (Lane& lanes : edges_squared) lanes = lane(0.0);
+    LaneSum edges_squared;
     const std::size_t size = std::exchange(size_, 0);
     // Missing triangles of the last group repeat a valid one.
     for (std::size_t i = size; i % kGroupTriangles != 0; ++i) vertices_[i] = vertices_[0];
@@ -384,10 +385,10 @@ class CutBatch {
         clip(part, p, q, r, present, elements);
         const Lane longest =
             hn::Max(hn::Max(squared_distance(p, q), squared_distance(q, r)), squared_distance(r, p));
-        edges_squared[part] = edges_squared[part] + hn::IfThenElseZero(present, longest);
+        edges_squared.add(part, hn::IfThenElseZero(present, longest));
       }
     }
-    return sum_of_lanes(edges_squared);
+    return edges_squared.take();
   }
 
  private:

@@ -15,6 +15,10 @@
 
 namespace buoyancy {
 
+// Which corner of a triangle is alone on its side of the water, by a number whose lowest three bits tell
+// which of a, b and c are wet; 0 if none is. A table is faster than a branch, which cannot be predicted.
+inline constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
+
 // A point of the surface about the mesh's centre, and its signed height over the water.
 template <typename T>
 struct ClipVertex {
@@ -35,9 +39,7 @@ ClipVertex<T> intersect_edge(const ClipVertex<T>& wet, const ClipVertex<T>& dry)
 template <typename T, typename Visit>
 void for_each_wet_triangle(const ClipVertex<T>& a, const ClipVertex<T>& b, const ClipVertex<T>& c,
                            Visit&& visit) {
-  // Rotates the corners so that p differs from the two others. A table is faster than a branch, which cannot
-  // be predicted.
-  constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
+  // Rotates the corners so that p differs from the two others.
   const auto mask = static_cast<unsigned>(a.wet()) + 2 * static_cast<unsigned>(b.wet()) +
                     4 * static_cast<unsigned>(c.wet());
   const std::array<const ClipVertex<T>*, 5> corners{&a, &b, &c, &a, &b};

@@ -23,29 +23,16 @@ namespace buoyancy {
 // What becomes of the triangles that the water cuts: a bound on their contribution, or their wet parts.
 enum class CutTriangles { kBound, kClip };
 
-struct VolumeElementSum {
-  VolumeElements wet;
-  double cut_bound6 = 0.0;         // [m^3], 6 sum |V_i(o)| of the cut triangles, if not clipped
-  double cut_edges_squared = 0.0;  // [m^2], sum of (longest edge)^2 of the cut triangles, if clipped
-
-  VolumeElementSum& operator+=(const VolumeElementSum& other) {
-    wet += other.wet;
-    cut_bound6 += other.cut_bound6;
-    cut_edges_squared += other.cut_edges_squared;
-    return *this;
-  }
-};
-
-VolumeElementSum sum_volume_elements(const Meshlets& meshlets, const WaterPlane& plane, const Vec3& apex,
-                                     CutTriangles cut);
-
-struct PressureElementSum {
-  PressureElements wet;
-  // [m^3], sum over the cut triangles of twice the area times the sum of the corners' depths, if not clipped
+// Elements: VolumeElements or PressureElements, of the wet triangles.
+template <typename Elements>
+struct WettedSum {
+  Elements wet;
+  // [m^3], if not clipped. Volume: 6 sum |V_i(o)| of the cut triangles; pressure: the sum over them of twice
+  // the area times the sum of the corners' depths.
   double cut_bound6 = 0.0;
   double cut_edges_squared = 0.0;  // [m^2], sum of (longest edge)^2 of the cut triangles, if clipped
 
-  PressureElementSum& operator+=(const PressureElementSum& other) {
+  WettedSum& operator+=(const WettedSum& other) {
     wet += other.wet;
     cut_bound6 += other.cut_bound6;
     cut_edges_squared += other.cut_edges_squared;
@@ -53,6 +40,11 @@ struct PressureElementSum {
   }
 };
 
+using VolumeElementSum = WettedSum<VolumeElements>;
+using PressureElementSum = WettedSum<PressureElements>;
+
+VolumeElementSum sum_volume_elements(const Meshlets& meshlets, const WaterPlane& plane, const Vec3& apex,
+                                     CutTriangles cut);
 PressureElementSum sum_pressure_elements(const Meshlets& meshlets, const WaterPlane& plane, CutTriangles cut);
 
 // A triangle's precomputed volume element (paper_methods.h, `fast`): V_i, and V_i C_i.
