@@ -1,11 +1,10 @@
 // Double-double arithmetic: an unevaluated sum hi + lo of two doubles, |lo| <= ulp(hi)/2, about 32 decimal
 // digits.
 //
-// Used once per query to move the water plane into the body frame, where up . p_WB and k . c may cancel
-// almost completely. Source: T. J. Dekker, "A floating-point technique for extending the available
-// precision", Numerische Mathematik 18 (1971); sum() is that of T. Ogita, S. M. Rump and S. Oishi, "Accurate
-// sum and dot product", SIAM Journal on Scientific Computing 26 (2005). Relative error of each operation:
-// below 2^-100, as long as nothing over- or underflows.
+// Used to move the water plane to other points of the body, where k . c may cancel almost completely.
+// Source: T. J. Dekker, "A floating-point technique for extending the available precision", Numerische
+// Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as nothing over- or
+// underflows. The same operations on vectors are in water_plane.cpp.
 #pragma once
 
 namespace buoyancy {
@@ -72,13 +71,6 @@ inline DoubleDouble reciprocal(DoubleDouble a) {
   const DoubleDouble product = two_product(a.hi, first);
   const double rest = ((1.0 - product.hi) - product.lo) - a.lo * first;
   return quick_two_sum(first, rest * first);
-}
-
-// Returns the sum of three numbers with an error relative to the largest of them.
-inline DoubleDouble sum(DoubleDouble a, DoubleDouble b, DoubleDouble c) {
-  const DoubleDouble two = two_sum(a.hi, b.hi);
-  const DoubleDouble three = two_sum(two.hi, c.hi);
-  return quick_two_sum(three.hi, (two.lo + three.lo) + ((a.lo + b.lo) + c.lo));
 }
 
 }  // namespace buoyancy

@@ -124,6 +124,8 @@ HWY_INLINE DoubleDoubles<V> reciprocal(DoubleDoubles<V> a) {
   return quick_two_sum(first, hn::Mul(rest, first));
 }
 
+// The sum of three numbers with an error relative to the largest of them: T. Ogita, S. M. Rump and S. Oishi,
+// "Accurate sum and dot product", SIAM Journal on Scientific Computing 26 (2005).
 template <typename V>
 HWY_INLINE DoubleDoubles<V> sum(DoubleDoubles<V> a, DoubleDoubles<V> b, DoubleDoubles<V> c) {
   const DoubleDoubles<V> two = two_sum(a.hi, b.hi);
