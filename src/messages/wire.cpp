@@ -86,10 +86,11 @@ std::uint8_t* encode_fixed(const Message& message, std::size_t bodies, std::vect
   return bytes.data() + fixed_size<Message>();
 }
 
-template <typename Message>
-void encode_message(const Message& message, std::vector<std::uint8_t>& bytes) {
-  BigEndianWriter writer(encode_fixed(message, message.bodies.size(), bytes));
-  for (const auto& body : message.bodies) visit_fields(body, writer);
+// fixed: the message, whose own bodies do not count.
+template <typename Message, typename Bodies>
+void encode_message(const Message& fixed, const Bodies& bodies, std::vector<std::uint8_t>& bytes) {
+  BigEndianWriter writer(encode_fixed(fixed, bodies.size(), bytes));
+  for (const auto& body : bodies) visit_fields(body, writer);
 }
 
 }  // namespace
@@ -152,15 +153,14 @@ std::size_t hydrostatics_size(std::size_t bodies) {
 }
 
 void encode(const BorrowedRequest& request, std::vector<std::uint8_t>& bytes) {
-  const WrenchRequest fixed{.id = request.id, .lead_time = request.lead_time, .bodies = {}};
-  BigEndianWriter writer(encode_fixed(fixed, request.bodies.size(), bytes));
-  for (const BodyState& body : request.bodies) visit_fields(body, writer);
+  encode_message(WrenchRequest{.id = request.id, .lead_time = request.lead_time, .bodies = {}},
+                 request.bodies, bytes);
 }
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes) {
-  encode_message(response, bytes);
+  encode_message(response, response.bodies, bytes);
 }
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes) {
-  encode_message(hydrostatics, bytes);
+  encode_message(hydrostatics, hydrostatics.bodies, bytes);
 }
 
 RequestId response_id(Bytes bytes) {
