@@ -1,6 +1,5 @@
 #include "service/daemon/message_sizes.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -43,8 +42,7 @@ std::vector<Warning> warnings_of(const LargestMessages& messages,
 
 LargestMessages largest_messages(const Scene& scene, const ChannelNames& channels) {
   const std::size_t bodies = scene.bodies().size();
-  const auto with_hydrostatics = static_cast<std::size_t>(
-      std::ranges::count_if(scene.bodies(), [](const Body& body) { return body.hydrostatics; }));
+  const std::size_t with_hydrostatics = scene.bodies_with_hydrostatics();
   LargestMessages messages{
       .request = make_message("request", bodies, request_size(bodies), channels.states),
       .response = make_message("response", bodies, response_size(bodies), channels.wrenches),

@@ -16,7 +16,7 @@ bool same_bytes(Bytes a, Bytes b) {
 
 // One entry per body, if any body has the hydrostatics output.
 std::size_t hydrostatics_cache_size(const Scene& scene) {
-  return scene.any_hydrostatics() ? scene.bodies().size() : 0;
+  return scene.bodies_with_hydrostatics() > 0 ? scene.bodies().size() : 0;
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& s
 void RequestHandler::compute_hydrostatics(const RequestView& request, const ResponseWriter& response) {
   hydrostatics_.id = request.id();
   hydrostatics_.bodies.clear();
-  for (std::size_t i = 0; scene_->any_hydrostatics() && i < request.size(); ++i) {
+  for (std::size_t i = 0; scene_->bodies_with_hydrostatics() > 0 && i < request.size(); ++i) {
     const BodyState state = request.body(i);
     const std::optional<std::size_t> index = scene_->index_of(state.body_id, i);
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;

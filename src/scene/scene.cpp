@@ -103,7 +103,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     if (is_of_paper(body.method) && !prepared.mesh.meshlets) {
       prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
     }
-    scene.any_hydrostatics_ = scene.any_hydrostatics_ || body.hydrostatics;
+    if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
                              body.hydrostatics, center_of_mass(body.dynamics, prepared), body.dynamics});

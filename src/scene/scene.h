@@ -59,7 +59,7 @@ class Scene {
   std::optional<std::size_t> index_of(std::int32_t id, std::size_t likely = 0) const {
     return index_.find(id, likely);
   }
-  bool any_hydrostatics() const { return any_hydrostatics_; }  // whether any body has them
+  std::size_t bodies_with_hydrostatics() const { return bodies_with_hydrostatics_; }
 
  private:
   std::string name_;
@@ -67,7 +67,7 @@ class Scene {
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;
   IdIndex index_;  // into bodies_
-  bool any_hydrostatics_ = false;
+  std::size_t bodies_with_hydrostatics_ = 0;
 };
 
 }  // namespace buoyancy

@@ -37,8 +37,7 @@ timespec to_timespec(double seconds) {
 // Request, response and hydrostatics of all bodies [bytes]. They may all arrive before the first is read.
 std::size_t largest_step(const Scene& scene) {
   const std::size_t bodies = scene.bodies().size();
-  const auto with_hydrostatics = static_cast<std::size_t>(
-      std::ranges::count_if(scene.bodies(), [](const Body& body) { return body.hydrostatics; }));
+  const std::size_t with_hydrostatics = scene.bodies_with_hydrostatics();
   return request_size(bodies) + response_size(bodies) +
          (with_hydrostatics > 0 ? hydrostatics_size(with_hydrostatics) : 0);
 }
