@@ -53,6 +53,9 @@ ChildCommand chromium(const TempDir& directory) {
           "--enable-unsafe-swiftshader",
           // GPU rasterization with software rendering only slows the page down.
           "--disable-gpu-rasterization",
+          // Chromium drops keys and clicks that arrive before the first frame of a page is drawn.
+          // chromedriver sets this for each Chromium that it starts itself.
+          "--allow-pre-commit-input",
           "--force-color-profile=srgb",
           "--force-device-scale-factor=1",
           "--lang=en-GB",
