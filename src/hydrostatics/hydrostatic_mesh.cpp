@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/double_double.h"
 #include "geometry/pairwise_sum.h"
-#include "hydrostatics/double_double.h"
 #include "hydrostatics/volume_elements.h"
 
 namespace buoyancy {

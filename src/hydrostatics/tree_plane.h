@@ -1,8 +1,8 @@
 // The water plane in the coordinates of a moment tree (MomentTree::scale).
 #pragma once
 
+#include "base/double_double.h"
 #include "geometry/moment_tree.h"
-#include "hydrostatics/double_double.h"
 #include "hydrostatics/water_plane.h"
 
 namespace buoyancy {

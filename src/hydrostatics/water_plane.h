@@ -17,19 +17,10 @@
 #include <Eigen/Geometry>
 
 #include "base/vec3.h"
+#include "base/water.h"
 #include "hydrostatics/point.h"
 
 namespace buoyancy {
-
-inline constexpr double kStandardGravity = 9.80665;  // [m/s^2]
-inline constexpr double kSeawaterDensity = 1025.0;   // [kg/m^3]
-
-struct Water {
-  Vec3 up_W = Vec3::UnitZ();          // unit
-  double level = 0.0;                 // [m], the surface is where up . x_W = level
-  double density = kSeawaterDensity;  // [kg/m^3], >= 0
-  double gravity = kStandardGravity;  // [m/s^2], >= 0
-};
 
 struct Pose {
   Vec3 p_WB = Vec3::Zero();                                  // [m]

@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "base/double_double.h"
 #include "geometry/pairwise_sum.h"
-#include "hydrostatics/double_double.h"
 #include "hydrostatics/tree_plane.h"
 #include "hydrostatics/triangle_clip.h"
 

@@ -57,10 +57,6 @@ std::string quotation(const toml::node& node) {
   return line;
 }
 
-std::string in_unit(std::string_view unit) {
-  return unit.empty() ? "" : " (" + std::string(unit) + ")";
-}
-
 // Returns the value of an integer or floating-point node, else nullopt.
 std::optional<double> number_of(const toml::node& node) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
@@ -100,20 +96,6 @@ std::string printable(std::string text) {
 
 std::string SceneParseContext::location(const toml::source_region& region) const {
   return file + ":" + std::to_string(region.begin.line);
-}
-
-bool NumberRange::contains(double value) const {
-  return std::isfinite(value) && value <= max && (min_inclusive ? value >= min : value > min);
-}
-
-std::string NumberRange::describe() const {
-  std::string text = "a finite number";
-  if (std::isfinite(min) && std::isfinite(max)) {
-    text = "a number from " + format_shortest(min) + " to " + format_shortest(max);
-  } else if (std::isfinite(min)) {
-    text = (min_inclusive ? "a finite number of at least " : "a finite number above ") + format_shortest(min);
-  }
-  return text + in_unit(unit);
 }
 
 const toml::node* TomlTable::node(std::string_view key) {

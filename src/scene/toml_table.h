@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +16,7 @@
 #include <toml++/toml.h>
 
 #include "base/error.h"
+#include "base/number_range.h"
 #include "base/vec3.h"
 
 namespace buoyancy {
@@ -30,37 +30,6 @@ struct SceneParseContext {
   std::optional<Error> error;
 
   std::string location(const toml::source_region& region) const;  // "scene.toml:12"
-};
-
-struct NumberRange {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool min_inclusive = true;
-  std::string_view unit;  // "kg"; empty for pure numbers
-
-  static NumberRange any(std::string_view unit) {
-    NumberRange range;
-    range.unit = unit;
-    return range;
-  }
-  static NumberRange from_zero(std::string_view unit) {
-    NumberRange range = any(unit);
-    range.min = 0.0;
-    return range;
-  }
-  static NumberRange above_zero(std::string_view unit) {
-    NumberRange range = from_zero(unit);
-    range.min_inclusive = false;
-    return range;
-  }
-  static NumberRange from_zero_to(double max) {
-    NumberRange range = from_zero("");
-    range.max = max;
-    return range;
-  }
-
-  bool contains(double value) const;
-  std::string describe() const;  // "a number above 0 (kg)"
 };
 
 class TomlTable {
