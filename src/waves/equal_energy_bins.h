@@ -1,0 +1,36 @@
+// Splits a density into bins of equal energy, for spectra over the frequency and over the direction.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace buoyancy {
+
+class EqualEnergyBins {
+ public:
+  // density: positive almost everywhere, and smooth between each two of the boundaries, which ascend.
+  // Integrates it with five points of Gauss-Legendre quadrature between each two.
+  EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries);
+
+  double energy() const { return integral_below_.back().energy; }  // the integral of the density
+  // The energy-weighted means of `bins` bins, ascending.
+  std::vector<double> means(std::size_t bins) const;
+
+ private:
+  struct Integral {
+    double energy = 0.0;        // of the density
+    double first_moment = 0.0;  // of the density times the variable
+  };
+
+  Integral integrate(double begin, double end) const;
+  // The integral up to the place below which there is this energy.
+  Integral integral_to(double energy) const;
+
+  std::function<double(double)> density_;
+  std::vector<double> boundaries_;
+  std::vector<Integral> integral_below_;  // each boundary
+};
+
+}  // namespace buoyancy

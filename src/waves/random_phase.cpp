@@ -1,0 +1,31 @@
+#include "waves/random_phase.h"
+
+namespace buoyancy {
+
+std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+  constexpr int kRounds = 10;
+  constexpr std::uint64_t kMultiplier0 = 0xD2511F53;
+  constexpr std::uint64_t kMultiplier1 = 0xCD9E8D57;
+  constexpr std::uint32_t kWeyl0 = 0x9E3779B9;
+  constexpr std::uint32_t kWeyl1 = 0xBB67AE85;
+  const auto high = [](std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32U); };
+  const auto low = [](std::uint64_t x) { return static_cast<std::uint32_t>(x); };
+  for (int round = 0; round < kRounds; ++round) {
+    const std::uint64_t product0 = kMultiplier0 * counter[0];
+    const std::uint64_t product1 = kMultiplier1 * counter[2];
+    counter = {high(product1) ^ counter[1] ^ key[0], low(product1), high(product0) ^ counter[3] ^ key[1],
+               low(product0)};
+    key[0] += kWeyl0;
+    key[1] += kWeyl1;
+  }
+  return counter;
+}
+
+double random_phase(std::uint64_t seed, std::uint32_t system, std::uint32_t component) {
+  const auto [first, second, third, fourth] = philox(
+      {component, system, 0, 0}, {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)});
+  const std::uint64_t bits = (std::uint64_t{first} << 32U | second) >> 11U;  // 53
+  return 360.0 * (static_cast<double>(bits) * 0x1p-53);
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,19 @@
+// Random phases of wave components: a counter-based generator, so that a phase depends on nothing but the
+// seed and the component's place.
+//
+// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3",
+// SC11: Philox4x32-10.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace buoyancy {
+
+// Philox4x32-10.
+std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+
+// [deg], uniform in [0, 360). The same on every machine.
+double random_phase(std::uint64_t seed, std::uint32_t system, std::uint32_t component);
+
+}  // namespace buoyancy

@@ -1,0 +1,181 @@
+#include "waves/sea.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "base/double_double.h"
+#include "base/format.h"
+#include "waves/dispersion.h"
+#include "waves/portable_math.h"
+#include "waves/sea_ranges.h"
+#include "waves/wave_spectrum.h"
+
+namespace buoyancy {
+namespace {
+
+// Checks the numbers of a description one by one and keeps the first error.
+class Checks {
+ public:
+  void start(std::string subject) { subject_ = std::move(subject); }
+
+  void in(std::string_view name, double value, const NumberRange& range) {
+    if (!range.contains(value)) fail(name, value, range.describe());
+  }
+  void fail(std::string_view name, double value, std::string expected, std::string cause = {},
+            std::string hint = {}) {
+    if (error_) return;
+    error_ = Error{subject_, std::string(name) + " = " + format_shortest(value), std::move(expected),
+                   std::move(cause), std::move(hint)};
+  }
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  std::string subject_;
+  std::optional<Error> error_;
+};
+
+void check_depth(Checks& checks, std::string_view name, double height, double depth) {
+  if (height < depth) return;
+  checks.fail(name, height, "less than the water's depth, " + format_shortest(depth) + " m",
+              "the depth is not in metres, or is that of a basin while the waves are those of a sea",
+              "Leave the depth out for deep water");
+}
+
+void check(Checks& checks, const RegularWave& wave, double depth) {
+  checks.in("height", wave.height, sea_ranges::kHeight);
+  checks.in("period", wave.period, sea_ranges::kPeriod);
+  checks.in("direction", wave.direction, sea_ranges::kAngle);
+  checks.in("phase", wave.phase, sea_ranges::kAngle);
+  check_depth(checks, "height", wave.height, depth);
+}
+
+void check(Checks& checks, const IrregularWaves& waves, double depth) {
+  checks.in("significant_wave_height", waves.significant_wave_height, sea_ranges::kHeight);
+  checks.in("peak_period", waves.peak_period, sea_ranges::kPeriod);
+  if (waves.gamma) checks.in("gamma", *waves.gamma, sea_ranges::kGamma);
+  checks.in("direction", waves.direction, sea_ranges::kAngle);
+  if (waves.spreading) checks.in("spreading", *waves.spreading, sea_ranges::kSpreading);
+  checks.in("frequencies", waves.frequencies, sea_ranges::kBins);
+  checks.in("directions", waves.directions, sea_ranges::kBins);
+  checks.in("cutoff", waves.cutoff, sea_ranges::kCutoff);
+  check_depth(checks, "significant_wave_height", waves.significant_wave_height, depth);
+}
+
+void check(Checks& checks, const WaveComponents& components, double depth) {
+  for (const WaveComponent& component : components) {
+    checks.in("amplitude", component.amplitude, sea_ranges::kHeight);
+    checks.in("angular_frequency", component.angular_frequency, sea_ranges::kAngularFrequency);
+    checks.in("direction", component.direction, sea_ranges::kAngle);
+    checks.in("phase", component.phase, sea_ranges::kAngle);
+    check_depth(checks, "amplitude", component.amplitude, depth);
+  }
+}
+
+std::size_t number_of_components(const WaveSystem& system) {
+  if (const auto* components = std::get_if<WaveComponents>(&system)) return components->size();
+  const auto* waves = std::get_if<IrregularWaves>(&system);
+  if (waves == nullptr) return 1;
+  const std::int32_t directions = waves->spreading ? waves->directions : 1;
+  return static_cast<std::size_t>(waves->frequencies) * static_cast<std::size_t>(directions);
+}
+
+std::optional<Error> error_in(const SeaDescription& description, const Water& water) {
+  Checks checks;
+  checks.start("the sea");
+  if (description.depth != std::numeric_limits<double>::infinity()) {
+    checks.in("depth", description.depth, sea_ranges::kDepth);
+  }
+  checks.in("ramp", description.ramp, sea_ranges::kRamp);
+  std::size_t components = 0;
+  for (std::size_t i = 0; i < description.systems.size(); ++i) {
+    checks.start("wave system " + std::to_string(i + 1));
+    std::visit([&](const auto& system) { check(checks, system, description.depth); }, description.systems[i]);
+    if (checks.error()) return checks.error();
+    components += number_of_components(description.systems[i]);
+  }
+  checks.start("the sea");
+  if (components > kMaxWaveComponents) {
+    checks.fail("number of wave components", static_cast<double>(components),
+                "at most " + std::to_string(kMaxWaveComponents), {},
+                "Use fewer frequencies or directions: the cost does not depend on them, but 200 components "
+                "are usual");
+  }
+  if (components > 0 && !(water.gravity > 0.0)) {
+    checks.fail("gravity", water.gravity, "a number above 0 (m/s^2)", "waves need gravity");
+  }
+  return checks.error();
+}
+
+void prepare(const WaveComponent& component, double gravity, double depth, PreparedComponents& prepared) {
+  const double k = wave_number(component.angular_frequency, gravity, depth);
+  const portable::SinCos direction = portable::sin_cos_of_degrees(component.direction);
+  const DoubleDouble k1 = DoubleDouble{direction.cos, direction.cos_rest} * k;
+  const DoubleDouble k2 = DoubleDouble{direction.sin, direction.sin_rest} * k;
+  prepared.amplitude.push_back(component.amplitude);
+  prepared.angular_frequency.push_back(component.angular_frequency);
+  prepared.wave_number.push_back(k);
+  prepared.k1.push_back(k1.hi);
+  prepared.k1_rest.push_back(k1.lo);
+  prepared.k2.push_back(k2.hi);
+  prepared.k2_rest.push_back(k2.lo);
+  prepared.phase.push_back(std::remainder(component.phase, 360.0) * (std::numbers::pi / 180.0));
+}
+
+}  // namespace
+
+HorizontalAxes horizontal_axes(const Vec3& up_W) {
+  const Vec3 axis = std::abs(up_W.x()) > 0.9 ? Vec3::UnitY() : Vec3::UnitX();
+  const Vec3 e1_W = (axis - up_W.dot(axis) * up_W).normalized();
+  return {e1_W, up_W.cross(e1_W)};
+}
+
+Expected<Sea> Sea::make(const SeaDescription& description, const Water& water) {
+  if (std::optional<Error> error = error_in(description, water)) return make_error(*std::move(error));
+  Sea sea;
+  sea.water_ = water;
+  sea.axes_ = horizontal_axes(water.up_W);
+  sea.depth_ = description.depth;
+  sea.pressure_ = description.pressure;
+  sea.time_origin_ = description.time_origin;
+  sea.ramp_ = description.ramp;
+  for (std::size_t i = 0; i < description.systems.size(); ++i) {
+    const WaveComponents components = components_of(description.systems[i], i);
+    sea.components_.insert(sea.components_.end(), components.begin(), components.end());
+  }
+  for (const WaveComponent& component : sea.components_) {
+    if (component.amplitude > 0.0) prepare(component, water.gravity, sea.depth_, sea.prepared_);
+  }
+  return sea;
+}
+
+double Sea::significant_wave_height() const {
+  double variance = 0.0;
+  for (const double amplitude : prepared_.amplitude) variance += 0.5 * amplitude * amplitude;
+  return 4.0 * std::sqrt(variance);
+}
+
+double Sea::max_elevation() const {
+  double sum = 0.0;
+  for (const double amplitude : prepared_.amplitude) sum += amplitude;
+  return sum;
+}
+
+double Sea::max_wave_number() const {
+  const std::vector<double>& k = prepared_.wave_number;
+  return k.empty() ? 0.0 : *std::max_element(k.begin(), k.end());
+}
+
+double Sea::amplitude_factor(double t) const {
+  if (!(t < ramp_) || ramp_ == 0.0) return 1.0;
+  if (!(t > 0.0)) return 0.0;
+  return 0.5 * (1.0 - std::cos(std::numbers::pi * t / ramp_));
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,83 @@
+// A sea: wave components over water at rest, prepared once per scene, immutable and shared by all threads.
+//
+// Linear (Airy) waves. With the horizontal position X = (e1 . x, e2 . x) of a point x and its height
+// zeta = up . x - level over the water at rest, component i has the phase theta_i = k_i d_i . X - w_i t +
+// phase_i, and
+//   eta = sum a_i cos(theta_i)                           elevation of the surface
+//   s = zeta - eta                                       height over the surface; wet where s < 0
+//   p/(rho g) = -zeta + sum a_i E_i(z') cos(theta_i)     E(z') = cosh k(z' + h) / cosh kh, with Wheeler's
+//                                                        stretching z' = h s / (h + eta), h the depth
+//   p/(rho g) = -s                                       where the pressure is `hydrostatic`
+// In deep water z' = s and E = exp(k z'). See docs/waves.md.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/error.h"
+#include "base/vec3.h"
+#include "base/water.h"
+#include "waves/sea_description.h"
+
+namespace buoyancy {
+
+// Horizontal axes: e1 is the world's x axis, or its y axis where |up . x| > 0.9, projected on the horizontal
+// plane and normalised; e2 = up x e1.
+struct HorizontalAxes {
+  Vec3 e1_W = Vec3::UnitX();
+  Vec3 e2_W = Vec3::UnitY();
+};
+HorizontalAxes horizontal_axes(const Vec3& up_W);
+
+// Wave components ready for evaluation, one entry of each array per component of an amplitude above 0.
+struct PreparedComponents {
+  std::vector<double> amplitude;          // [m]
+  std::vector<double> angular_frequency;  // [rad/s]
+  std::vector<double> wave_number;        // [rad/m], k
+  // [rad/m], k times the direction's unit vector: the sum of a number and its rounding error, since k . X has
+  // to be accurate to a fraction of a turn far from the origin.
+  std::vector<double> k1, k1_rest, k2, k2_rest;
+  std::vector<double> phase;  // [rad]
+
+  std::size_t size() const { return amplitude.size(); }
+};
+
+class Sea {
+ public:
+  // Errors name the number at fault: not finite, out of its range, too many components, waves without
+  // gravity, waves higher than the water is deep.
+  static Expected<Sea> make(const SeaDescription& description, const Water& water);
+
+  const Water& water() const { return water_; }
+  const HorizontalAxes& axes() const { return axes_; }
+  double depth() const { return depth_; }  // [m], may be infinite
+  WavePressure pressure() const { return pressure_; }
+  std::int64_t time_origin() const { return time_origin_; }  // [us]
+  double ramp() const { return ramp_; }                      // [s]
+
+  // As described, system after system. Made into a system of components they describe the same sea.
+  const WaveComponents& components() const { return components_; }
+  const PreparedComponents& prepared() const { return prepared_; }
+  bool is_still() const { return prepared_.size() == 0; }  // no amplitude is above 0
+
+  double significant_wave_height() const;  // [m], 4 sqrt(sum a^2 / 2)
+  double max_elevation() const;            // [m], sum a: no crest is higher, no trough deeper
+  double max_wave_number() const;          // [rad/m]; 0 in still water
+
+  // Amplitudes grow from 0 at t = 0 to their value at t = ramp, as (1 - cos(pi t / ramp)) / 2.
+  double amplitude_factor(double t) const;
+
+ private:
+  Sea() = default;
+
+  Water water_;
+  HorizontalAxes axes_;
+  double depth_ = 0.0;
+  WavePressure pressure_ = WavePressure::kWheeler;
+  std::int64_t time_origin_ = 0;
+  double ramp_ = 0.0;
+  WaveComponents components_;
+  PreparedComponents prepared_;
+};
+
+}  // namespace buoyancy

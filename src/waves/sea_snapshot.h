@@ -1,0 +1,51 @@
+// A sea at one instant: elevation, pressure, and the velocity and acceleration of the water, at any point.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec3.h"
+#include "waves/sea.h"
+
+namespace buoyancy {
+
+// The water at a point. Above the surface there is none: the pressure is then 0, and velocity and
+// acceleration are those of the surface below the point.
+struct WaterAtPoint {
+  double elevation = 0.0;              // [m], eta: of the surface above or below the point, over the level
+  double height = 0.0;                 // [m], s: of the point over the surface; wet where below 0
+  double pressure = 0.0;               // [Pa], over that of the air
+  Vec3 velocity_W = Vec3::Zero();      // [m/s]
+  Vec3 acceleration_W = Vec3::Zero();  // [m/s^2], the change of velocity at a fixed point
+};
+
+// set_time() allocates nothing after the first call, and the queries allocate nothing. Several threads may
+// query at once. Complexity: O(components) each.
+class SeaSnapshot {
+ public:
+  // sea: must outlive this object. At t = 0 until set_time() is called.
+  explicit SeaSnapshot(const Sea& sea);
+
+  // utime: [us]; t = (utime - time_origin) / 1e6 + lead_time. lead_time: [s], finite. Phases are exact to
+  // 1e-15 of a turn for every utime.
+  void set_time(std::int64_t utime, double lead_time = 0.0);
+
+  const Sea& sea() const { return *sea_; }
+  double amplitude_factor() const { return amplitude_factor_; }  // Sea::amplitude_factor() now
+  // [rad], one per component of Sea::prepared(), in [-pi, pi]: the phase at X = 0.
+  const std::vector<double>& phases() const { return phases_; }
+
+  // [m], over the level. x1, x2: [m], along the horizontal axes from the world's origin. Phases are exact to
+  // 1e-15 of a turn out to 1e9 wavelengths.
+  double elevation(double x1, double x2) const;
+  WaterAtPoint at(const Vec3& p_W) const;
+
+ private:
+  double phase_at(std::size_t component, double x1, double x2) const;  // [rad]
+
+  const Sea* sea_;
+  double amplitude_factor_ = 1.0;
+  std::vector<double> phases_;
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,241 @@
+#include "waves/sea_snapshot.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <utility>
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+
+#include "waves/dispersion.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kGravity = kStandardGravity;
+constexpr std::int64_t kToday = 1'795'478'400'123'457;  // [us], in 2026
+
+Sea make_sea(std::vector<WaveSystem> systems, const std::function<void(SeaDescription&)>& change = {},
+             const Water& water = {}) {
+  SeaDescription description;
+  description.systems = std::move(systems);
+  if (change) change(description);
+  return Sea::make(description, water).value();
+}
+
+Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity()) {
+  IrregularWaves waves;
+  waves.significant_wave_height = height;
+  waves.peak_period = 5.0;
+  waves.direction = 30.0;
+  waves.spreading = 10.0;
+  waves.directions = 3;
+  waves.frequencies = 10;
+  return make_sea({waves}, [depth](SeaDescription& description) { description.depth = depth; });
+}
+
+std::int64_t microseconds(double t) {
+  return static_cast<std::int64_t>(std::llround(1e6 * t));
+}
+
+TEST(SeaSnapshot, RegularWaveIsACosine) {
+  const Sea sea = make_sea({RegularWave{3.0, 8.0, 60.0, 90.0}});
+  const double k = wave_number(2.0 * kPi / 8.0, kGravity, std::numeric_limits<double>::infinity());
+  SeaSnapshot now(sea);
+  for (const double t : {0.0, 1.0, 3.5}) {
+    now.set_time(microseconds(t));
+    for (const double x : {0.0, 10.0, -25.0}) {
+      const double y = 0.3 * x + 1.0;
+      const double along = x * std::cos(kPi / 3.0) + y * std::sin(kPi / 3.0);
+      EXPECT_NEAR(now.elevation(x, y), 1.5 * std::cos(k * along - 2.0 * kPi / 8.0 * t + kPi / 2.0), 1e-13);
+    }
+  }
+}
+
+TEST(SeaSnapshot, LeadTimeIsLater) {
+  const Sea sea = wind_sea(1.0);
+  SeaSnapshot now(sea), later(sea);
+  now.set_time(kToday, 0.25);
+  later.set_time(kToday + 250'000);
+  EXPECT_NEAR(now.elevation(3.0, 4.0), later.elevation(3.0, 4.0), 1e-14);
+}
+
+// Against 113 bits, with positions of 1,000 km and the utime of today.
+TEST(SeaSnapshot, KeepsItsPhasesFarFromOrigins) {
+  using Quad = boost::multiprecision::cpp_bin_float_quad;
+  const Sea sea = wind_sea(2.0);
+  SeaSnapshot now(sea);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> position(-1e6, 1e6);
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t utime = kToday + 98'765'432'101 * i;
+    const double x = position(random);
+    const double y = position(random);
+    Quad elevation = 0;
+    for (const WaveComponent& component : sea.components()) {
+      const Quad w = component.angular_frequency;
+      const Quad radians = boost::math::constants::pi<Quad>() / 180;
+      // Exact up to the rounding of w^2 / g, which is the component's wave number by definition.
+      const Quad k = component.angular_frequency * component.angular_frequency / kGravity;
+      const Quad direction = radians * component.direction;
+      const Quad t = Quad(utime) / 1'000'000;
+      elevation += component.amplitude *
+                   cos(k * (x * cos(direction) + y * sin(direction)) - w * t + radians * component.phase);
+    }
+    now.set_time(utime);
+    EXPECT_NEAR(now.elevation(x, y), elevation.convert_to<double>(), 1e-14 * sea.max_elevation());
+  }
+}
+
+TEST(SeaSnapshot, TakesEveryUtime) {
+  const Sea sea = make_sea({RegularWave{2.0, 8.0, 0.0, 0.0}});
+  SeaSnapshot now(sea);
+  for (const std::int64_t utime : {std::numeric_limits<std::int64_t>::min(),
+                                   std::numeric_limits<std::int64_t>::max(), std::int64_t{-1}}) {
+    now.set_time(utime);
+    EXPECT_LE(std::abs(now.phases()[0]), kPi * (1.0 + 1e-15));
+  }
+  // A whole number of periods later.
+  now.set_time(8'000'000'000'000'000'000);
+  EXPECT_NEAR(now.elevation(0.0, 0.0), 1.0, 2e-3) << "the period of 8 s is 2 pi / w to 1e-16";
+}
+
+TEST(SeaSnapshot, TimeOriginShiftsTime) {
+  const Sea from_zero = wind_sea(1.0);
+  const Sea from_today = make_sea({from_zero.components()},
+                                  [](SeaDescription& description) { description.time_origin = kToday; });
+  SeaSnapshot one(from_zero), other(from_today);
+  one.set_time(12'345'678);
+  other.set_time(kToday + 12'345'678);
+  EXPECT_EQ(one.phases(), other.phases());
+}
+
+TEST(SeaSnapshot, RampScalesTheWaves) {
+  const Sea sea = make_sea({RegularWave{2.0, 8.0, 0.0, 0.0}},
+                           [](SeaDescription& description) { description.ramp = 16.0; });
+  SeaSnapshot now(sea);
+  EXPECT_EQ(now.elevation(0.0, 0.0), 0.0);
+  now.set_time(8'000'000);
+  EXPECT_NEAR(now.elevation(0.0, 0.0), 0.5, 1e-12);
+  now.set_time(16'000'000);
+  EXPECT_NEAR(now.elevation(0.0, 0.0), 1.0, 1e-12);
+}
+
+TEST(SeaSnapshot, PressureIsZeroAtTheSurfaceAndAbove) {
+  for (const WavePressure pressure : {WavePressure::kWheeler, WavePressure::kHydrostatic}) {
+    for (const double depth : {4.0, std::numeric_limits<double>::infinity()}) {
+      IrregularWaves waves;
+      waves.significant_wave_height = 1.0;
+      waves.peak_period = 4.0;
+      const Sea sea = make_sea({waves}, [&](SeaDescription& description) {
+        description.pressure = pressure;
+        description.depth = depth;
+      });
+      SeaSnapshot now(sea);
+      now.set_time(kToday);
+      const double elevation = now.elevation(2.0, 1.0);
+      const double head = sea.water().density * kGravity;
+      EXPECT_NEAR(now.at({2.0, 1.0, elevation - 1e-9}).pressure / head, 0.0, 2e-9);
+      EXPECT_EQ(now.at({2.0, 1.0, elevation + 1e-9}).pressure, 0.0);
+      EXPECT_GT(now.at({2.0, 1.0, elevation - 0.5}).pressure / head, 0.1);
+    }
+  }
+}
+
+TEST(SeaSnapshot, HydrostaticPressureIsThatOfTheDepth) {
+  IrregularWaves waves;
+  waves.significant_wave_height = 1.0;
+  waves.peak_period = 4.0;
+  const Sea sea = make_sea(
+      {waves}, [](SeaDescription& description) { description.pressure = WavePressure::kHydrostatic; });
+  SeaSnapshot now(sea);
+  const WaterAtPoint point = now.at({2.0, 1.0, -3.0});
+  EXPECT_NEAR(point.height, -3.0 - now.elevation(2.0, 1.0), 1e-15);
+  EXPECT_NEAR(point.pressure, -sea.water().density * kGravity * point.height, 1e-9);
+}
+
+TEST(SeaSnapshot, WheelerPressureHasItsClosedForm) {
+  const Sea sea = make_sea({RegularWave{1.0, 5.0, 0.0, 0.0}},
+                           [](SeaDescription& description) { description.depth = 4.0; });
+  SeaSnapshot now(sea);
+  const double k = sea.prepared().wave_number[0];
+  for (const double x : {0.0, 2.0, 7.0}) {
+    const double eta = 0.5 * std::cos(k * x);
+    const double zeta = -1.5;
+    const double stretched = 4.0 * (zeta - eta) / (4.0 + eta);
+    const double head = -zeta + std::cosh(k * (stretched + 4.0)) / std::cosh(4.0 * k) * eta;
+    EXPECT_NEAR(now.at({x, 3.0, zeta}).pressure, sea.water().density * kGravity * head, 1e-9);
+  }
+}
+
+// Linear theory holds to first order in the amplitude: for waves of micrometres its equations hold exactly.
+class LinearTheory : public ::testing::TestWithParam<double> {};
+
+TEST_P(LinearTheory, VelocityPressureAndElevationBelongTogether) {
+  const Sea sea = wind_sea(1e-6, GetParam());
+  constexpr double kStep = 1e-3;
+  constexpr std::int64_t kMicroseconds = 1000;
+  const Vec3 p_W(12.0, -5.0, -1.3);
+  const double level = std::abs(sea.max_elevation());
+  SeaSnapshot before(sea), now(sea), after(sea);
+  before.set_time(kToday - kMicroseconds);
+  now.set_time(kToday);
+  after.set_time(kToday + kMicroseconds);
+
+  const auto derivative = [](double low, double high) { return (high - low) / (2.0 * kStep); };
+  const WaterAtPoint here = now.at(p_W);
+  double divergence = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 step = kStep * Vec3::Unit(i);
+    const WaterAtPoint low = now.at(p_W - step);
+    const WaterAtPoint high = now.at(p_W + step);
+    divergence += derivative(low.velocity_W[i], high.velocity_W[i]);
+    // Euler's equation without its quadratic term.
+    const double pressure_gradient = derivative(low.pressure, high.pressure) / sea.water().density;
+    const double weight = i == 2 ? kGravity : 0.0;
+    EXPECT_NEAR(here.acceleration_W[i], -pressure_gradient - weight, 1e-4 * level + 1e-8) << i;
+    EXPECT_NEAR(here.acceleration_W[i], derivative(before.at(p_W).velocity_W[i], after.at(p_W).velocity_W[i]),
+                1e-5 * level)
+        << i;
+  }
+  EXPECT_NEAR(divergence, 0.0, 1e-5 * level);
+  // The surface moves with the water.
+  const Vec3 at_surface(12.0, -5.0, 0.0);
+  EXPECT_NEAR(now.at(at_surface).velocity_W.z(),
+              derivative(before.elevation(12.0, -5.0), after.elevation(12.0, -5.0)), 1e-5 * level);
+  // No water crosses the bed.
+  if (std::isfinite(GetParam())) {
+    EXPECT_NEAR(now.at({12.0, -5.0, -GetParam()}).velocity_W.z(), 0.0, 1e-6 * level);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Depths, LinearTheory,
+                         ::testing::Values(2.0, 10.0, std::numeric_limits<double>::infinity()));
+
+TEST(SeaSnapshot, TurnsWithUp) {
+  const std::vector<WaveSystem> systems{wind_sea(1.0).components()};
+  const Sea upright = make_sea(systems);
+  Water sideways;
+  sideways.up_W = Vec3::UnitX();
+  sideways.level = 2.0;
+  const Sea turned = make_sea(systems, {}, sideways);
+  SeaSnapshot one(upright), other(turned);
+  one.set_time(kToday);
+  other.set_time(kToday);
+  const Vec3 along(3.0, 4.0, -1.0);  // on e1, e2 and up
+  const WaterAtPoint expected = one.at(along);
+  const WaterAtPoint found = other.at({along.z() + 2.0, along.x(), along.y()});
+  EXPECT_NEAR(found.pressure, expected.pressure, 1e-9);
+  EXPECT_NEAR(found.velocity_W.x(), expected.velocity_W.z(), 1e-12);
+  EXPECT_NEAR(found.velocity_W.y(), expected.velocity_W.x(), 1e-12);
+  EXPECT_NEAR(found.velocity_W.z(), expected.velocity_W.y(), 1e-12);
+}
+
+}  // namespace
+}  // namespace buoyancy

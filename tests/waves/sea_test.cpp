@@ -1,0 +1,151 @@
+#include "waves/sea.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "waves/wave_spectrum.h"
+
+namespace buoyancy {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+SeaDescription of_systems(std::vector<WaveSystem> systems) {
+  SeaDescription description;
+  description.systems = std::move(systems);
+  return description;
+}
+
+IrregularWaves wind_sea() {
+  IrregularWaves waves;
+  waves.significant_wave_height = 2.0;
+  waves.peak_period = 8.0;
+  waves.spreading = 10.0;
+  waves.directions = 5;
+  return waves;
+}
+
+std::string error_of(const SeaDescription& description, const Water& water = {}) {
+  const Expected<Sea> sea = Sea::make(description, water);
+  return sea ? "no error" : sea.error().message();
+}
+
+TEST(Sea, JoinsItsSystems) {
+  const Expected<Sea> sea = Sea::make(of_systems({wind_sea(), RegularWave{3.0, 12.0, 90.0, 0.0}}), {});
+  ASSERT_TRUE(sea) << sea.error().message();
+  EXPECT_EQ(sea->components().size(), 201U);
+  EXPECT_EQ(sea->prepared().size(), 201U);
+  EXPECT_NEAR(sea->significant_wave_height(), std::sqrt(4.0 + 16.0 * 1.5 * 1.5 / 2.0), 1e-12);
+  EXPECT_NEAR(sea->max_elevation(), 200.0 * 0.5 * std::sqrt(2.0 / 200.0) + 1.5, 1e-12);
+  EXPECT_EQ(sea->prepared().k1.back(), 0.0) << "towards 90 degrees";
+  EXPECT_EQ(sea->prepared().k2.back(), sea->prepared().wave_number.back());
+}
+
+TEST(Sea, OfItsOwnComponentsIsTheSameSea) {
+  const Expected<Sea> sea = Sea::make(of_systems({wind_sea()}), {});
+  const Expected<Sea> again = Sea::make(of_systems({sea->components()}), {});
+  EXPECT_EQ(again->prepared().k1, sea->prepared().k1);
+  EXPECT_EQ(again->prepared().k2_rest, sea->prepared().k2_rest);
+  EXPECT_EQ(again->prepared().phase, sea->prepared().phase);
+}
+
+TEST(Sea, OfZeroAmplitudesIsStill) {
+  EXPECT_TRUE(Sea::make({}, {})->is_still());
+  EXPECT_TRUE(Sea::make(of_systems({RegularWave{0.0, 8.0, 0.0, 0.0}}), {})->is_still());
+  IrregularWaves calm = wind_sea();
+  calm.significant_wave_height = 0.0;
+  EXPECT_TRUE(Sea::make(of_systems({calm}), {})->is_still());
+  EXPECT_FALSE(Sea::make(of_systems({RegularWave{1e-6, 8.0, 0.0, 0.0}}), {})->is_still());
+}
+
+TEST(Sea, HorizontalAxesFollowUp) {
+  const HorizontalAxes usual = horizontal_axes(Vec3::UnitZ());
+  EXPECT_EQ(usual.e1_W, Vec3::UnitX());
+  EXPECT_EQ(usual.e2_W, Vec3::UnitY());
+  const HorizontalAxes along_y = horizontal_axes(Vec3::UnitY());
+  EXPECT_EQ(along_y.e1_W, Vec3::UnitX());
+  EXPECT_EQ(along_y.e2_W, Vec3(0, 0, -1));
+  const HorizontalAxes along_x = horizontal_axes(Vec3::UnitX());
+  EXPECT_EQ(along_x.e1_W, Vec3::UnitY());
+  EXPECT_EQ(along_x.e2_W, Vec3::UnitZ());
+  const Vec3 up_W = Vec3(0.3, -0.5, 0.9).normalized();
+  const HorizontalAxes tilted = horizontal_axes(up_W);
+  EXPECT_NEAR(tilted.e1_W.dot(up_W), 0.0, 1e-15);
+  EXPECT_NEAR(tilted.e2_W.cross(up_W).dot(tilted.e1_W), 1.0, 1e-15) << "right-handed";
+}
+
+TEST(Sea, AmplitudesGrowAlongTheRamp) {
+  SeaDescription description = of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}});
+  EXPECT_EQ(Sea::make(description, {})->amplitude_factor(-1.0), 1.0) << "no ramp";
+  description.ramp = 20.0;
+  const Expected<Sea> sea = Sea::make(description, {});
+  EXPECT_EQ(sea->amplitude_factor(-1.0), 0.0);
+  EXPECT_EQ(sea->amplitude_factor(0.0), 0.0);
+  EXPECT_NEAR(sea->amplitude_factor(5.0), 0.5 - 0.5 * std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(sea->amplitude_factor(10.0), 0.5, 1e-15);
+  EXPECT_EQ(sea->amplitude_factor(20.0), 1.0);
+  EXPECT_EQ(sea->amplitude_factor(1e9), 1.0);
+}
+
+TEST(Sea, NamesWhatIsWrong) {
+  const auto irregular = [](const std::function<void(IrregularWaves&)>& change) {
+    IrregularWaves waves = wind_sea();
+    change(waves);
+    return of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}, waves});
+  };
+  const auto in_second = [](std::string_view what) {
+    return AllOf(HasSubstr("wave system 2: "), HasSubstr(std::string(what)));
+  };
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.significant_wave_height = -1.0; })),
+              in_second("significant_wave_height = -1; expected a number from 0"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.peak_period = 0.0; })),
+              in_second("peak_period = 0; expected a number from 0.01"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.peak_period = kNaN; })),
+              in_second("peak_period = nan"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.gamma = 100.0; })),
+              in_second("gamma = 100; expected a number from 1 to 10"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.spreading = 0.0; })), in_second("spreading = 0"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.direction = kInfinity; })),
+              in_second("direction = inf"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.frequencies = 0; })), in_second("frequencies = 0"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.cutoff = 1.0; })), in_second("cutoff = 1"));
+  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.frequencies = 1000; })),
+              HasSubstr("number of wave components = 5001; expected at most 4096"));
+  EXPECT_THAT(error_of(of_systems({WaveComponents{{-0.1, 1.0, 0.0, 0.0}}})), HasSubstr("amplitude = -0.1"));
+  EXPECT_THAT(error_of(of_systems({WaveComponents{{0.1, 0.0, 0.0, 0.0}}})),
+              HasSubstr("angular_frequency = 0"));
+  EXPECT_THAT(error_of(of_systems({RegularWave{1.0, 8.0, 0.0, kNaN}})), HasSubstr("phase = nan"));
+  EXPECT_THAT(error_of(of_systems({WaveComponents(4097, WaveComponent{0.1, 1.0, 0.0, 0.0})})),
+              HasSubstr("4097"));
+}
+
+TEST(Sea, RefusesWavesHigherThanTheWaterIsDeep) {
+  SeaDescription description = of_systems({RegularWave{2.0, 8.0, 0.0, 0.0}});
+  description.depth = 2.0;
+  EXPECT_THAT(error_of(description), HasSubstr("height = 2; expected less than the water's depth, 2 m"));
+  description.depth = 2.1;
+  EXPECT_EQ(error_of(description), "no error");
+  description.depth = 0.0;
+  EXPECT_THAT(error_of(description), HasSubstr("depth = 0"));
+  description.depth = -kInfinity;
+  EXPECT_THAT(error_of(description), HasSubstr("depth = -inf"));
+}
+
+TEST(Sea, RefusesWavesWithoutGravity) {
+  Water water;
+  water.gravity = 0.0;
+  EXPECT_THAT(error_of(of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}}), water), HasSubstr("gravity = 0"));
+  EXPECT_EQ(error_of({}, water), "no error");
+}
+
+}  // namespace
+}  // namespace buoyancy
