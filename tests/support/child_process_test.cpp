@@ -26,6 +26,13 @@ TEST(ChildProcess, CapturesBothStreamsAndExitCode) {
   EXPECT_EQ(finished.standard_error, "error\n");
 }
 
+TEST(ReadFile, ReturnsNothingWhereReadingFails) {
+  const TempDir directory;
+  EXPECT_EQ(read_file(directory.path("missing")), "");
+  EXPECT_EQ(read_file(directory.path("")), "") << "a directory can be opened and not read";
+  EXPECT_EQ(read_file(directory.write("file", "text")), "text");
+}
+
 TEST(ChildProcess, DoesNotBlockOnLargeOutput) {
   const FinishedProcess finished = run_to_end(shell("head -c 1000000 /dev/zero"), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 0);

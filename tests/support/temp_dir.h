@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -55,9 +55,12 @@ class TempDir {
   std::filesystem::path path_;
 };
 
+// Returns the contents of a file as far as it can be read: nothing if there is no such file, or if it is one
+// in /proc whose process ends before it is read.
 inline std::string read_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream contents;
+  contents << std::ifstream(path, std::ios::binary).rdbuf();
+  return contents.str();
 }
 
 }  // namespace buoyancy
