@@ -48,6 +48,11 @@ double SeaSnapshot::phase_at(std::size_t i, double x1, double x2) const {
   return reduced(along + DoubleDouble{phases_[i], 0.0});
 }
 
+void SeaSnapshot::phases_at(double x1, double x2, std::vector<double>& out) const {
+  out.resize(phases_.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = phase_at(i, x1, x2);
+}
+
 double SeaSnapshot::elevation(double x1, double x2) const {
   const PreparedComponents& components = sea_->prepared();
   double sum = 0.0;

@@ -39,6 +39,8 @@ class SeaSnapshot {
   // 1e-15 of a turn out to 1e9 wavelengths.
   double elevation(double x1, double x2) const;
   WaterAtPoint at(const Vec3& p_W) const;
+  // Sets out[i] to the phase of component i there [rad], in [-pi, pi].
+  void phases_at(double x1, double x2, std::vector<double>& out) const;
 
  private:
   double phase_at(std::size_t component, double x1, double x2) const;  // [rad]
