@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string>
+
+#include "base/csv_field.h"
 
 namespace buoyancy {
 namespace {
@@ -13,31 +14,6 @@ constexpr std::string_view kTwistHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx
 constexpr std::size_t kPoseColumns = 9;
 constexpr std::size_t kTwistColumns = 15;
 constexpr std::size_t kMaxLineLength = 4096;
-constexpr std::size_t kMaxShownLength = 60;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-// Quotes a text for a message, shortened and without control characters.
-std::string quote(std::string_view text) {
-  std::string copy(text.substr(0, kMaxShownLength));
-  for (char& c : copy) {
-    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7F) c = '?';
-  }
-  return "'" + copy + (text.size() > kMaxShownLength ? "...'" : "'");
-}
-
-template <typename Number>
-bool parse_number(std::string_view text, Number& number) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && end == text.data() + text.size();
-}
 
 }  // namespace
 

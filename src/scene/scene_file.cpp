@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 
 #include "base/format.h"
 #include "base/spelling_suggestion.h"
+#include "base/text_file.h"
 #include "scene/shape_toml.h"
 #include "scene/toml_table.h"
 
@@ -280,32 +279,9 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
 }
 
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const std::string expected = "a scene file (TOML)";
-  std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) {
-    return make_error({name, "no such file", expected, {}, "Check the path"});
-  }
-  if (!std::filesystem::is_regular_file(status)) {
-    const bool directory = std::filesystem::is_directory(status);
-    return make_error({name, directory ? "is a directory" : "is not a regular file", expected, {}, {}});
-  }
-  const std::uintmax_t bytes = std::filesystem::file_size(path, code);
-  if (!code && bytes > kMaxSceneFileBytes) {
-    return make_error({name,
-                       std::to_string(bytes) + " bytes",
-                       "a scene file of at most " + std::to_string(kMaxSceneFileBytes) + " bytes",
-                       "this is not a scene file",
-                       {}});
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file) {
-    return make_error({name, "cannot be read", expected, "no permission to read it", {}});
-  }
-  return parse_scene(text.str(), name, path.parent_path());
+  const Expected<std::string> text = read_text_file(path, "a scene file (TOML)", kMaxSceneFileBytes);
+  if (!text) return make_error(text.error());
+  return parse_scene(*text, path.string(), path.parent_path());
 }
 
 SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,

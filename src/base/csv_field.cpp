@@ -1,0 +1,23 @@
+#include "base/csv_field.h"
+
+#include <cstddef>
+
+namespace buoyancy {
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r";
+  const std::size_t first = text.find_first_not_of(kSpace);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+std::string quote(std::string_view text) {
+  constexpr std::size_t kMaxShownLength = 60;
+  std::string copy(text.substr(0, kMaxShownLength));
+  for (char& c : copy) {
+    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7F) c = '?';
+  }
+  return "'" + copy + (text.size() > kMaxShownLength ? "...'" : "'");
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,28 @@
+// Fields of CSV files: numbers, and quotations for messages.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace buoyancy {
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some programs write first
+
+// Removes spaces, tabs and carriage returns at both ends.
+std::string_view trim(std::string_view text);
+
+// Quotes a text for a message, shortened and without control characters.
+std::string quote(std::string_view text);
+
+// Parses the whole text as a decimal number; false if it is none or out of the type's range. Accepts a
+// leading '+', and nan and inf where the type has them.
+template <typename Number>
+bool parse_number(std::string_view text, Number& number) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+}  // namespace buoyancy
