@@ -78,14 +78,6 @@ void check(Checks& checks, const WaveComponents& components, double depth) {
   }
 }
 
-std::size_t number_of_components(const WaveSystem& system) {
-  if (const auto* components = std::get_if<WaveComponents>(&system)) return components->size();
-  const auto* waves = std::get_if<IrregularWaves>(&system);
-  if (waves == nullptr) return 1;
-  const std::int32_t directions = waves->spreading ? waves->directions : 1;
-  return static_cast<std::size_t>(waves->frequencies) * static_cast<std::size_t>(directions);
-}
-
 std::optional<Error> error_in(const SeaDescription& description, const Water& water) {
   Checks checks;
   checks.start("the sea");
@@ -170,6 +162,17 @@ double Sea::max_elevation() const {
 double Sea::max_wave_number() const {
   const std::vector<double>& k = prepared_.wave_number;
   return k.empty() ? 0.0 : *std::max_element(k.begin(), k.end());
+}
+
+double Sea::extreme_steepness() const {
+  double sum = 0.0;
+  double variance = 0.0;
+  for (std::size_t i = 0; i < prepared_.size(); ++i) {
+    const double steepness = prepared_.amplitude[i] * prepared_.wave_number[i];
+    sum += steepness;
+    variance += 0.5 * steepness * steepness;
+  }
+  return std::min(sum, 4.0 * std::sqrt(variance));
 }
 
 double Sea::amplitude_factor(double t) const {

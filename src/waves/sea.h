@@ -64,6 +64,13 @@ class Sea {
   double max_elevation() const;            // [m], sum a: no crest is higher, no trough deeper
   double max_wave_number() const;          // [rad/m]; 0 in still water
 
+  // How steep the sea gets: 4 standard deviations of the vertical derivative of its wave pressure at the
+  // surface, over rho g, which are 4 sqrt(sum (a k)^2 / 2), or sum a k where that is less: no sea exceeds it.
+  // From 1 on, the modelled pressure falls downwards under some crests, which no water does: the sea is too
+  // steep for linear theory. (Water of finite depth: an upper bound, its derivative has a factor tanh(kh).)
+  double extreme_steepness() const;
+  bool is_too_steep() const { return extreme_steepness() >= 1.0; }
+
   // Amplitudes grow from 0 at t = 0 to their value at t = ramp, as (1 - cos(pi t / ramp)) / 2.
   double amplitude_factor(double t) const;
 

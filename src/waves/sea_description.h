@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -55,6 +56,11 @@ enum class WavePressure {
   kHydrostatic,  // p = -rho g s
   kWheeler,      // linear wave theory, stretched to the instantaneous surface
 };
+
+// As in the scene file.
+constexpr std::string_view to_string(WavePressure pressure) {
+  return pressure == WavePressure::kWheeler ? "wheeler" : "hydrostatic";
+}
 
 struct SeaDescription {
   double depth = std::numeric_limits<double>::infinity();  // [m], of the water at rest

@@ -116,4 +116,12 @@ WaveComponents components_of(const WaveSystem& system, std::size_t place) {
   return components;
 }
 
+std::size_t number_of_components(const WaveSystem& system) {
+  if (const auto* components = std::get_if<WaveComponents>(&system)) return components->size();
+  const auto* waves = std::get_if<IrregularWaves>(&system);
+  if (waves == nullptr) return 1;
+  const std::int32_t directions = waves->spreading ? waves->directions : 1;
+  return static_cast<std::size_t>(waves->frequencies) * static_cast<std::size_t>(directions);
+}
+
 }  // namespace buoyancy

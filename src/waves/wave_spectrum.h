@@ -49,4 +49,7 @@ std::vector<double> spreading_angles(double spreading, std::size_t bins);
 // mean direction of its bin. place: of the system in the sea, from 0, a part of the key of the phases.
 WaveComponents components_of(const WaveSystem& system, std::size_t place);
 
+// How many components_of() returns. O(1).
+std::size_t number_of_components(const WaveSystem& system);
+
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "waves/sea_snapshot.h"
 #include "waves/wave_spectrum.h"
 
 namespace buoyancy {
@@ -94,6 +95,44 @@ TEST(Sea, AmplitudesGrowAlongTheRamp) {
   EXPECT_NEAR(sea->amplitude_factor(10.0), 0.5, 1e-15);
   EXPECT_EQ(sea->amplitude_factor(20.0), 1.0);
   EXPECT_EQ(sea->amplitude_factor(1e9), 1.0);
+}
+
+TEST(Sea, SteepnessOfOneOrTwoComponentsIsTheSumOfAk) {
+  const double k = 1.0 / kStandardGravity;  // of 1 rad/s
+  const auto steepness = [](WaveComponents components) {
+    return Sea::make(of_systems({std::move(components)}), {})->extreme_steepness();
+  };
+  EXPECT_EQ(steepness({}), 0.0);
+  EXPECT_NEAR(steepness({{2.0, 1.0, 0.0, 0.0}}), 2.0 * k, 1e-15);
+  EXPECT_NEAR(steepness({{2.0, 1.0, 0.0, 0.0}, {1.0, 2.0, 90.0, 0.0}}), 6.0 * k, 1e-15);
+}
+
+TEST(Sea, SteepnessOfManyComponentsIsFourDeviations) {
+  WaveComponents components;
+  for (int i = 0; i < 50; ++i) components.push_back({0.1, 1.0 + 0.02 * i, 5.0 * i, 40.0 * i});
+  double squares = 0.0;
+  for (const WaveComponent& component : components) {
+    const double k = component.angular_frequency * component.angular_frequency / kStandardGravity;
+    squares += component.amplitude * k * component.amplitude * k;
+  }
+  const Expected<Sea> sea = Sea::make(of_systems({components}), {});
+  EXPECT_NEAR(sea->extreme_steepness(), 4.0 * std::sqrt(0.5 * squares), 1e-14);
+}
+
+// Where a k is 1, the modelled pressure just below the surface of a crest no longer rises downwards.
+TEST(Sea, IsTooSteepWherePressureFallsDownwardsUnderACrest) {
+  const auto pressure_rises = [](const Sea& sea) {
+    const SeaSnapshot snapshot(sea);  // a crest at the origin
+    const double surface = snapshot.elevation(0.0, 0.0);
+    return snapshot.at(Vec3(0, 0, surface - 1e-3)).pressure > 0.0;
+  };
+  for (const double ak : {0.98, 1.02}) {
+    const double amplitude = ak * kStandardGravity;  // k = 1 / g
+    const Expected<Sea> sea = Sea::make(of_systems({WaveComponents{{amplitude, 1.0, 0.0, 0.0}}}), {});
+    ASSERT_TRUE(sea) << sea.error().message();
+    EXPECT_EQ(sea->is_too_steep(), ak > 1.0) << ak;
+    EXPECT_EQ(pressure_rises(*sea), ak < 1.0) << ak;
+  }
 }
 
 TEST(Sea, NamesWhatIsWrong) {

@@ -164,6 +164,19 @@ TEST(WaveSpectrum, SameSeedGivesTheSameBitsEverywhere) {
   }
 }
 
+TEST(WaveSpectrum, CountsComponentsOfEverySystem) {
+  IrregularWaves waves = wind_sea();
+  waves.frequencies = 7;
+  waves.directions = 3;
+  IrregularWaves spread = waves;
+  spread.spreading = 10.0;
+  for (const WaveSystem& system :
+       {WaveSystem(waves), WaveSystem(spread), WaveSystem(RegularWave{3.0, 8.0, 45.0, 90.0}),
+        WaveSystem(WaveComponents(5)), WaveSystem(WaveComponents())}) {
+    EXPECT_EQ(number_of_components(system), components_of(system, 0).size()) << system.index();
+  }
+}
+
 TEST(WaveSpectrum, RegularWaveIsOneComponent) {
   const WaveComponents components = components_of(RegularWave{3.0, 8.0, 45.0, 90.0}, 0);
   ASSERT_EQ(components.size(), 1U);
