@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include "base/format.h"
+
 namespace buoyancy {
 namespace {
 
@@ -79,12 +81,67 @@ std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedM
   return prepared.mass_properties.centroid_B;
 }
 
+// Returns nullptr for water at rest.
+Expected<std::unique_ptr<const Sea>> make_sea(const SceneDescription& scene) {
+  if (scene.sea.systems.empty()) return nullptr;
+  Expected<Sea> sea = Sea::make(scene.sea, scene.water);
+  if (!sea) {
+    Error error = std::move(sea.error());
+    if (!scene.water_location.empty()) {
+      error.subject = scene.water_location + ": [water], " + error.subject;
+    }
+    return make_error(std::move(error));
+  }
+  if (sea->is_still()) return nullptr;
+  return std::make_unique<const Sea>(*std::move(sea));
+}
+
+// The others sum volumes under a plane water surface.
+bool works_in_waves(Method method) {
+  return method == Method::kHierarchical || method == Method::kFastSurface || method == Method::kExactSurface;
+}
+
+// What of a body's description needs water at rest.
+std::optional<Error> error_in_waves(const BodyDescription& body) {
+  const std::string subject =
+      (body.source_location.empty() ? "" : body.source_location + ": ") + "body " + std::to_string(body.id);
+  if (!works_in_waves(body.method)) {
+    return Error{
+        subject, "method = \"" + std::string(to_string(body.method)) + "\"",
+        "hierarchical, fast_surface or exact_surface in waves",
+        "the methods fast, improved and exact sum volumes under a plane water surface, which waves are "
+        "not",
+        "Use hierarchical; fast_surface and exact_surface are baselines without an error bound"};
+  }
+  if (body.method == Method::kHierarchical && body.tolerance == 0.0) {
+    return Error{subject, "tolerance = 0", "a number above 0, at most 1, in waves",
+                 "the load of waves has no exact sum, only one within a bound",
+                 "Leave the tolerance out: it is then " + format_shortest(kDefaultWaveTolerance)};
+  }
+  if (body.hydrostatics) {
+    return Error{subject, "outputs = [\"wrench\", \"hydrostatics\"]", "[\"wrench\"] in waves",
+                 "waterplane, metacentres and stiffness belong to a plane water surface",
+                 "Remove \"hydrostatics\", or compute it in a scene without waves"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
   Scene scene;
   scene.name_ = description.name;
   scene.water_ = description.water;
+  Expected<std::unique_ptr<const Sea>> sea = make_sea(description);
+  if (!sea) return make_error(std::move(sea.error()));
+  scene.sea_ = *std::move(sea);
+  if (scene.sea_ != nullptr) {
+    scene.wave_systems_ = report_wave_systems(description.sea, *scene.sea_);
+    for (const BodyDescription& body : description.bodies) {
+      if (std::optional<Error> error = error_in_waves(body)) return make_error(*std::move(error));
+    }
+  }
+  const double default_tolerance = scene.sea_ == nullptr ? 0.0 : kDefaultWaveTolerance;
   std::vector<MeshKey> keys;  // in the order of scene.meshes_
   for (const BodyDescription& body : description.bodies) {
     MeshKey key = key_of(body);
@@ -105,8 +162,9 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     }
     if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
     scene.bodies_.push_back({body.id, body.name, &prepared,
-                             Solver(prepared.mesh, body.method, body.tolerance), body.reference_B,
-                             body.hydrostatics, center_of_mass(body.dynamics, prepared), body.dynamics});
+                             Solver(prepared.mesh, body.method, body.tolerance.value_or(default_tolerance)),
+                             body.reference_B, body.hydrostatics, center_of_mass(body.dynamics, prepared),
+                             body.dynamics});
   }
   std::vector<std::int32_t> ids;
   for (const Body& body : scene.bodies_) ids.push_back(body.id);

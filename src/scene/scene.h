@@ -1,4 +1,4 @@
-// The bodies of a scene, ready for evaluation: their meshes are validated, prepared once and shared.
+// The sea and the bodies of a scene, ready for evaluation: meshes are validated, prepared once and shared.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,8 @@
 #include "hydrostatics/solver.h"
 #include "scene/id_index.h"
 #include "scene/scene_file.h"
+#include "waves/sea.h"
+#include "waves/sea_report.h"
 
 namespace buoyancy {
 
@@ -44,7 +46,8 @@ struct Body {
 class Scene {
  public:
   // Imports or generates each mesh once, scales it in double, validates and prepares it. Errors name the
-  // scene file, the line, the body and the mesh.
+  // scene file, the line, the body and the mesh. In waves, bodies of the methods fast, improved and exact,
+  // bodies with hydrostatics and a tolerance of 0 for hierarchical are errors.
   static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
   // Reads a scene file and prepares the scene.
@@ -52,6 +55,9 @@ class Scene {
 
   const std::string& name() const { return name_; }  // the scene file's name as given
   const Water& water() const { return water_; }
+  const Sea* sea() const { return sea_.get(); }  // nullptr if the water is at rest: no amplitude is above 0
+  // One per wave system; none if the water is at rest.
+  const std::vector<WaveSystemReport>& wave_systems() const { return wave_systems_; }
   const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
   const Body* find(std::int32_t id) const;  // nullptr if unknown; O(1)
@@ -64,6 +70,8 @@ class Scene {
  private:
   std::string name_;
   Water water_;
+  std::unique_ptr<const Sea> sea_;
+  std::vector<WaveSystemReport> wave_systems_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;
   IdIndex index_;  // into bodies_

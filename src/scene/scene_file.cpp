@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "base/spelling_suggestion.h"
 #include "base/text_file.h"
+#include "scene/sea_toml.h"
 #include "scene/shape_toml.h"
 #include "scene/toml_table.h"
 
@@ -31,9 +32,13 @@ void read_world(TomlTable table, Water& water) {
   table.finish();
 }
 
-void read_water(TomlTable table, Water& water) {
-  table.read("level", water.level, NumberRange::any("m"));
-  table.read("density", water.density, NumberRange::from_zero("kg/m^3"));
+void read_water(const toml::table& toml, SceneDescription& scene, const std::filesystem::path& directory,
+                SceneParseContext& context) {
+  TomlTable table(toml, "[water]", context);
+  scene.water_location = context.location(toml.source());
+  table.read("level", scene.water.level, NumberRange::any("m"));
+  table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
+  parse_sea(table, directory, context, scene.sea);
   table.finish();
 }
 
@@ -268,7 +273,7 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
   scene.name = name;
   TomlTable top(root, "the scene", context);
   if (const toml::table* world = top.table("world")) read_world({*world, "[world]", context}, scene.water);
-  if (const toml::table* water = top.table("water")) read_water({*water, "[water]", context}, scene.water);
+  if (const toml::table* water = top.table("water")) read_water(*water, scene, directory, context);
   if (const toml::table* limits = top.table("limits"))
     read_limits({*limits, "[limits]", context}, scene.limits);
   read_bodies(top, scene, directory, context);

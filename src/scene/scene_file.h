@@ -1,7 +1,7 @@
 // Parses a scene file (TOML) into a plain description. Only this module uses toml++.
 //
 // Rules: an unknown key is an error that names the file, the line and the nearest known key; every number is
-// checked against its range. No mesh is loaded here; see Scene.
+// checked against its range. Files of wave components are read here; meshes are not, see Scene.
 #pragma once
 
 #include <array>
@@ -20,6 +20,7 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
+#include "waves/sea_description.h"
 
 namespace buoyancy {
 
@@ -53,7 +54,8 @@ struct BodyDescription {
   std::variant<MeshFile, Shape> source;
   double scale = 1.0;  // factor for the mesh's coordinates, > 0; mesh files only
   Method method = Method::kHierarchical;
-  double tolerance = 0.0;  // 0 to 1, relative to the weight of the full displacement
+  // 0 to 1, relative to the weight of the full displacement; default: 0, in waves kDefaultWaveTolerance
+  std::optional<double> tolerance;
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
@@ -66,18 +68,22 @@ inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPol
     std::pair{std::string_view("refuse"), OpenPolicy::kRefuse},
     std::pair{std::string_view("dry_boundary"), OpenPolicy::kDryBoundary}};
 
+inline constexpr double kDefaultWaveTolerance = 1e-3;
+
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
+  SeaDescription sea;          // without wave systems: water at rest
+  std::string water_location;  // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };
 
 // Errors: no such file; invalid TOML (with line and column); unknown or missing keys; wrong types or ranges;
-// duplicate ids; a body with both or neither of mesh and shape.
+// duplicate ids; a body with both or neither of mesh and shape; an invalid file of wave components.
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path);
 
-// Parses a scene from text. name: identifies the text in errors; directory: resolves relative mesh paths.
+// Parses a scene from text. name: identifies the text in errors; directory: resolves relative paths.
 Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 

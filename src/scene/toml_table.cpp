@@ -174,6 +174,27 @@ void TomlTable::read(std::string_view key, std::int32_t& value) {
   }
 }
 
+void TomlTable::read(std::string_view key, std::int32_t& value, const NumberRange& range) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  const auto* whole = found->as_integer();
+  if (whole != nullptr && range.contains(static_cast<double>(whole->get()))) {
+    value = static_cast<std::int32_t>(whole->get());
+  } else {
+    fail_at(key, "a whole number from " + format_shortest(range.min) + " to " + format_shortest(range.max));
+  }
+}
+
+void TomlTable::read(std::string_view key, std::int64_t& value, std::string_view unit) {
+  const toml::node* found = node(key);
+  if (found == nullptr) return;
+  if (const auto* whole = found->as_integer()) {
+    value = whole->get();
+  } else {
+    fail_at(key, "a whole number" + in_unit(unit));
+  }
+}
+
 void TomlTable::read(std::string_view key, std::uint64_t& value, std::uint64_t min) {
   const toml::node* found = node(key);
   if (found == nullptr) return;
@@ -237,6 +258,12 @@ void TomlTable::fail_at(std::string_view key, std::string expected, std::string 
   const toml::node* found = table_->get(key);
   set_error(found->source(), std::string(key) + " = " + quotation(*found), std::move(expected),
             std::move(cause), std::move(hint));
+}
+
+void TomlTable::fail_in(std::string_view key, Error error) {
+  if (context_->error) return;
+  error.subject = context_->location(table_->get(key)->source()) + ": " + name_ + ", " + error.subject;
+  context_->error = std::move(error);
 }
 
 void TomlTable::fail_missing(std::string_view key, std::string expected) {

@@ -1,5 +1,5 @@
-// Internal to scene_file.cpp and shape_toml.cpp: reads a table of a scene file key by key. An Error names
-// file, line, key, value and range.
+// Internal to scene_file.cpp, sea_toml.cpp and shape_toml.cpp: reads a table of a scene file key by key. An
+// Error names file, line, key, value and range.
 //
 // Contract: reading a key makes it known; finish() reports unknown keys. The first error is kept and reading
 // continues with defaults, so that callers check for an error once, at the end.
@@ -48,6 +48,8 @@ class TomlTable {
   void read(std::string_view key, std::span<double> values, std::string_view unit);
   void read(std::string_view key, std::span<std::int32_t> values);
   void read(std::string_view key, std::int32_t& value);
+  void read(std::string_view key, std::int32_t& value, const NumberRange& range);  // finite limits
+  void read(std::string_view key, std::int64_t& value, std::string_view unit);
   void read(std::string_view key, std::uint64_t& value, std::uint64_t min);
   void read(std::string_view key, std::string& value);
 
@@ -64,9 +66,11 @@ class TomlTable {
 
   bool failed() const { return context_->error.has_value(); }  // in this table or before it
 
-  // Set an error about the table as a whole, about a key's value, about a missing key.
+  // Set an error about the table as a whole, about a key's value, in the file that a key names, about a
+  // missing key.
   void fail(std::string actual, std::string expected, std::string cause = {}, std::string hint = {});
   void fail_at(std::string_view key, std::string expected, std::string cause = {}, std::string hint = {});
+  void fail_in(std::string_view key, Error error);
   void fail_missing(std::string_view key, std::string expected);
 
  private:

@@ -1,6 +1,6 @@
 // Fuzz target: bytes as the text of a scene file. A rejection must state its reason on one line; an accepted
-// scene must be within the ranges of docs/scene_file.md. If every body is a small generated shape, the scene
-// is also prepared, reported on and evaluated for each body. No file is read.
+// scene must be within the ranges of docs/scene_file.md. If every body is a small generated shape and the sea
+// has few components, the scene is also prepared, reported on and evaluated for each body. No mesh is read.
 #include <algorithm>
 #include <set>
 #include <string>
@@ -13,11 +13,15 @@
 #include "scene/scene.h"
 #include "scene/scene_report.h"
 #include "tests/fuzz/fuzz_check.h"
+#include "waves/sea_ranges.h"
+#include "waves/wave_spectrum.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr std::int64_t kMaxTriangles = 1500;  // of all bodies together, to keep the fuzzer fast
+// Of all bodies and of all wave systems together, to keep the fuzzer fast.
+constexpr std::int64_t kMaxTriangles = 1500;
+constexpr std::size_t kMaxComponents = 20;
 
 // The formulas of docs/scene_file.md, "Shapes".
 std::int64_t triangle_count(const Shape& shape) {
@@ -62,6 +66,43 @@ void check_water(const Water& water) {
   require(std::isfinite(water.gravity) && water.gravity >= 0.0, "gravity is at least 0");
 }
 
+void check_system(const RegularWave& wave) {
+  require(sea_ranges::kHeight.contains(wave.height) && sea_ranges::kPeriod.contains(wave.period) &&
+              sea_ranges::kAngle.contains(wave.direction) && sea_ranges::kAngle.contains(wave.phase),
+          "a regular wave is within its ranges");
+}
+
+void check_system(const IrregularWaves& waves) {
+  require(sea_ranges::kHeight.contains(waves.significant_wave_height) &&
+              sea_ranges::kPeriod.contains(waves.peak_period) &&
+              sea_ranges::kAngle.contains(waves.direction) && sea_ranges::kCutoff.contains(waves.cutoff),
+          "a spectrum is within its ranges");
+  require(!waves.gamma || sea_ranges::kGamma.contains(*waves.gamma), "gamma is within its range");
+  require(!waves.spreading || sea_ranges::kSpreading.contains(*waves.spreading),
+          "the spreading is within its range");
+  require(sea_ranges::kBins.contains(waves.frequencies) && sea_ranges::kBins.contains(waves.directions),
+          "the numbers of bins are within their range");
+  require(waves.spreading || waves.directions == 1, "long-crested waves have one direction");
+}
+
+void check_system(const WaveComponents& components) {
+  for (const WaveComponent& component : components) {
+    require(sea_ranges::kHeight.contains(component.amplitude) &&
+                sea_ranges::kAngularFrequency.contains(component.angular_frequency) &&
+                sea_ranges::kAngle.contains(component.direction) &&
+                sea_ranges::kAngle.contains(component.phase),
+            "a component is within its ranges");
+  }
+}
+
+void check_sea(const SeaDescription& sea) {
+  require(sea.depth > 0.0, "the depth is above 0");
+  require(sea_ranges::kRamp.contains(sea.ramp), "the ramp is within its range");
+  for (const WaveSystem& system : sea.systems) {
+    std::visit([](const auto& waves) { check_system(waves); }, system);
+  }
+}
+
 void check_dynamics(const DynamicsSpec& dynamics) {
   require(!(dynamics.mass && dynamics.density), "mass and density exclude each other");
   for (const auto& given : {dynamics.mass, dynamics.density}) {
@@ -85,13 +126,15 @@ void check_dynamics(const DynamicsSpec& dynamics) {
 
 void check_description(const SceneDescription& scene) {
   check_water(scene.water);
+  check_sea(scene.sea);
   require(!scene.bodies.empty(), "a scene has a body");
   std::set<std::int32_t> ids;
   for (const BodyDescription& body : scene.bodies) {
     require(ids.insert(body.id).second, "ids are unique");
     require(!body.name.empty() && !body.source_location.empty(), "a body has a name and a source location");
     require(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
-    require(body.tolerance >= 0.0 && body.tolerance <= 1.0, "a tolerance is from 0 to 1");
+    const double tolerance = body.tolerance.value_or(0.0);
+    require(tolerance >= 0.0 && tolerance <= 1.0, "a tolerance is from 0 to 1");
     require(body.reference_B.allFinite(), "the reference point is finite");
     if (const auto* file = std::get_if<MeshFile>(&body.source)) {
       require(!file->path.empty(), "a mesh file has a name");
@@ -103,6 +146,9 @@ void check_description(const SceneDescription& scene) {
 }
 
 bool is_small_and_generated(const SceneDescription& scene) {
+  std::size_t components = 0;
+  for (const WaveSystem& system : scene.sea.systems) components += number_of_components(system);
+  if (components > kMaxComponents) return false;
   std::int64_t triangles = 0;
   for (const BodyDescription& body : scene.bodies) {
     const auto* shape = std::get_if<Shape>(&body.source);

@@ -30,7 +30,7 @@ TEST(SceneFile, UsesDefaultsForMissingKeys) {
   EXPECT_EQ(std::get<Shape>(body.source), Shape(BoxShape{}));
   EXPECT_EQ(body.scale, 1.0);
   EXPECT_EQ(body.method, Method::kHierarchical);
-  EXPECT_EQ(body.tolerance, 0.0);
+  EXPECT_EQ(body.tolerance, std::nullopt);
   EXPECT_EQ(body.open, OpenPolicy::kRefuse);
   EXPECT_EQ(body.reference_B, Vec3::Zero());
   EXPECT_EQ(body.source_location, "pool.toml:1");
@@ -78,6 +78,7 @@ angular_damping_quadratic = 13
   EXPECT_TRUE(scene->water.up_W.isApprox(Vec3(0, 0.6, 0.8), 1e-15));
   EXPECT_EQ(scene->water.level, -2.0);
   EXPECT_EQ(scene->water.density, 1000.0);
+  EXPECT_EQ(scene->water_location, "pool.toml:5");
   EXPECT_EQ(scene->limits.mesh_bytes, 11U);
   EXPECT_EQ(scene->limits.vertices, 12U);
   EXPECT_EQ(scene->limits.faces, 13U);
@@ -157,8 +158,8 @@ TEST(SceneFile, ReportsCompleteErrors) {
             "pool.toml:5: body 7, [body.client]: mass = -1; expected a finite number above 0 (kg).");
   EXPECT_EQ(
       parse_error("[water]\ndesnity = 1000\n" + scene_with_crate()),
-      "pool.toml:2: [water]: unknown key 'desnity'; expected one of level, density. The nearest known key is "
-      "'density'.");
+      "pool.toml:2: [water]: unknown key 'desnity'; expected one of level, density, depth, wave_pressure, "
+      "time_origin, ramp, waves. The nearest known key is 'density'.");
 }
 
 TEST(SceneFile, SuggestsNearestKeyInEveryTable) {

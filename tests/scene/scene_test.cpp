@@ -2,6 +2,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -201,6 +202,99 @@ TEST(Scene, NamesFileLineBodyAndMeshInErrors) {
     EXPECT_EQ(message.rfind(start, 0), 0U) << message;
     EXPECT_NE(message.find((directory.path() / mesh).string()), std::string::npos) << message;
   }
+}
+
+const std::string kBox = "shape = { type = \"box\" }\n";
+const std::string kWaves = "[water.waves]\ntype = \"regular\"\nheight = 1\nperiod = 8\n";
+const std::string kStillWaves = "[water.waves]\ntype = \"regular\"\nheight = 0\nperiod = 8\n";
+
+TEST(Scene, MakesItsSea) {
+  const TempDir directory;
+  const std::string water = "[water]\nlevel = 2\ndepth = 30\nramp = 4\n";
+  auto scene = load(directory, water + kWaves + body_with(1, kBox));
+  ASSERT_TRUE(scene) << scene.error().message();
+  const Sea* sea = scene->sea();
+  ASSERT_NE(sea, nullptr);
+  EXPECT_EQ(sea->water().level, 2.0);
+  EXPECT_EQ(sea->depth(), 30.0);
+  EXPECT_EQ(sea->ramp(), 4.0);
+  ASSERT_EQ(sea->components().size(), 1U);
+  EXPECT_EQ(sea->components()[0].amplitude, 0.5);
+  ASSERT_EQ(scene->wave_systems().size(), 1U);
+  EXPECT_EQ(scene->wave_systems()[0].type, "regular");
+  const Scene moved = *std::move(scene);
+  EXPECT_EQ(moved.sea(), sea) << "the same sea after a move";
+}
+
+TEST(Scene, HasNoSeaInWaterAtRest) {
+  const TempDir directory;
+  for (const std::string& water : {std::string(), std::string("[water]\ndepth = 30\n"), kStillWaves}) {
+    const auto scene = load(directory, water + body_with(1, kBox));
+    ASSERT_TRUE(scene) << scene.error().message();
+    EXPECT_EQ(scene->sea(), nullptr);
+    EXPECT_TRUE(scene->wave_systems().empty());
+    EXPECT_EQ(scene->bodies()[0].solver.tolerance(), 0.0);
+  }
+}
+
+TEST(Scene, UsesAToleranceInWaves) {
+  const TempDir directory;
+  const auto tolerance = [&](const std::string& keys) {
+    const auto scene = load(directory, kWaves + body_with(1, kBox + keys));
+    EXPECT_TRUE(scene) << scene.error().message();
+    return scene->bodies()[0].solver.tolerance();
+  };
+  EXPECT_EQ(tolerance(""), 1e-3);
+  EXPECT_EQ(tolerance("tolerance = 0.02"), 0.02);
+  EXPECT_EQ(tolerance("method = \"exact_surface\"\ntolerance = 0"), 0.0);
+}
+
+TEST(Scene, RefusesInWavesWhatNeedsPlaneWater) {
+  const TempDir directory;
+  const auto load_with = [&](const std::string& water, const std::string& keys) {
+    return load_error(load(directory, water + body_with(1, kBox) + body_with(7, kBox + keys)));
+  };
+  const std::string file = directory.path("pool.toml");
+  EXPECT_EQ(
+      load_with(kWaves, "method = \"exact\""),
+      file +
+          ":9: body 7: method = \"exact\"; expected hierarchical, fast_surface or exact_surface in "
+          "waves. Likely cause: the methods fast, improved and exact sum volumes under a plane water "
+          "surface, which waves are not. Use hierarchical; fast_surface and exact_surface are baselines "
+          "without an error bound.");
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"method = \"fast\"", "method = \"fast\"; expected hierarchical"},
+      {"method = \"improved\"", "method = \"improved\"; expected hierarchical"},
+      {"method = \"exact\"", "method = \"exact\"; expected hierarchical"},
+      {"tolerance = 0", "tolerance = 0; expected a number above 0, at most 1, in waves"},
+      {"tolerance = 0.0", "tolerance = 0; expected a number above 0, at most 1, in waves"},
+      {"outputs = [\"wrench\", \"hydrostatics\"]", "hydrostatics\"]; expected [\"wrench\"] in waves"}};
+  for (const auto& [keys, expected] : refused) {
+    const std::string message = load_with(kWaves, keys);
+    EXPECT_EQ(message.rfind(file + ":9: body 7: ", 0), 0U) << message;
+    EXPECT_NE(message.find(expected), std::string::npos) << message;
+    EXPECT_EQ(load_with(kStillWaves, keys), "accepted") << keys;
+    EXPECT_EQ(load_with("", keys), "accepted") << keys;
+  }
+}
+
+TEST(Scene, AcceptsTheOtherMethodsAndOpenMeshesInWaves) {
+  const TempDir directory;
+  directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const auto scene = load(directory, kWaves + body_with(1, kBox + "method = \"hierarchical\"") +
+                                         body_with(2, kBox + "method = \"fast_surface\"") +
+                                         body_with(3, kBox + "method = \"exact_surface\"") +
+                                         body_with(4, "mesh = \"open.obj\"\nopen = \"dry_boundary\""));
+  EXPECT_TRUE(scene) << scene.error().message();
+}
+
+TEST(Scene, NamesTheBodyInWavesWithoutASceneFile) {
+  SceneDescription description = single_mesh_scene("missing.obj", Method::kExact, 0.0, OpenPolicy::kRefuse);
+  description.sea.systems = {RegularWave{1.0, 8.0, 0.0, 0.0}};
+  const std::string message = load_error(Scene::prepare(description));
+  EXPECT_EQ(message.rfind("body 1: method = \"exact\"", 0), 0U) << message;
+  description.sea.systems = {RegularWave{-1.0, 8.0, 0.0, 0.0}};
+  EXPECT_EQ(load_error(Scene::prepare(description)).rfind("wave system 1: height = -1", 0), 0U);
 }
 
 TEST(Scene, AcceptsOpenMeshesWithDryBoundaryPolicy) {

@@ -1,0 +1,17 @@
+// Internal to scene_file.cpp: parses the keys of [water] that describe the sea, and its wave systems.
+#pragma once
+
+#include <filesystem>
+
+#include "scene/toml_table.h"
+#include "waves/sea_description.h"
+
+namespace buoyancy {
+
+// Reads `depth`, `wave_pressure`, `time_origin`, `ramp` and `waves`, and the files of components that `waves`
+// names, relative to `directory`. Errors are then in the context. What concerns the sea as a whole is left to
+// Sea::make().
+void parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
+               SeaDescription& sea);
+
+}  // namespace buoyancy
