@@ -1,5 +1,7 @@
 #include "service/daemon/message_sizes.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -33,9 +35,11 @@ Json to_json(const LargestMessage& message) {
   return {{"bytes", message.bytes}, {"packets", message.packets}};
 }
 
-std::vector<Warning> warnings_of(const LargestMessages& messages,
+std::vector<Warning> warnings_of(const Scene& scene, const LargestMessages& messages,
                                  const std::optional<ReceiveBuffer>& buffer) {
-  return buffer ? size_warnings(messages, *buffer) : std::vector<Warning>();
+  std::vector<Warning> warnings = scene_warnings(scene);
+  if (buffer) std::ranges::move(size_warnings(messages, *buffer), std::back_inserter(warnings));
+  return warnings;
 }
 
 }  // namespace
@@ -92,7 +96,9 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
     text += "  receive buffer that this machine grants this user: " + std::to_string(buffer->max_message) +
             " bytes\n";
   }
-  for (const Warning& warning : warnings_of(messages, buffer)) text += "warning: " + warning.message() + "\n";
+  for (const Warning& warning : warnings_of(scene, messages, buffer)) {
+    text += "warning: " + warning.message() + "\n";
+  }
   return text;
 }
 
@@ -105,8 +111,9 @@ std::string check_report_json(const Scene& scene, const LargestMessages& message
       {"hydrostatics", messages.hydrostatics ? to_json(*messages.hydrostatics) : Json(nullptr)}};
   report["receive_buffer"] = buffer ? Json(buffer->max_message) : Json(nullptr);
   report["warnings"] = Json::array();
-  for (const Warning& warning : warnings_of(messages, buffer))
+  for (const Warning& warning : warnings_of(scene, messages, buffer)) {
     report["warnings"].push_back(warning.message());
+  }
   return report.dump(2) + "\n";
 }
 

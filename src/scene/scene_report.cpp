@@ -1,6 +1,12 @@
 #include "scene/scene_report.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -64,6 +70,55 @@ std::string body_text(const Body& body, const Scene& scene) {
   return text;
 }
 
+double shortest_wavelength(const Sea& sea) {
+  return 2.0 * std::numbers::pi / sea.max_wave_number();
+}
+
+// Derived numbers are rounded; the JSON report has all digits.
+std::string format_rounded(double value) {
+  return format_number(value, 4);
+}
+
+std::string system_text(const WaveSystemReport& system) {
+  std::string text = system.type == "components" ? "" : std::string(system.type) + ", ";
+  text += pluralize(static_cast<std::int64_t>(system.components), "component", "components");
+  text += system.type == "regular" ? ", height " : ", Hs ";
+  text += format_rounded(system.height) + " m";
+  if (system.peak) {
+    text += system.type == "regular" ? ", period " : ", peak period ";
+    text += format_rounded(system.peak->period) + " s";
+    if (system.type == "components") text += " (calculated)";
+    text += ", steepness " + format_rounded(system.peak->steepness);
+  }
+  if (system.gamma) {
+    text += ", gamma " + format_rounded(*system.gamma);
+    if (system.gamma_is_default) text += " (from Hs and peak period)";
+  }
+  return text;
+}
+
+std::string sea_text(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
+  std::string text =
+      "sea  " + pluralize(static_cast<std::int64_t>(systems.size()), "wave system", "wave systems");
+  text += "\n";
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    std::string label = "  system " + std::to_string(i + 1);
+    label.resize(std::max<std::size_t>(16, label.size() + 1), ' ');
+    text += label + system_text(systems[i]) + "\n";
+  }
+  text += "  together      " +
+          pluralize(static_cast<std::int64_t>(sea.components().size()), "component", "components") + ", Hs " +
+          format_rounded(sea.significant_wave_height()) + " m, shortest wave " +
+          format_rounded(shortest_wavelength(sea)) + " m\n";
+  text += "  depth         " +
+          (std::isinf(sea.depth()) ? "inf: deep water" : format_number(sea.depth()) + " m") + "\n";
+  text += "  pressure      " + std::string(to_string(sea.pressure())) + "\n";
+  text += "  time          t = 0 at utime " + std::to_string(sea.time_origin()) + " us, " +
+          (sea.ramp() > 0.0 ? "ramp of " + format_number(sea.ramp()) + " s" : "no ramp") + "\n";
+  text += "  components    listed by --check --json\n";
+  return text;
+}
+
 Json to_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
@@ -82,6 +137,40 @@ Json to_json(const Water& water) {
           {"level", water.level},
           {"density", water.density},
           {"gravity", water.gravity}};
+}
+
+Json to_json(const WaveSystemReport& system) {
+  const std::optional<PeakWave>& peak = system.peak;
+  return {{"type", system.type},
+          {"components", system.components},
+          {"height", system.height},
+          {"significant_wave_height", system.significant_wave_height},
+          {"peak_period", peak ? Json(peak->period) : Json(nullptr)},
+          {"peak_wavelength", peak ? Json(peak->wavelength) : Json(nullptr)},
+          {"steepness", peak ? Json(peak->steepness) : Json(nullptr)},
+          {"gamma", to_json(system.gamma)},
+          {"gamma_is_default", system.gamma_is_default}};
+}
+
+Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
+  Json systems = Json::array();
+  for (const WaveSystemReport& report : reports) systems.push_back(to_json(report));
+  Json components = Json::array();
+  for (const WaveComponent& component : sea.components()) {
+    components.push_back({{"amplitude", component.amplitude},
+                          {"angular_frequency", component.angular_frequency},
+                          {"direction", component.direction},
+                          {"phase", component.phase}});
+  }
+  return {{"depth", sea.depth()},
+          {"wave_pressure", to_string(sea.pressure())},
+          {"time_origin", sea.time_origin()},
+          {"ramp", sea.ramp()},
+          {"significant_wave_height", sea.significant_wave_height()},
+          {"shortest_wavelength", shortest_wavelength(sea)},
+          {"extreme_steepness", sea.extreme_steepness()},
+          {"systems", std::move(systems)},
+          {"components", std::move(components)}};
 }
 
 Json to_json(const MeshSource& source) {
@@ -152,6 +241,10 @@ std::string scene_report_text(const Scene& scene) {
           ", " + format_number(water.density) + " kg/m^3, gravity " + format_number(water.gravity) +
           " m/s^2\n";
   text += "  instructions  " + simd_target() + "\n";
+  if (scene.sea() != nullptr) {
+    text += '\n';
+    text += sea_text(*scene.sea(), scene.wave_systems());
+  }
   for (const Body& body : scene.bodies()) {
     text += '\n';
     text += body_text(body, scene);
@@ -177,13 +270,28 @@ std::string scene_report_json(const Scene& scene) {
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
     meshes.push_back(std::move(report));
   }
-  const Json report{{"scene", scene.name()},
-                    {"water", to_json(scene.water())},
-                    {"simd_target", simd_target()},
-                    {"bodies", std::move(bodies)},
-                    {"meshes", std::move(meshes)}};
+  const Json report{
+      {"scene", scene.name()},
+      {"water", to_json(scene.water())},
+      {"sea", scene.sea() == nullptr ? Json(nullptr) : to_json(*scene.sea(), scene.wave_systems())},
+      {"simd_target", simd_target()},
+      {"bodies", std::move(bodies)},
+      {"meshes", std::move(meshes)}};
   // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<Warning> scene_warnings(const Scene& scene) {
+  const Sea* sea = scene.sea();
+  if (sea == nullptr || !sea->is_too_steep()) return {};
+  return {
+      {scene.name() + ": the sea",
+       "a steepness of " + format_rounded(sea->extreme_steepness()) +
+           " (4 sqrt(sum (a k)^2 / 2), or sum a k where that is less)",
+       "less than 1: under the steepest crests the modelled pressure falls downwards, since linear theory "
+       "does not hold there",
+       "waves too high for their length, or the short waves of a spectrum with a high cutoff",
+       "Use lower or longer waves, or a lower cutoff"}};
 }
 
 }  // namespace buoyancy

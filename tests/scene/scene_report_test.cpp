@@ -1,9 +1,12 @@
 #include "scene/scene_report.h"
 
+#include <filesystem>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "base/format.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/scene/scene_texts.h"
 #include "tests/support/json.h"
@@ -136,6 +139,143 @@ TEST(SceneReport, WritesNullForNonFiniteNumbers) {
   const Json body = parse_json(scene_report_json(scene))["bodies"][0];
   EXPECT_EQ(body["mass"], 1e300);
   EXPECT_EQ(body["density"], nullptr);
+}
+
+constexpr const char* kSea = R"(
+[water]
+depth = 40
+wave_pressure = "hydrostatic"
+time_origin = 1772000000000001
+ramp = 15
+[[water.waves]]
+type = "jonswap"
+significant_wave_height = 2
+peak_period = 8
+spreading = 10
+direction = 30
+[[water.waves]]
+type = "regular"
+height = 1
+period = 12.5
+phase = 0.1
+[[water.waves]]
+type = "components"
+components = [{ amplitude = 0.2, angular_frequency = 0.7 }, { amplitude = 0.1, angular_frequency = 0.9 }]
+[[body]]
+id = 4
+shape = { type = "box" }
+)";
+
+TEST(SceneReport, WritesTheSeaAsJson) {
+  const Scene scene = prepared(kSea);
+  const Json sea = parse_json(scene_report_json(scene))["sea"];
+  EXPECT_EQ(sea["depth"], 40.0);
+  EXPECT_EQ(sea["wave_pressure"], "hydrostatic");
+  EXPECT_EQ(sea["time_origin"], 1'772'000'000'000'001);
+  EXPECT_EQ(sea["ramp"], 15.0);
+  EXPECT_EQ(sea["significant_wave_height"], scene.sea()->significant_wave_height());
+  EXPECT_EQ(sea["shortest_wavelength"], 2.0 * std::numbers::pi / scene.sea()->max_wave_number());
+  EXPECT_EQ(sea["extreme_steepness"], scene.sea()->extreme_steepness());
+  ASSERT_EQ(sea["systems"].size(), 3U);
+  const Json& jonswap = sea["systems"][0];
+  EXPECT_EQ(jonswap["type"], "jonswap");
+  EXPECT_EQ(jonswap["components"], 200);
+  EXPECT_NEAR(jonswap["height"], 2.0, 1e-14);
+  EXPECT_NEAR(jonswap["significant_wave_height"], 2.0, 1e-14);
+  EXPECT_EQ(jonswap["peak_period"], 8.0);
+  EXPECT_NEAR(jonswap["steepness"].get<double>() * jonswap["peak_wavelength"].get<double>(), 2.0, 1e-14);
+  EXPECT_EQ(jonswap["gamma"], scene.wave_systems()[0].gamma);
+  EXPECT_EQ(jonswap["gamma_is_default"], true);
+  EXPECT_EQ(sea["systems"][1]["type"], "regular");
+  EXPECT_EQ(sea["systems"][1]["height"], 1.0);
+  EXPECT_EQ(sea["systems"][1]["gamma"], nullptr);
+  EXPECT_EQ(sea["systems"][2]["components"], 2);
+  EXPECT_EQ(sea["components"].size(), 203U);
+}
+
+TEST(SceneReport, WritesNullForDeepWaterAndWaterAtRest) {
+  const Json at_rest = parse_json(scene_report_json(prepared(kThreeBodies)));
+  EXPECT_TRUE(at_rest.contains("sea"));
+  EXPECT_EQ(at_rest["sea"], nullptr);
+  const Json deep = parse_json(scene_report_json(
+      prepared(scene_with_crate("[water.waves]\ntype = \"components\"\ncomponents = [{ amplitude = 0.2, "
+                                "angular_frequency = 0.7 }, { amplitude = 0, angular_frequency = 9 }]"))));
+  EXPECT_EQ(deep["sea"]["depth"], nullptr);
+  EXPECT_EQ(deep["sea"]["components"].size(), 2U) << "with those without an amplitude";
+}
+
+// Returns a scene like kSea whose only wave system has these keys.
+Scene with_components(const std::string& keys, const std::filesystem::path& directory) {
+  const std::string text =
+      "[water]\ndepth = 40\n[water.waves]\ntype = \"components\"\n" + keys + "\n" + scene_with_crate();
+  Expected<Scene> scene = Scene::prepare(parse_scene(text, "again.toml", directory).value());
+  return *std::move(scene);
+}
+
+void expect_same_sea(const Sea& sea, const Sea& expected) {
+  const PreparedComponents& components = sea.prepared();
+  const PreparedComponents& expected_components = expected.prepared();
+  EXPECT_EQ(components.amplitude, expected_components.amplitude);
+  EXPECT_EQ(components.angular_frequency, expected_components.angular_frequency);
+  EXPECT_EQ(components.wave_number, expected_components.wave_number);
+  EXPECT_EQ(components.k1, expected_components.k1);
+  EXPECT_EQ(components.k1_rest, expected_components.k1_rest);
+  EXPECT_EQ(components.k2, expected_components.k2);
+  EXPECT_EQ(components.k2_rest, expected_components.k2_rest);
+  EXPECT_EQ(components.phase, expected_components.phase);
+}
+
+TEST(SceneReport, ComponentsReadAgainGiveTheSameSea) {
+  const TempDir directory;
+  const Scene scene = prepared(kSea);
+  std::string csv = "amplitude,angular_frequency,direction,phase\n";
+  std::string toml = "components = [";
+  const Json report = parse_json(scene_report_json(scene));
+  for (const Json& component : report["sea"]["components"]) {
+    std::string fields;
+    for (const char* key : {"amplitude", "angular_frequency", "direction", "phase"}) {
+      const std::string number = format_number(component[key].get<double>(), 17);
+      csv += (fields.empty() ? "" : ",") + number;
+      fields += (fields.empty() ? "" : ", ") + std::string(key) + " = " + number;
+    }
+    csv += "\n";
+    toml += "{ " + fields + " },\n";
+  }
+  directory.write("sea.csv", csv);
+  expect_same_sea(*with_components("file = \"sea.csv\"", directory.path()).sea(), *scene.sea());
+  expect_same_sea(*with_components(toml + "]", directory.path()).sea(), *scene.sea());
+}
+
+TEST(SceneReport, FormatsTheSeaAsText) {
+  const std::string text = scene_report_text(prepared(kSea));
+  for (const char* expected :
+       {"\nsea  3 wave systems\n",
+        "  system 1      jonswap, 200 components, Hs 2 m, peak period 8 s, steepness ",
+        "gamma 1 (from Hs and peak period)\n",
+        "  system 2      regular, 1 component, height 1 m, period 12.5 s",
+        "  system 3      2 components, Hs 0.6325 m, peak period ", " s (calculated), steepness ",
+        "  together      203 components, Hs ", "shortest wave ", "  depth         40 m\n",
+        "  pressure      hydrostatic\n", "  time          t = 0 at utime 1772000000000001 us, ramp of 15 s\n",
+        "  components    listed by --check --json\n"}) {
+    EXPECT_NE(text.find(expected), std::string::npos) << "missing: " << expected << "\n" << text;
+  }
+  EXPECT_EQ(scene_report_text(prepared(kThreeBodies)).find("sea"), std::string::npos);
+  const std::string regular = scene_report_text(
+      prepared(scene_with_crate("[water.waves]\ntype = \"regular\"\nheight = 1\nperiod = 8\n")));
+  EXPECT_NE(regular.find("  depth         inf: deep water\n"), std::string::npos) << regular;
+  EXPECT_NE(regular.find("no ramp\n"), std::string::npos) << regular;
+}
+
+TEST(SceneReport, WarnsAboutASeaTooSteepForLinearTheory) {
+  const auto warnings = [](double height) {  // period 2 s: k = 1.006 rad/m
+    return scene_warnings(prepared(scene_with_crate(
+        "[water.waves]\ntype = \"regular\"\nperiod = 2\nheight = " + format_shortest(height) + "\n")));
+  };
+  EXPECT_TRUE(scene_warnings(prepared(kThreeBodies)).empty());
+  EXPECT_TRUE(warnings(1.95).empty());
+  ASSERT_EQ(warnings(2.05).size(), 1U);
+  EXPECT_EQ(warnings(2.05)[0].message().rfind("pool.toml: the sea: a steepness of 1.032 ", 0), 0U)
+      << warnings(2.05)[0].message();
 }
 
 }  // namespace

@@ -106,5 +106,15 @@ TEST(MessageSizes, AppearInCheckReport) {
   EXPECT_TRUE(in_process["warnings"].empty());
 }
 
+TEST(CheckReport, WarnsAboutASteepSea) {
+  const Scene scene = boxes(1, "[water.waves]\ntype = \"regular\"\nheight = 3\nperiod = 2\n");
+  const LargestMessages messages = largest_messages(scene, {});
+  const std::string text = check_report_text(scene, messages, std::nullopt);
+  EXPECT_NE(text.find("\nwarning: test scene: the sea: a steepness of 1.5"), std::string::npos) << text;
+  const auto json = parse_json(check_report_json(scene, messages, std::nullopt));
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_EQ(json["sea"]["components"].size(), 1U);
+}
+
 }  // namespace
 }  // namespace buoyancy::service
