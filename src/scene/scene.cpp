@@ -175,7 +175,13 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
 Expected<Scene> Scene::load(const std::filesystem::path& path, const PrepareOptions& options) {
   Expected<SceneDescription> description = read_scene_file(path);
   if (!description) return make_error(std::move(description.error()));
-  return prepare(*description, options);
+  Expected<Scene> scene = prepare(*description, options);
+  if (scene && scene->sea() != nullptr && !options.accept_waves) {
+    return make_error({description->water_location + ": [water]", "waves", "water at rest",
+                       "loads in waves cannot be computed yet: only buoyancyd --check accepts waves",
+                       "Leave the waves out, or describe the sea with --check"});
+  }
+  return scene;
 }
 
 const Body* Scene::find(std::int32_t id) const {

@@ -22,6 +22,8 @@ namespace buoyancy {
 struct PrepareOptions {
   bool count_intersecting_pairs =
       false;  // for the report; takes several times as long as the rest of the validation
+  bool accept_waves =
+      false;  // by load(): of callers that do not evaluate bodies, since none can in waves yet
 };
 
 // A mesh that several bodies may share: one per source (file or shape), scale and open policy.

@@ -12,7 +12,8 @@
 namespace buoyancy {
 namespace {
 
-Expected<Scene> load(const TempDir& directory, const std::string& text, const PrepareOptions& options = {}) {
+Expected<Scene> load(const TempDir& directory, const std::string& text,
+                     const PrepareOptions& options = {.accept_waves = true}) {
   return Scene::load(directory.write("pool.toml", text), options);
 }
 
@@ -319,6 +320,18 @@ TEST(Scene, NamesOnlyMeshWithoutSceneFile) {
   const std::string message =
       load_error(Scene::prepare(single_mesh_scene(mesh, Method::kExact, 0.0, OpenPolicy::kRefuse)));
   EXPECT_EQ(message.rfind(mesh.string() + ": ", 0), 0U) << message;
+}
+
+TEST(Scene, RefusesWavesWhereBodiesAreEvaluated) {
+  const TempDir directory;
+  const Expected<Scene> scene = load(directory,
+                                     "[water]\nwaves = { type = \"regular\", height = 1, period = 8 }\n" +
+                                         body_with(1, "shape = { type = \"box\" }"),
+                                     {.accept_waves = false});
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message().find("pool.toml:1: [water]: waves; expected water at rest"),
+            std::string::npos)
+      << scene.error().message();
 }
 
 }  // namespace
