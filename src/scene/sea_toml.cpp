@@ -99,9 +99,9 @@ WaveComponents read_component_list(TomlTable& table, const std::string& name, Sc
     return components;
   }
   for (const toml::node& element : *array) {
-    const std::string number = std::to_string(components.size() + 1);
-    components.push_back(
-        read_component({*element.as_table(), name + ", components number " + number, context}));
+    std::string element_name = name;
+    element_name += ", components number " + std::to_string(components.size() + 1);
+    components.push_back(read_component({*element.as_table(), std::move(element_name), context}));
     if (table.failed()) break;
   }
   return components;

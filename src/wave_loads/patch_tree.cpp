@@ -202,7 +202,8 @@ class Builder {
     }
     for (int pair = 0; pair < 6; ++pair) {
       for (int k = 0; k < 3; ++k) {
-        block.P[static_cast<std::size_t>(3 * pair + k)][lane] = static_cast<float>(patch.moments.P(pair, k));
+        block.P[3 * static_cast<std::size_t>(pair) + static_cast<std::size_t>(k)][lane] =
+            static_cast<float>(patch.moments.P(pair, k));
       }
     }
     block.radius[lane] = rounded_up(patch.radius);

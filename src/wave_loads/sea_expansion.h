@@ -22,19 +22,24 @@ inline constexpr int kNormDegree = 10;  // up to this degree, what is left out i
 // Places of the terms. Harmonics: degree l from l^2 on, C_l0, C_l1, S_l1, C_l2, ... Monomials: degree l from
 // l (l + 1) / 2 on, xi_1^l, xi_1^(l-1) xi_2, ...
 constexpr std::size_t harmonics_to(int degree) {
-  return static_cast<std::size_t>((degree + 1) * (degree + 1));
+  const auto n = static_cast<std::size_t>(degree) + 1;
+  return n * n;
 }
 constexpr std::size_t monomials_to(int degree) {
-  return static_cast<std::size_t>((degree + 1) * (degree + 2) / 2);
+  const auto n = static_cast<std::size_t>(degree);
+  return (n + 1) * (n + 2) / 2;
 }
 constexpr std::size_t cosine_place(int l, int m) {
-  return static_cast<std::size_t>(l * l + (m == 0 ? 0 : 2 * m - 1));
+  const auto n = static_cast<std::size_t>(l);
+  return n * n + (m == 0 ? 0 : 2 * static_cast<std::size_t>(m) - 1);
 }
 constexpr std::size_t sine_place(int l, int m) {
-  return static_cast<std::size_t>(l * l + 2 * m);
+  const auto n = static_cast<std::size_t>(l);
+  return n * n + 2 * static_cast<std::size_t>(m);
 }
 constexpr std::size_t monomial_place(int p, int q) {
-  return static_cast<std::size_t>((p + q) * (p + q + 1) / 2 + q);
+  const auto n = static_cast<std::size_t>(p) + static_cast<std::size_t>(q);
+  return n * (n + 1) / 2 + static_cast<std::size_t>(q);
 }
 
 // A component's weights at a point: its amplitude there times the cosine or the sine of its phase, and in

@@ -29,6 +29,7 @@ std::vector<double> frequency_boundaries(double cutoff) {
   constexpr double kWidth = 0.02;
   const int below_peak = static_cast<int>((1.0 - kFirst) / kWidth);
   std::vector<double> boundaries;
+  boundaries.reserve(static_cast<std::size_t>(below_peak));
   for (int i = 0; i < below_peak; ++i) boundaries.push_back(kFirst + (1.0 - kFirst) / below_peak * i);
   for (double x = 1.0; x < cutoff; x *= 1.0 + kWidth) boundaries.push_back(x);
   boundaries.push_back(cutoff);

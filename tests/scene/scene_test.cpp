@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -242,7 +243,7 @@ TEST(Scene, UsesAToleranceInWaves) {
   const TempDir directory;
   const auto tolerance = [&](const std::string& keys) {
     const auto scene = load(directory, kWaves + body_with(1, kBox + keys));
-    EXPECT_TRUE(scene) << scene.error().message();
+    if (!scene) throw std::runtime_error(scene.error().message());
     return scene->bodies()[0].solver.tolerance();
   };
   EXPECT_EQ(tolerance(""), 1e-3);

@@ -1,6 +1,7 @@
 // The keys of [water] that describe the sea.
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
