@@ -102,7 +102,7 @@ const char* to_string(DecodeError error) {
     case DecodeError::kFingerprint:
       return "fingerprint of another type or version";
     case DecodeError::kCount:
-      return "negative count";
+      return "count out of range";
     case DecodeError::kLength:
       return "length does not fit the count";
   }

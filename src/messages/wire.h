@@ -20,6 +20,7 @@ inline constexpr std::string_view kStatesChannel = "BUOYANCY_STATES";
 inline constexpr std::string_view kWrenchesChannel = "BUOYANCY_WRENCHES";
 inline constexpr std::string_view kHydrostaticsChannel = "BUOYANCY_HYDROSTATICS";
 inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
+inline constexpr std::string_view kSeaChannel = "BUOYANCY_SEA";
 
 using Bytes = std::span<const std::uint8_t>;
 
@@ -27,8 +28,9 @@ using Bytes = std::span<const std::uint8_t>;
 enum class DecodeError {
   kTruncated,    // shorter than the fixed fields
   kFingerprint,  // another type, or another version of the type
-  kCount,        // the number of bodies is negative, or a string is shorter than its final NUL
-  kLength,       // too short or too long for the count, or a string does not end at its stated length
+  kCount,   // the number of bodies or wave components is negative or, of the latter, above the maximum; or
+            // a string is shorter than its final NUL
+  kLength,  // too short or too long for the count, or a string does not end at its stated length
 };
 const char* to_string(DecodeError error);  // for logs: "shorter than the fixed fields"
 

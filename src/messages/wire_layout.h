@@ -15,6 +15,7 @@
 
 #include "messages/hydrostatics.h"
 #include "messages/request.h"
+#include "messages/sea_state.h"
 #include "messages/status.h"
 
 namespace buoyancy {
@@ -62,6 +63,21 @@ void visit_header(Message& response, Visitor& visitor) {
 template <MaybeConst<BodiesHydrostatics> Message, typename Visitor>
 void visit_header(Message& hydrostatics, Visitor& visitor) {
   visit_fields(hydrostatics.id, visitor);
+}
+
+// A sea consists of a header, the number of components, and an array for each of a component's numbers.
+template <MaybeConst<SeaState> State, typename Visitor>
+void visit_header(State& state, Visitor& visitor) {
+  visitor(state.utime, state.instance_id, state.e1, state.e2, state.up);
+  visitor(state.level, state.depth, state.gravity, state.time_origin, state.ramp, state.wave_pressure);
+}
+
+template <MaybeConst<SeaState> State, typename Visitor>
+void visit_components(State& state, Visitor&& visitor) {
+  visitor(state.amplitude);
+  visitor(state.angular_frequency);
+  visitor(state.direction);
+  visitor(state.phase);
 }
 
 // A status consists of a header, its strings and a trailer.
