@@ -6,6 +6,19 @@
 
 namespace buoyancy::service {
 
+namespace {
+
+// What to do about bodies of this status; empty where the name says it.
+const char* remedy_for(BodyStatus status) {
+  if (status == BodyStatus::kNoSea) {
+    return "no sea has been received that holds at the time of the requests: start what publishes it before "
+           "the clients";
+  }
+  return "";
+}
+
+}  // namespace
+
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now) {
   struct Cause {
     DecodeError error;
@@ -26,8 +39,30 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
     const auto status = static_cast<BodyStatus>(i);
     const std::int64_t increase = now.bodies[i] - before.bodies[i];
     if (status != BodyStatus::kOk && increase > 0) {
-      warnings.push_back({fmt::format("bodies with status {}", to_string(status)), increase, {}});
+      warnings.push_back(
+          {fmt::format("bodies with status {}", to_string(status)), increase, remedy_for(status)});
     }
+  }
+  struct InWaves {
+    std::int64_t ServiceCounters::*counter;
+    const char* message;
+    const char* remedy;
+  };
+  constexpr std::array kInWaves{
+      InWaves{
+          &ServiceCounters::seas_rejected, "seas rejected",
+          "likely cause: their sender is of another version, or does not agree with the scene about up or "
+          "gravity"},
+      InWaves{
+          &ServiceCounters::bodies_work_capped, "bodies in waves with an error bound above their tolerance",
+          "likely cause: a tolerance below what bodies this large allow in waves this short; the bound in "
+          "the response holds. Raise the tolerance, or lower the waves' cutoff"},
+      InWaves{&ServiceCounters::bodies_sea_too_steep, "bodies in a sea too steep for linear theory",
+              "likely cause: high waves with too many short ones on top. Lower the height or the cutoff, or "
+              "lengthen the period; buoyancyd --check reports the steepness"}};
+  for (const InWaves& in_waves : kInWaves) {
+    const std::int64_t increase = now.*in_waves.counter - before.*in_waves.counter;
+    if (increase > 0) warnings.push_back({in_waves.message, increase, in_waves.remedy});
   }
   return warnings;
 }

@@ -20,6 +20,8 @@ const char* to_string(BodyStatus status) {
       return "OPEN_EDGE_WET";
     case BodyStatus::kOutOfRange:
       return "OUT_OF_RANGE";
+    case BodyStatus::kNoSea:
+      return "NO_SEA";
   }
   return "UNKNOWN_STATUS";
 }

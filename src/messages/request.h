@@ -52,8 +52,9 @@ enum class BodyStatus : std::int32_t {
   kBadLeadTime = 5,
   kOpenEdgeWet = 6,
   kOutOfRange = 7,
+  kNoSea = 8,
 };
-inline constexpr int kBodyStatusCount = 8;
+inline constexpr int kBodyStatusCount = 9;
 // The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other
 // value.
 const char* to_string(BodyStatus status);

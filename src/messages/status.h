@@ -26,12 +26,17 @@ struct ServiceCounters {
   std::int64_t rejected_fingerprint = 0;
   std::int64_t rejected_count = 0;
   std::int64_t rejected_length = 0;
+  std::int64_t seas_received = 0;
+  std::int64_t seas_rejected = 0;
   std::array<std::int64_t, kBodyStatusCount> bodies{};  // indexed by BodyStatus
   std::int64_t quaternions_normalised = 0;
   std::int64_t bodies_dry = 0;
   std::int64_t bodies_wet = 0;
   std::int64_t bodies_crossing = 0;
   std::int64_t bodies_unchanged = 0;
+  std::int64_t bodies_work_capped = 0;
+  std::int64_t bodies_sea_too_steep = 0;
+  std::int64_t wave_patches = 0;
   std::int64_t hydrostatics = 0;
   double largest_dropped_force = 0.0;
   double largest_dropped_torque = 0.0;

@@ -107,12 +107,17 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.rejected_fingerprint...);
   visitor(c.rejected_count...);
   visitor(c.rejected_length...);
+  visitor(c.seas_received...);
+  visitor(c.seas_rejected...);
   visitor(c.bodies...);
   visitor(c.quaternions_normalised...);
   visitor(c.bodies_dry...);
   visitor(c.bodies_wet...);
   visitor(c.bodies_crossing...);
   visitor(c.bodies_unchanged...);
+  visitor(c.bodies_work_capped...);
+  visitor(c.bodies_sea_too_steep...);
+  visitor(c.wave_patches...);
   visitor(c.hydrostatics...);
   visitor(c.largest_dropped_force...);
   visitor(c.largest_dropped_torque...);

@@ -48,6 +48,10 @@ Error not_ok_error(const SimulatedBody& body, double time) {
       error.cause = "the mesh is open and its boundary is submerged";
       error.hint = "Close the mesh, or start with a lighter body, a higher position or a slower motion";
       break;
+    case BodyStatus::kNoSea:
+      error.cause = "the scene's waves are received, and buoyancyd has not received a sea for this time";
+      error.hint = "Start what publishes BUOYANCY_SEA before the client";
+      break;
     default:
       error.cause = kDiverged;
       error.hint = kUseSmallerStep;

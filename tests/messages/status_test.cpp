@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 12 + 8 + 1 + 5 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 14 + 9 + 1 + 8 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -46,11 +46,16 @@ ServiceStatus random_status() {
                                 &c.rejected_fingerprint,
                                 &c.rejected_count,
                                 &c.rejected_length,
+                                &c.seas_received,
+                                &c.seas_rejected,
                                 &c.quaternions_normalised,
                                 &c.bodies_dry,
                                 &c.bodies_wet,
                                 &c.bodies_crossing,
                                 &c.bodies_unchanged,
+                                &c.bodies_work_capped,
+                                &c.bodies_sea_too_steep,
+                                &c.wave_patches,
                                 &c.hydrostatics,
                                 &status.reloads,
                                 &status.reloads_failed,
@@ -101,6 +106,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.rejected_fingerprint = c.rejected_fingerprint;
   message.rejected_count = c.rejected_count;
   message.rejected_length = c.rejected_length;
+  message.seas_received = c.seas_received;
+  message.seas_rejected = c.seas_rejected;
   message.bodies_ok = count(status, BodyStatus::kOk);
   message.bodies_unknown = count(status, BodyStatus::kUnknownBody);
   message.bodies_non_finite_pose = count(status, BodyStatus::kNonFinitePose);
@@ -109,11 +116,15 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_bad_lead_time = count(status, BodyStatus::kBadLeadTime);
   message.bodies_open_edge_wet = count(status, BodyStatus::kOpenEdgeWet);
   message.bodies_out_of_range = count(status, BodyStatus::kOutOfRange);
+  message.bodies_no_sea = count(status, BodyStatus::kNoSea);
   message.quaternions_normalised = c.quaternions_normalised;
   message.bodies_dry = c.bodies_dry;
   message.bodies_wet = c.bodies_wet;
   message.bodies_crossing = c.bodies_crossing;
   message.bodies_unchanged = c.bodies_unchanged;
+  message.bodies_work_capped = c.bodies_work_capped;
+  message.bodies_sea_too_steep = c.bodies_sea_too_steep;
+  message.wave_patches = c.wave_patches;
   message.hydrostatics = c.hydrostatics;
   message.largest_dropped_force = c.largest_dropped_force;
   message.largest_dropped_torque = c.largest_dropped_torque;
@@ -266,6 +277,7 @@ TEST(ServiceCounters, VisitsAndAddsEveryField) {
   one.requests = 3;
   one.bodies[2] = 4;
   one.hydrostatics = 5;
+  one.wave_patches = 7;
   one.largest_dropped_force = 0.25;
   ServiceCounters sum = one;
   sum.largest_dropped_force = 0.5;
@@ -273,6 +285,7 @@ TEST(ServiceCounters, VisitsAndAddsEveryField) {
   EXPECT_EQ(sum.requests, 6);
   EXPECT_EQ(sum.bodies[2], 8);
   EXPECT_EQ(sum.hydrostatics, 10);
+  EXPECT_EQ(sum.wave_patches, 14);
   EXPECT_EQ(sum.largest_dropped_force, 0.5);
 }
 

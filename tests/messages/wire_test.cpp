@@ -385,6 +385,7 @@ TEST(BodyStatus, ConvertsToNamesOfMessageDefinition) {
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::BAD_LEAD_TIME}), "BAD_LEAD_TIME");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OPEN_EDGE_WET}), "OPEN_EDGE_WET");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OUT_OF_RANGE}), "OUT_OF_RANGE");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NO_SEA}), "NO_SEA");
   EXPECT_STREQ(to_string(BodyStatus{kBodyStatusCount}), "UNKNOWN_STATUS");
 }
 

@@ -23,6 +23,8 @@ const char* meaning(BodyStatus status) {
       return "the mesh is open and its boundary is not entirely dry";
     case BodyStatus::kOutOfRange:
       return "the result exceeds the range of double";
+    case BodyStatus::kNoSea:
+      return "no sea has been received that holds at the request's time";
   }
   return "";
 }

@@ -211,6 +211,7 @@
     tables.push(table_of('Reported by the service', ['since it was started', ''], [
       ['requests', status.requests], ['computed', status.computed], ['retries', status.retries], ['conflicting retries', status.conflicting_retries],
       ['stale', status.stale], ['superseded', status.superseded], ['rejected', status.rejected], ['send failures', status.send_failures],
+      ['seas received', status.seas_received], ['seas rejected', status.seas_rejected],
       ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
       ['sessions', status.sessions], ['sessions evicted', status.sessions_evicted], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
@@ -218,6 +219,7 @@
       ['skipped: dry', status.bodies_dry], ['skipped: fully submerged', status.bodies_wet],
       ['skipped: unchanged', status.bodies_unchanged], ['computed: partially submerged', status.bodies_crossing],
       ...Object.entries(status.bodies),
+      ['waves: work capped', status.bodies_work_capped], ['waves: too steep for linear theory', status.bodies_sea_too_steep], ['waves: patches', status.wave_patches],
       ['quaternions normalised', status.quaternions_normalised], ['hydrostatics', status.hydrostatics],
     ]));
     tables.push(table_of('Service latency', ['from receipt to publication', 'ms'], [

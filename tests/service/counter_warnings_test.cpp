@@ -1,0 +1,69 @@
+#include "service/daemon/counter_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace buoyancy::service {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::int64_t& count(ServiceCounters& counters, BodyStatus status) {
+  return counters.bodies[static_cast<std::size_t>(status)];
+}
+
+TEST(CounterWarnings, AreEmptyIfNothingWentWrong) {
+  ServiceCounters now;
+  now.requests = 5;
+  now.computed = 5;
+  now.seas_received = 2;
+  now.wave_patches = 1000;
+  count(now, BodyStatus::kOk) = 5;
+  EXPECT_TRUE(warnings_since({}, now).empty());
+}
+
+TEST(CounterWarnings, NameCausesOfRejectionAndBodyStatuses) {
+  ServiceCounters before;
+  before.rejected_count = 3;
+  ServiceCounters now = before;
+  now.rejected_count = 5;
+  count(now, BodyStatus::kUnknownBody) = 4;
+  const std::vector<LogEvent> warnings = warnings_since(before, now);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0].message, "messages rejected, count out of range");
+  EXPECT_EQ(warnings[0].count, 2);
+  EXPECT_EQ(warnings[1].message, "bodies with status UNKNOWN_BODY");
+  EXPECT_EQ(warnings[1].count, 4);
+  EXPECT_EQ(warnings[1].detail, "");
+}
+
+TEST(CounterWarnings, SayWhatToDoWithoutSea) {
+  ServiceCounters now;
+  count(now, BodyStatus::kNoSea) = 2;
+  const std::vector<LogEvent> warnings = warnings_since({}, now);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].message, "bodies with status NO_SEA");
+  EXPECT_THAT(warnings[0].detail, HasSubstr("start what publishes it before the clients"));
+}
+
+TEST(CounterWarnings, SayWhatToDoAboutWaves) {
+  ServiceCounters now;
+  now.seas_rejected = 1;
+  now.bodies_work_capped = 20;
+  now.bodies_sea_too_steep = 300;
+  const std::vector<LogEvent> warnings = warnings_since({}, now);
+  ASSERT_EQ(warnings.size(), 3U);
+  EXPECT_EQ(warnings[0].message, "seas rejected");
+  EXPECT_EQ(warnings[0].count, 1);
+  EXPECT_THAT(warnings[0].detail, HasSubstr("up or gravity"));
+  EXPECT_EQ(warnings[1].message, "bodies in waves with an error bound above their tolerance");
+  EXPECT_EQ(warnings[1].count, 20);
+  EXPECT_THAT(warnings[1].detail, HasSubstr("Raise the tolerance"));
+  EXPECT_EQ(warnings[2].message, "bodies in a sea too steep for linear theory");
+  EXPECT_EQ(warnings[2].count, 300);
+  EXPECT_THAT(warnings[2].detail, HasSubstr("buoyancyd --check reports the steepness"));
+  EXPECT_TRUE(warnings_since(now, now).empty());
+}
+
+}  // namespace
+}  // namespace buoyancy::service
