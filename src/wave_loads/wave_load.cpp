@@ -17,8 +17,10 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_cells-inl.h"
-#include "wave_loads/wave_patches-inl.h"
+#include "wave_loads/wave_field-inl.h"
+#include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_query.h"
+#include "wave_loads/wave_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

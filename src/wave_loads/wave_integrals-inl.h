@@ -1,0 +1,206 @@
+// The integrals of a model of the pressure over patches that are not clipped, with SIMD
+// (docs/wave_mathematics.md, "What a patch contributes"). Included once per instruction set.
+#if defined(BUOYANCY_WAVE_INTEGRALS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_INTEGRALS_INL_H
+#undef BUOYANCY_WAVE_INTEGRALS_INL_H
+#else
+#define BUOYANCY_WAVE_INTEGRALS_INL_H
+#endif
+
+#include <array>
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "wave_loads/wave_models-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// Integrals over a patch, B axes, over rho g.
+template <typename Number>
+struct PatchIntegrals {
+  Vectors3<Number> force;   // [m^3], -int psi n dA
+  Vectors3<Number> torque;  // [m^4], about the reference point
+  VectorOf<Number> volume;  // [m^3]
+  Vectors3<Number> moment;  // [m^4], int (x - c) dV
+  VectorOf<Number> force_error, torque_error;
+};
+
+template <typename Number>
+struct PatchMoments {
+  Vectors3<Number> center;
+  VectorOf<Number> radius, area, mu2, mu3;
+  std::array<VectorOf<Number>, 3> S;
+  std::array<VectorOf<Number>, 9> N;
+  std::array<VectorOf<Number>, 18> P;
+};
+
+// Integrals of a quadratic function over a patch: of the function times n, of the function times y_j n_k (of
+// its linear part alone) and times up . n.
+template <typename Number>
+HWY_INLINE Vectors3<Number> integral_with_normal(const PatchMoments<Number>& m, const Quadratic<Number>& q) {
+  using V = VectorOf<Number>;
+  const V half = set<Number>(0.5);
+  const Symmetric<Number> weights{half * q.hessian[0], half * q.hessian[1], half * q.hessian[2],
+                                  q.hessian[3],        q.hessian[4],        q.hessian[5]};
+  std::array<V, 3> sum;
+#pragma GCC unroll 3
+  for (std::size_t k = 0; k < 3; ++k) {
+    V of_k = q.value * m.S[k];
+    of_k = hn::MulAdd(q.gradient.x, m.N[k], of_k);
+    of_k = hn::MulAdd(q.gradient.y, m.N[3 + k], of_k);
+    of_k = hn::MulAdd(q.gradient.z, m.N[6 + k], of_k);
+#pragma GCC unroll 6
+    for (std::size_t pair = 0; pair < 6; ++pair) of_k = hn::MulAdd(weights[pair], m.P[3 * pair + k], of_k);
+    sum[k] = of_k;
+  }
+  return {sum[0], sum[1], sum[2]};
+}
+
+// int (value + gradient . y) y_j n_k dA.
+template <typename Number>
+HWY_INLINE VectorOf<Number> integral_with_offset(const PatchMoments<Number>& m, const VectorOf<Number>& value,
+                                                 const Vectors3<Number>& gradient, std::size_t j,
+                                                 std::size_t k) {
+  constexpr std::size_t kPair[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  auto sum = value * m.N[3 * j + k];
+  sum = hn::MulAdd(gradient.x, m.P[3 * kPair[0][j] + k], sum);
+  sum = hn::MulAdd(gradient.y, m.P[3 * kPair[1][j] + k], sum);
+  return hn::MulAdd(gradient.z, m.P[3 * kPair[2][j] + k], sum);
+}
+
+// Polynomials in place of max(q, 0) on a patch of this radius: a quadratic one for the force, and a linear
+// one for offsets.
+template <typename Number>
+struct ClippedModel {
+  Quadratic<Number> quadratic;
+  VectorOf<Number> linear_value;
+  Vectors3<Number> linear_gradient;
+  VectorOf<Number> quadratic_error, linear_error;  // [m], of the linear part of q
+};
+
+template <typename Number>
+HWY_INLINE ClippedModel<Number> clipped_model(const Quadratic<Number>& q, const VectorOf<Number>& radius,
+                                              const hn::Mask<LanesOf<Number>>& whole) {
+  using V = VectorOf<Number>;
+  const V zero = set<Number>(0.0);
+  const V one = set<Number>(1.0);
+  const V half = set<Number>(0.5);
+  const V tiny = set<Number>(1e-30);
+  const V variation = radius * hn::Sqrt(dot<Number>(q.gradient, q.gradient));
+  const V a = hn::Max(q.value + variation, zero);
+  const V b = hn::Max(variation - q.value, zero);
+  const V share = one / hn::Max(a + b, tiny);
+  const V d = hn::Max(hn::Max(a, b), tiny);
+  const V linear_error = half * a * b * share;
+  const V quadratic_error = d * set<Number>(1.0 / 16.0);
+  const auto linear_only = hn::Le(linear_error, quadratic_error);
+  V constant = hn::IfThenElse(linear_only, linear_error, quadratic_error);
+  V factor = hn::IfThenElse(linear_only, a * share, half);
+  V square = hn::IfThenElse(linear_only, zero, half / d);
+  constant = hn::IfThenZeroElse(whole, constant);
+  factor = hn::IfThenElse(whole, one, factor);
+  square = hn::IfThenZeroElse(whole, square);
+  const V of_hessian = hn::IfThenElse(whole, one, half);
+
+  ClippedModel<Number> model;
+  model.quadratic.value = hn::MulAdd(q.value, hn::MulAdd(square, q.value, factor), constant);
+  model.quadratic.gradient = scaled<Number>(hn::MulAdd(square + square, q.value, factor), q.gradient);
+  const Vectors3<Number>& g = q.gradient;
+  const V twice = square + square;
+  const Symmetric<Number> squares{g.x * g.x, g.y * g.y, g.z * g.z, g.x * g.y, g.x * g.z, g.y * g.z};
+#pragma GCC unroll 6
+  for (std::size_t i = 0; i < 6; ++i) {
+    model.quadratic.hessian[i] = hn::MulAdd(of_hessian, q.hessian[i], twice * squares[i]);
+  }
+  const V linear_factor = hn::IfThenElse(whole, one, a * share);
+  model.linear_value = hn::MulAdd(linear_factor, q.value, hn::IfThenZeroElse(whole, linear_error));
+  model.linear_gradient = scaled<Number>(linear_factor, g);
+  model.quadratic_error = hn::IfThenZeroElse(whole, hn::Min(linear_error, quadratic_error));
+  model.linear_error = hn::IfThenZeroElse(whole, linear_error);
+  return model;
+}
+
+template <typename Number>
+HWY_INLINE Quadratic<Number> negative(const Quadratic<Number>& q) {
+  Quadratic<Number> result;
+  result.value = hn::Neg(q.value);
+  result.gradient = {hn::Neg(q.gradient.x), hn::Neg(q.gradient.y), hn::Neg(q.gradient.z)};
+  for (std::size_t i = 0; i < 6; ++i) result.hessian[i] = hn::Neg(q.hessian[i]);
+  return result;
+}
+
+template <typename Number>
+HWY_INLINE void clear_where(const hn::Mask<LanesOf<Number>>& mask, PatchIntegrals<Number>& integrals) {
+  for (VectorOf<Number>* v :
+       {&integrals.force.x, &integrals.force.y, &integrals.force.z, &integrals.torque.x, &integrals.torque.y,
+        &integrals.torque.z, &integrals.volume, &integrals.moment.x, &integrals.moment.y, &integrals.moment.z,
+        &integrals.force_error, &integrals.torque_error}) {
+    *v = hn::IfThenZeroElse(mask, *v);
+  }
+}
+
+// The integrals of a model over whole patches, or over patches that the surface crosses and that are not
+// clipped.
+template <typename Number>
+HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, const PatchMoments<Number>& m,
+                                            const PatchModel<Number>& model) {
+  using V = VectorOf<Number>;
+  const V half = set<Number>(0.5);
+  const ClippedModel<Number> phi = clipped_model<Number>(model.phi, m.radius, model.whole);
+  PatchIntegrals<Number> result;
+  const Vectors3<Number> minus_force = integral_with_normal<Number>(m, phi.quadratic);
+  const auto offset = [&](std::size_t j, std::size_t k) {
+    return integral_with_offset<Number>(m, phi.linear_value, phi.linear_gradient, j, k);
+  };
+  const Vectors3<Number> minus_local{offset(1, 2) - offset(2, 1), offset(2, 0) - offset(0, 2),
+                                     offset(0, 1) - offset(1, 0)};
+  result.force = {hn::Neg(minus_force.x), hn::Neg(minus_force.y), hn::Neg(minus_force.z)};
+  const Vectors3<Number> lever = m.center - axis_of<Number>(query.reference);
+  result.torque = cross<Number>(lever, result.force) - minus_local;
+
+  // (-s)^+ in the place of the pressure; its component along up is minus the volume.
+  const Vectors3<Number> up = axis_of<Number>(query.up_B);
+  const ClippedModel<Number> depth = clipped_model<Number>(negative<Number>(model.s), m.radius, model.whole);
+  result.volume = hn::Neg(dot<Number>(up, integral_with_normal<Number>(m, depth.quadratic)));
+  const auto along_up = [&](std::size_t j) {
+    const auto of = [&](std::size_t k) {
+      return integral_with_offset<Number>(m, depth.linear_value, depth.linear_gradient, j, k);
+    };
+    return hn::Neg(dot<Number>(up, {of(0), of(1), of(2)}));
+  };
+  // int (y - s/2 up) s n_z dA; s^2 as the product of the linear models.
+  const Vectors3<Number> depth_gradient{hn::Neg(model.s.gradient.x), hn::Neg(model.s.gradient.y),
+                                        hn::Neg(model.s.gradient.z)};
+  Quadratic<Number> squared;
+  const V depth_value = hn::Neg(model.s.value);
+  squared.value = depth.linear_value * depth_value;
+  squared.gradient =
+      scaled<Number>(depth_value, depth.linear_gradient) + scaled<Number>(depth.linear_value, depth_gradient);
+  const Vectors3<Number>& p = depth.linear_gradient;
+  const Vectors3<Number>& t = depth_gradient;
+  const V two = set<Number>(2.0);
+  squared.hessian = {two * p.x * t.x,       two * p.y * t.y,       two * p.z * t.z,
+                     p.x * t.y + p.y * t.x, p.x * t.z + p.z * t.x, p.y * t.z + p.z * t.y};
+  const V half_square = half * dot<Number>(up, integral_with_normal<Number>(m, squared));
+  result.moment = scaled<Number>(result.volume, m.center) +
+                  Vectors3<Number>{along_up(0), along_up(1), along_up(2)} - scaled<Number>(half_square, up);
+
+  const V mu1 = hn::Sqrt(m.area * m.mu2);
+  const V remainder = model.third * m.mu3 * set<Number>(1.0 / 6.0) + model.delta * m.area;
+  const V of_hessian = hn::IfThenElse(model.whole, set<Number>(0.0), set<Number>(0.25));
+  result.force_error = remainder + phi.quadratic_error * m.area + of_hessian * model.curvature * m.mu2;
+  const V local = phi.linear_error * mu1 + model.delta * mu1 +
+                  half * hn::MulAdd(model.third * m.radius, set<Number>(1.0 / 3.0), model.curvature) * m.mu3;
+  result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;
+  clear_where<Number>(model.dry, result);
+  return result;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#endif  // BUOYANCY_WAVE_INTEGRALS_INL_H

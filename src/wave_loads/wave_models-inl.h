@@ -1,0 +1,299 @@
+// Models of the pressure on patches of the surface and bounds on their errors, with SIMD
+// (docs/wave_mathematics.md, "Local bounds" to "Truncation"). Included once per instruction set.
+//
+// Positions, elevations and f are in units of 1 / k_max here, so that slopes and all derivatives are pure
+// numbers. What leaves a function is in metres.
+#if defined(BUOYANCY_WAVE_MODELS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_MODELS_INL_H
+#undef BUOYANCY_WAVE_MODELS_INL_H
+#else
+#define BUOYANCY_WAVE_MODELS_INL_H
+#endif
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include "wave_loads/wave_field-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// What is the same for all patches of a query.
+template <typename Number>
+struct PatchQuery {
+  std::array<Number, 3> e1_B, e2_B, up_B;  // unit vectors
+  std::array<Number, 3> reference;         // [m], B axes, relative to c
+  double k_max = 1.0;                      // [rad/m]
+  double zeta = 0.0;                       // [m], height of c over the level
+  double per_depth = 0.0;                  // 1 / (k_max h); 0 in deep water
+  bool hydrostatic = false;
+  // Whether the body is wet everywhere: its weight of water is added apart, and patches integrate f alone.
+  bool submerged = false;
+  double amplitude = 0.0;      // sum of a k_max
+  double slope = 0.0;          // sum of a k
+  double unit_roundoff = 0.0;  // of Number
+};
+
+// A quadratic function of y = x - m, B axes, y in metres.
+template <typename Number>
+struct Quadratic {
+  VectorOf<Number> value;     // [m]
+  Vectors3<Number> gradient;  // [-]
+  Symmetric<Number> hessian;  // [1/m]
+};
+
+template <typename Number>
+struct PatchModel {
+  Quadratic<Number> phi;                 // model of the pressure over rho g
+  Quadratic<Number> s;                   // of the height over the surface
+  VectorOf<Number> third;                // [1/m^2], M_3; 0 where the model is linear by intent
+  VectorOf<Number> curvature;            // [1/m], |H|
+  VectorOf<Number> delta;                // [m], error of the model over the whole patch
+  hn::Mask<LanesOf<Number>> dry, whole;  // nothing is wet; all is, so that nothing is clipped
+  hn::Mask<LanesOf<Number>> too_steep;
+};
+
+template <typename Number>
+HWY_INLINE Quadratic<Number> in_body_axes(const PatchQuery<Number>& query, const VectorOf<Number>& value,
+                                          const Vectors3<Number>& gradient,
+                                          const Symmetric<Number>& hessian) {
+  const LanesOf<Number> d;
+  const auto per_k = set<Number>(1.0 / query.k_max);
+  const auto k = set<Number>(query.k_max);
+  std::array<std::array<VectorOf<Number>, 3>, 3> e{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    e[0][i] = hn::Set(d, query.e1_B[i]);
+    e[1][i] = hn::Set(d, query.e2_B[i]);
+    e[2][i] = hn::Set(d, query.up_B[i]);
+  }
+  const auto combined = [&](std::size_t i) {
+    return hn::MulAdd(gradient.x, e[0][i], hn::MulAdd(gradient.y, e[1][i], gradient.z * e[2][i]));
+  };
+  Quadratic<Number> q;
+  q.value = value * per_k;
+  q.gradient = {combined(0), combined(1), combined(2)};
+  // E^T H E
+  std::array<std::array<VectorOf<Number>, 3>, 3> he{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vectors3<Number> column = product<Number>(hessian, {e[0][i], e[1][i], e[2][i]});
+    he[0][i] = column.x;
+    he[1][i] = column.y;
+    he[2][i] = column.z;
+  }
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    return k * hn::MulAdd(e[0][i], he[0][j], hn::MulAdd(e[1][i], he[1][j], e[2][i] * he[2][j]));
+  };
+  q.hessian = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
+  return q;
+}
+
+// The place of patches in the sea, over 1 / k_max: from the body's centre along the horizontal axes, and over
+// the level.
+template <typename Number>
+struct Place {
+  VectorOf<Number> x1, x2, zeta;
+};
+
+template <typename Number>
+HWY_INLINE Place<Number> place_of(const PatchQuery<Number>& query, const Vectors3<Number>& center) {
+  const LanesOf<Number> d;
+  const auto along = [&](const std::array<Number, 3>& axis) {
+    return hn::MulAdd(center.x, hn::Set(d, axis[0]),
+                      hn::MulAdd(center.y, hn::Set(d, axis[1]), center.z * hn::Set(d, axis[2])));
+  };
+  const auto k = set<Number>(query.k_max);
+  return {k * along(query.e1_B), k * along(query.e2_B), k * (along(query.up_B) + set<Number>(query.zeta))};
+}
+
+template <typename Number>
+struct SurfaceAtPatch {
+  SurfaceValues<Number> values;
+  VectorOf<Number> reach;  // distance of m from the cell's centre
+};
+
+// z' of the patches' centroids.
+template <typename Number>
+HWY_INLINE VectorOf<Number> stretched(const PatchQuery<Number>& query, const Place<Number>& place,
+                                      const VectorOf<Number>& eta) {
+  const auto one = set<Number>(1.0);
+  return (place.zeta - eta) / hn::MulAdd(eta, set<Number>(query.per_depth), one);
+}
+
+// radius: [m]. surface, surface_cells: the cell of the surface; f: of the volume, unused where the pressure
+// is hydrostatic.
+template <typename Number>
+HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Place<Number>& place,
+                                       const VectorOf<Number>& radius, const SurfaceValues<Number>& surface,
+                                       const CellBounds<Number>& surface_bounds, std::size_t surface_cell,
+                                       const VectorOf<Number>& surface_reach, const VolumeValues<Number>& f,
+                                       const CellBounds<Number>& volume_bounds, std::size_t volume_cell,
+                                       const VectorOf<Number>& volume_reach) {
+  using V = VectorOf<Number>;
+  const V zero = set<Number>(0.0);
+  const V one = set<Number>(1.0);
+  const V half = set<Number>(0.5);
+  const V two = set<Number>(2.0);
+  const V r = radius * set<Number>(query.k_max);
+  const V l = set<Number>(query.per_depth);
+  const V rounding = set<Number>(100.0 * query.unit_roundoff);
+
+  const V& eta = surface.eta;
+  const V& eta1 = surface.eta_1;
+  const V& eta2 = surface.eta_2;
+  const V s = place.zeta - eta;
+
+  // The surface over the ball of radius r.
+  const ReachBounds<Number> above = bounds_at<Number>(surface_bounds, surface_cell, surface_reach + r);
+  const V mean = half * (surface.eta_11 + surface.eta_22);
+  const V difference = half * (surface.eta_11 - surface.eta_22);
+  const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
+  const V L3 = above.third;
+  const V L2 = hn::MulAdd(r, L3, hn::Abs(mean) + deviator);
+  const V slope_squared = hn::MulAdd(eta1, eta1, eta2 * eta2);
+  const V L1 = hn::MulAdd(r, L2, hn::Sqrt(slope_squared));
+  const V epsilon = hn::MulAdd(rounding, above.sum + hn::Abs(place.zeta), above.truncation);
+  const V r_squared_half = half * r * r;
+  const V s_variation =
+      hn::MulAdd(r, hn::Sqrt(one + slope_squared), r_squared_half * r * L3 * set<Number>(1.0 / 3.0));
+  // -D^2 eta has the eigenvalues -mean -+ deviator.
+  const V s_low = s - s_variation + r_squared_half * hn::Min(zero, hn::Neg(mean) - deviator) - epsilon;
+  const V s_high = s + s_variation + r_squared_half * hn::Max(zero, deviator - mean) + epsilon;
+
+  PatchModel<Number> model;
+  model.dry = hn::Gt(s_low, zero);
+  const auto wet = hn::Or(hn::Lt(s_high, zero), set_mask<Number>(query.submerged));
+  model.s = in_body_axes<Number>(
+      query, s, {hn::Neg(eta1), hn::Neg(eta2), one},
+      {hn::Neg(surface.eta_11), hn::Neg(surface.eta_22), zero, hn::Neg(surface.eta_12), zero, zero});
+
+  const V still = set<Number>(query.submerged ? 0.0 : 1.0);
+  V value, g1, g2, g3, M3, delta, gamma;
+  V stretch = one;  // bound on q
+  Symmetric<Number> H;
+  if (query.hydrostatic) {
+    value = eta - still * place.zeta;
+    g1 = eta1;
+    g2 = eta2;
+    g3 = hn::Neg(still);
+    H = {surface.eta_11, surface.eta_22, zero, surface.eta_12, zero, zero};
+    M3 = L3;
+    delta = epsilon;
+    gamma = zero;
+    model.too_steep = hn::Gt(zero, one);
+  } else {
+    const V q = one / hn::MulAdd(eta, l, one);
+    const V b = q * q * hn::MulAdd(place.zeta, l, one);
+    const V b1 = hn::Neg(b) * eta1;
+    const V b2 = hn::Neg(b) * eta2;
+    const V lqq = l * q * q;
+    value = hn::NegMulAdd(still, place.zeta, f.f);
+    g1 = hn::MulAdd(b1, f.f_3, f.f_1);
+    g2 = hn::MulAdd(b2, f.f_3, f.f_2);
+    g3 = hn::MulSub(q, f.f_3, still);
+    const V f_22 = hn::Neg(f.f_11) - f.f_33;
+    const V twice_bql = two * b * q * l;
+    const V z11 = hn::MulSub(twice_bql * eta1, eta1, b * surface.eta_11);
+    const V z12 = hn::MulSub(twice_bql * eta1, eta2, b * surface.eta_12);
+    const V z22 = hn::MulSub(twice_bql * eta2, eta2, b * surface.eta_22);
+    const V c1 = hn::MulAdd(b1, f.f_33, f.f_13);
+    const V c2 = hn::MulAdd(b2, f.f_33, f.f_23);
+    H[0] = f.f_11 + b1 * (f.f_13 + c1) + f.f_3 * z11;
+    H[1] = f_22 + b2 * (f.f_23 + c2) + f.f_3 * z22;
+    H[2] = q * q * f.f_33;
+    H[3] = f.f_12 + b1 * f.f_23 + b2 * c1 + f.f_3 * z12;
+    H[4] = hn::NegMulAdd(lqq * eta1, f.f_3, q * c1);
+    H[5] = hn::NegMulAdd(lqq * eta2, f.f_3, q * c2);
+
+    // Bounds on the derivatives of the stretched height over the ball.
+    const V lowest = hn::Max(hn::MulAdd(l, eta - r * L1 - epsilon, one), set<Number>(1e-6));
+    const V q_max = one / lowest;
+    stretch = q_max;
+    const V w_max = hn::Max(hn::MulAdd(l, place.zeta + r, one), zero);
+    const V qq = q_max * q_max;
+    const V lL1 = l * L1;
+    const V slope2 = hn::MulAdd(two * q_max * lL1, L1, L2) * qq;
+    const V Q1 = l * qq * L1;
+    const V Q2 = l * slope2;
+    const V b_1 = w_max * qq * L1;
+    const V b_2 = w_max * slope2;
+    const V b_3 = w_max * qq * (L3 + set<Number>(6.0) * q_max * lL1 * hn::MulAdd(q_max * lL1, L1, L2));
+    const V trace = one + qq + b_1 * b_1;
+    const V root = hn::Sqrt(hn::Max(trace * trace - set<Number>(4.0) * qq, zero));
+    const V V1 = hn::Max(hn::Sqrt(half * (trace + root)), one);
+    const V V2 = Q1 + b_2;
+    const V V3 = hn::MulAdd(set<Number>(1.1547006), Q2, b_3);
+
+    const V shift = w_max * qq * epsilon;
+    const ReachBounds<Number> inside =
+        bounds_at<Number>(volume_bounds, volume_cell, volume_reach + hn::MulAdd(r, V1, shift));
+    const Symmetric<Number> Df2{f.f_11, f_22, f.f_33, f.f_12, f.f_13, f.f_23};
+    const V F3 = inside.third;
+    // The largest eigenvalue of a traceless symmetric matrix is at most sqrt(2/3) times its Frobenius norm.
+    const V F2 = hn::MulAdd(r * V1, F3, hn::Sqrt(set<Number>(2.0 / 3.0) * frobenius_squared<Number>(Df2)));
+    const V Df = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
+    const V F1 = hn::MulAdd(r * V1, F2, Df);
+    M3 = F3 * V1 * V1 * V1 + set<Number>(3.0) * F2 * V1 * V2 + F1 * V3;
+    delta =
+        hn::MulAdd(F1, shift, inside.truncation) + rounding * (inside.sum + still * hn::Abs(place.zeta) + r);
+
+    const V z = stretched<Number>(query, place, eta);
+    const V Z = hn::MulAdd(r, hn::Sqrt(hn::MulAdd(b_1, b_1, qq)), shift);
+    const V column = hn::Max(Z, hn::Abs(z));
+    const V R = hn::Sqrt(hn::MulAdd(r, r, column * column));
+    const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_cell, volume_reach + R);
+    const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
+    gamma = q_max * (f.f_3 + R * (vertical + half * R * around.third) + around.slope);
+    model.too_steep = hn::And(hn::Ge(q * f.f_3, one), hn::Lt(hn::Abs(z), r));
+  }
+
+  const auto certain = hn::Or(wet, hn::Lt(gamma, one));
+  // Without a certificate: Lemma C, with the pressure of the depth under the tangent plane of the surface.
+  const V deepest = hn::Max(hn::Neg(s_low), zero);
+  const V tangent_delta = half * L2 * r * r + epsilon + deepest * stretch * set<Number>(query.slope);
+  // Without an expansion: Lemma D.
+  const V amplitude = set<Number>(query.amplitude);
+  const V highest = place.zeta + r;
+  const auto deep = hn::Lt(highest, hn::Neg(amplitude));
+  const V flat_delta = hn::IfThenElse(deep, amplitude, two * amplitude);
+  const V quadratic_error = hn::MulAdd(M3 * set<Number>(1.0 / 6.0), r * r * r, delta);
+
+  const auto use_quadratic =
+      hn::And(certain, hn::Le(quadratic_error, hn::Min(flat_delta, set<Number>(1e30))));
+  const auto use_tangent = hn::AndNot(
+      use_quadratic, hn::And(hn::Lt(tangent_delta, flat_delta), hn::Not(set_mask<Number>(query.submerged))));
+  const auto select = [&](const V& quadratic, const V& tangent, const V& flat) {
+    return hn::IfThenElse(use_quadratic, quadratic, hn::IfThenElse(use_tangent, tangent, flat));
+  };
+  const V minus_zeta = hn::Neg(still * place.zeta);
+  for (V& entry : H) entry = hn::IfThenElseZero(use_quadratic, entry);
+  const V model_value = select(value, hn::Neg(s), minus_zeta);
+  model.phi = in_body_axes<Number>(
+      query, model_value,
+      {select(g1, eta1, zero), select(g2, eta2, zero), select(g3, hn::Neg(one), hn::Neg(still))}, H);
+  model.third = hn::IfThenElseZero(use_quadratic, M3) * set<Number>(query.k_max * query.k_max);
+  model.curvature = hn::Sqrt(frobenius_squared<Number>(H)) * set<Number>(query.k_max);
+  // The rounding of the integrals themselves.
+  const auto flat = hn::Not(hn::Or(use_quadratic, use_tangent));
+  const V steepness = one + hn::IfThenZeroElse(flat, L1 + hn::IfThenElseZero(use_quadratic, hn::Abs(g3)));
+  const V size =
+      hn::Abs(model_value) + r * steepness + r * r * model.curvature * set<Number>(1.0 / query.k_max);
+  model.delta = (select(delta, tangent_delta, flat_delta) + set<Number>(16.0 * query.unit_roundoff) * size) *
+                set<Number>(1.0 / query.k_max);
+  // Which parts are wet: the test of the surface decides for the quadratic model, the model's own sign for
+  // the others.
+  model.whole = hn::Or(hn::And(hn::Not(flat), wet),
+                       hn::And(flat, hn::Or(hn::Lt(highest, zero), set_mask<Number>(query.submerged))));
+  model.dry = hn::Or(model.dry, hn::And(flat, hn::And(hn::Gt(place.zeta - r, amplitude),
+                                                      hn::Not(set_mask<Number>(query.submerged)))));
+  return model;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#endif  // BUOYANCY_WAVE_MODELS_INL_H
