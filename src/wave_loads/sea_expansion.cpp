@@ -1,5 +1,6 @@
 #include "wave_loads/sea_expansion.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace buoyancy {
@@ -17,8 +18,6 @@ double factorial(int n) {
   return std::tgamma(n + 1.0);
 }
 
-}  // namespace
-
 Weight weight_of_harmonic(int l, int m) {
   const bool odd = (l + m) % 2 != 0;
   if (is_sine(m)) return odd ? Weight::kSineOdd : Weight::kSineEven;
@@ -29,49 +28,132 @@ Weight weight_of_monomial(int l) {
   return is_sine(l) ? Weight::kSineEven : Weight::kCosineEven;
 }
 
+// Hands out the columns of each weight in their order.
+class ColumnCounter {
+ public:
+  explicit ColumnCounter(const std::array<ColumnRange, kWeights>& of_weight) : of_weight_(of_weight) {}
+
+  std::size_t next(Weight weight) {
+    const auto w = static_cast<std::size_t>(weight);
+    const std::size_t column = of_weight_[w].begin + used_[w]++;
+    assert(column < of_weight_[w].end);
+    return column;
+  }
+
+ private:
+  const std::array<ColumnRange, kWeights>& of_weight_;
+  std::array<std::size_t, kWeights> used_{};
+};
+
+template <std::size_t kColumns>
+std::vector<ExpansionRow<float, kColumns>> narrowed(const std::vector<ExpansionRow<double, kColumns>>& rows) {
+  std::vector<ExpansionRow<float, kColumns>> result(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      result[i].columns[c] = static_cast<float>(rows[i].columns[c]);
+    }
+  }
+  return result;
+}
+
+std::vector<float> narrowed(const std::vector<double>& numbers) {
+  std::vector<float> result;
+  result.reserve(numbers.size());
+  for (const double number : numbers) result.push_back(static_cast<float>(number));
+  return result;
+}
+
+}  // namespace
+
+const HarmonicColumns& harmonic_columns() {
+  static const HarmonicColumns columns = [] {
+    HarmonicColumns all{};
+    ColumnCounter counter(kHarmonicColumnsOfWeight);
+    for (int l = 0; l <= kNormDegree; ++l) {
+      for (int m = 0; m <= l; ++m) {
+        all[cosine_place(l, m)] = counter.next(weight_of_harmonic(l, m));
+        if (m > 0) all[sine_place(l, m)] = counter.next(weight_of_harmonic(l, m));
+      }
+    }
+    return all;
+  }();
+  return columns;
+}
+
+const MonomialColumns& monomial_columns() {
+  static const MonomialColumns columns = [] {
+    MonomialColumns all{};
+    ColumnCounter counter(kMonomialColumnsOfWeight);
+    for (int l = 0; l <= kNormDegree; ++l) {
+      for (int q = 0; q <= l; ++q) all[monomial_place(l - q, q)] = counter.next(weight_of_monomial(l));
+    }
+    return all;
+  }();
+  return columns;
+}
+
 SeaExpansion::SeaExpansion(const Sea& sea)
-    : components(sea.prepared().size()), k_max(sea.max_wave_number()), amplitude(sea.prepared().amplitude) {
+    : components(sea.prepared().size()),
+      filled_components((components + kColumnUnit - 1) / kColumnUnit * kColumnUnit),
+      k_max(sea.max_wave_number()) {
   const PreparedComponents& prepared = sea.prepared();
-  constexpr std::size_t kHarmonics = harmonics_to(kNormDegree);
-  constexpr std::size_t kMonomials = monomials_to(kNormDegree);
-  double_precision.harmonics.resize(kHarmonics * components);
-  double_precision.monomials.resize(kMonomials * components);
-  double_precision.tail.resize(components);
+  const auto filled = [this](std::vector<double> numbers) {
+    numbers.resize(filled_components, 0.0);
+    return numbers;
+  };
+  k1_W = filled(prepared.k1);
+  k1_rest = filled(prepared.k1_rest);
+  k2_W = filled(prepared.k2);
+  k2_rest = filled(prepared.k2_rest);
+  ExpansionTable<double>& table = double_precision;
+  table.harmonics.resize(filled_components);
+  table.monomials.resize(filled_components);
+  for (std::vector<double>* row :
+       {&k1, &k2, &table.amplitude, &table.amplitude_in_f, &table.k, &table.minus_twice_kh, &table.tail}) {
+    row->resize(filled_components, 0.0);
+  }
+  double squares = 0.0;
   for (std::size_t i = 0; i < components; ++i) {
-    k.push_back(prepared.wave_number[i] / k_max);
-    k1.push_back(prepared.k1[i] / k_max);
-    k2.push_back(prepared.k2[i] / k_max);
-    twice_depth.push_back(2.0 * prepared.wave_number[i] * sea.depth());
+    const double amplitude = prepared.amplitude[i];
+    const double k = prepared.wave_number[i] / k_max;
+    k1[i] = prepared.k1[i] / k_max;
+    k2[i] = prepared.k2[i] / k_max;
+    table.k[i] = k;
+    table.minus_twice_kh[i] = -2.0 * prepared.wave_number[i] * sea.depth();
+    table.amplitude[i] = k_max * amplitude;
+    table.amplitude_in_f[i] = table.amplitude[i] / (1.0 + std::exp(table.minus_twice_kh[i]));
     const double angle = std::atan2(prepared.k2[i], prepared.k1[i]);
     double power = 1.0;  // (k / k_max)^l
-    for (int l = 0; l <= kNormDegree; ++l, power *= k[i]) {
+    for (int l = 0; l <= kNormDegree; ++l, power *= k) {
       for (int m = 0; m <= l; ++m) {
         const double factor = (m == 0 ? 1.0 : 2.0) * power * sign(m);
-        double_precision.harmonics[cosine_place(l, m) * components + i] = factor * std::cos(m * angle);
-        if (m > 0) {
-          double_precision.harmonics[sine_place(l, m) * components + i] = factor * std::sin(m * angle);
-        }
+        auto& row = table.harmonics[i].columns;
+        row[harmonic_columns()[cosine_place(l, m)]] = factor * std::cos(m * angle);
+        if (m > 0) row[harmonic_columns()[sine_place(l, m)]] = factor * std::sin(m * angle);
       }
       for (int q = 0; q <= l; ++q) {
         const int p = l - q;
-        double_precision.monomials[monomial_place(p, q) * components + i] =
+        table.monomials[i].columns[monomial_columns()[monomial_place(p, q)]] =
             sign(l) * std::pow(k1[i], p) * std::pow(k2[i], q) / (factorial(p) * factorial(q));
       }
     }
-    double_precision.tail[i] = power;
-    const double next = std::pow(k[i], kDegree + 1) / factorial(kDegree + 1);
-    typical_norm = std::hypot(typical_norm, amplitude[i] * next);
-    tail += amplitude[i] * power / factorial(kNormDegree + 1);
-    amplitude_sums[0] += amplitude[i];
-    amplitude_sums[1] += amplitude[i] * prepared.wave_number[i];
-    amplitude_sums[2] += amplitude[i] * prepared.wave_number[i] * prepared.wave_number[i];
+    table.tail[i] = power / factorial(kNormDegree + 1);
+    const double next = std::pow(k, kDegree + 1) / factorial(kDegree + 1);
+    typical_norm = std::hypot(typical_norm, amplitude * next);
+    tail += amplitude * table.tail[i];
+    squares += 0.5 * amplitude * amplitude;
+    amplitude_sums[0] += amplitude;
+    amplitude_sums[1] += amplitude * prepared.wave_number[i];
+    amplitude_sums[2] += amplitude * prepared.wave_number[i] * prepared.wave_number[i];
   }
-  const auto narrowed = [](const std::vector<double>& numbers) {
-    return std::vector<float>(numbers.begin(), numbers.end());
-  };
-  single_precision.harmonics = narrowed(double_precision.harmonics);
-  single_precision.monomials = narrowed(double_precision.monomials);
-  single_precision.tail = narrowed(double_precision.tail);
+  typical_elevation = std::sqrt(squares);
+  single_precision.harmonics = narrowed(table.harmonics);
+  single_precision.monomials = narrowed(table.monomials);
+  single_precision.amplitude = narrowed(table.amplitude);
+  single_precision.amplitude_in_f = narrowed(table.amplitude_in_f);
+  single_precision.k = narrowed(table.k);
+  single_precision.minus_twice_kh = narrowed(table.minus_twice_kh);
+  single_precision.tail = narrowed(table.tail);
 }
 
 double SeaExpansion::reach_within(double error) const {

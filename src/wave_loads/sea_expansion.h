@@ -3,9 +3,11 @@
 //
 // Lengths are in units of 1 / k_max, so that powers of wave numbers stay below one. About the centre c of a
 // cell, with xi = k_max (x - c),
-//   f   = sum over terms (l, m) of a_lm C_lm(xi) + b_lm S_lm(xi),   C_lm + i S_lm = |xi|^l P_l^m e^(i m
-//   angle) / (l + m)! eta = sum over terms (p, q) of e_pq xi_1^p xi_2^q
-// A term's coefficient is the sum over components of `table` times one of the component's weights at c.
+//   f   = sum over terms (l, m) of a_lm C_lm(xi) + b_lm S_lm(xi),
+//         C_lm + i S_lm = |xi|^l P_l^m e^(i m angle) / (l + m)!
+//   eta = sum over terms (p, q) of e_pq xi_1^p xi_2^q
+// A term's coefficient is the sum over components of its entry in a table times one of the component's
+// weights at c.
 #pragma once
 
 #include <array>
@@ -19,8 +21,8 @@ namespace buoyancy {
 inline constexpr int kDegree = 8;       // of the polynomials that are evaluated
 inline constexpr int kNormDegree = 10;  // up to this degree, what is left out is bounded by its norm
 
-// Places of the terms. Harmonics: degree l from l^2 on, C_l0, C_l1, S_l1, C_l2, ... Monomials: degree l from
-// l (l + 1) / 2 on, xi_1^l, xi_1^(l-1) xi_2, ...
+// Places of the terms. Harmonics: degree l from l^2 on, C_l0 to C_ll, then S_l1 to S_ll. Monomials: degree l
+// from l (l + 1) / 2 on, xi_1^l, xi_1^(l-1) xi_2, ...
 constexpr std::size_t harmonics_to(int degree) {
   const auto n = static_cast<std::size_t>(degree) + 1;
   return n * n;
@@ -31,11 +33,10 @@ constexpr std::size_t monomials_to(int degree) {
 }
 constexpr std::size_t cosine_place(int l, int m) {
   const auto n = static_cast<std::size_t>(l);
-  return n * n + (m == 0 ? 0 : 2 * static_cast<std::size_t>(m) - 1);
+  return n * n + static_cast<std::size_t>(m);
 }
 constexpr std::size_t sine_place(int l, int m) {
-  const auto n = static_cast<std::size_t>(l);
-  return n * n + 2 * static_cast<std::size_t>(m);
+  return cosine_place(l, l + m);
 }
 constexpr std::size_t monomial_place(int p, int q) {
   const auto n = static_cast<std::size_t>(p) + static_cast<std::size_t>(q);
@@ -47,25 +48,48 @@ constexpr std::size_t monomial_place(int p, int q) {
 enum class Weight : unsigned char { kCosineEven, kSineEven, kCosineOdd, kSineOdd };
 inline constexpr std::size_t kWeights = 4;
 
+// The columns of a table are sorted by weight, each weight's are filled up to a multiple of kColumnUnit, so
+// that a vector of neighbouring columns has one weight.
+inline constexpr std::size_t kColumnUnit = 16;
+struct ColumnRange {
+  std::size_t begin, end;
+};
+inline constexpr std::array<ColumnRange, kWeights> kHarmonicColumnsOfWeight{
+    {{0, 48}, {80, 112}, {48, 80}, {112, 144}}};
+inline constexpr std::array<ColumnRange, kWeights> kMonomialColumnsOfWeight{
+    {{0, 48}, {48, 80}, {80, 80}, {80, 80}}};
+inline constexpr std::size_t kHarmonicColumns = 144;
+inline constexpr std::size_t kMonomialColumns = 80;
+
+// A component's entries of a table.
+template <typename Number, std::size_t kColumns>
+struct alignas(64) ExpansionRow {
+  std::array<Number, kColumns> columns{};
+};
+
+// Components are filled up to a multiple of kColumnUnit by components without an amplitude.
 // Number: float or double.
 template <typename Number>
 struct ExpansionTable {
-  // The term t of component i is at t * components + i.
-  std::vector<Number> harmonics;  // harmonics_to(kNormDegree) rows
-  std::vector<Number> monomials;  // monomials_to(kNormDegree) rows
-  std::vector<Number> tail;       // (k / k_max)^(kNormDegree + 1), one row
+  std::vector<ExpansionRow<Number, kHarmonicColumns>> harmonics;  // per component
+  std::vector<ExpansionRow<Number, kMonomialColumns>> monomials;
+  // Per component, lengths over 1 / k_max.
+  std::vector<Number> amplitude;       // a
+  std::vector<Number> amplitude_in_f;  // a / (1 + e^(-2 k h))
+  std::vector<Number> k;               // over k_max
+  std::vector<Number> minus_twice_kh;  // -2 k h
+  std::vector<Number> tail;            // (k / k_max)^(kNormDegree + 1) / (kNormDegree + 1)!
 };
 
 struct SeaExpansion {
   explicit SeaExpansion(const Sea& sea);
 
   std::size_t components = 0;
-  double k_max = 0.0;  // [rad/m]
-  // Per component.
-  std::vector<double> amplitude;    // [m]
-  std::vector<double> k;            // over k_max
-  std::vector<double> k1, k2;       // over k_max, along the horizontal axes
-  std::vector<double> twice_depth;  // 2 k h; infinite in deep water
+  std::size_t filled_components = 0;  // a multiple of kColumnUnit
+  double k_max = 0.0;                 // [rad/m]
+  // Per component, filled up.
+  std::vector<double> k1, k2;                        // over k_max, along the horizontal axes
+  std::vector<double> k1_W, k1_rest, k2_W, k2_rest;  // [rad/m], as in PreparedComponents
   ExpansionTable<float> single_precision;
   ExpansionTable<double> double_precision;
 
@@ -76,12 +100,16 @@ struct SeaExpansion {
   double typical_norm =
       0.0;            // [m], root mean square of what degree kDegree + 1 adds at a distance of 1 / k_max
   double tail = 0.0;  // [m], sum of a (k / k_max)^(kNormDegree + 1) / (kNormDegree + 1)!
+  double typical_elevation = 0.0;  // [m], root mean square of the elevation
 
   // Sums over components of a k^n [m, rad/m], n from 0 to 2: bounds on elevation, slope and curvature.
   std::array<double, 3> amplitude_sums{};
 };
 
-Weight weight_of_harmonic(int l, int m);
-Weight weight_of_monomial(int l);
+// The column of each term of the tables, in the order of the terms' places.
+using HarmonicColumns = std::array<std::size_t, harmonics_to(kNormDegree)>;
+using MonomialColumns = std::array<std::size_t, monomials_to(kNormDegree)>;
+const HarmonicColumns& harmonic_columns();
+const MonomialColumns& monomial_columns();
 
 }  // namespace buoyancy

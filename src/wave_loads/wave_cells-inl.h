@@ -1,8 +1,8 @@
-// Cells: expansions of the sea about points, built with SIMD (docs/wave_mathematics.md,
-// "Expansions"). Included once per instruction set, after highway.h.
+// Cells: expansions of the sea about points, built with SIMD (docs/wave_mathematics.md, "Expansions").
+// Included once per instruction set, after highway.h.
 //
-// Lengths within a cell are in units of 1 / k_max. As many cells as a vector has lanes are built at once and
-// stored side by side; a cell is evaluated at as many points at once.
+// Lengths within a cell are in units of 1 / k_max. Coefficients are summed with neighbouring terms in the
+// lanes, so that a cell costs the same whether it is built alone or with others.
 #if defined(BUOYANCY_WAVE_CELLS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_WAVE_CELLS_INL_H
 #undef BUOYANCY_WAVE_CELLS_INL_H
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -21,127 +20,193 @@
 
 #include "wave_loads/sea_expansion.h"
 #include "wave_loads/wave_lanes-inl.h"
+#include "wave_loads/wave_phases-inl.h"
 #include "wave_loads/wave_query.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
+// A vector is stored at the place of its first number; the numbers behind it are overwritten by the next.
+inline constexpr std::size_t kOverhang = 15;
+
 // Bounds on what an expansion leaves out and on its derivatives, from the norms sigma_l of its degrees.
 template <typename Number>
 struct CellBounds {
-  alignas(64) std::array<CellNumbers<Number>, kNormDegree + 1> sigma;  // [m]
-  CellNumbers<Number> tail;  // [m], sum of a (k / k_max)^(kNormDegree + 1) / (kNormDegree + 1)!
+  std::array<Number, kNormDegree + 1> sigma;  // [m]
+  Number tail;  // [m], sum of a (k / k_max)^(kNormDegree + 1) / (kNormDegree + 1)!
 };
 
 template <typename Number>
-struct SurfaceCells {
-  alignas(64) std::array<CellNumbers<Number>, monomials_to(kDegree)> eta;
-  std::array<CellNumbers<Number>, monomials_to(kDegree - 1)> eta_1, eta_2;
-  std::array<CellNumbers<Number>, monomials_to(kDegree - 2)> eta_11, eta_12, eta_22;
+struct alignas(64) SurfaceCell {
+  std::array<Number, monomials_to(kDegree) + kOverhang> eta;
+  std::array<Number, monomials_to(kDegree - 1) + kOverhang> eta_1, eta_2;
+  std::array<Number, monomials_to(kDegree - 2) + kOverhang> eta_11, eta_12, eta_22;
   CellBounds<Number> bounds;
 };
 
 template <typename Number>
-struct VolumeCells {
-  alignas(64) std::array<CellNumbers<Number>, harmonics_to(kDegree)> f;
-  std::array<CellNumbers<Number>, harmonics_to(kDegree - 1)> f_1, f_2, f_3;
-  std::array<CellNumbers<Number>, harmonics_to(kDegree - 2)> f_11, f_12, f_13, f_23, f_33;
+struct alignas(64) VolumeCell {
+  std::array<Number, harmonics_to(kDegree) + kOverhang> f;
+  std::array<Number, harmonics_to(kDegree - 1) + kOverhang> f_1, f_2, f_3;
+  std::array<Number, harmonics_to(kDegree - 2) + kOverhang> f_11, f_12, f_13, f_23, f_33;
   CellBounds<Number> bounds;
-};
-
-// Weights of all components at the centres of a block of cells.
-template <typename Number>
-struct CellWeights {
-  std::array<std::vector<CellNumbers<Number>>, kWeights> weights;  // [component]
-  std::vector<CellNumbers<Number>> amplitude;                      // a E
-
-  void reserve(std::size_t components) {
-    for (auto& of_kind : weights) of_kind.resize(components);
-    amplitude.resize(components);
-  }
 };
 
 struct CellCenter {
   double x1, x2, z;  // over 1 / k_max, from the body's centre and the level
 };
 
+// As many cells are built in one go, at most.
+inline constexpr std::size_t kCellsTogether = 16;
+
 template <typename Number>
-HWY_NOINLINE void set_weights(const SeaExpansion& sea, const QueryPhases& phases, const CellCenter* centers,
-                              CellWeights<Number>& out) {
-  const LanesOf<Number> d;
-  constexpr double kTurn = 6.283185307179586;
-  for (std::size_t i = 0; i < sea.components; ++i) {
-    alignas(64) CellNumbers<Number> theta;
-    alignas(64) CellNumbers<Number> kz;
-    for (std::size_t cell = 0; cell < kLanes<Number>; ++cell) {
-      const CellCenter& c = centers[cell];
-      const double phase = phases.phase[i] + sea.k1[i] * c.x1 + sea.k2[i] * c.x2;
-      theta[cell] = static_cast<Number>(phase - kTurn * std::nearbyint(phase / kTurn));
-      kz[cell] = static_cast<Number>(sea.k[i] * c.z);
+struct CellWorkspace {
+  std::vector<double> phases;  // at the body's centre, filled up
+  // By cell, weight and component.
+  std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
+  std::vector<Number> theta;
+  struct alignas(64) Sums {
+    std::array<Number, kHarmonicColumns> columns;
+  };
+  std::array<Sums, kCellsTogether> sums;
+  std::array<Number, kCellsTogether> tails;
+
+  void reserve(std::size_t components) {
+    theta.resize(components);
+    for (auto& of_cell : weights) {
+      for (auto& of_weight : of_cell) of_weight.resize(components);
     }
-    const auto exponent = load<Number>(kz);
-    const auto down = hn::Exp(d, exponent);
-    // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
-    const double twice_depth = sea.twice_depth[i];
-    const auto up =
-        std::isinf(twice_depth) ? hn::Zero(d) : hn::Exp(d, hn::Neg(exponent) - set<Number>(twice_depth));
-    const auto amplitude =
-        set<Number>(sea.k_max * phases.amplitude_factor * sea.amplitude[i] / (1.0 + std::exp(-twice_depth)));
-    const auto even = amplitude * (down + up);
-    const auto odd = amplitude * (down - up);
-    const auto angle = load<Number>(theta);
-    const auto cosine = hn::Cos(d, angle);
-    const auto sine = hn::Sin(d, angle);
-    store<Number>(even, out.amplitude[i]);
-    store<Number>(even * cosine, out.weights[static_cast<std::size_t>(Weight::kCosineEven)][i]);
-    store<Number>(even * sine, out.weights[static_cast<std::size_t>(Weight::kSineEven)][i]);
-    store<Number>(odd * cosine, out.weights[static_cast<std::size_t>(Weight::kCosineOdd)][i]);
-    store<Number>(odd * sine, out.weights[static_cast<std::size_t>(Weight::kSineOdd)][i]);
-  }
-}
-
-// The rows of a table by weight, so that a weight is loaded once for several rows.
-template <std::size_t kRows>
-struct RowsByWeight {
-  std::array<std::array<std::size_t, kRows>, kWeights> rows{};
-  std::array<std::size_t, kWeights> count{};
-
-  void add(Weight weight, std::size_t row) {
-    const auto w = static_cast<std::size_t>(weight);
-    rows[w][count[w]++] = row;
   }
 };
 
-// Sets sums[row] to the sum over components of table[row] times the row's weight.
-template <typename Number, std::size_t kRows>
-HWY_INLINE void accumulate(const RowsByWeight<kRows>& rows, const Number* table, std::size_t components,
-                           const CellWeights<Number>& weights, std::array<CellNumbers<Number>, kRows>& sums) {
-  const LanesOf<Number> d;
-  constexpr std::size_t kTogether = 8;
-  for (std::size_t w = 0; w < kWeights; ++w) {
-    const CellNumbers<Number>* const of_kind = weights.weights[w].data();
-    for (std::size_t first = 0; first < rows.count[w]; first += kTogether) {
-      const std::size_t number = std::min(kTogether, rows.count[w] - first);
-      std::array<const Number*, kTogether> row;
-      for (std::size_t n = 0; n < kTogether; ++n) {
-        row[n] = table + rows.rows[w][first + std::min(n, number - 1)] * components;
-      }
-      auto s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
-      for (std::size_t i = 0; i < components; ++i) {
-        const auto weight = load<Number>(of_kind[i]);
-        s0 = hn::MulAdd(weight, hn::Set(d, row[0][i]), s0);
-        s1 = hn::MulAdd(weight, hn::Set(d, row[1][i]), s1);
-        s2 = hn::MulAdd(weight, hn::Set(d, row[2][i]), s2);
-        s3 = hn::MulAdd(weight, hn::Set(d, row[3][i]), s3);
-        s4 = hn::MulAdd(weight, hn::Set(d, row[4][i]), s4);
-        s5 = hn::MulAdd(weight, hn::Set(d, row[5][i]), s5);
-        s6 = hn::MulAdd(weight, hn::Set(d, row[6][i]), s6);
-        s7 = hn::MulAdd(weight, hn::Set(d, row[7][i]), s7);
-      }
-      const std::array<VectorOf<Number>, kTogether> all{s0, s1, s2, s3, s4, s5, s6, s7};
-      for (std::size_t n = 0; n < number; ++n) store<Number>(all[n], sums[rows.rows[w][first + n]]);
+// Sets the weights of all components at a cell's centre.
+template <bool kSurface, typename Number>
+HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Number>& table, double factor,
+                              bool deep_water, const CellCenter& center, std::size_t cell,
+                              CellWorkspace<Number>& work) {
+  const LanesOf<double> dd;
+  for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
+    const VectorOf<double> along = hn::MulAdd(hn::LoadU(dd, &sea.k1[i]), set<double>(center.x1),
+                                              hn::LoadU(dd, &sea.k2[i]) * set<double>(center.x2));
+    const VectorOf<double> phase = within_turn(hn::LoadU(dd, &work.phases[i]) + along);
+    if constexpr (sizeof(Number) == sizeof(double)) {
+      hn::StoreU(phase, dd, &work.theta[i]);
+    } else {
+      const hn::Rebind<float, LanesOf<double>> df;
+      hn::StoreU(hn::DemoteTo(df, phase), df, &work.theta[i]);
     }
+  }
+  const LanesOf<Number> d;
+  auto& weights = work.weights[cell];
+  const auto out = [&weights](Weight weight, std::size_t i) {
+    return &weights[static_cast<std::size_t>(weight)][i];
+  };
+  VectorOf<Number> tail = hn::Zero(d);
+  for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
+    const VectorOf<Number> angle = hn::LoadU(d, &work.theta[i]);
+    const VectorOf<Number> cosine = hn::Cos(d, angle);
+    const VectorOf<Number> sine = hn::Sin(d, angle);
+    VectorOf<Number> even;
+    if constexpr (kSurface) {
+      even = set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]);
+    } else {
+      const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude_in_f[i]);
+      const VectorOf<Number> exponent = hn::LoadU(d, &table.k[i]) * set<Number>(center.z);
+      const VectorOf<Number> down = amplitude * hn::Exp(d, exponent);
+      if (deep_water) {
+        even = down;
+      } else {
+        // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
+        const VectorOf<Number> up = amplitude * hn::Exp(d, hn::LoadU(d, &table.minus_twice_kh[i]) - exponent);
+        even = down + up;
+        const VectorOf<Number> odd = down - up;
+        hn::StoreU(odd * cosine, d, out(Weight::kCosineOdd, i));
+        hn::StoreU(odd * sine, d, out(Weight::kSineOdd, i));
+      }
+    }
+    hn::StoreU(even * cosine, d, out(Weight::kCosineEven, i));
+    hn::StoreU(even * sine, d, out(Weight::kSineEven, i));
+    tail = hn::MulAdd(even, hn::LoadU(d, &table.tail[i]), tail);
+  }
+  work.tails[cell] = hn::GetLane(hn::SumOfLanes(d, tail));
+}
+
+// Adds to sums the products of columns [kBegin, kEnd) of the components' rows with the weights of kCells
+// cells.
+template <std::size_t kCells, std::size_t kVectors, typename Number, std::size_t kColumns>
+HWY_INLINE void add_products(const ExpansionRow<Number, kColumns>* rows, std::size_t first_column,
+                             const std::array<const Number*, kCells>& weights, std::size_t begin,
+                             std::size_t end, const std::array<Number*, kCells>& sums) {
+  const LanesOf<Number> d;
+  std::array<std::array<VectorOf<Number>, kVectors>, kCells> sum;
+  for (auto& of_cell : sum) {
+    for (auto& vector : of_cell) vector = hn::Zero(d);
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    const Number* const row = rows[i].columns.data() + first_column;
+    std::array<VectorOf<Number>, kCells> weight;
+    for (std::size_t c = 0; c < kCells; ++c) weight[c] = hn::Set(d, weights[c][i]);
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const VectorOf<Number> entries = hn::Load(d, row + v * kLanes<Number>);
+      for (std::size_t c = 0; c < kCells; ++c) sum[c][v] = hn::MulAdd(weight[c], entries, sum[c][v]);
+    }
+  }
+  for (std::size_t c = 0; c < kCells; ++c) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      Number* const place = sums[c] + first_column + v * kLanes<Number>;
+      hn::Store(hn::Load(d, place) + sum[c][v], d, place);
+    }
+  }
+}
+
+// The same for all columns of one weight.
+template <std::size_t kCells, typename Number, std::size_t kColumns>
+HWY_INLINE void add_products(const ExpansionRow<Number, kColumns>* rows, const ColumnRange& columns,
+                             const std::array<const Number*, kCells>& weights, std::size_t begin,
+                             std::size_t end, const std::array<Number*, kCells>& sums) {
+  // Enough sums at a time to hide the latency of an addition, and few enough for the registers.
+  constexpr std::size_t kLong = 3;
+  constexpr std::size_t kShort = 2;
+  std::size_t column = columns.begin;
+  for (; (columns.end - column) % (kShort * kLanes<Number>) != 0; column += kLong * kLanes<Number>) {
+    add_products<kCells, kLong>(rows, column, weights, begin, end, sums);
+  }
+  for (; column < columns.end; column += kShort * kLanes<Number>) {
+    add_products<kCells, kShort>(rows, column, weights, begin, end, sums);
+  }
+}
+
+// Sets the sums of all columns for `count` cells from their weights.
+template <typename Number, std::size_t kColumns>
+HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& rows,
+                             const std::array<ColumnRange, kWeights>& of_weight, bool deep_water,
+                             std::size_t count, CellWorkspace<Number>& work) {
+  for (std::size_t cell = 0; cell < count; ++cell) work.sums[cell].columns.fill(Number{0});
+  // The rows of a block of components stay in the nearest cache while all cells pass. It also keeps the
+  // chains of additions short.
+  constexpr std::size_t kBlock = 48;
+  for (std::size_t begin = 0; begin < rows.size(); begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, rows.size());
+    const auto add = [&]<std::size_t kCells>(std::size_t first,
+                                             std::integral_constant<std::size_t, kCells> /*number*/) {
+      for (std::size_t w = 0; w < kWeights; ++w) {
+        // In deep water the sinh is the cosh.
+        const bool odd = w >= static_cast<std::size_t>(Weight::kCosineOdd);
+        const std::size_t from = odd && deep_water ? w - 2 : w;
+        std::array<const Number*, kCells> weights;
+        std::array<Number*, kCells> sums;
+        for (std::size_t c = 0; c < kCells; ++c) {
+          weights[c] = work.weights[first + c][from].data();
+          sums[c] = work.sums[first + c].columns.data();
+        }
+        add_products<kCells>(rows.data(), of_weight[w], weights, begin, end, sums);
+      }
+    };
+    std::size_t cell = 0;
+    for (; cell + 4 <= count; cell += 4) add(cell, std::integral_constant<std::size_t, 4>());
+    for (; cell + 2 <= count; cell += 2) add(cell, std::integral_constant<std::size_t, 2>());
+    for (; cell < count; ++cell) add(cell, std::integral_constant<std::size_t, 1>());
   }
 }
 
@@ -151,58 +216,82 @@ constexpr double factorial(int n) {
   return product;
 }
 
+// Rows of numbers by degree l, with room for vectors that start in a row and for orders below 0.
+inline constexpr std::size_t kBefore = 2;
+inline constexpr std::size_t kRowLength = 32;
 template <typename Number>
-HWY_INLINE void set_tail(const ExpansionTable<Number>& table, std::size_t components,
-                         const CellWeights<Number>& weights, CellBounds<Number>& bounds) {
-  auto sum = set<Number>(0.0);
-  for (std::size_t i = 0; i < components; ++i) {
-    sum = hn::MulAdd(load<Number>(weights.amplitude[i]), hn::Set(LanesOf<Number>(), table.tail[i]), sum);
+struct alignas(64) DegreeRows {
+  std::array<std::array<Number, kRowLength>, kNormDegree + 1> rows{};
+
+  // The vector from (l, order) on.
+  HWY_INLINE VectorOf<Number> at(int l, int order) const {
+    return hn::LoadU(LanesOf<Number>(),
+                     &rows[static_cast<std::size_t>(l)][kBefore + static_cast<std::size_t>(order)]);
   }
-  store<Number>(sum * set<Number>(1.0 / factorial(kNormDegree + 1)), bounds.tail);
+  Number& number(int l, int order) {
+    return rows[static_cast<std::size_t>(l)][static_cast<std::size_t>(order + static_cast<int>(kBefore))];
+  }
+};
+
+// Calls store(l, q, place) for the vectors that hold the terms of degrees 0 to `degree`, q terms into the
+// degree.
+template <typename Number, typename Store>
+HWY_INLINE void for_each_row(int degree, const Store& store) {
+  for (int l = 0; l <= degree; ++l) {
+    for (int q = 0; q <= l; q += static_cast<int>(kLanes<Number>)) store(l, q);
+  }
 }
 
-// centers: of kLanes cells, z is 0.
+// What monomials are multiplied with when they are differentiated.
 template <typename Number>
-HWY_NOINLINE void build_cells(const SeaExpansion& sea, const ExpansionTable<Number>& table,
-                              const CellWeights<Number>& weights, SurfaceCells<Number>& cells) {
-  constexpr std::size_t kRows = monomials_to(kNormDegree);
-  static const RowsByWeight<kRows> rows = [] {
-    RowsByWeight<kRows> all;
-    for (int l = 0; l <= kNormDegree; ++l) {
-      for (int q = 0; q <= l; ++q) all.add(weight_of_monomial(l), monomial_place(l - q, q));
-    }
-    return all;
-  }();
-  std::array<CellNumbers<Number>, kRows> e;
-  accumulate<Number>(rows, table.monomials.data(), sea.components, weights, e);
-  const auto at = [&e](int p, int q) { return load<Number>(e[monomial_place(p, q)]); };
+struct MonomialFactors {
+  DegreeRows<Number> in_1, in_2, in_11, in_12, in_22;  // by l and q of the derivative
+  DegreeRows<Number> norm;                             // of Bombieri's norm
 
-  for (int l = 0; l <= kDegree; ++l) {
-    for (int q = 0; q <= l; ++q) {
-      const int p = l - q;
-      const std::size_t place = monomial_place(p, q);
-      store<Number>(at(p, q), cells.eta[place]);
-      if (l < kDegree) {
-        store<Number>(set<Number>(p + 1) * at(p + 1, q), cells.eta_1[place]);
-        store<Number>(set<Number>(q + 1) * at(p, q + 1), cells.eta_2[place]);
-      }
-      if (l < kDegree - 1) {
-        store<Number>(set<Number>((p + 1) * (p + 2)) * at(p + 2, q), cells.eta_11[place]);
-        store<Number>(set<Number>((p + 1) * (q + 1)) * at(p + 1, q + 1), cells.eta_12[place]);
-        store<Number>(set<Number>((q + 1) * (q + 2)) * at(p, q + 2), cells.eta_22[place]);
+  MonomialFactors() {
+    for (int l = 0; l <= kNormDegree; ++l) {
+      for (int q = 0; q <= l; ++q) {
+        const int p = l - q;
+        in_1.number(l, q) = static_cast<Number>(p + 1);
+        in_2.number(l, q) = static_cast<Number>(q + 1);
+        in_11.number(l, q) = static_cast<Number>((p + 1) * (p + 2));
+        in_12.number(l, q) = static_cast<Number>((p + 1) * (q + 1));
+        in_22.number(l, q) = static_cast<Number>((q + 1) * (q + 2));
+        norm.number(l, q) = static_cast<Number>(factorial(p) * factorial(q) / factorial(l));
       }
     }
   }
+};
+
+template <typename Number>
+HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Number tail,
+                         SurfaceCell<Number>& cell) {
+  static const MonomialFactors<Number> factors;
+  const LanesOf<Number> d;
+  DegreeRows<Number> e;
+  for (int l = 0; l <= kNormDegree; ++l) {
+    for (int q = 0; q <= l; ++q) e.number(l, q) = sums[monomial_columns()[monomial_place(l - q, q)]];
+  }
+  const auto place = [](int l, int q) { return monomial_place(l - q, q); };
+  for_each_row<Number>(kDegree, [&](int l, int q) { hn::StoreU(e.at(l, q), d, &cell.eta[place(l, q)]); });
+  for_each_row<Number>(kDegree - 1, [&](int l, int q) {
+    hn::StoreU(factors.in_1.at(l, q) * e.at(l + 1, q), d, &cell.eta_1[place(l, q)]);
+    hn::StoreU(factors.in_2.at(l, q) * e.at(l + 1, q + 1), d, &cell.eta_2[place(l, q)]);
+  });
+  for_each_row<Number>(kDegree - 2, [&](int l, int q) {
+    hn::StoreU(factors.in_11.at(l, q) * e.at(l + 2, q), d, &cell.eta_11[place(l, q)]);
+    hn::StoreU(factors.in_12.at(l, q) * e.at(l + 2, q + 1), d, &cell.eta_12[place(l, q)]);
+    hn::StoreU(factors.in_22.at(l, q) * e.at(l + 2, q + 2), d, &cell.eta_22[place(l, q)]);
+  });
   // Bombieri's norm bounds a homogeneous polynomial on the unit circle.
   for (int l = 0; l <= kNormDegree; ++l) {
-    auto squares = set<Number>(0.0);
-    for (int q = 0; q <= l; ++q) {
-      const auto weight = set<Number>(factorial(l - q) * factorial(q) / factorial(l));
-      squares = squares + weight * at(l - q, q) * at(l - q, q);
+    VectorOf<Number> squares = hn::Zero(d);
+    for (int q = 0; q <= l; q += static_cast<int>(kLanes<Number>)) {
+      squares = hn::MulAdd(factors.norm.at(l, q) * e.at(l, q), e.at(l, q), squares);
     }
-    store<Number>(hn::Sqrt(squares), cells.bounds.sigma[static_cast<std::size_t>(l)]);
+    cell.bounds.sigma[static_cast<std::size_t>(l)] = hn::GetLane(hn::Sqrt(hn::SumOfLanes(d, squares)));
   }
-  set_tail(table, sea.components, weights, cells.bounds);
+  cell.bounds.tail = tail;
 }
 
 // The harmonics are evaluated in a scale in which their recurrences have no factors: the scale of (l, m)
@@ -218,108 +307,104 @@ constexpr double descent_of(int l, int m) {
   return scale_of(l - 2, m) / ((l + m) * (l - m)) / scale_of(l, m);
 }
 
-// Coefficients of a harmonic function, and those of its derivatives, in vectors of cells.
-template <typename Number, int kTo>
-class Harmonics {
- public:
-  using V = VectorOf<Number>;
+// Factors by l and m. Coefficients of cosines are held twice as large at m = 0, which these undo.
+template <typename Number>
+struct HarmonicFactors {
+  DegreeRows<Number> scale;
+  DegreeRows<Number> norm;
 
-  std::array<CellNumbers<Number>, harmonics_to(kTo)> numbers;
-
-  V a(int l, int m) const { return load<Number>(numbers[cosine_place(l, m)]); }
-  V b(int l, int m) const { return load<Number>(numbers[sine_place(l, m)]); }
-
-  template <int kLower>
-  void set_derivative(int axis, Harmonics<Number, kLower>& out) const {
-    static_assert(kLower < kTo);
-    const V half = buoyancy::HWY_NAMESPACE::set<Number>(0.5);
-    for (int l = 0; l <= kLower; ++l) {
+  HarmonicFactors() {
+    for (int l = 0; l <= kNormDegree; ++l) {
       for (int m = 0; m <= l; ++m) {
-        V cosine = buoyancy::HWY_NAMESPACE::set<Number>(0.0);
-        V sine = cosine;
-        if (axis == 2) {
-          cosine = a(l + 1, m);
-          if (m > 0) sine = b(l + 1, m);
-        } else if (axis == 0) {
-          cosine = half * a(l + 1, m + 1);
-          if (m == 1) cosine = cosine - a(l + 1, 0);
-          if (m > 1) cosine = cosine - half * a(l + 1, m - 1);
-          if (m > 0) sine = half * b(l + 1, m + 1);
-          if (m > 1) sine = sine - half * b(l + 1, m - 1);
-        } else {
-          cosine = half * b(l + 1, m + 1);
-          if (m > 1) cosine = cosine + half * b(l + 1, m - 1);
-          if (m > 0) sine = hn::Neg(half * a(l + 1, m + 1));
-          if (m == 1) sine = sine - a(l + 1, 0);
-          if (m > 1) sine = sine - half * a(l + 1, m - 1);
-        }
-        store<Number>(cosine, out.numbers[cosine_place(l, m)]);
-        if (m > 0) store<Number>(sine, out.numbers[sine_place(l, m)]);
-      }
-    }
-  }
-
-  // In the scale of evaluation.
-  template <std::size_t kNumber>
-  void store_scaled(std::array<CellNumbers<Number>, kNumber>& out) const {
-    for (int l = 0; harmonics_to(l) <= kNumber; ++l) {
-      for (int m = 0; m <= l; ++m) {
-        const V scale = buoyancy::HWY_NAMESPACE::set<Number>(scale_of(l, m));
-        store<Number>(scale * a(l, m), out[cosine_place(l, m)]);
-        if (m > 0) store<Number>(scale * b(l, m), out[sine_place(l, m)]);
+        scale.number(l, m) = static_cast<Number>((m == 0 ? 0.5 : 1.0) * scale_of(l, m));
+        norm.number(l, m) =
+            static_cast<Number>((m == 0 ? 0.25 : 0.5) / (factorial(l + m) * factorial(l - m)));
       }
     }
   }
 };
 
+// With A_l0 twice the coefficient a_l0, A_l(-m) = (-1)^m A_lm and B_l(-m) = -(-1)^m B_lm, the derivatives of
+// a harmonic function have the coefficients
+//   along z:  A'_lm = A_(l+1)m,                             B'_lm = B_(l+1)m
+//   along x1: A'_lm = (A_(l+1)(m+1) - A_(l+1)(m-1)) / 2,    B'_lm = (B_(l+1)(m+1) - B_(l+1)(m-1)) / 2
+//   along x2: A'_lm = (B_(l+1)(m+1) + B_(l+1)(m-1)) / 2,    B'_lm = -(A_(l+1)(m+1) + A_(l+1)(m-1)) / 2
 template <typename Number>
-HWY_NOINLINE void build_cells(const SeaExpansion& sea, const ExpansionTable<Number>& table,
-                              const CellWeights<Number>& weights, VolumeCells<Number>& cells) {
-  constexpr std::size_t kRows = harmonics_to(kNormDegree);
-  static const RowsByWeight<kRows> rows = [] {
-    RowsByWeight<kRows> all;
-    for (int l = 0; l <= kNormDegree; ++l) {
-      for (int m = 0; m <= l; ++m) {
-        all.add(weight_of_harmonic(l, m), cosine_place(l, m));
-        if (m > 0) all.add(weight_of_harmonic(l, m), sine_place(l, m));
+HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Number tail,
+                         VolumeCell<Number>& cell) {
+  static const HarmonicFactors<Number> factors;
+  using V = VectorOf<Number>;
+  const LanesOf<Number> d;
+  DegreeRows<Number> A, B;
+  for (int l = 0; l <= kNormDegree; ++l) {
+    A.number(l, 0) = Number{2} * sums[harmonic_columns()[cosine_place(l, 0)]];
+    for (int m = 1; m <= l; ++m) {
+      A.number(l, m) = sums[harmonic_columns()[cosine_place(l, m)]];
+      B.number(l, m) = sums[harmonic_columns()[sine_place(l, m)]];
+    }
+    A.number(l, -1) = -A.number(l, 1);
+    A.number(l, -2) = A.number(l, 2);
+    B.number(l, -1) = B.number(l, 1);
+    B.number(l, -2) = -B.number(l, 2);
+  }
+  // a(l, m) and b(l, m): the coefficients from (l, m) on.
+  const auto store = [&]<std::size_t kNumber>(int degree, std::array<Number, kNumber>& out, const auto& a,
+                                              const auto& b) {
+    for (int l = 0; l <= degree; ++l) {
+      for (int m = 0; m <= l; m += static_cast<int>(kLanes<Number>)) {
+        hn::StoreU(factors.scale.at(l, m) * a(l, m), d, &out[cosine_place(l, m)]);
+      }
+      for (int m = 1; m <= l; m += static_cast<int>(kLanes<Number>)) {
+        hn::StoreU(factors.scale.at(l, m) * b(l, m), d, &out[sine_place(l, m)]);
       }
     }
-    return all;
-  }();
-  Harmonics<Number, kNormDegree> f;
-  accumulate<Number>(rows, table.harmonics.data(), sea.components, weights, f.numbers);
-  f.store_scaled(cells.f);
-  {
-    Harmonics<Number, kDegree - 1> f_1, f_2, f_3;
-    Harmonics<Number, kDegree - 2> second;
-    f.set_derivative(0, f_1);
-    f.set_derivative(1, f_2);
-    f.set_derivative(2, f_3);
-    f_1.store_scaled(cells.f_1);
-    f_2.store_scaled(cells.f_2);
-    f_3.store_scaled(cells.f_3);
-    f_1.set_derivative(0, second);
-    second.store_scaled(cells.f_11);
-    f_1.set_derivative(1, second);
-    second.store_scaled(cells.f_12);
-    f_1.set_derivative(2, second);
-    second.store_scaled(cells.f_13);
-    f_2.set_derivative(2, second);
-    second.store_scaled(cells.f_23);
-    f_3.set_derivative(2, second);
-    second.store_scaled(cells.f_33);
-  }
+  };
+  const V half = set<Number>(0.5);
+  const V quarter = set<Number>(0.25);
+  const auto difference = [](const DegreeRows<Number>& rows, int l, int m, int by) {
+    return rows.at(l, m + by) - rows.at(l, m - by);
+  };
+  const auto sum = [](const DegreeRows<Number>& rows, int l, int m, int by) {
+    return rows.at(l, m + by) + rows.at(l, m - by);
+  };
+  store(
+      kDegree, cell.f, [&](int l, int m) { return A.at(l, m); }, [&](int l, int m) { return B.at(l, m); });
+  store(
+      kDegree - 1, cell.f_1, [&](int l, int m) { return half * difference(A, l + 1, m, 1); },
+      [&](int l, int m) { return half * difference(B, l + 1, m, 1); });
+  store(
+      kDegree - 1, cell.f_2, [&](int l, int m) { return half * sum(B, l + 1, m, 1); },
+      [&](int l, int m) { return hn::Neg(half * sum(A, l + 1, m, 1)); });
+  store(
+      kDegree - 1, cell.f_3, [&](int l, int m) { return A.at(l + 1, m); },
+      [&](int l, int m) { return B.at(l + 1, m); });
+  const V two = set<Number>(2.0);
+  store(
+      kDegree - 2, cell.f_11,
+      [&](int l, int m) { return quarter * hn::NegMulAdd(two, A.at(l + 2, m), sum(A, l + 2, m, 2)); },
+      [&](int l, int m) { return quarter * hn::NegMulAdd(two, B.at(l + 2, m), sum(B, l + 2, m, 2)); });
+  store(
+      kDegree - 2, cell.f_12, [&](int l, int m) { return quarter * difference(B, l + 2, m, 2); },
+      [&](int l, int m) { return hn::Neg(quarter * difference(A, l + 2, m, 2)); });
+  store(
+      kDegree - 2, cell.f_13, [&](int l, int m) { return half * difference(A, l + 2, m, 1); },
+      [&](int l, int m) { return half * difference(B, l + 2, m, 1); });
+  store(
+      kDegree - 2, cell.f_23, [&](int l, int m) { return half * sum(B, l + 2, m, 1); },
+      [&](int l, int m) { return hn::Neg(half * sum(A, l + 2, m, 1)); });
+  store(
+      kDegree - 2, cell.f_33, [&](int l, int m) { return A.at(l + 2, m); },
+      [&](int l, int m) { return B.at(l + 2, m); });
   // By Cauchy's inequality and the addition theorem for spherical harmonics.
   for (int l = 0; l <= kNormDegree; ++l) {
-    auto squares = set<Number>(0.0);
-    for (int m = 0; m <= l; ++m) {
-      const auto weight = set<Number>((m == 0 ? 1.0 : 0.5) / (factorial(l + m) * factorial(l - m)));
-      squares = squares + weight * f.a(l, m) * f.a(l, m);
-      if (m > 0) squares = squares + weight * f.b(l, m) * f.b(l, m);
+    V squares = hn::Zero(d);
+    for (int m = 0; m <= l; m += static_cast<int>(kLanes<Number>)) {
+      const V both = hn::MulAdd(A.at(l, m), A.at(l, m), B.at(l, m) * B.at(l, m));
+      squares = hn::MulAdd(factors.norm.at(l, m), both, squares);
     }
-    store<Number>(hn::Sqrt(squares), cells.bounds.sigma[static_cast<std::size_t>(l)]);
+    cell.bounds.sigma[static_cast<std::size_t>(l)] = hn::GetLane(hn::Sqrt(hn::SumOfLanes(d, squares)));
   }
-  set_tail(table, sea.components, weights, cells.bounds);
+  cell.bounds.tail = tail;
 }
 
 }  // namespace HWY_NAMESPACE

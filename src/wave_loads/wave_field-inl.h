@@ -31,17 +31,16 @@ struct VolumeValues {
 
 // Horner's scheme in two variables.
 template <int kTo, typename Number, std::size_t kNumber>
-HWY_INLINE VectorOf<Number> polynomial(const std::array<CellNumbers<Number>, kNumber>& terms,
-                                       std::size_t cell, const VectorOf<Number>& x1,
+HWY_INLINE VectorOf<Number> polynomial(const std::array<Number, kNumber>& terms, const VectorOf<Number>& x1,
                                        const VectorOf<Number>& x2) {
   const LanesOf<Number> d;
-  auto sum = hn::Set(d, terms[monomial_place(0, kTo)][cell]);
+  auto sum = hn::Set(d, terms[monomial_place(0, kTo)]);
 #pragma GCC unroll 16
   for (int q = kTo - 1; q >= 0; --q) {
-    auto row = hn::Set(d, terms[monomial_place(kTo - q, q)][cell]);
+    auto row = hn::Set(d, terms[monomial_place(kTo - q, q)]);
 #pragma GCC unroll 16
     for (int p = kTo - q - 1; p >= 0; --p) {
-      row = hn::MulAdd(row, x1, hn::Set(d, terms[monomial_place(p, q)][cell]));
+      row = hn::MulAdd(row, x1, hn::Set(d, terms[monomial_place(p, q)]));
     }
     sum = hn::MulAdd(sum, x2, row);
   }
@@ -50,20 +49,19 @@ HWY_INLINE VectorOf<Number> polynomial(const std::array<CellNumbers<Number>, kNu
 
 // x1, x2: from the cell's centre, over 1 / k_max.
 template <typename Number>
-HWY_INLINE SurfaceValues<Number> evaluate(const SurfaceCells<Number>& cells, std::size_t cell,
-                                          const VectorOf<Number>& x1, const VectorOf<Number>& x2) {
-  return {polynomial<kDegree, Number>(cells.eta, cell, x1, x2),
-          polynomial<kDegree - 1, Number>(cells.eta_1, cell, x1, x2),
-          polynomial<kDegree - 1, Number>(cells.eta_2, cell, x1, x2),
-          polynomial<kDegree - 2, Number>(cells.eta_11, cell, x1, x2),
-          polynomial<kDegree - 2, Number>(cells.eta_12, cell, x1, x2),
-          polynomial<kDegree - 2, Number>(cells.eta_22, cell, x1, x2)};
+HWY_INLINE SurfaceValues<Number> evaluate(const SurfaceCell<Number>& cell, const VectorOf<Number>& x1,
+                                          const VectorOf<Number>& x2) {
+  return {polynomial<kDegree, Number>(cell.eta, x1, x2),
+          polynomial<kDegree - 1, Number>(cell.eta_1, x1, x2),
+          polynomial<kDegree - 1, Number>(cell.eta_2, x1, x2),
+          polynomial<kDegree - 2, Number>(cell.eta_11, x1, x2),
+          polynomial<kDegree - 2, Number>(cell.eta_12, x1, x2),
+          polynomial<kDegree - 2, Number>(cell.eta_22, x1, x2)};
 }
 
 template <typename Number>
-HWY_INLINE VolumeValues<Number> evaluate(const VolumeCells<Number>& cells, std::size_t cell,
-                                         const VectorOf<Number>& x1, const VectorOf<Number>& x2,
-                                         const VectorOf<Number>& z) {
+HWY_INLINE VolumeValues<Number> evaluate(const VolumeCell<Number>& cell, const VectorOf<Number>& x1,
+                                         const VectorOf<Number>& x2, const VectorOf<Number>& z) {
   const LanesOf<Number> d;
   using V = VectorOf<Number>;
   std::array<V, harmonics_to(kDegree)> u;
@@ -97,26 +95,26 @@ HWY_INLINE VolumeValues<Number> evaluate(const VolumeCells<Number>& cells, std::
   const V zero = hn::Zero(d);
   VolumeValues<Number> v{zero, zero, zero, zero, zero, zero, zero, zero, zero};
   const auto add = [&](std::size_t t, V& sum, const auto& terms) {
-    sum = hn::MulAdd(u[t], hn::Set(d, terms[t][cell]), sum);
+    sum = hn::MulAdd(u[t], hn::Set(d, terms[t]), sum);
   };
   for (std::size_t t = 0; t < harmonics_to(kDegree - 2); ++t) {
-    add(t, v.f, cells.f);
-    add(t, v.f_1, cells.f_1);
-    add(t, v.f_2, cells.f_2);
-    add(t, v.f_3, cells.f_3);
-    add(t, v.f_11, cells.f_11);
-    add(t, v.f_12, cells.f_12);
-    add(t, v.f_13, cells.f_13);
-    add(t, v.f_23, cells.f_23);
-    add(t, v.f_33, cells.f_33);
+    add(t, v.f, cell.f);
+    add(t, v.f_1, cell.f_1);
+    add(t, v.f_2, cell.f_2);
+    add(t, v.f_3, cell.f_3);
+    add(t, v.f_11, cell.f_11);
+    add(t, v.f_12, cell.f_12);
+    add(t, v.f_13, cell.f_13);
+    add(t, v.f_23, cell.f_23);
+    add(t, v.f_33, cell.f_33);
   }
   for (std::size_t t = harmonics_to(kDegree - 2); t < harmonics_to(kDegree - 1); ++t) {
-    add(t, v.f, cells.f);
-    add(t, v.f_1, cells.f_1);
-    add(t, v.f_2, cells.f_2);
-    add(t, v.f_3, cells.f_3);
+    add(t, v.f, cell.f);
+    add(t, v.f_1, cell.f_1);
+    add(t, v.f_2, cell.f_2);
+    add(t, v.f_3, cell.f_3);
   }
-  for (std::size_t t = harmonics_to(kDegree - 1); t < harmonics_to(kDegree); ++t) add(t, v.f, cells.f);
+  for (std::size_t t = harmonics_to(kDegree - 1); t < harmonics_to(kDegree); ++t) add(t, v.f, cell.f);
   return v;
 }
 
@@ -131,10 +129,9 @@ struct ReachBounds {
 };
 
 template <typename Number>
-HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, std::size_t cell,
-                                         const VectorOf<Number>& reach) {
+HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const VectorOf<Number>& reach) {
   const LanesOf<Number> d;
-  const auto sigma = [&](int l) { return hn::Set(d, bounds.sigma[static_cast<std::size_t>(l)][cell]); };
+  const auto sigma = [&](int l) { return hn::Set(d, bounds.sigma[static_cast<std::size_t>(l)]); };
   ReachBounds<Number> result;
   result.sum = sigma(kDegree);
   result.third = set<Number>(1.0 * kDegree * (kDegree - 1) * (kDegree - 2)) * sigma(kDegree);
@@ -155,7 +152,7 @@ HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, std::
   };
   auto power = reach;  // reach^kDegree
   for (int l = 1; l < kDegree; ++l) power = power * reach;
-  const auto tail = hn::Set(d, bounds.tail[cell]) * reach * reach;
+  const auto tail = hn::Set(d, bounds.tail) * reach * reach;
   result.truncation =
       power * reach * (hn::MulAdd(sigma(kDegree + 2), reach, sigma(kDegree + 1)) + tail * ratio(0));
   result.slope =

@@ -7,10 +7,13 @@
 #define BUOYANCY_WAVE_LANES_INL_H
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include <hwy/highway.h>
+
+#include "wave_loads/patch_tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -25,20 +28,57 @@ using VectorOf = hn::Vec<LanesOf<Number>>;
 template <typename Number>
 inline constexpr std::size_t kLanes = hn::MaxLanes(LanesOf<Number>());
 
+// Lanes that come from one block: siblings, or the triangles of a block.
 template <typename Number>
-using CellNumbers = std::array<Number, kLanes<Number>>;  // one of each cell of a block
+inline constexpr std::size_t kUnit = std::min<std::size_t>(kLanes<Number>, kSiblings);
+template <typename Number>
+inline constexpr std::size_t kUnitsPerVector = kLanes<Number> / kUnit<Number>;
+template <typename Number>
+using UnitOf = hn::CappedTag<Number, kUnit<Number>>;
 
-template <typename Number>
-HWY_INLINE VectorOf<Number> load(const CellNumbers<Number>& numbers) {
-  return hn::LoadU(LanesOf<Number>(), numbers.data());
-}
-template <typename Number>
-HWY_INLINE void store(const VectorOf<Number>& vector, CellNumbers<Number>& numbers) {
-  hn::StoreU(vector, LanesOf<Number>(), numbers.data());
-}
 template <typename Number>
 HWY_INLINE VectorOf<Number> set(double number) {
   return hn::Set(LanesOf<Number>(), static_cast<Number>(number));
+}
+
+// A vector of kUnitsPerVector units, each made by unit(n).
+template <typename Number, typename MakeUnit>
+HWY_INLINE VectorOf<Number> combine_units(const MakeUnit& unit) {
+#if HWY_TARGET == HWY_SCALAR
+  return unit(0);
+#else
+  if constexpr (kUnitsPerVector<Number> == 1) {
+    return unit(0);
+  } else {
+    const LanesOf<Number> d;
+    if constexpr (kUnitsPerVector<Number> == 2) {
+      return hn::Combine(d, unit(1), unit(0));
+    } else {
+      const hn::Half<LanesOf<Number>> half;
+      return hn::Combine(d, hn::Combine(half, unit(3), unit(2)), hn::Combine(half, unit(1), unit(0)));
+    }
+  }
+#endif
+}
+
+// Reads kUnit numbers at each of kUnitsPerVector places.
+template <typename Number, typename Place>
+HWY_INLINE VectorOf<Number> gather_units(const Place& place) {
+  return combine_units<Number>([&](std::size_t n) {
+    const UnitOf<Number> d;
+    const auto* const numbers = place(n);
+    if constexpr (sizeof(*numbers) == sizeof(Number)) {
+      return hn::LoadU(d, numbers);
+    } else {
+      return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, UnitOf<Number>>(), numbers));
+    }
+  });
+}
+
+// Repeats the number at each of kUnitsPerVector places in all lanes of its unit.
+template <typename Number, typename Place>
+HWY_INLINE VectorOf<Number> spread_units(const Place& place) {
+  return combine_units<Number>([&](std::size_t n) { return hn::Set(UnitOf<Number>(), *place(n)); });
 }
 
 template <typename Number>

@@ -17,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_field-inl.h"
+#include "wave_loads/wave_query.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -37,6 +38,29 @@ struct PatchQuery {
   double slope = 0.0;          // sum of a k
   double unit_roundoff = 0.0;  // of Number
 };
+
+template <typename Number>
+PatchQuery<Number> patch_query_of(const WaveQuery& query) {
+  const auto narrow = [](const Vec3& v) {
+    return std::array<Number, 3>{static_cast<Number>(v.x()), static_cast<Number>(v.y()),
+                                 static_cast<Number>(v.z())};
+  };
+  PatchQuery<Number> patch;
+  patch.e1_B = narrow(query.e1_B);
+  patch.e2_B = narrow(query.e2_B);
+  patch.up_B = narrow(query.up_B);
+  patch.reference = narrow(query.reference);
+  patch.k_max = query.expansion->k_max;
+  patch.zeta = query.zeta;
+  patch.per_depth = query.deep_water() ? 0.0 : 1.0 / (patch.k_max * query.depth);
+  patch.hydrostatic = query.hydrostatic;
+  patch.submerged = query.submerged;
+  const double factor = query.sea->amplitude_factor();
+  patch.amplitude = factor * query.expansion->amplitude_sums[0] * patch.k_max;
+  patch.slope = factor * query.expansion->amplitude_sums[1];
+  patch.unit_roundoff = 0.5 * std::numeric_limits<Number>::epsilon();
+  return patch;
+}
 
 // A quadratic function of y = x - m, B axes, y in metres.
 template <typename Number>
@@ -128,9 +152,9 @@ HWY_INLINE VectorOf<Number> stretched(const PatchQuery<Number>& query, const Pla
 template <typename Number>
 HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Place<Number>& place,
                                        const VectorOf<Number>& radius, const SurfaceValues<Number>& surface,
-                                       const CellBounds<Number>& surface_bounds, std::size_t surface_cell,
+                                       const CellBounds<Number>& surface_bounds,
                                        const VectorOf<Number>& surface_reach, const VolumeValues<Number>& f,
-                                       const CellBounds<Number>& volume_bounds, std::size_t volume_cell,
+                                       const CellBounds<Number>& volume_bounds,
                                        const VectorOf<Number>& volume_reach) {
   using V = VectorOf<Number>;
   const V zero = set<Number>(0.0);
@@ -147,7 +171,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V s = place.zeta - eta;
 
   // The surface over the ball of radius r.
-  const ReachBounds<Number> above = bounds_at<Number>(surface_bounds, surface_cell, surface_reach + r);
+  const ReachBounds<Number> above = bounds_at<Number>(surface_bounds, surface_reach + r);
   const V mean = half * (surface.eta_11 + surface.eta_22);
   const V difference = half * (surface.eta_11 - surface.eta_22);
   const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
@@ -229,7 +253,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
 
     const V shift = w_max * qq * epsilon;
     const ReachBounds<Number> inside =
-        bounds_at<Number>(volume_bounds, volume_cell, volume_reach + hn::MulAdd(r, V1, shift));
+        bounds_at<Number>(volume_bounds, volume_reach + hn::MulAdd(r, V1, shift));
     const Symmetric<Number> Df2{f.f_11, f_22, f.f_33, f.f_12, f.f_13, f.f_23};
     const V F3 = inside.third;
     // The largest eigenvalue of a traceless symmetric matrix is at most sqrt(2/3) times its Frobenius norm.
@@ -244,7 +268,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V Z = hn::MulAdd(r, hn::Sqrt(hn::MulAdd(b_1, b_1, qq)), shift);
     const V column = hn::Max(Z, hn::Abs(z));
     const V R = hn::Sqrt(hn::MulAdd(r, r, column * column));
-    const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_cell, volume_reach + R);
+    const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_reach + R);
     const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
     gamma = q_max * (f.f_3 + R * (vertical + half * R * around.third) + around.slope);
     model.too_steep = hn::And(hn::Ge(q * f.f_3, one), hn::Lt(hn::Abs(z), r));

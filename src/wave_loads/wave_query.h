@@ -1,12 +1,15 @@
 // Internal to wave_load.cpp: what its instruction sets share.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "base/vec3.h"
 #include "wave_loads/patch_tree.h"
 #include "wave_loads/sea_expansion.h"
+#include "waves/sea_snapshot.h"
 
 namespace buoyancy {
 
@@ -14,25 +17,29 @@ namespace buoyancy {
 inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 4'096;
 
-// The sea as one query sees it: phases at the body's centre, amplitudes now.
-struct QueryPhases {
-  std::vector<double> phase;  // [rad], per component, within a turn
-  double amplitude_factor = 1.0;
+// Cells are boxes of the same size. Lengths over 1 / k_max, horizontally from the body's centre, heights z'
+// over the level.
+struct CellGrid {
+  std::array<double, 3> edge{1.0, 1.0, 1.0};
+  std::array<double, 3> origin{};  // a corner of cells in x1 and x2, the top of cells in z
 };
 
 struct WaveQuery {
   const PatchTree* tree = nullptr;
   const SeaExpansion* expansion = nullptr;
-  QueryPhases phases;
+  const SeaSnapshot* sea = nullptr;
   Vec3 e1_B = Vec3::UnitX(), e2_B = Vec3::UnitY(), up_B = Vec3::UnitZ();
   Vec3 reference = Vec3::Zero();                           // [m], B axes, from c
+  double x1 = 0.0, x2 = 0.0;                               // [m], of c, along the horizontal axes
   double zeta = 0.0;                                       // [m], height of c over the level
   double depth = std::numeric_limits<double>::infinity();  // [m]
   bool hydrostatic = false;
   bool submerged = false;
   double max_lever = 1.0;  // [m], L_r
   double budget = 0.0;     // [m^3]
-  double cell = 1.0;       // edge of a cell, over 1 / k_max
+  CellGrid grid;
+
+  bool deep_water() const { return std::isinf(depth); }
 };
 
 }  // namespace buoyancy

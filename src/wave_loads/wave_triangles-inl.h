@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_models-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -201,6 +202,22 @@ HWY_INLINE TriangleIntegrals<Number> integrate(const PatchQuery<Number>& query,
       hn::Min(hn::Max(difference, zero), D) + set<Number>(16.0 * query.unit_roundoff) * (largest + D);
   sum.strip = hn::IfThenZeroElse(hn::Or(t.whole, t.none), strip * hn::Sqrt(dot<Number>(area, area)));
   return sum;
+}
+
+// Integrals of triangles as those of patches; what the model leaves out is not part of the errors. lever:
+// centroid from the reference point. radius: of the patch.
+template <typename Number>
+HWY_INLINE PatchIntegrals<Number> to_patch(const TriangleIntegrals<Number>& sums,
+                                           const Vectors3<Number>& lever, const Vectors3<Number>& center,
+                                           const VectorOf<Number>& radius) {
+  PatchIntegrals<Number> result;
+  result.force = {hn::Neg(sums.force.x), hn::Neg(sums.force.y), hn::Neg(sums.force.z)};
+  result.torque = cross<Number>(lever, result.force) - sums.offset_torque;
+  result.volume = sums.volume;
+  result.moment = scaled<Number>(sums.volume, center) + sums.moment;
+  result.force_error = sums.strip;
+  result.torque_error = hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)) + radius, sums.strip, sums.cubic);
+  return result;
 }
 
 }  // namespace HWY_NAMESPACE

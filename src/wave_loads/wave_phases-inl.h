@@ -1,0 +1,82 @@
+// The phases of all components at a body's centre, with SIMD. Included once per instruction set.
+#if defined(BUOYANCY_WAVE_PHASES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_PHASES_INL_H
+#undef BUOYANCY_WAVE_PHASES_INL_H
+#else
+#define BUOYANCY_WAVE_PHASES_INL_H
+#endif
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <hwy/highway.h>
+
+#include "wave_loads/wave_lanes-inl.h"
+#include "wave_loads/wave_query.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// Products and sums of double precision whose rounding errors are known.
+struct ExactDouble {
+  VectorOf<double> value, error;
+};
+
+HWY_INLINE ExactDouble exact_product(const VectorOf<double>& a, const VectorOf<double>& b) {
+  const VectorOf<double> product = a * b;
+#if HWY_NATIVE_FMA
+  return {product, hn::MulSub(a, b, product)};
+#else
+  const VectorOf<double> split = set<double>(134217729.0);  // 2^27 + 1, Dekker (1971)
+  const VectorOf<double> a_scaled = split * a;
+  const VectorOf<double> a_hi = a_scaled - (a_scaled - a);
+  const VectorOf<double> a_lo = a - a_hi;
+  const VectorOf<double> b_scaled = split * b;
+  const VectorOf<double> b_hi = b_scaled - (b_scaled - b);
+  const VectorOf<double> b_lo = b - b_hi;
+  return {product, ((a_hi * b_hi - product) + a_hi * b_lo + a_lo * b_hi) + a_lo * b_lo};
+#endif
+}
+
+HWY_INLINE ExactDouble exact_sum(const VectorOf<double>& a, const VectorOf<double>& b) {
+  const VectorOf<double> sum = a + b;
+  const VectorOf<double> b_part = sum - a;
+  return {sum, (a - (sum - b_part)) + (b - b_part)};
+}
+
+// The rest of an angle [rad] within half a turn of 0.
+HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
+  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / 6.283185307179586));
+  const ExactDouble whole = exact_product(turns, set<double>(6.283185307179586));
+  const VectorOf<double> rest = (angle - whole.value) - whole.error;
+  return rest - turns * set<double>(2.4492935982947064e-16);
+}
+
+// Sets phases[i] to the phase of component i at the body's centre [rad], filled up with zeros. Exact to 1e-14
+// of a turn out to 1e9 wavelengths, as SeaSnapshot is.
+HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) {
+  const LanesOf<double> d;
+  const SeaExpansion& sea = *query.expansion;
+  phases.resize(sea.filled_components);
+  std::copy(query.sea->phases().begin(), query.sea->phases().end(), phases.begin());
+  std::fill(phases.begin() + static_cast<std::ptrdiff_t>(sea.components), phases.end(), 0.0);
+  const VectorOf<double> x1 = set<double>(query.x1);
+  const VectorOf<double> x2 = set<double>(query.x2);
+  for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
+    const ExactDouble along1 = exact_product(hn::LoadU(d, &sea.k1_W[i]), x1);
+    const ExactDouble along2 = exact_product(hn::LoadU(d, &sea.k2_W[i]), x2);
+    const ExactDouble along = exact_sum(along1.value, along2.value);
+    const VectorOf<double> small = hn::LoadU(d, &sea.k1_rest[i]) * x1 + hn::LoadU(d, &sea.k2_rest[i]) * x2 +
+                                   ((along1.error + along2.error) + along.error);
+    const VectorOf<double> phase = within_turn(along.value) + small + hn::LoadU(d, &phases[i]);
+    hn::StoreU(within_turn(phase), d, &phases[i]);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#endif  // BUOYANCY_WAVE_PHASES_INL_H

@@ -1,0 +1,196 @@
+// Pieces of large triangles, with SIMD. Included once per instruction set.
+#if defined(BUOYANCY_WAVE_PIECES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_PIECES_INL_H
+#undef BUOYANCY_WAVE_PIECES_INL_H
+#else
+#define BUOYANCY_WAVE_PIECES_INL_H
+#endif
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <hwy/highway.h>
+
+#include "wave_loads/wave_integrals-inl.h"
+#include "wave_loads/wave_results-inl.h"
+#include "wave_loads/wave_triangles-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// Triangles of a vector of units, relative to their centroids.
+template <typename Number>
+struct PieceLanes {
+  std::array<Vectors3<Number>, 3> corners;
+  Vectors3<Number> center;
+  VectorOf<Number> radius;
+};
+
+// The integrals over pieces, and the bounds on their errors.
+template <typename Number>
+HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, const PieceLanes<Number>& piece,
+                                            const PatchModel<Number>& model) {
+  using V = VectorOf<Number>;
+  TriangleLanes<Number> t;
+  t.corners = piece.corners;
+  t.phi = model.phi;
+  t.s = model.s;
+  t.curvature = model.curvature;
+  t.whole = model.whole;
+  t.none = model.dry;
+  const Vectors3<Number> lever = piece.center - axis_of<Number>(query.reference);
+  PatchIntegrals<Number> result =
+      to_patch<Number>(integrate<Number>(query, t), lever, piece.center, piece.radius);
+  const Vectors3<Number> normal = cross<Number>(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
+  const V area = set<Number>(0.500001) * hn::Sqrt(dot<Number>(normal, normal));
+  V second = set<Number>(0.0);
+  V fourth = second;
+  for (const Vectors3<Number>& corner : t.corners) {
+    const V squared = dot<Number>(corner, corner);
+    second = second + squared;
+    fourth = hn::MulAdd(squared, squared, fourth);
+  }
+  // The means of |y|^2 and |y|^4 over a triangle, about its centroid.
+  const V mean2 = second * set<Number>(1.000001 / 12.0);
+  const V mean4 = fourth * set<Number>(1.000001 / 30.0);
+  const V mean3 = hn::Sqrt(mean2 * mean4);
+  const V sixth = set<Number>(1.0 / 6.0);
+  const V remainder = area * hn::MulAdd(model.third * mean3, sixth, model.delta);
+  const V local = area * hn::MulAdd(model.delta, hn::Sqrt(mean2), sixth * model.third * piece.radius * mean3);
+  result.force_error = result.force_error + remainder;
+  result.torque_error =
+      result.torque_error + hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local);
+  return result;
+}
+
+// Triangles of the mesh that are too large for one model, and parts of them. Four lie side by side, as in the
+// tree.
+template <typename Number>
+class Pieces {
+ public:
+  void clear() {
+    blocks_.clear();
+    count_ = 0;
+    taken_ = 0;
+  }
+
+  // Adds the triangles of a leaf.
+  void add_triangles(const PatchTree& tree, const PatchBlock& block, std::size_t lane) {
+    for (std::uint32_t b = 0; b < block.triangle_blocks[lane]; ++b) {
+      const TriangleBlock& triangles = tree.triangles[block.child[lane] + b];
+      for (std::size_t i = 0; i < kSiblings; ++i) {
+        Piece piece;
+        bool point = true;
+        for (std::size_t row = 0; row < kRows; ++row) {
+          const float from_center = triangles.corners[row][i];
+          point &= from_center == triangles.corners[row % 3][i];
+          piece[row] = static_cast<Number>(block.center[row % 3][lane]) + static_cast<Number>(from_center);
+        }
+        if (!point) add(piece);
+      }
+    }
+  }
+
+  // Adds the two halves of a piece, or their halves: across the longest edges. unit: of pieces.
+  void bisect(const Unit& unit, std::size_t lane, int times) { bisect(read(unit.block, lane), times); }
+
+  // Calls take(unit) for the units of the pieces that were added since the last call.
+  template <typename Take>
+  void take_new(const Take& take) {
+    // Points fill the last unit: nothing is integrated over them.
+    if (count_ % kUnit<Number> != 0) {
+      Piece point = read(static_cast<std::uint32_t>((count_ - 1) / kSiblings), (count_ - 1) % kSiblings);
+      for (std::size_t row = 3; row < kRows; ++row) point[row] = point[row % 3];
+      while (count_ % kUnit<Number> != 0) add(point);
+    }
+    for (; taken_ < count_; taken_ += kUnit<Number>) {
+      Unit unit;
+      unit.block = static_cast<std::uint32_t>(taken_ / kSiblings);
+      unit.first = static_cast<std::uint32_t>(taken_ % kSiblings);
+      unit.of_pieces = true;
+      take(unit);
+    }
+  }
+
+  PieceLanes<Number> lanes(const UnitsOfVector<Number>& units) const {
+    const auto row = [&](std::size_t r) HWY_ATTR {
+      return gather_units<Number>(
+          [&](std::size_t n) { return blocks_[units[n].block].rows[r].data() + units[n].first; });
+    };
+    PieceLanes<Number> piece;
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) piece.corners[i] = {row(3 * i), row(3 * i + 1), row(3 * i + 2)};
+    piece.center =
+        scaled<Number>(set<Number>(1.0 / 3.0), piece.corners[0] + piece.corners[1] + piece.corners[2]);
+    VectorOf<Number> far = set<Number>(0.0);
+    for (Vectors3<Number>& corner : piece.corners) {
+      corner = corner - piece.center;
+      far = hn::Max(far, dot<Number>(corner, corner));
+    }
+    piece.radius = hn::Sqrt(far) * set<Number>(1.000001);
+    return piece;
+  }
+
+ private:
+  // Corner by corner, along the axes; relative to c.
+  static constexpr std::size_t kRows = 9;
+  using Piece = std::array<Number, kRows>;
+  struct Block {
+    alignas(16) std::array<std::array<Number, kSiblings>, kRows> rows;
+  };
+
+  void add(const Piece& piece) {
+    if (count_ % kSiblings == 0) blocks_.emplace_back();
+    for (std::size_t row = 0; row < kRows; ++row) blocks_.back().rows[row][count_ % kSiblings] = piece[row];
+    ++count_;
+  }
+  Piece read(std::uint32_t block, std::size_t lane) const {
+    Piece piece;
+    for (std::size_t row = 0; row < kRows; ++row) piece[row] = blocks_[block].rows[row][lane];
+    return piece;
+  }
+
+  void bisect(const Piece& piece, int times) {
+    if (times == 0) {
+      add(piece);
+      return;
+    }
+    std::size_t longest = 0;
+    Number length = -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      Number squared = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Number difference = piece[3 * ((i + 1) % 3) + axis] - piece[3 * i + axis];
+        squared += difference * difference;
+      }
+      if (squared > length) {
+        length = squared;
+        longest = i;
+      }
+    }
+    const std::size_t from = 3 * longest;
+    const std::size_t to = 3 * ((longest + 1) % 3);
+    Piece first = piece;
+    Piece second = piece;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Number middle = Number{0.5} * (piece[from + axis] + piece[to + axis]);
+      first[to + axis] = middle;
+      second[from + axis] = middle;
+    }
+    bisect(first, times - 1);
+    bisect(second, times - 1);
+  }
+
+  std::vector<Block> blocks_;
+  std::size_t count_ = 0;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#endif  // BUOYANCY_WAVE_PIECES_INL_H
