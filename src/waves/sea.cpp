@@ -78,6 +78,40 @@ void check(Checks& checks, const WaveComponents& components, double depth) {
   }
 }
 
+// Sums over the components of a system.
+struct AmplitudeSums {
+  double amplitude = 0.0;  // [m]
+  double squares = 0.0;    // [m^2]
+};
+
+AmplitudeSums sums_of(const RegularWave& wave) {
+  return {0.5 * wave.height, 0.25 * wave.height * wave.height};
+}
+// An irregular sea has enough components that their phases never agree.
+AmplitudeSums sums_of(const IrregularWaves& waves) {
+  const double height = waves.significant_wave_height;
+  return {height > 0.0 ? std::numeric_limits<double>::infinity() : 0.0, height * height / 8.0};
+}
+AmplitudeSums sums_of(const WaveComponents& components) {
+  AmplitudeSums sums;
+  for (const WaveComponent& component : components) {
+    sums.amplitude += component.amplitude;
+    sums.squares += component.amplitude * component.amplitude;
+  }
+  return sums;
+}
+
+// [m], the sum of the amplitudes, or 4 standard deviations of the elevation where that is less.
+double deepest_trough(const SeaDescription& description) {
+  AmplitudeSums total;
+  for (const WaveSystem& system : description.systems) {
+    const AmplitudeSums sums = std::visit([](const auto& of_type) { return sums_of(of_type); }, system);
+    total.amplitude += sums.amplitude;
+    total.squares += sums.squares;
+  }
+  return std::min(total.amplitude, 4.0 * std::sqrt(0.5 * total.squares));
+}
+
 std::optional<Error> error_in(const SeaDescription& description, const Water& water) {
   Checks checks;
   checks.start("the sea");
@@ -98,6 +132,12 @@ std::optional<Error> error_in(const SeaDescription& description, const Water& wa
                 "at most " + std::to_string(kMaxWaveComponents), {},
                 "Use fewer frequencies or directions: the cost does not depend on them, but 200 components "
                 "are usual");
+  }
+  if (!(deepest_trough(description) < description.depth)) {
+    checks.fail("deepest trough", deepest_trough(description),
+                "less than the water's depth, " + format_shortest(description.depth) + " m",
+                "the heights of the wave systems add up to more than the depth",
+                "Use lower waves, or leave the depth out for deep water");
   }
   if (components > 0 && !(water.gravity > 0.0)) {
     checks.fail("gravity", water.gravity, "a number above 0 (m/s^2)", "waves need gravity");

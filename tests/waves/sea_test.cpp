@@ -179,6 +179,23 @@ TEST(Sea, RefusesWavesHigherThanTheWaterIsDeep) {
   EXPECT_THAT(error_of(description), HasSubstr("depth = -inf"));
 }
 
+TEST(Sea, RefusesSystemsWhoseTroughsReachTheBed) {
+  const WaveComponents pair{{0.9, 1.0, 0.0, 0.0}, {0.9, 1.1, 0.0, 0.0}};
+  SeaDescription description = of_systems({pair});
+  description.depth = 1.0;
+  EXPECT_THAT(error_of(description),
+              HasSubstr("deepest trough = 1.8; expected less than the water's depth, 1 m"));
+  description.depth = 1.9;
+  EXPECT_EQ(error_of(description), "no error");
+  IrregularWaves waves;
+  waves.significant_wave_height = 0.8;
+  description = of_systems({waves, waves});
+  description.depth = 1.0;
+  EXPECT_THAT(error_of(description), HasSubstr("deepest trough = 1.13"));
+  description.depth = 1.2;
+  EXPECT_EQ(error_of(description), "no error");
+}
+
 TEST(Sea, RefusesWavesWithoutGravity) {
   Water water;
   water.gravity = 0.0;
