@@ -1,0 +1,53 @@
+// A sea with what the loads of bodies need of it: prepared once per sea, immutable, shared by all threads.
+#pragma once
+
+#include <vector>
+
+#include "wave_loads/sea_expansion.h"
+#include "waves/sea.h"
+#include "waves/sea_snapshot.h"
+
+namespace buoyancy {
+
+class PreparedSea {
+ public:
+  // sea: not still. Complexity: O(components), about 1 us per component.
+  explicit PreparedSea(Sea sea);
+  // Snapshots and queries refer to the sea.
+  PreparedSea(const PreparedSea&) = delete;
+  PreparedSea& operator=(const PreparedSea&) = delete;
+
+  const Sea& sea() const { return sea_; }
+  const SeaExpansion& expansion() const { return expansion_; }
+
+  // Bound on the norm of the gradient of the wave pressure over rho g, at full amplitudes, at and below this
+  // height over the level: B_1 in docs/wave_mathematics.md. z: [m], <= 0, not below the bed. Complexity:
+  // O(1).
+  double max_gradient(double z) const;
+
+ private:
+  Sea sea_;
+  SeaExpansion expansion_;
+  std::vector<double> max_gradients_;  // at heights that descend from 0, see depth_of() in the source
+};
+
+// A sea at one instant, for the queries of one request.
+class SeaAtTime {
+ public:
+  // sea must outlive this object.
+  explicit SeaAtTime(const PreparedSea& sea) : sea_(&sea), snapshot_(sea.sea()) {}
+
+  // See SeaSnapshot::set_time().
+  void set_time(std::int64_t utime, double lead_time) { snapshot_.set_time(utime, lead_time); }
+
+  const PreparedSea& prepared() const { return *sea_; }
+  const SeaSnapshot& snapshot() const { return snapshot_; }
+  // [m], no crest is higher and no trough deeper at this instant; with a margin for rounding.
+  double max_elevation() const;
+
+ private:
+  const PreparedSea* sea_;
+  SeaSnapshot snapshot_;
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,47 @@
+// Computes the wrench of waves on a body from its pose: what buoyancy() of hydrostatics/buoyancy.h is for
+// water at rest.
+//
+//   hierarchical   the load within the body's tolerance, with a certified bound (wave_load.h)
+//   fast_surface, exact_surface   the load as other tools compute it, with bounds of infinity
+//                                 (wave_surface_methods.h)
+// The methods fast, improved and exact do not work in waves: they sum volumes under a plane.
+#pragma once
+
+#include <cstdint>
+
+#include "hydrostatics/buoyancy.h"
+#include "wave_loads/patch_tree.h"
+#include "wave_loads/prepared_sea.h"
+
+namespace buoyancy {
+
+// What queries in waves need of a mesh, besides HydrostaticMesh; built once per mesh.
+struct WaveMesh {
+  PatchTree patches;                   // of `hierarchical`
+  double longest_boundary_edge = 0.0;  // [m], of an open mesh; 0 for a closed one
+};
+
+WaveMesh make_wave_mesh(const HydrostaticMesh& mesh);
+
+struct WaveBuoyancyResult {
+  BuoyancyResult result;
+  bool work_capped = false;    // the work reached its cap before the bound was within the tolerance
+  bool sea_too_steep = false;  // the modelled pressure falls downwards at the surface somewhere on the body
+  std::int32_t patches = 0;    // evaluated
+};
+
+// wave_mesh: of the solver's mesh. The solver's method is hierarchical, fast_surface or exact_surface. pose,
+// reference_B, statuses: as for buoyancy(). Bounds include what the rounding of positions adds far from the
+// origin. No heap after a thread's first query of its kind. Complexity: that of the method.
+WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTime& sea,
+                                     const Pose& pose, const Vec3& reference_B);
+
+// Sets `result` to a result for the pose if bounds suffice for it: if the body is above the highest crest or,
+// with `hierarchical`, so deep in calm water that waves change its load by less than the tolerance, which the
+// bounds then include. Returns false, and leaves `result` unchanged, otherwise. submerged:
+// submerged_constants() of the solver's mesh, about the reference point. Complexity: O(1).
+bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerged& submerged,
+                                       const SeaAtTime& sea, const Pose& pose, const Vec3& reference_B,
+                                       BuoyancyResult& result);
+
+}  // namespace buoyancy
