@@ -53,8 +53,7 @@ int run(int argc, char** argv) {
 
   std::optional<SignalFd> reload;
   if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // kept pending during the load
-  Expected<Scene> scene =
-      Scene::load(options.scene, {.count_intersecting_pairs = options.check, .accept_waves = options.check});
+  Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
   if (!scene) {
     print_error(app, scene.error());
     return kUsageError;

@@ -80,22 +80,38 @@ bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
   return difference == 0;
 }
 
-void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome) {
-  outcome.result = buoyancy(body.solver, validated.pose, water, body.reference_B);
-  complete_outcome(validated.quaternion_normalised, outcome);
+WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose) {
+  if (water.waves == nullptr) {
+    return {.result = buoyancy(body.solver, pose, *water.at_rest, body.reference_B)};
+  }
+  return buoyancy_in_waves(body.solver, body.prepared_mesh->wave_mesh.value(), *water.waves, pose,
+                           body.reference_B);
 }
 
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
+void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
+              BodyOutcome& outcome) {
+  const WaveBuoyancyResult computed = buoyancy_of(body, water, validated.pose);
+  outcome.result = computed.result;
+  complete_outcome(validated.quaternion_normalised, {computed.work_capped, computed.sea_too_steep}, outcome);
+}
+
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
-  if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, water, outcome.result)) return false;
-  complete_outcome(validated.quaternion_normalised, outcome);
+  const bool decided =
+      water.waves == nullptr
+          ? try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)
+          : try_buoyancy_in_waves_from_bounds(body.solver, submerged, *water.waves, validated.pose,
+                                              body.reference_B, outcome.result);
+  if (!decided) return false;
+  complete_outcome(validated.quaternion_normalised, {}, outcome);
   return true;
 }
 
-void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
+void complete_outcome(bool quaternion_normalised, WaveFlags in_waves, BodyOutcome& outcome) {
   outcome.status = to_body_status(outcome.result.status);
   outcome.quaternion_normalised = quaternion_normalised;
   outcome.unchanged = false;
+  outcome.in_waves = in_waves;
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {
@@ -115,6 +131,8 @@ void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
   counters.quaternions_normalised += static_cast<std::int64_t>(outcome.quaternion_normalised);
   if (outcome.status != BodyStatus::kOk) return;
   counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
+  counters.bodies_work_capped += static_cast<std::int64_t>(outcome.in_waves.work_capped);
+  counters.bodies_sea_too_steep += static_cast<std::int64_t>(outcome.in_waves.sea_too_steep);
   switch (outcome.result.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;

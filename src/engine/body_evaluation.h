@@ -37,22 +37,41 @@ Pose to_pose(const PoseBits& bits);
 // Compares without a branch per component: every body of every request makes this test.
 bool equal_branch_free(const PoseBits& a, const PoseBits& b);
 
+// What a load in waves reports beside its result, see WaveBuoyancyResult.
+struct WaveFlags {
+  bool work_capped = false;
+  bool sea_too_steep = false;
+};
+
 // A body's result, and what the service's counters record about it.
 struct BodyOutcome {
   BodyStatus status = BodyStatus::kOk;
   bool quaternion_normalised = false;
   bool unchanged = false;  // the body's last result was reused
-  BuoyancyResult result;   // zeros if status is not kOk
+  WaveFlags in_waves;
+  BuoyancyResult result;  // zeros if status is not kOk
 };
 
-// Precondition: validated.status is kOk. No heap allocation.
-void evaluate(const Body& body, const Water& water, const ValidatedPose& validated, BodyOutcome& outcome);
-// Like evaluate(), but from the body's bounds alone (see try_buoyancy_from_bounds). Returns false, and leaves
-// outcome unchanged, where the bounds do not suffice.
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const Water& water,
+// The water at a request's time.
+struct CurrentWater {
+  const Water* at_rest = nullptr;    // nullptr: unknown, since no sea has been received for this time
+  const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
+};
+
+// The result of a body at a pose. Precondition: the water is known. No heap allocation, except, in waves, by
+// a thread's first query of its kind.
+WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose);
+
+// Preconditions: validated.status is kOk, and the water is known.
+void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
+              BodyOutcome& outcome);
+// Sets outcome to what bounds alone decide (see try_buoyancy_from_bounds, and in waves
+// try_buoyancy_in_waves_from_bounds). Returns false, and leaves outcome unchanged, where they do not suffice.
+// Preconditions: validated.status is kOk, and the water is known. No heap allocation.
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 // Sets the fields of outcome that accompany its result, which was computed at a valid pose.
-void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
+void complete_outcome(bool quaternion_normalised, WaveFlags in_waves, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 

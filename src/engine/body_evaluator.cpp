@@ -22,13 +22,16 @@ constexpr double kMinTaskWork = 1e4;
 
 // A chunk takes about kMinTaskWork.
 constexpr std::size_t kChunkStates = 256;
-constexpr std::size_t kGroup = 8;     // bodies that are computed together
-constexpr std::size_t kMinGroup = 3;  // fewer are quicker one by one
+constexpr std::size_t kGroup = 8;             // bodies that are computed together
+constexpr std::size_t kMinGroup = 3;          // fewer are quicker one by one
+constexpr double kMaxLeadTimeInWaves = 1e12;  // [s], phases are exact to this time and further
 constexpr double kBoundsTime = 40.0;  // [ns], rough cost of a state that needs no more than its bounds
 
 // [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
-double estimated_time(const Solver& solver) {
+double estimated_time(const Solver& solver, bool in_waves) {
   const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
+  // In waves, the cost hardly depends on the mesh; the baselines add up some hundred components per triangle.
+  if (in_waves) return solver.method() == Method::kHierarchical ? 4e4 : 200.0 * triangles;
   return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 1.5 * triangles;
 }
 
@@ -56,9 +59,10 @@ void BodyEvaluator::set_scene(const Scene& scene) {
                   reference.x(),      reference.y(),        reference.z()};
     const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds_.size()));
     if (is_new) {
-      kinds_.push_back({.example = &body,
-                        .submerged = submerged_constants(body.solver.mesh(), scene.water(), reference),
-                        .estimated_time = estimated_time(body.solver)});
+      kinds_.push_back(
+          {.example = &body,
+           .submerged = submerged_constants(body.solver.mesh(), scene.water(), reference),
+           .estimated_time = estimated_time(body.solver, scene.sea() != nullptr || scene.receives_sea())});
     }
     kind_of_.push_back(kind->second);
   }
@@ -98,9 +102,10 @@ void BodyEvaluator::run(std::size_t tasks, double time, const Task& task) {
   }
 }
 
-void BodyEvaluator::evaluate_all(const RequestView& request, ResponseWriter& response,
-                                 ServiceCounters& counters) {
+void BodyEvaluator::evaluate_all(const RequestView& request, const CurrentWater& water,
+                                 ResponseWriter& response, ServiceCounters& counters) {
   assert(request.size() == response.size());
+  water_ = water;
   const std::size_t states = request.size();
   const std::size_t chunks = chunks_of(states);
   prepare_buffers(states);
@@ -156,6 +161,14 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
     outcome.quaternion_normalised = validated.quaternion_normalised;
     return Progress::kDone;
   }
+  if (water_.at_rest == nullptr) {
+    outcome.status = BodyStatus::kNoSea;
+    return Progress::kDone;
+  }
+  if (water_.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves) {
+    outcome.status = BodyStatus::kOutOfRange;
+    return Progress::kDone;
+  }
   if (!mark_first(last_[*body].request, request_number_)) return Progress::kRepeated;
   if (evaluate_cheaply(validated, *body, outcome)) return Progress::kDone;
   pending = {.state = static_cast<std::uint32_t>(i),
@@ -177,7 +190,7 @@ bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t
   const BodyKind& kind = kinds_[kind_of_[body]];
   last.pose = pose;
   last.cached = Cached::kNothing;
-  if (!try_evaluate_from_bounds(*kind.example, kind.submerged, scene_->water(), validated, outcome)) {
+  if (!try_evaluate_from_bounds(*kind.example, kind.submerged, water_, validated, outcome)) {
     return false;
   }
   outcome.unchanged = unchanged;
@@ -200,7 +213,7 @@ void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& 
     result = {};
     const std::size_t end = std::min((t + 1) * grain, count);
     std::size_t n = t * grain;
-    while (end - n >= kMinGroup) {
+    while (end - n >= kMinGroup && water_.waves == nullptr) {
       const std::size_t size = std::min(kGroup, end - n);
       compute_group({&pending_order_[n], size}, request, response, result.counters);
       n += size;
@@ -221,26 +234,27 @@ void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const Re
                   .pose = to_pose(last_[pending.body].pose),
                   .reference_B = example.reference_B};
   }
-  buoyancy(std::span(queries).first(order.size()), scene_->water(), std::span(results).first(order.size()));
+  buoyancy(std::span(queries).first(order.size()), *water_.at_rest, std::span(results).first(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    set_result(pending_[order[i]], results[i], request, response, counters);
+    set_result(pending_[order[i]], results[i], {}, request, response, counters);
   }
 }
 
 void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
                             ServiceCounters& counters) {
   const Body& example = example_of(pending.body);
-  const Pose pose = to_pose(last_[pending.body].pose);
-  set_result(pending, buoyancy(example.solver, pose, scene_->water(), example.reference_B), request, response,
+  const WaveBuoyancyResult computed = buoyancy_of(example, water_, to_pose(last_[pending.body].pose));
+  counters.wave_patches += computed.patches;
+  set_result(pending, computed.result, {computed.work_capped, computed.sea_too_steep}, request, response,
              counters);
 }
 
-void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result,
+void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result, WaveFlags in_waves,
                                const RequestView& request, ResponseWriter& response,
                                ServiceCounters& counters) {
   BodyOutcome& outcome = results_[pending.body];
   outcome.result = result;
-  complete_outcome(pending.quaternion_normalised, outcome);
+  complete_outcome(pending.quaternion_normalised, in_waves, outcome);
   if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
   response.set(pending.state, to_wrench(request.body_id(pending.state), outcome));
   add_to_counters(outcome, counters);

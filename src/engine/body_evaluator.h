@@ -29,16 +29,20 @@ class BodyEvaluator {
   // Replaces the scene and clears the cached results. The previous scene is not accessed again.
   void set_scene(const Scene& scene);
 
-  // Sets one wrench per state of the request, in its order. Makes no heap allocation of its own once all
-  // buffers are as large as the largest request needs. If a large request contains a body more than once, it
-  // is unspecified which of its poses is cached, which shows in counters.bodies_unchanged only. Precondition:
-  // response has as many bodies as request.
-  void evaluate_all(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  // Sets one wrench per state of the request, in its order: those in `water`, which must be that of the
+  // request's time. Results are cached until clear_cache(), which the caller calls where the water is not
+  // that of the last request. Makes no heap allocation of its own once all buffers are as large as the
+  // largest request needs. If a large request contains a body more than once, it is unspecified which of its
+  // poses is cached, which shows in counters.bodies_unchanged only. Precondition: response has as many bodies
+  // as request.
+  void evaluate_all(const RequestView& request, const CurrentWater& water, ResponseWriter& response,
+                    ServiceCounters& counters);
 
   // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
 
   unsigned thread_count() const { return thread_pool_.thread_count(); }
+  const Scene& scene() const { return *scene_; }
 
  private:
   // What bodies with the same mesh, method, tolerance and reference point share.
@@ -102,14 +106,15 @@ class BodyEvaluator {
                      ResponseWriter& response, ServiceCounters& counters);
   void compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
                ServiceCounters& counters);
-  void set_result(const Pending& pending, const BuoyancyResult& result, const RequestView& request,
-                  ResponseWriter& response, ServiceCounters& counters);
+  void set_result(const Pending& pending, const BuoyancyResult& result, WaveFlags in_waves,
+                  const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
   const Body& example_of(std::size_t body) const { return *kinds_[kind_of_[body]].example; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
   void evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
                          ServiceCounters& counters);
 
   const Scene* scene_;
+  CurrentWater water_;  // of the current request
   ThreadPool thread_pool_;
   std::vector<BodyKind> kinds_;
   std::vector<std::uint32_t> kind_of_;  // by body: index into kinds_

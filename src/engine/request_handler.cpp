@@ -25,6 +25,7 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
     : scene_(&scene),
       max_sessions_(options.max_sessions),
       evaluator_(scene, options.threads),
+      water_(scene),
       cached_hydrostatics_(hydrostatics_cache_size(scene)) {
   assert(max_sessions_ >= 1);
 }
@@ -32,6 +33,7 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
 void RequestHandler::set_scene(const Scene& scene) {
   scene_ = &scene;
   evaluator_.set_scene(scene);
+  water_.set_scene(scene);
   cached_hydrostatics_.assign(hydrostatics_cache_size(scene), {});
 }
 
@@ -65,6 +67,12 @@ Bytes RequestHandler::handle(Bytes bytes) {
   ++counters_.computed;
   last_session_ = index;
   return session.last_response;
+}
+
+Expected<void> RequestHandler::receive_sea(Bytes message) {
+  Expected<void> received = water_.receive_sea(message);
+  ++(received ? counters_.seas_received : counters_.seas_rejected);
+  return received;
 }
 
 void RequestHandler::reset() {
@@ -116,7 +124,9 @@ void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& s
   // retry of the previous request would get parts of the new response.
   session.last_request.clear();
   ResponseWriter response(request.id(), request.size(), session.last_response);
-  evaluator_.evaluate_all(request, response, counters_);
+  const WaterAtTime::Change now = water_.move_to(request.id().utime, request.lead_time());
+  if (now.changed) evaluator_.clear_cache();
+  evaluator_.evaluate_all(request, now.water, response, counters_);
   compute_hydrostatics(request, response);
   session.last_hydrostatics.clear();
   if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);

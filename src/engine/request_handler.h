@@ -15,9 +15,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/body_evaluator.h"
+#include "engine/sea_timeline.h"
+#include "engine/water_at_time.h"
 #include "messages/status.h"
 #include "messages/wire.h"
 #include "scene/scene.h"
@@ -50,8 +53,18 @@ class RequestHandler {
   // The session of the last request. Precondition: handle() did not reject that request.
   std::int64_t last_session_id() const { return sessions_[last_session_.value()].id; }
 
+  // Receives a sea_state_t for a scene whose waves are received (Scene::receives_sea()); see SeaTimeline.
+  // Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
+  Expected<void> receive_sea(Bytes message);
+  // For a replay that divides a recording: replaces the seas received so far; takes over and counts one more
+  // received sea, with those before it; counts a sea that could not be used.
+  void set_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)); }
+  void receive_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)), ++counters_.seas_received; }
+  void record_rejected_sea() { ++counters_.seas_rejected; }
+
   // Evaluates new requests in this scene, which must outlive the handler or the next call. The previous scene
-  // is not accessed again. O(bodies of both scenes), independent of their meshes.
+  // is not accessed again. For received seas see WaterAtTime::set_scene(). O(bodies of both scenes),
+  // independent of their meshes.
   void set_scene(const Scene& scene);
 
   // Mode latest: counts a request that was superseded before it was handled.
@@ -92,6 +105,7 @@ class RequestHandler {
   std::uint64_t use_ = 0;
   ServiceCounters counters_;
   BodyEvaluator evaluator_;
+  WaterAtTime water_;
   BodiesHydrostatics hydrostatics_;  // reused
   struct CachedHydrostatics {
     bool valid = false;

@@ -211,6 +211,13 @@ std::optional<DecodeError> decode(Bytes bytes, SeaState& state) {
   return std::nullopt;
 }
 
+tl::expected<std::int64_t, DecodeError> peek_sea_utime(Bytes bytes) {
+  if (const auto components = validate(bytes); !components) return tl::unexpected(components.error());
+  std::int64_t utime = 0;
+  BigEndianReader{bytes.data() + sizeof(std::int64_t)}(utime);
+  return utime;
+}
+
 SeaState to_sea_state(const Sea& sea, std::int64_t instance_id) {
   SeaState state;
   state.instance_id = instance_id;

@@ -47,6 +47,9 @@ void encode(const SeaState& state, std::vector<std::uint8_t>& bytes);
 // above kMaxWaveComponents. On an error, state is unchanged; its arrays are reused. Values are not validated.
 std::optional<DecodeError> decode(Bytes bytes, SeaState& state);
 
+// Makes the same checks and returns the utime only. O(1).
+tl::expected<std::int64_t, DecodeError> peek_sea_utime(Bytes bytes);
+
 // The sea of a scene, which always holds: its utime is 0.
 SeaState to_sea_state(const Sea& sea, std::int64_t instance_id);
 

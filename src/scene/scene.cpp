@@ -72,7 +72,7 @@ Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body
   }
   return std::make_unique<PreparedMesh>(PreparedMesh{
       std::move(validation.report), make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, body.scale),
-      mass_properties(validation.mesh->mesh)});
+      mass_properties(validation.mesh->mesh), std::nullopt});
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
@@ -82,7 +82,7 @@ std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedM
 }
 
 // Returns nullptr for water at rest.
-Expected<std::unique_ptr<const Sea>> make_sea(const SceneDescription& scene) {
+Expected<std::shared_ptr<const PreparedSea>> make_sea(const SceneDescription& scene) {
   if (scene.sea.systems.empty()) return nullptr;
   Expected<Sea> sea = Sea::make(scene.sea, scene.water);
   if (!sea) {
@@ -93,7 +93,7 @@ Expected<std::unique_ptr<const Sea>> make_sea(const SceneDescription& scene) {
     return make_error(std::move(error));
   }
   if (sea->is_still()) return nullptr;
-  return std::make_unique<const Sea>(*std::move(sea));
+  return std::make_shared<const PreparedSea>(*std::move(sea));
 }
 
 // The others sum volumes under a plane water surface.
@@ -126,22 +126,34 @@ std::optional<Error> error_in_waves(const BodyDescription& body) {
   return std::nullopt;
 }
 
+// Loads in waves are computed with float32 numbers whose range is finite.
+std::optional<Error> size_error_in_waves(const BodyDescription& body, const HydrostaticMesh& mesh) {
+  constexpr double kSmallest = 1e-5;  // [m]
+  constexpr double kLargest = 1e6;    // [m]
+  if (mesh.diagonal >= kSmallest && mesh.diagonal <= kLargest) return std::nullopt;
+  return with_body(body, {source_name(body), "a size of " + format_shortest(mesh.diagonal) + " m",
+                          "1e-5 to 1e6 m in waves (the diagonal of the bounding box)",
+                          "the mesh is in another unit", "Set scale, for example 0.001 for millimetres"});
+}
+
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
   Scene scene;
   scene.name_ = description.name;
   scene.water_ = description.water;
-  Expected<std::unique_ptr<const Sea>> sea = make_sea(description);
+  scene.receives_sea_ = description.waves_received;
+  Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));
   scene.sea_ = *std::move(sea);
-  if (scene.sea_ != nullptr) {
-    scene.wave_systems_ = report_wave_systems(description.sea, *scene.sea_);
+  if (scene.sea_ != nullptr) scene.wave_systems_ = report_wave_systems(description.sea, scene.sea_->sea());
+  const bool has_waves = scene.sea_ != nullptr || scene.receives_sea_;
+  if (has_waves) {
     for (const BodyDescription& body : description.bodies) {
       if (std::optional<Error> error = error_in_waves(body)) return make_error(*std::move(error));
     }
   }
-  const double default_tolerance = scene.sea_ == nullptr ? 0.0 : kDefaultWaveTolerance;
+  const double default_tolerance = has_waves ? kDefaultWaveTolerance : 0.0;
   std::vector<MeshKey> keys;  // in the order of scene.meshes_
   for (const BodyDescription& body : description.bodies) {
     MeshKey key = key_of(body);
@@ -160,6 +172,12 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     if (is_of_paper(body.method) && !prepared.mesh.meshlets) {
       prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
     }
+    if (has_waves && !prepared.wave_mesh) {
+      if (std::optional<Error> error = size_error_in_waves(body, prepared.mesh)) {
+        return make_error(*std::move(error));
+      }
+      prepared.wave_mesh = make_wave_mesh(prepared.mesh);
+    }
     if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance.value_or(default_tolerance)),
@@ -175,13 +193,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
 Expected<Scene> Scene::load(const std::filesystem::path& path, const PrepareOptions& options) {
   Expected<SceneDescription> description = read_scene_file(path);
   if (!description) return make_error(std::move(description.error()));
-  Expected<Scene> scene = prepare(*description, options);
-  if (scene && scene->sea() != nullptr && !options.accept_waves) {
-    return make_error({description->water_location + ": [water]", "waves", "water at rest",
-                       "loads in waves cannot be computed yet: only buoyancyd --check accepts waves",
-                       "Leave the waves out, or describe the sea with --check"});
-  }
-  return scene;
+  return prepare(*description, options);
 }
 
 const Body* Scene::find(std::int32_t id) const {

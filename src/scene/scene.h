@@ -14,7 +14,8 @@
 #include "hydrostatics/solver.h"
 #include "scene/id_index.h"
 #include "scene/scene_file.h"
-#include "waves/sea.h"
+#include "wave_loads/prepared_sea.h"
+#include "wave_loads/wave_buoyancy.h"
 #include "waves/sea_report.h"
 
 namespace buoyancy {
@@ -22,15 +23,14 @@ namespace buoyancy {
 struct PrepareOptions {
   bool count_intersecting_pairs =
       false;  // for the report; takes several times as long as the rest of the validation
-  bool accept_waves =
-      false;  // by load(): of callers that do not evaluate bodies, since none can in waves yet
 };
 
 // A mesh that several bodies may share: one per source (file or shape), scale and open policy.
 struct PreparedMesh {
   MeshReport report;
   HydrostaticMesh mesh;
-  MassProperties mass_properties;  // density 1 kg/m^3; for an open mesh, the integrals over its faces
+  MassProperties mass_properties;     // density 1 kg/m^3; for an open mesh, the integrals over its faces
+  std::optional<WaveMesh> wave_mesh;  // in scenes with waves
 };
 
 struct Body {
@@ -49,7 +49,7 @@ class Scene {
  public:
   // Imports or generates each mesh once, scales it in double, validates and prepares it. Errors name the
   // scene file, the line, the body and the mesh. In waves, bodies of the methods fast, improved and exact,
-  // bodies with hydrostatics and a tolerance of 0 for hierarchical are errors.
+  // bodies with hydrostatics and a tolerance of 0 for hierarchical are errors, also where waves are received.
   static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
   // Reads a scene file and prepares the scene.
@@ -57,7 +57,12 @@ class Scene {
 
   const std::string& name() const { return name_; }  // the scene file's name as given
   const Water& water() const { return water_; }
-  const Sea* sea() const { return sea_.get(); }  // nullptr if the water is at rest: no amplitude is above 0
+  // The sea that the file describes; nullptr if the water is at rest (no amplitude is above 0), and if waves
+  // are received.
+  const Sea* sea() const { return sea_ == nullptr ? nullptr : &sea_->sea(); }
+  const std::shared_ptr<const PreparedSea>& prepared_sea() const { return sea_; }  // of sea()
+  // Does the sea come in messages (waves = "received")?
+  bool receives_sea() const { return receives_sea_; }
   // One per wave system; none if the water is at rest.
   const std::vector<WaveSystemReport>& wave_systems() const { return wave_systems_; }
   const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
@@ -72,7 +77,8 @@ class Scene {
  private:
   std::string name_;
   Water water_;
-  std::unique_ptr<const Sea> sea_;
+  std::shared_ptr<const PreparedSea> sea_;
+  bool receives_sea_ = false;
   std::vector<WaveSystemReport> wave_systems_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Body> bodies_;

@@ -38,7 +38,7 @@ void read_water(const toml::table& toml, SceneDescription& scene, const std::fil
   scene.water_location = context.location(toml.source());
   table.read("level", scene.water.level, NumberRange::any("m"));
   table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
-  parse_sea(table, directory, context, scene.sea);
+  scene.waves_received = parse_sea(table, directory, context, scene.sea);
   table.finish();
 }
 

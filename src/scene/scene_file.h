@@ -73,8 +73,9 @@ inline constexpr double kDefaultWaveTolerance = 1e-3;
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
-  SeaDescription sea;          // without wave systems: water at rest
-  std::string water_location;  // of [water]: "scene.toml:3", for errors; empty without it
+  SeaDescription sea;           // without wave systems: water at rest
+  bool waves_received = false;  // waves = "received": the sea comes in messages, and `sea` says nothing
+  std::string water_location;   // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };

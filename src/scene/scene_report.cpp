@@ -232,6 +232,11 @@ Json to_json(const Body& body, const Scene& scene) {
           {"density", to_json(density_of(body, scene.water()))}};
 }
 
+Json sea_json(const Scene& scene) {
+  if (scene.receives_sea()) return {{"received", true}};
+  return scene.sea() == nullptr ? Json(nullptr) : to_json(*scene.sea(), scene.wave_systems());
+}
+
 }  // namespace
 
 std::string scene_report_text(const Scene& scene) {
@@ -241,6 +246,7 @@ std::string scene_report_text(const Scene& scene) {
           ", " + format_number(water.density) + " kg/m^3, gravity " + format_number(water.gravity) +
           " m/s^2\n";
   text += "  instructions  " + simd_target() + "\n";
+  if (scene.receives_sea()) text += "\nsea  received in messages\n";
   if (scene.sea() != nullptr) {
     text += '\n';
     text += sea_text(*scene.sea(), scene.wave_systems());
@@ -270,13 +276,9 @@ std::string scene_report_json(const Scene& scene) {
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
     meshes.push_back(std::move(report));
   }
-  const Json report{
-      {"scene", scene.name()},
-      {"water", to_json(scene.water())},
-      {"sea", scene.sea() == nullptr ? Json(nullptr) : to_json(*scene.sea(), scene.wave_systems())},
-      {"simd_target", simd_target()},
-      {"bodies", std::move(bodies)},
-      {"meshes", std::move(meshes)}};
+  const Json report{{"scene", scene.name()},       {"water", to_json(scene.water())},
+                    {"sea", sea_json(scene)},      {"simd_target", simd_target()},
+                    {"bodies", std::move(bodies)}, {"meshes", std::move(meshes)}};
   // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

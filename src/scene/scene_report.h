@@ -18,11 +18,12 @@ std::string scene_report_text(const Scene& scene);
 // leaves them unknown) and "meshes" (the fields of MeshReport by name, and "bodies": the ids of its bodies).
 // Non-finite numbers are null.
 //
-// "sea" is null if the water is at rest. Else it holds "depth" (null: deep), "wave_pressure", "time_origin"
-// and "ramp" as in the scene file; "significant_wave_height" of all systems together, "shortest_wavelength",
-// "extreme_steepness" (Sea::extreme_steepness()); "systems" (the fields of WaveSystemReport by name, those of
-// its peak as "peak_period", "peak_wavelength" and "steepness"); and "components", all systems' one after the
-// other, with the keys of the scene file. Every number parses to the double that is used.
+// "sea" is null if the water is at rest, and {"received": true} if waves are received. Else it holds "depth"
+// (null: deep), "wave_pressure", "time_origin" and "ramp" as in the scene file; "significant_wave_height" of
+// all systems together, "shortest_wavelength", "extreme_steepness" (Sea::extreme_steepness()); "systems" (the
+// fields of WaveSystemReport by name, those of its peak as "peak_period", "peak_wavelength" and "steepness");
+// and "components", all systems' one after the other, with the keys of the scene file. Every number parses to
+// the double that is used.
 std::string scene_report_json(const Scene& scene);
 
 // Warnings about a scene that can be used: a sea that is too steep for linear theory.

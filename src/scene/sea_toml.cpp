@@ -157,7 +157,7 @@ void read_wave_systems(TomlTable& water, const std::filesystem::path& directory,
   }
   const toml::array* array = waves->as_array();
   if (array == nullptr || !(array->empty() || array->is_homogeneous<toml::table>())) {
-    water.fail_at("waves", "a table [[water.waves]] for each wave system");
+    water.fail_at("waves", "a table [[water.waves]] for each wave system, or \"received\"");
     return;
   }
   for (const toml::node& element : *array) {
@@ -167,15 +167,36 @@ void read_wave_systems(TomlTable& water, const std::filesystem::path& directory,
   }
 }
 
+// What a received sea brings with it.
+void refuse_keys_of_received_sea(TomlTable& water) {
+  for (const std::string_view key : {"depth", "wave_pressure", "time_origin", "ramp"}) {
+    if (!water.has(key)) continue;
+    water.fail_at(key, "no " + std::string(key) + " with waves = \"received\"",
+                  "the message of the sea says it", "Remove it");
+  }
+}
+
+bool waves_are_received(TomlTable& water) {
+  const toml::node* waves = water.node("waves");
+  const toml::value<std::string>* text = waves == nullptr ? nullptr : waves->as_string();
+  return text != nullptr && text->get() == "received";
+}
+
 }  // namespace
 
-void parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
+bool parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
                SeaDescription& sea) {
   read_depth(water, sea.depth);
   if (const auto chosen = water.choice("wave_pressure", kPressureNames)) sea.pressure = kPressures[*chosen];
   water.read("time_origin", sea.time_origin, "us");
   water.read("ramp", sea.ramp, sea_ranges::kRamp);
+  if (waves_are_received(water)) {
+    refuse_keys_of_received_sea(water);
+    sea = {};
+    return true;
+  }
   read_wave_systems(water, directory, context, sea.systems);
+  return false;
 }
 
 }  // namespace buoyancy

@@ -10,8 +10,8 @@ namespace buoyancy {
 
 // Reads `depth`, `wave_pressure`, `time_origin`, `ramp` and `waves`, and the files of components that `waves`
 // names, relative to `directory`. Errors are then in the context. What concerns the sea as a whole is left to
-// Sea::make().
-void parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
+// Sea::make(). Returns true if waves = "received".
+bool parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
                SeaDescription& sea);
 
 }  // namespace buoyancy

@@ -10,7 +10,7 @@
 
 namespace buoyancy {
 
-// Replaces wrenches by one wrench per state of the request.
+// Replaces wrenches by one wrench per state of the request, in water at rest.
 inline void evaluate_all(BodyEvaluator& evaluator, const WrenchRequest& request,
                          std::vector<BodyWrench>& wrenches, ServiceCounters& counters) {
   std::vector<std::uint8_t> request_bytes;
@@ -18,7 +18,7 @@ inline void evaluate_all(BodyEvaluator& evaluator, const WrenchRequest& request,
   encode(request, request_bytes);
   const RequestView view = RequestView::of(request_bytes).value();
   ResponseWriter writer(view.id(), view.size(), response_bytes);
-  evaluator.evaluate_all(view, writer, counters);
+  evaluator.evaluate_all(view, {&evaluator.scene().water(), nullptr}, writer, counters);
   WrenchResponse response;
   if (decode(response_bytes, response)) throw std::logic_error("an invalid response");
   wrenches = std::move(response.bodies);

@@ -13,8 +13,7 @@
 namespace buoyancy {
 namespace {
 
-Expected<Scene> load(const TempDir& directory, const std::string& text,
-                     const PrepareOptions& options = {.accept_waves = true}) {
+Expected<Scene> load(const TempDir& directory, const std::string& text, const PrepareOptions& options = {}) {
   return Scene::load(directory.write("pool.toml", text), options);
 }
 
@@ -323,16 +322,30 @@ TEST(Scene, NamesOnlyMeshWithoutSceneFile) {
   EXPECT_EQ(message.rfind(mesh.string() + ": ", 0), 0U) << message;
 }
 
-TEST(Scene, RefusesWavesWhereBodiesAreEvaluated) {
+TEST(Scene, PreparesBodiesForWavesThatAreReceived) {
   const TempDir directory;
-  const Expected<Scene> scene = load(directory,
-                                     "[water]\nwaves = { type = \"regular\", height = 1, period = 8 }\n" +
-                                         body_with(1, "shape = { type = \"box\" }"),
-                                     {.accept_waves = false});
-  ASSERT_FALSE(scene);
-  EXPECT_NE(scene.error().message().find("pool.toml:1: [water]: waves; expected water at rest"),
-            std::string::npos)
-      << scene.error().message();
+  const auto scene = load(directory, "[water]\nwaves = \"received\"\n" + body_with(1, kBox));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_TRUE(scene->receives_sea());
+  EXPECT_EQ(scene->sea(), nullptr);
+  EXPECT_EQ(scene->bodies()[0].solver.tolerance(), 1e-3);
+  EXPECT_TRUE(scene->bodies()[0].prepared_mesh->wave_mesh);
+}
+
+TEST(Scene, RefusesInReceivedWavesWhatNeedsPlaneWater) {
+  const TempDir directory;
+  const std::string message = load_error(
+      load(directory, "[water]\nwaves = \"received\"\n" + body_with(1, kBox + "method = \"exact\"")));
+  EXPECT_NE(message.find("expected hierarchical, fast_surface or exact_surface in waves"), std::string::npos)
+      << message;
+}
+
+TEST(Scene, PreparesNothingForWavesInWaterAtRest) {
+  const TempDir directory;
+  const auto scene = load(directory, kStillWaves + body_with(1, kBox));
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_FALSE(scene->receives_sea());
+  EXPECT_FALSE(scene->bodies()[0].prepared_mesh->wave_mesh);
 }
 
 }  // namespace

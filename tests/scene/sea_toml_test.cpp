@@ -188,7 +188,8 @@ TEST(SeaToml, RejectsWrongKeysOfTheWater) {
       {"wave = 3",
        "unknown key 'wave'; expected one of level, density, depth, wave_pressure, time_origin, "
        "ramp, waves. The nearest known key is 'waves'."},
-      {"waves = \"received\"", "waves = \"received\"; expected a table [[water.waves]] for each wave system"},
+      {"waves = \"recieved\"",
+       "waves = \"recieved\"; expected a table [[water.waves]] for each wave system, or \"received\""},
       {"waves = 3", "waves = 3; expected a table"},
       {"waves = [1, 2]", "waves = [1, 2]; expected a table"},
       {"waves = [{ type = \"regular\" }, 2]", "expected a table [[water.waves]]"},
@@ -197,6 +198,16 @@ TEST(SeaToml, RejectsWrongKeysOfTheWater) {
     EXPECT_THAT(parse_error(water_with(keys)),
                 AllOf(StartsWith("pool.toml:2: [water]: "), HasSubstr(expected)))
         << keys;
+  }
+}
+
+TEST(SeaToml, RejectsKeysThatComeWithAReceivedSea) {
+  for (const std::string key : {"depth = 30", "wave_pressure = \"wheeler\"", "time_origin = 0", "ramp = 5"}) {
+    const std::string name = key.substr(0, key.find(' '));
+    EXPECT_THAT(parse_error(water_with(key + "\nwaves = \"received\"")),
+                AllOf(StartsWith("pool.toml:2: [water]: " + name),
+                      HasSubstr("expected no " + name + " with waves = \"received\"")))
+        << key;
   }
 }
 

@@ -27,7 +27,8 @@ TEST(ShippedScenes, AreReadable) {
 
 TEST(ShippedScenes, HaveFloatingBodies) {
   for (const auto& entry : std::filesystem::directory_iterator(shipped(""))) {
-    if (entry.path().filename() == "duck.toml") continue;
+    // Their mesh is in another package.
+    if (entry.path().filename().string().starts_with("duck")) continue;
     const Expected<Scene> scene = Scene::load(entry.path());
     ASSERT_TRUE(scene) << scene.error().message();
     for (const Body& body : scene->bodies()) {

@@ -56,12 +56,13 @@ Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) 
           {"wet", run.evaluations.wet},
           {"crossing", run.evaluations.crossing},
           {"rejected", run.evaluations.rejected},
-          {"bounds_ns", median_time(body, run,
-                                    [&](const ValidatedPose& pose) {
-                                      return try_evaluate_from_bounds(body, submerged, water, pose, outcome);
-                                    })},
+          {"bounds_ns",
+           median_time(body, run,
+                       [&](const ValidatedPose& pose) {
+                         return try_evaluate_from_bounds(body, submerged, {&water, nullptr}, pose, outcome);
+                       })},
           {"query_ns", median_time(body, run, [&](const ValidatedPose& pose) {
-             evaluate(body, water, pose, outcome);
+             evaluate(body, {&water, nullptr}, pose, outcome);
              return outcome.result.immersion == Immersion::kPiercing;
            })}};
 }

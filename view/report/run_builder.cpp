@@ -61,7 +61,7 @@ void put(RunRow& row, RunColumn first, const std::array<double, kSize>& values) 
   std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-BodyWrench compute_wrench(const Body& body, const Water& water, const ValidatedPose& pose) {
+BodyWrench compute_wrench(const Body& body, const CurrentWater& water, const ValidatedPose& pose) {
   BodyOutcome outcome;
   outcome.status = pose.status;
   if (pose.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
@@ -188,7 +188,8 @@ void RunBuilder::add(const RecordedState& recorded) {
   }
   count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
-  BodyWrench wrench = recorded.wrench ? *recorded.wrench : compute_wrench(body, scene_.water(), pose);
+  BodyWrench wrench =
+      recorded.wrench ? *recorded.wrench : compute_wrench(body, {&scene_.water(), nullptr}, pose);
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;

@@ -1,0 +1,42 @@
+#include "engine/water_at_time.h"
+
+#include <cmath>
+
+namespace buoyancy {
+namespace {
+
+// Is a received sea the same sea in both waters?
+bool is_same_medium(const Water& a, const Water& b) {
+  return a.density == b.density && a.gravity == b.gravity && a.up_W == b.up_W;
+}
+
+}  // namespace
+
+void WaterAtTime::set_scene(const Scene& scene) {
+  const bool keeps_seas =
+      scene_->receives_sea() && scene.receives_sea() && is_same_medium(scene_->water(), scene.water());
+  if (!keeps_seas) seas_ = SeaTimeline(scene);
+  scene_ = &scene;
+}
+
+WaterAtTime::Change WaterAtTime::move_to(std::int64_t utime, double lead_time) {
+  if (scene_->sea() == nullptr && !scene_->receives_sea()) return {{&scene_->water(), nullptr}, false};
+  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);
+  if (period == nullptr) return {};
+  if (!std::isfinite(lead_time)) lead_time = 0.0;
+  const bool same_sea = period_ == *period;
+  const bool has_waves = (*period)->sea != nullptr;
+  if (!same_sea) {
+    period_ = *period;
+    waves_.reset();
+    if (has_waves) waves_.emplace(*period_->sea);
+  }
+  const bool changed = !same_sea || (has_waves && (utime != utime_ || lead_time != lead_time_));
+  if (changed && has_waves) waves_->set_time(utime, lead_time);
+  utime_ = utime;
+  lead_time_ = lead_time;
+  const bool moves = has_waves && waves_->snapshot().amplitude_factor() > 0.0;
+  return {{&period_->water, moves ? &*waves_ : nullptr}, changed};
+}
+
+}  // namespace buoyancy

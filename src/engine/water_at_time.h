@@ -1,0 +1,47 @@
+// The water of a scene at the time of one request after the other: at rest, or with the waves of that time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/body_evaluation.h"
+#include "engine/sea_timeline.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+class WaterAtTime {
+ public:
+  // scene must outlive this object or the next set_scene().
+  explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
+
+  // Received seas remain where both scenes receive them and agree about the water's density, up and gravity.
+  // The previous scene is not accessed again.
+  void set_scene(const Scene& scene);
+
+  // See SeaTimeline::receive().
+  Expected<void> receive_sea(Bytes message) { return seas_.receive(message, *scene_); }
+  void set_seas(SeaTimeline seas) { seas_ = std::move(seas); }
+
+  struct Change {
+    CurrentWater water;
+    bool changed = false;  // is it another water than that of the last call?
+  };
+  // Moves to this time. utime: [us]; lead_time: [s], added to it; one that is not finite counts as 0. The
+  // result is valid until the next call of a member. No heap allocation for the sea of the last call.
+  // Complexity: O(components) where the time changes.
+  Change move_to(std::int64_t utime, double lead_time);
+
+ private:
+  const Scene* scene_;
+  SeaTimeline seas_;
+  // Of the last call.
+  std::shared_ptr<const SeaPeriod> period_;
+  std::optional<SeaAtTime> waves_;  // of its sea, if that has waves
+  std::int64_t utime_ = 0;
+  double lead_time_ = 0.0;
+};
+
+}  // namespace buoyancy
