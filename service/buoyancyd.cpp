@@ -60,7 +60,8 @@ int run(int argc, char** argv) {
   }
   const ChannelNames& channels = options.channels;
   Expected<PoseChannels> poses = resolve_pose_channels(
-      options.poses, *scene, {channels.states, channels.wrenches, channels.hydrostatics, channels.status});
+      options.poses, *scene,
+      {channels.states, channels.wrenches, channels.hydrostatics, channels.sea, channels.status});
   if (!poses) {
     print_error(app, poses.error());
     return kUsageError;

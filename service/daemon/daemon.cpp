@@ -15,6 +15,7 @@
 #include "base/format.h"
 #include "base/unique_fd.h"
 #include "hydrostatics/wetted_tree_sum.h"
+#include "messages/sea_state.h"
 #include "messages/status.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
@@ -84,11 +85,16 @@ Expected<void> Daemon::subscribe() {
                                        [this, i](Bytes pose, std::string_view) { on_pose(i, pose); });
   }
   if (!subscribed) return subscribed;
+  subscribed =
+      connection_.subscribe(channels_.sea, [this](Bytes message, std::string_view) { on_sea(message); });
+  if (!subscribed) return subscribed;
   return connection_.subscribe(channels_.status,
                                [this](Bytes status, std::string_view) { instances_.observe(status); });
 }
 
 void Daemon::prepare_for_messages() {
+  sea_bytes_.clear();
+  if (scene_->sea() != nullptr) encode(to_sea_state(*scene_->sea(), instance_id_), sea_bytes_);
   const LargestMessages messages = largest_messages(*scene_, channels_);
   const std::size_t request_bytes = std::min(messages.request.bytes, kMaxMessageBytes);
   const auto buffer = connection_.reserve_receive_buffer(request_bytes);
@@ -178,6 +184,13 @@ void Daemon::on_pose(std::size_t channel, Bytes pose) {
   }
 }
 
+void Daemon::on_sea(Bytes message) {
+  if (!scene_->receives_sea()) return;  // it may be our own
+  if (const Expected<void> received = handler_.receive_sea(message); !received) {
+    warnings_.add({"messages of the sea rejected", 1, received.error().message()}, seconds_now());
+  }
+}
+
 void Daemon::enqueue(Bytes request, double arrival) {
   const auto id = peek_request_id(request);
   if (!id) {
@@ -227,6 +240,10 @@ bool Daemon::publish(const std::string& channel, Bytes bytes) {
   return false;
 }
 
+void Daemon::publish_sea() {
+  if (!sea_bytes_.empty()) publish(channels_.sea, sea_bytes_);
+}
+
 void Daemon::begin_reload() {
   if (loader_.is_loading()) spdlog::debug("reload requested while another is in progress; queued");
   loader_.request();
@@ -249,6 +266,7 @@ void Daemon::end_reload() {
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
     prepare_for_messages();
+    publish_sea();
   }
   if (!loader_.is_loading()) systemd_.ready();
 }
@@ -276,6 +294,7 @@ void Daemon::publish_status() {
                        .queue_wait = std::exchange(queue_delay_, 0.0)},
          status_bytes_);
   publish(channels_.status, status_bytes_);
+  publish_sea();
   systemd_.status(fmt::format("{}, {} answered{}", format_body_count(scene_->bodies()),
                               pluralize(counters.computed + counters.retries, "request", "requests"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : ""));

@@ -3,6 +3,9 @@
 //
 // Poses of single bodies on channels of their own are requests too: each channel is a session.
 //
+// In waves, the sea of the scene is published when the scene is loaded and once a second. Where the scene
+// says that waves are received, its sea is that of the messages on the same channel (SeaTimeline).
+//
 // SIGHUP makes a SceneLoader read the scene file again while requests are handled with the current scene. The
 // new scene replaces it between two messages; sessions, stored responses and counters are kept. A scene that
 // cannot be used is logged as an error and changes nothing.
@@ -40,6 +43,7 @@ struct ChannelNames {
   std::string states{kStatesChannel};
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
+  std::string sea{kSeaChannel};
   std::string status{kStatusChannel};
 };
 
@@ -66,6 +70,7 @@ class Daemon {
   void receive();
   void record_queue_delay();
   void on_request(Bytes request);
+  void on_sea(Bytes message);
   void on_pose(std::size_t channel, Bytes pose);  // channel: an index into poses_.channels()
   void enqueue(Bytes request, double arrival);
   void handle_next();  // the request at the front of latest_, if there is one
@@ -74,7 +79,8 @@ class Daemon {
   bool publish(const std::string& channel, Bytes bytes);  // false: not sent, and added to warnings_
   void begin_reload();
   void end_reload();
-  void publish_status();  // and logs the warnings that are due
+  void publish_status();  // and the sea, and logs the warnings that are due
+  void publish_sea();
 
   std::unique_ptr<const Scene> scene_;  // used by handler_
   SceneLoader loader_;
@@ -99,6 +105,7 @@ class Daemon {
   DropCounts reported_drops_;
   BufferLimit receive_buffer_limit_;              // for the largest request about the scene
   std::vector<std::uint8_t> status_bytes_;        // reused
+  std::vector<std::uint8_t> sea_bytes_;           // of the scene's sea; empty: it has none
   WrenchResponse response_;                       // reused, for poses
   std::vector<std::uint8_t> force_torque_bytes_;  // reused
 };

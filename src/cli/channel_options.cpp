@@ -29,6 +29,14 @@ CLI::Option* add_hydrostatics_channel_option(CLI::App& app, std::string& channel
       ->capture_default_str();
 }
 
+CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--sea-channel", channel,
+                  "LCM channel for the sea (sea_state_t) of scenes with waves: sent, or received where the "
+                  "scene says waves = \"received\"")
+      ->capture_default_str();
+}
+
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel) {
   return app.add_option("--status-channel", channel, "LCM channel for the status (service_status_t), 1 Hz")
       ->capture_default_str();
