@@ -48,6 +48,16 @@ std::string hash_of_meshes(const Scene& scene) {
   return hash.text();
 }
 
+// Of the components as the scene describes them, which may be in a file of their own.
+std::string hash_of_sea(const Sea& sea) {
+  ContentHash hash;
+  for (const WaveComponent& component : sea.components()) {
+    add_numbers(hash, std::vector<double>{component.amplitude, component.angular_frequency,
+                                          component.direction, component.phase});
+  }
+  return hash.text();
+}
+
 Expected<std::string> hash_of_file(const std::filesystem::path& path) {
   Expected<FileWindow> file = FileWindow::open(path);
   if (!file) return tl::unexpected(file.error());
@@ -149,6 +159,7 @@ Expected<ReplayFacts> replay_facts(const ReplayOptions& options, const Scene& sc
     facts.emplace_back("--open", options.open == OpenPolicy::kRefuse ? "refuse" : "dry_boundary");
   }
   facts.emplace_back("meshes", hash_of_meshes(scene));
+  if (scene.sea() != nullptr) facts.emplace_back("sea", hash_of_sea(*scene.sea()));
   facts.emplace_back("formats",
                      options.input.extension().string() + " to " + options.output.extension().string());
   facts.emplace_back("size of INPUT", std::to_string(input_size));

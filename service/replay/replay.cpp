@@ -27,12 +27,19 @@ bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
   return id && poses.channel_of_session(id->session_id) != nullptr;
 }
 
-void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& batch,
+void add_event(const ReplayTask& task, const RecordedEvent& event, SeaTimeline& seas, ReplayBatch& batch,
                ReplaySummary& summary) {
   // CSV has no channels: every event is a request.
   const ReplayChannels::Role role = event.channel.empty() ? ReplayChannels::Role{.request = true, .pose = {}}
                                                           : task.channels.role_of(event.channel);
   if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
+  if (role.sea) {
+    if (const Expected<void> received = seas.receive(event.bytes, task.scene)) {
+      batch.add_seas(event.timestamp, seas);
+    } else {
+      batch.add_rejected_sea(event.timestamp, received.error());
+    }
+  }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
     if (is_in_pose_session(task.poses, event.bytes)) ++summary.requests_in_pose_sessions;
@@ -45,9 +52,9 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, ReplayBatch& 
   }
 }
 
-// Fills the batch with items of one block. False: the input has ended.
-bool fill(const ReplayTask& task, ReplayBatch& batch, ReplaySummary& summary) {
-  batch.clear();
+// Fills the batch with items of one block. False: the input has ended. seas: those received so far.
+bool fill(const ReplayTask& task, SeaTimeline& seas, ReplayBatch& batch, ReplaySummary& summary) {
+  batch.start(seas);
   while (!batch.full()) {
     LogItem item = task.input.next();
     if (std::holds_alternative<EndOfLog>(item)) return false;
@@ -57,7 +64,7 @@ bool fill(const ReplayTask& task, ReplayBatch& batch, ReplaySummary& summary) {
       ++summary.corrupt_sections;
       batch.add_input_error(std::move(corrupt->description));
     } else {
-      add_event(task, std::get<RecordedEvent>(item), batch, summary);
+      add_event(task, std::get<RecordedEvent>(item), seas, batch, summary);
     }
   }
   return true;
@@ -67,14 +74,14 @@ enum class ReadState { kReading, kAtEnd, kStopped };
 
 // Fills the round's batches until the input ends or a signal arrives. The signal stays pending, so that the
 // writing thread sees it too.
-void read(const ReplayTask& task, const TerminationSignals& signals, Round& round, ReplaySummary& summary,
-          ReadState& state) {
+void read(const ReplayTask& task, const TerminationSignals& signals, SeaTimeline& seas, Round& round,
+          ReplaySummary& summary, ReadState& state) {
   round.filled = 0;
   while (state == ReadState::kReading && round.filled < round.batches.size()) {
     if (signals.pending()) {
       state = ReadState::kStopped;
     } else {
-      const bool more = fill(task, round.batches[round.filled++], summary);
+      const bool more = fill(task, seas, round.batches[round.filled++], summary);
       if (!more) state = ReadState::kAtEnd;
     }
   }
@@ -126,7 +133,8 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
 
   task.output.give_up_after(signals.fileno());
   ReadState state = ReadState::kReading;
-  read(task, signals, rounds[0], summary, state);
+  SeaTimeline seas(task.scene);
+  read(task, signals, seas, rounds[0], summary, state);
   Expected<void> written;
   std::size_t number = 0;
   for (; rounds[number % 3].filled > 0; ++number) {
@@ -136,7 +144,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
     report_input_errors(previous, callbacks);
     workers.run(current.filled + 2, 1, [&](std::size_t i) {
       if (i == 0) {
-        read(task, signals, next, summary, state);
+        read(task, signals, seas, next, summary, state);
       } else if (i == 1) {
         written = write(task, previous);
       } else {

@@ -28,8 +28,11 @@ struct ReplaySummary {
   const char* stopped_by = "";  // the name of a signal; empty: the end of the input
   double seconds = 0.0;
 
-  // Does the output hold a response to every request of the input?
-  bool complete() const { return corrupt_sections == 0 && counters.rejected() == 0 && *stopped_by == '\0'; }
+  // Does the output hold a response to every request of the input, with every sea of the input in force?
+  bool complete() const {
+    return corrupt_sections == 0 && counters.rejected() == 0 && counters.seas_rejected == 0 &&
+           *stopped_by == '\0';
+  }
 };
 
 struct ReplayCallbacks {

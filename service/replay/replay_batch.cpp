@@ -7,8 +7,10 @@ namespace buoyancy::service {
 ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
     : handler_(scene, {.threads = 1}), keep_responses_(keep_responses), records_(layout) {}
 
-void ReplayBatch::clear() {
+void ReplayBatch::start(SeaTimeline seas) {
   items_.clear();
+  seas_.clear();
+  seas_.push_back(std::move(seas));
   bytes_.clear();
   records_.clear();
   input_errors_.clear();
@@ -38,12 +40,23 @@ void ReplayBatch::add_copy(std::int64_t timestamp, std::string_view channel, Byt
   add(Kind::kCopy, timestamp, bytes).text = channel;
 }
 
+void ReplayBatch::add_seas(std::int64_t timestamp, SeaTimeline seas) {
+  add(Kind::kSeas, timestamp, {}).seas = seas_.size();
+  seas_.push_back(std::move(seas));
+}
+
+void ReplayBatch::add_rejected_sea(std::int64_t timestamp, const Error& error) {
+  add(Kind::kRejectedSea, timestamp, {}).text =
+      "event at " + std::to_string(timestamp) + " us: " + error.message();
+}
+
 void ReplayBatch::add_input_error(std::string error) {
   add(Kind::kInputError, 0, {}).text = std::move(error);
 }
 
 void ReplayBatch::evaluate() {
   handler_.reset();
+  handler_.set_seas(seas_.front());
   for (Item& item : items_) {
     switch (item.kind) {
       case Kind::kRequest:
@@ -56,6 +69,13 @@ void ReplayBatch::evaluate() {
       case Kind::kCopy:
         records_.add_event(item.timestamp, item.text, message_of(item));
         ++copied_;
+        break;
+      case Kind::kSeas:
+        handler_.receive_seas(seas_[item.seas]);
+        break;
+      case Kind::kRejectedSea:
+        handler_.record_rejected_sea();
+        input_errors_.push_back(std::move(item.text));
         break;
       case Kind::kInputError:
         input_errors_.push_back(std::move(item.text));

@@ -2,8 +2,8 @@
 // in order.
 //
 // The handler is reset before each evaluation, so that responses and counters depend on the batch alone and
-// not on earlier batches. (A retry of a request of the previous batch is computed again: it gives the same
-// bytes and is counted as computed.)
+// not on earlier batches, except for received seas, which the reader hands from batch to batch. (A retry of a
+// request of the previous batch is computed again: it gives the same bytes and is counted as computed.)
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "engine/request_handler.h"
+#include "engine/sea_timeline.h"
 #include "scene/scene.h"
 #include "service/replay/replay_output.h"
 
@@ -22,7 +24,8 @@ class ReplayBatch {
   // scene must outlive the batch. keep_responses: for each_response() and each_hydrostatics().
   ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
-  void clear();
+  // seas: those received before the batch's events.
+  void start(SeaTimeline seas);
   bool empty() const { return items_.empty(); }
   // Is the batch large enough to be evaluated on a thread? Then no further event should be added.
   bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
@@ -32,6 +35,9 @@ class ReplayBatch {
   void add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel);
   void add_rejected_pose(std::int64_t timestamp, DecodeError cause);
   void add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes);
+  // seas: with the one that the event brings.
+  void add_seas(std::int64_t timestamp, SeaTimeline seas);
+  void add_rejected_sea(std::int64_t timestamp, const Error& error);
   void add_input_error(std::string error);
 
   void evaluate();
@@ -57,7 +63,7 @@ class ReplayBatch {
   static constexpr std::size_t kMaxItems = 1024;
   static constexpr std::size_t kMaxBytes = 262'144;
 
-  enum class Kind { kRequest, kRejectedPose, kCopy, kInputError };
+  enum class Kind { kRequest, kRejectedPose, kCopy, kSeas, kRejectedSea, kInputError };
   struct Item {
     Kind kind = Kind::kRequest;
     std::int64_t timestamp = 0;
@@ -65,7 +71,8 @@ class ReplayBatch {
     std::size_t size = 0;                   // of the message
     std::string_view force_torque_channel;  // kRequest
     DecodeError cause{};                    // kRejectedPose
-    std::string text;                       // kCopy: the channel; kInputError: the description
+    std::string text;                       // kCopy: the channel; kRejectedSea, kInputError: the description
+    std::size_t seas = 0;                   // kSeas: index into seas_
   };
 
   class Messages {
@@ -102,6 +109,7 @@ class ReplayBatch {
   std::int64_t copied_ = 0;
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
+  std::vector<SeaTimeline> seas_;  // the first is that at the start
   OutputRecords records_;
   std::vector<std::string> input_errors_;
   Messages responses_;

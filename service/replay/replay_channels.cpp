@@ -10,7 +10,7 @@ constexpr std::size_t kMaxCachedRoles = 4096;  // a corrupt log may hold any num
 
 }  // namespace
 
-Expected<ReplayChannels> ReplayChannels::make(std::string states_channel,
+Expected<ReplayChannels> ReplayChannels::make(std::string states_channel, std::string sea_channel,
                                               const std::vector<PoseChannel>& poses,
                                               const std::vector<std::string>& copied,
                                               std::vector<std::string> responses) {
@@ -23,12 +23,15 @@ Expected<ReplayChannels> ReplayChannels::make(std::string states_channel,
           {"--copy " + text, error.what(), "a regular expression, '.*' for every channel", "", ""});
     }
   }
-  return ReplayChannels(std::move(states_channel), poses, std::move(expressions), std::move(responses));
+  return ReplayChannels(std::move(states_channel), std::move(sea_channel), poses, std::move(expressions),
+                        std::move(responses));
 }
 
-ReplayChannels::ReplayChannels(std::string states_channel, const std::vector<PoseChannel>& poses,
-                               std::vector<std::regex> copied, std::vector<std::string> responses)
+ReplayChannels::ReplayChannels(std::string states_channel, std::string sea_channel,
+                               const std::vector<PoseChannel>& poses, std::vector<std::regex> copied,
+                               std::vector<std::string> responses)
     : states_channel_(std::move(states_channel)),
+      sea_channel_(std::move(sea_channel)),
       copied_(std::move(copied)),
       responses_(std::move(responses)) {
   for (const PoseChannel& pose : poses) poses_.push_back(pose.channel);
@@ -40,6 +43,7 @@ ReplayChannels::Role ReplayChannels::role_of(std::string_view channel) {
   if (roles_.size() >= kMaxCachedRoles) roles_.clear();
   const Role role = compute_role(channel);
   if (role.request) saw_states_ = true;
+  if (role.sea) saw_sea_ = true;
   if (role.pose) saw_poses_[*role.pose] = true;
   return roles_.emplace(channel, role).first->second;
 }
@@ -47,6 +51,7 @@ ReplayChannels::Role ReplayChannels::role_of(std::string_view channel) {
 std::vector<std::string> ReplayChannels::unseen_channels() const {
   std::vector<std::string> names;
   if (poses_.empty() && !saw_states_) names.push_back(states_channel_);
+  if (!sea_channel_.empty() && !saw_sea_) names.push_back(sea_channel_);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (!saw_poses_[i]) names.push_back(poses_[i]);
   }
@@ -56,6 +61,7 @@ std::vector<std::string> ReplayChannels::unseen_channels() const {
 ReplayChannels::Role ReplayChannels::compute_role(std::string_view channel) const {
   Role role;
   role.request = channel == states_channel_;
+  role.sea = !sea_channel_.empty() && channel == sea_channel_;
   if (const auto pose = std::ranges::find(poses_, channel); pose != poses_.end()) {
     role.pose = static_cast<std::size_t>(pose - poses_.begin());
   }

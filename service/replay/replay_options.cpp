@@ -135,6 +135,7 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_states_channel_option(app, options.states_channel);
   add_wrenches_channel_option(app, options.wrenches_channel);
   add_hydrostatics_channel_option(app, options.hydrostatics_channel);
+  add_sea_channel_option(app, options.sea_channel);
   add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
@@ -190,8 +191,9 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
       !checked) {
     return tl::unexpected(checked.error());
   }
-  if (const Expected<void> checked = check_channels_distinct(
-          {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
+  if (const Expected<void> checked =
+          check_channels_distinct({options.states_channel, options.wrenches_channel,
+                                   options.hydrostatics_channel, options.sea_channel});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -228,10 +230,36 @@ Expected<void> check_join(const CLI::App& app, const ReplayOptions& options) {
   return check_output_not_input(options.output, {options.input});
 }
 
+namespace {
+
+// Can the replay receive the sea that the scene does not describe?
+Expected<void> check_sea_input(const ReplayOptions& options, const Scene& scene) {
+  if (!scene.receives_sea()) return {};
+  const std::string subject = scene.name() + ": waves = \"received\"";
+  const Expected<FileFormat> format = format_by_extension(options.input);
+  if (format && *format == FileFormat::kCsv) {
+    return make_error({subject, "with " + options.input.string(),
+                       "an LCM log, which holds the sea's messages", "a CSV file has poses only",
+                       "Describe the sea in the scene"});
+  }
+  if (!options.part.empty()) {
+    return make_error({subject, "with --part " + options.part, "a replay of the whole",
+                       "the sea of a part may have been received in an earlier part",
+                       "Leave --part out, or describe the sea in the scene"});
+  }
+  return {};
+}
+
+}  // namespace
+
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {
+  if (const Expected<void> checked = check_sea_input(options, scene); !checked) {
+    return tl::unexpected(checked.error());
+  }
   std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel};
   Expected<PoseChannels> poses = resolve_pose_channels(
-      options.poses, scene, {options.states_channel, options.wrenches_channel, options.hydrostatics_channel});
+      options.poses, scene,
+      {options.states_channel, options.wrenches_channel, options.hydrostatics_channel, options.sea_channel});
   if (!poses) return tl::unexpected(poses.error());
   // Session ids follow the order of the channels: sorting makes them independent of the order of the options.
   std::ranges::sort(poses->channels, {}, &PoseChannel::channel);
@@ -239,7 +267,8 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
     if (!pose.force_torque_channel.empty()) responses.push_back(pose.force_torque_channel);
   }
   Expected<ReplayChannels> channels =
-      ReplayChannels::make(options.states_channel, poses->channels, options.copied, std::move(responses));
+      ReplayChannels::make(options.states_channel, scene.receives_sea() ? options.sea_channel : std::string(),
+                           poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }

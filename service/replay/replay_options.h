@@ -30,6 +30,7 @@ struct ReplayOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string hydrostatics_channel{kHydrostaticsChannel};
+  std::string sea_channel{kSeaChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions
   std::filesystem::path baseline;   // an earlier OUTPUT to compare with; empty: none
@@ -65,7 +66,8 @@ struct ReplayRoutes {
   ReplayChannels channels;
 };
 
-// Errors: see resolve_pose_channels() and ReplayChannels::make().
+// Errors: see resolve_pose_channels() and ReplayChannels::make(); for a scene that receives its sea: a CSV
+// file as input, and a part, whose sea another part may have received.
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
 
 }  // namespace buoyancy::service

@@ -86,6 +86,10 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     if (i == 0 || counters.bodies[i] > 0) line(to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
   }
+  if (counters.seas_received + counters.seas_rejected > 0) {
+    text += fmt::format("{:<22}{:>12}\n", "seas", counters.seas_received + counters.seas_rejected);
+    line("rejected", counters.seas_rejected);
+  }
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
   text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
