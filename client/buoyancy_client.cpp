@@ -179,6 +179,12 @@ int simulate(Arguments arguments) {
 
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(scene.error(), kUsageError);
+  if (arguments.embedded && scene->receives_sea()) {
+    return report(
+        {"--embedded", "a scene with waves = \"received\"", "a scene that describes its waves",
+         "nothing is received without a network", "Run buoyancyd, or describe the waves in the scene"},
+        kUsageError);
+  }
   Expected<Simulation> simulation = Simulation::make(*scene, options);
   if (!simulation) return report(simulation.error(), kUsageError);
   std::optional<RunCsvWriter> csv;

@@ -124,6 +124,7 @@ std::optional<Warning> LatencyMonitor::update(const Simulation& simulation) {
 }
 
 std::optional<Warning> energy_warning(const Simulation& simulation) {
+  if (simulation.has_waves()) return std::nullopt;  // they add energy
   const SimulatedBody* worst = nullptr;
   double worst_rise = 0.0;  // as a fraction of the largest kinetic energy
   int bodies = 0;

@@ -43,7 +43,8 @@ class LatencyMonitor {
 };
 
 // Warns if the mechanical energy of a body more than doubled: if it rose by more than half the largest
-// kinetic energy, and by more than rounding. Nothing in a scene adds energy to a body.
+// kinetic energy, and by more than rounding. Nothing in a scene without waves adds energy to a body; with
+// waves there is no warning.
 std::optional<Warning> energy_warning(const Simulation& simulation);
 
 }  // namespace buoyancy

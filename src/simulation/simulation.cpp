@@ -62,7 +62,7 @@ Error not_ok_error(const SimulatedBody& body, double time) {
 }  // namespace
 
 Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOptions& options) {
-  Simulation simulation(scene.water(), options);
+  Simulation simulation(scene, options);
   for (const Body& body : scene.bodies()) {
     if (!body.dynamics.given) continue;
     Expected<RigidBody> rigid = make_rigid_body(body, scene.water());
@@ -81,8 +81,8 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
   return simulation;
 }
 
-Simulation::Simulation(const Water& water, const SimulationOptions& options)
-    : water_(water), options_(options) {
+Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
+    : water_(scene.water()), has_waves_(scene.sea() != nullptr || scene.receives_sea()), options_(options) {
   if (options.delay_steps > 0) delay_line_.resize(static_cast<std::size_t>(options.delay_steps) + 1);
 }
 

@@ -69,14 +69,17 @@ class Simulation {
   double delay() const { return delay_; }  // [s], age of the wrenches in use
   const std::vector<SimulatedBody>& bodies() const { return bodies_; }
   const Water& water() const { return water_; }
+  // Does the scene have waves? They do work on the bodies: the mechanical energy is that in water at rest.
+  bool has_waves() const { return has_waves_; }
   const SimulationOptions& options() const { return options_; }
 
  private:
-  Simulation(const Water& water, const SimulationOptions& options);
+  Simulation(const Scene& scene, const SimulationOptions& options);
 
   const WrenchResponse& delayed_response(const WrenchResponse& latest);
 
   Water water_;
+  bool has_waves_ = false;
   SimulationOptions options_;
   std::vector<SimulatedBody> bodies_;
   std::int64_t step_number_ = 0;
