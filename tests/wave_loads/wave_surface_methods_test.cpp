@@ -9,11 +9,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/forced_target.h"
 #include "tests/support/allocation_count.h"
+#include "tests/wave_loads/body_in_sea.h"
 #include "tests/wave_loads/brute_force.h"
 
 namespace buoyancy {
@@ -53,15 +53,7 @@ Pose tilted(double height) {
   return pose;
 }
 
-struct SeaAt {
-  explicit SeaAt(const SeaDescription& description, std::int64_t utime = 12'345'678, const Water& water = {})
-      : sea(Sea::make(description, water).value()), snapshot(sea) {
-    snapshot.set_time(utime);
-  }
-
-  Sea sea;
-  SeaSnapshot snapshot;
-};
+constexpr std::int64_t kUtime = 12'345'678;
 
 // The definitions of both methods, written for one point after the other, in double.
 class Definition {
@@ -147,7 +139,7 @@ class WaveSurfaceMethods : public ::testing::TestWithParam<Setting> {
 
 TEST_P(WaveSurfaceMethods, MatchTheirDefinitionsOnAllTargets) {
   const HydrostaticMesh mesh = rock(1.0, 5);
-  const SeaAt at(sea(0.5));
+  const SeaAtTime at(sea(0.5), kUtime);
   const Vec3 reference_B(0.4, -0.2, 0.7);
   for (const double height : {-1.5, -0.2, 0.5}) {
     const Pose pose = tilted(height);
@@ -166,7 +158,7 @@ TEST_P(WaveSurfaceMethods, MatchTheirDefinitionsOnAllTargets) {
 
 TEST_P(WaveSurfaceMethods, SumInDoubleWhereWavesAreHighForTheBody) {
   const HydrostaticMesh mesh = rock(0.05, 5);
-  const SeaAt at(sea(0.5));
+  const SeaAtTime at(sea(0.5), kUtime);
   Pose pose = tilted(0.0);
   pose.p_WB.z() = at.snapshot.elevation(pose.p_WB.x(), pose.p_WB.y());
   const Vec3 reference_B(0.04, -0.02, 0.07);
@@ -186,7 +178,7 @@ TEST_P(WaveSurfaceMethods, SumInDoubleWhereWavesAreHighForTheBody) {
 }
 
 TEST_P(WaveSurfaceMethods, ConvergeToBruteForce) {
-  const SeaAt at(sea(0.5));
+  const SeaAtTime at(sea(0.5), kUtime);
   const Pose pose = tilted(-0.1);
   const Vec3 reference_B(0.4, -0.2, 0.7);
   const HydrostaticMesh coarse = box(1.5, 1);
@@ -219,11 +211,10 @@ TEST_P(WaveSurfaceMethods, ConvergeToBruteForce) {
 TEST_P(WaveSurfaceMethods, LieWithinTheBoundOfTheHierarchicalLoad) {
   const HydrostaticMesh mesh = rock(1.0, 16);
   const PatchTree tree = build_patch_tree(mesh.surface);
-  const SeaAt at(sea(0.5));
-  const SeaExpansion expansion(at.sea);
+  const SeaAtTime at(sea(0.5), kUtime);
   for (const double height : {-2.0, -0.3, 0.4}) {
     const Pose pose = tilted(height);
-    const WaveLoad load = wave_load({&mesh, &tree, 1e-4}, expansion, at.snapshot, pose, Vec3::Zero());
+    const WaveLoad load = wave_load({&mesh, &tree, 1e-4}, at.expansion, at.snapshot, pose, Vec3::Zero());
     const WaveLoad exact = exact_surface_in_waves(mesh, at.snapshot, pose, Vec3::Zero());
     EXPECT_LT((exact.force - load.force).norm(), load.force_bound);
     EXPECT_LT((exact.torque - load.torque).norm(), load.torque_bound);
@@ -244,7 +235,7 @@ TEST(WaveSurfaceMethods, InStillWaterMatchThePlanarMethods) {
   Water water;
   water.up_W = Vec3(0.2, -0.3, 0.9).normalized();
   water.level = 0.7;
-  const SeaAt at(wind_sea(0.0, WavePressure::kWheeler), 0, water);
+  const SeaAtTime at(wind_sea(0.0, WavePressure::kWheeler), 0, water);
   Pose pose = tilted(0.0);
   pose.p_WB -= (water.up_W.dot(pose.p_WB) - 0.5) * water.up_W;
   const Vec3 reference_B(0.4, -0.2, 0.7);
@@ -261,7 +252,7 @@ TEST(WaveSurfaceMethods, InStillWaterMatchThePlanarMethods) {
 
 TEST(WaveSurfaceMethods, OfADeepBodyAreTheWeightOfItsWater) {
   const HydrostaticMesh mesh = box(1.0, 8);
-  const SeaAt at(wind_sea(0.5, WavePressure::kWheeler));
+  const SeaAtTime at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
   const Pose pose = tilted(-500.0);
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     const WaveLoad load = method(mesh, at.snapshot, pose, Vec3::Zero());
@@ -272,7 +263,7 @@ TEST(WaveSurfaceMethods, OfADeepBodyAreTheWeightOfItsWater) {
 
 TEST(WaveSurfaceMethods, OfADryBodyAreZeroAndSayHowExact) {
   const HydrostaticMesh mesh = rock(1.0, 5);
-  const SeaAt at(wind_sea(0.5, WavePressure::kWheeler));
+  const SeaAtTime at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
   const double crest = at.sea.max_elevation();
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     const WaveLoad dry = method(mesh, at.snapshot, tilted(crest + 3.0), Vec3::Zero());
@@ -292,7 +283,7 @@ TEST(WaveSurfaceMethods, DoNotDependOnTheWorldsOrigin) {
   // A whole number of waves away.
   SeaDescription description;
   description.systems = {RegularWave{0.4, 4.0, 0.0, 30.0}};
-  const SeaAt at(description);
+  const SeaAtTime at(description, kUtime);
   const HydrostaticMesh mesh = rock(1.0, 8);
   const Pose pose = tilted(-0.1);
   Pose far = pose;
@@ -307,7 +298,7 @@ TEST(WaveSurfaceMethods, DoNotDependOnTheWorldsOrigin) {
 TEST(WaveSurfaceMethods, AllocateNothingAfterTheFirstQuery) {
   const HydrostaticMesh large = rock(1.0, 20);
   const HydrostaticMesh small = rock(0.02, 10);  // summed in double
-  SeaAt at(wind_sea(0.5, WavePressure::kWheeler));
+  SeaAtTime at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     method(large, at.snapshot, tilted(-0.1), Vec3::Zero());
     method(small, at.snapshot, tilted(-0.1), Vec3::Zero());

@@ -1,0 +1,290 @@
+// Changes of a sea and of a body that leave the load as it is, and seas whose load is known from others.
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "hydrostatics/buoyancy.h"
+#include "tests/wave_loads/body_in_sea.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+WaveComponents some_waves(double scale = 1.0) {
+  return {
+      {scale * 0.12, 2.2, 25.0, 40.0}, {scale * 0.08, 2.9, -50.0, 130.0}, {scale * 0.05, 3.9, 80.0, -110.0}};
+}
+
+SeaDescription sea_of(WaveComponents waves, WavePressure pressure = WavePressure::kWheeler,
+                      double depth = kInfinity) {
+  SeaDescription description;
+  description.pressure = pressure;
+  description.depth = depth;
+  description.systems = {std::move(waves)};
+  return description;
+}
+
+Pose floating_pose() {
+  Pose pose;
+  pose.p_WB = {5.0, 6.0, -0.2};
+  pose.q_WB = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized();
+  return pose;
+}
+
+const FloatingBody& rock() {
+  static const FloatingBody body(RockShape{1.0, 16, 0.4, 3});
+  return body;
+}
+
+// Both methods, hierarchical first. What is compared has the same patches and the same points, so that loads
+// differ by rounding alone, which is far below the bound.
+void expect_same(const SeaAtTime& sea, const Pose& pose, const SeaAtTime& other_sea, const Pose& other_pose,
+                 double tolerance = 5e-6) {
+  const std::vector<std::pair<WaveLoad, WaveLoad>> loads{
+      {hierarchical_load(rock(), sea, pose, 1e-5), hierarchical_load(rock(), other_sea, other_pose, 1e-5)},
+      {exact_surface_load(rock(), sea, pose), exact_surface_load(rock(), other_sea, other_pose)}};
+  for (const auto& [one, other] : loads) {
+    EXPECT_GT(one.volume, 0.2 * rock().mesh.volume);
+    EXPECT_LT((one.force - other.force).norm(), tolerance);
+    EXPECT_LT((one.torque - other.torque).norm(), tolerance);
+    EXPECT_NEAR(one.volume, other.volume, tolerance);
+  }
+}
+
+class WaveIdentity : public ::testing::TestWithParam<WavePressure> {};
+
+TEST_P(WaveIdentity, HoldsForABodyAndASeaThatTurnTogether) {
+  constexpr double kDegrees = 37.0;
+  WaveComponents turned = some_waves();
+  for (WaveComponent& wave : turned) wave.direction += kDegrees;
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(kDegrees * kPi / 180.0, Vec3::UnitZ()));
+  const SeaAtTime sea(sea_of(some_waves(), GetParam()), 2'345'678);
+  const SeaAtTime turned_sea(sea_of(turned, GetParam()), 2'345'678);
+  const Pose pose = floating_pose();
+  expect_same(sea, pose, turned_sea, {turn * pose.p_WB, turn * pose.q_WB});
+}
+
+TEST_P(WaveIdentity, HoldsForEveryUpwardDirection) {
+  const SeaAtTime sea(sea_of(some_waves(), GetParam()), 2'345'678);
+  const Pose pose = floating_pose();
+  for (const Vec3& up : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(0.6, 0.0, -0.8)}) {
+    Water water;
+    water.up_W = up;
+    const SeaAtTime other(sea_of(some_waves(), GetParam()), 2'345'678, water);
+    Mat3 R;
+    R << other.sea.axes().e1_W, other.sea.axes().e2_W, up;
+    expect_same(sea, pose, other, {R * pose.p_WB, Eigen::Quaterniond(R) * pose.q_WB});
+  }
+}
+
+TEST_P(WaveIdentity, HoldsForAShiftOfTheLevel) {
+  Water water;
+  water.level = 7.5;
+  const SeaAtTime sea(sea_of(some_waves(), GetParam()), 2'345'678);
+  const SeaAtTime other(sea_of(some_waves(), GetParam()), 2'345'678, water);
+  Pose raised = floating_pose();
+  raised.p_WB.z() += water.level;
+  expect_same(sea, floating_pose(), other, raised);
+}
+
+TEST_P(WaveIdentity, HoldsAPeriodLater) {
+  SeaDescription description = sea_of({}, GetParam());
+  description.systems = {RegularWave{0.4, 4.0, 20.0, 30.0}};
+  const SeaAtTime sea(description, 1'234'567);
+  const SeaAtTime later(description, 1'234'567 + 4'000'000);
+  const SeaAtTime between(description, 1'234'567 + 2'000'000);
+  expect_same(sea, floating_pose(), later, floating_pose(), 1e-7);
+  EXPECT_GT((exact_surface_load(rock(), sea, floating_pose()).force -
+             exact_surface_load(rock(), between, floating_pose()).force)
+                .norm(),
+            0.05);
+}
+
+TEST_P(WaveIdentity, HoldsForComponentsThatAreSplit) {
+  WaveComponents split;
+  for (WaveComponent wave : some_waves()) {
+    wave.amplitude *= 0.5;
+    split.push_back(wave);
+    split.push_back(wave);
+  }
+  const SeaAtTime sea(sea_of(some_waves(), GetParam()), 2'345'678);
+  const SeaAtTime other(sea_of(split, GetParam()), 2'345'678);
+  expect_same(sea, floating_pose(), other, floating_pose());
+}
+
+TEST_P(WaveIdentity, LinearLimitIsTheSumOverTheMeanWettedSurface) {
+  constexpr double kScale = 1e-3;
+  const WavePressure pressure = GetParam();
+  const SeaAtTime waves(sea_of(some_waves(kScale), pressure));
+  // The opposite waves: differences have no second order.
+  WaveComponents opposite = some_waves(kScale);
+  for (WaveComponent& wave : opposite) wave.phase += 180.0;
+  const SeaAtTime others(sea_of(opposite, pressure));
+  const Pose pose = floating_pose();
+
+  // Unstretched pressure over the mesh, clipped by the water at rest.
+  const HydrostaticMesh& mesh = rock().mesh;
+  const PreparedComponents& components = waves.sea.prepared();
+  const auto pressure_at = [&](const Vec3& p_W) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      const double decay =
+          pressure == WavePressure::kWheeler ? std::exp(components.wave_number[i] * p_W.z()) : 1.0;
+      sum += components.amplitude[i] * decay *
+             std::cos(components.k1[i] * p_W.x() + components.k2[i] * p_W.y() + waves.snapshot.phases()[i]);
+    }
+    return sum;
+  };
+  Vec3 expected_W = Vec3::Zero();
+  Vec3 expected_torque_W = Vec3::Zero();
+  for (const Triangle& t : mesh.surface.triangles) {
+    std::vector<Vec3> corners;
+    for (const std::int32_t i : t)
+      corners.push_back(pose.p_WB + pose.q_WB * Vec3(mesh.vertex(i) + mesh.center_B));
+    std::vector<Vec3> wet;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3& from = corners[i];
+      const Vec3& to = corners[(i + 1) % 3];
+      if (from.z() < 0.0) wet.push_back(from);
+      if ((from.z() < 0.0) != (to.z() < 0.0)) {
+        wet.push_back(from + from.z() / (from.z() - to.z()) * (to - from));
+      }
+    }
+    for (std::size_t i = 2; i < wet.size(); ++i) {
+      const Vec3 sum = wet[0] + wet[i - 1] + wet[i];
+      const Vec3 third = (wet[i - 1] - wet[0]).cross(wet[i] - wet[0]) / 6.0;
+      for (const Vec3& corner : {wet[0], wet[i - 1], wet[i]}) {
+        const Vec3 p_W = (sum + 3.0 * corner) / 6.0;
+        expected_W -= pressure_at(p_W) * third;
+        expected_torque_W -= pressure_at(p_W) * (p_W - pose.p_WB).cross(third);
+      }
+    }
+  }
+
+  const auto expect_linear = [&](const WaveLoad& one, const WaveLoad& other) {
+    const Vec3 force_W = pose.q_WB * Vec3(0.5 * (one.force - other.force));
+    const Vec3 torque_W = pose.q_WB * Vec3(0.5 * (one.torque - other.torque));
+    EXPECT_LT((force_W - expected_W).norm(), one.force_bound + 2e-3 * expected_W.norm());
+    EXPECT_LT((torque_W - expected_torque_W).norm(), one.torque_bound + 5e-3 * expected_torque_W.norm());
+  };
+  const WaveLoad load = hierarchical_load(rock(), waves, pose, 1e-7);
+  EXPECT_LT(load.force_bound, 5e-3 * expected_W.norm());
+  expect_linear(load, hierarchical_load(rock(), others, pose, 1e-7));
+  WaveLoad one = exact_surface_load(rock(), waves, pose);
+  one.force_bound = one.torque_bound = 0.0;
+  expect_linear(one, exact_surface_load(rock(), others, pose));
+}
+
+INSTANTIATE_TEST_SUITE_P(Pressures, WaveIdentity,
+                         ::testing::Values(WavePressure::kWheeler, WavePressure::kHydrostatic),
+                         [](const auto& pressure) { return std::string(to_string(pressure.param)); });
+
+TEST(WaveLimit, WheelerInVeryLongWavesIsThePlaneAtTheHeightOfTheCrest) {
+  const Pose pose = floating_pose();
+  double previous = kInfinity;
+  for (const double k : {2e-2, 2e-3, 2e-4}) {
+    // The crest is at the body.
+    const double phase = -k * pose.p_WB.x() * 180.0 / kPi;
+    constexpr double kA = 0.3;
+    const SeaAtTime sea(sea_of({{kA, std::sqrt(kStandardGravity * k), 0.0, phase}}));
+    Water raised;
+    raised.level = kA;
+    raised.density = raised.gravity = 1.0;
+    const BuoyancyResult plane =
+        buoyancy(Solver(rock().mesh, Method::kHierarchical), pose, raised, Vec3::Zero());
+    const WaveLoad load = hierarchical_load(rock(), sea, pose, 1e-6);
+    const WaveLoad exact = exact_surface_load(rock(), sea, pose);
+    const double error = (pose.q_WB * exact.force - plane.force_W).norm();
+    const double expected = k * kA * rock().mesh.volume;
+    EXPECT_LT(error, expected);
+    EXPECT_LT((pose.q_WB * load.force - plane.force_W).norm(), load.force_bound + expected);
+    EXPECT_LT((pose.q_WB * load.torque - plane.torque_W).norm(), load.torque_bound + expected);
+    EXPECT_LT(error, previous / 8.0);  // in proportion to k
+    previous = error;
+  }
+}
+
+TEST(WaveLimit, HydrostaticInLongWavesIsTheTangentPlane) {
+  const Pose pose = floating_pose();
+  double previous = kInfinity;
+  for (const double k : {8e-3, 4e-3, 2e-3}) {
+    // The body is on the slope.
+    const double phase = -90.0 - k * pose.p_WB.x() * 180.0 / kPi;
+    const double a = 0.2 / k;
+    const SeaAtTime sea(
+        sea_of({{a, std::sqrt(kStandardGravity * k), 0.0, phase}}, WavePressure::kHydrostatic));
+    Water tilted;
+    tilted.up_W = Vec3(-0.2, 0.0, 1.0).normalized();
+    tilted.level = tilted.up_W.dot(Vec3(pose.p_WB.x(), pose.p_WB.y(), 0.0));
+    tilted.density = std::hypot(1.0, 0.2);
+    tilted.gravity = 1.0;
+    const BuoyancyResult plane =
+        buoyancy(Solver(rock().mesh, Method::kHierarchical), pose, tilted, Vec3::Zero());
+    const double error = (pose.q_WB * exact_surface_load(rock(), sea, pose).force - plane.force_W).norm();
+    EXPECT_LT(error, 4.0 * a * k * k * rock().mesh.volume);
+    // On the slope the curvature is zero: a k^2 L^2 vanishes, and a k^3 L^3 is left.
+    EXPECT_LT(error, previous / 3.0);
+    previous = error;
+    const WaveLoad load = hierarchical_load(rock(), sea, pose, 1e-5);
+    EXPECT_LT((pose.q_WB * load.force - plane.force_W).norm(), load.force_bound + 1.01 * error);
+  }
+}
+
+TEST(WaveLimit, HydrostaticDoesNotKnowTheDepth) {
+  // The same wave numbers, so that only the pressure could differ.
+  WaveComponents deep = some_waves();
+  WaveComponents finite = some_waves();
+  constexpr double kDepth = 2.0;
+  for (WaveComponent& wave : finite) {
+    const double k = wave.angular_frequency * wave.angular_frequency / kStandardGravity;
+    wave.angular_frequency = std::sqrt(kStandardGravity * k * std::tanh(k * kDepth));
+  }
+  const SeaAtTime sea(sea_of(deep, WavePressure::kHydrostatic));
+  const SeaAtTime other(sea_of(finite, WavePressure::kHydrostatic, kDepth));
+  expect_same(sea, floating_pose(), other, floating_pose(), 1e-6);
+  const SeaAtTime wheeler(sea_of(deep));
+  const SeaAtTime other_wheeler(sea_of(finite, WavePressure::kWheeler, kDepth));
+  EXPECT_GT((exact_surface_load(rock(), wheeler, floating_pose()).force -
+             exact_surface_load(rock(), other_wheeler, floating_pose()).force)
+                .norm(),
+            1e-3);
+}
+
+TEST(WaveLimit, WheelerTendsToDeepWaterAsOneOverTheDepth) {
+  // z' - s = -s eta / (h + eta) changes the pressure by a k exp(k s) |s| eta / h <= a eta / (e h).
+  constexpr double kA = 0.2;
+  constexpr double kW = 3.5;
+  const double k = kW * kW / kStandardGravity;
+  const WaveComponents wave{{kA, kW, 30.0, 10.0}};
+  const SeaAtTime deep(sea_of(wave));
+  Pose pose = floating_pose();
+  pose.p_WB.z() = -0.5;
+  const WaveLoad load = hierarchical_load(rock(), deep, pose, 1e-6);
+  const WaveLoad exact = exact_surface_load(rock(), deep, pose);
+  double previous = 0.0;
+  for (const double depth : {20.0, 40.0, 80.0}) {
+    ASSERT_LT(std::exp(-2.0 * k * depth), 1e-9);  // nothing else depends on the depth
+    const SeaAtTime finite(sea_of(wave, WavePressure::kWheeler, depth));
+    const double difference = (exact_surface_load(rock(), finite, pose).force - exact.force).norm();
+    const double bound = rock().mesh.area * kA * kA / (std::numbers::e * depth);
+    EXPECT_LT(difference, bound);
+    EXPECT_GT(difference, 1e-3 * bound);
+    if (previous > 0.0) {
+      EXPECT_NEAR(difference / previous, 0.5, 0.02) << depth;
+    }
+    previous = difference;
+    const WaveLoad other = hierarchical_load(rock(), finite, pose, 1e-6);
+    EXPECT_NEAR((other.force - load.force).norm(), difference, load.force_bound + other.force_bound);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
