@@ -40,6 +40,7 @@ struct Patch {
 class Builder {
  public:
   explicit Builder(const TriangleMesh& surface) : surface_(surface) {
+    snap_to_grid();
     const std::size_t triangles = surface.triangles.size();
     // Leaves of small meshes are small, because the surface of the water crosses most of them.
     constexpr std::size_t kFewTriangles = 10'000;
@@ -58,10 +59,25 @@ class Builder {
     add_block(0, children_of({0, items_.size()}));
     tree_.area = 0.0;
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) tree_.area += area_vector(t).norm();
+    tree_.displacement = 0.5 * std::sqrt(3.0) * grid_;
     return std::move(tree_);
   }
 
  private:
+  // The spacing of the grid is such that every coordinate, and every difference of two, has 24 bits.
+  void snap_to_grid() {
+    double largest = 0.0;
+    for (const auto* row : {&surface_.x, &surface_.y, &surface_.z}) {
+      for (const double value : *row) largest = std::max(largest, std::abs(value));
+    }
+    grid_ = largest > 0.0 ? std::ldexp(1.0, std::ilogb(largest) + 2 - 24) : 0.0;
+    if (grid_ == 0.0) return;
+    for (auto* row : {&surface_.x, &surface_.y, &surface_.z}) {
+      for (double& value : *row) value = on_grid(value);
+    }
+  }
+  double on_grid(double value) const { return grid_ * std::nearbyint(value / grid_); }
+
   Vec3 corner(std::size_t triangle, std::size_t i) const {
     return surface_.vertex(surface_.triangles[triangle][i]);
   }
@@ -128,7 +144,7 @@ class Builder {
     }
     const Vec3 center =
         patch.area > 0.0 ? Vec3(weighted / patch.area) : corner(items_[range.begin].triangle, 0);
-    patch.center = center.cast<float>().cast<double>();
+    patch.center = grid_ > 0.0 ? center.unaryExpr([this](double value) { return on_grid(value); }) : center;
     double radius_squared = 0.0;
     double mu4 = 0.0;
     for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -231,7 +247,8 @@ class Builder {
     }
   }
 
-  const TriangleMesh& surface_;
+  TriangleMesh surface_;
+  double grid_ = 0.0;     // [m]
   std::size_t leaf_ = 0;  // triangles per leaf, at most
   std::vector<Item> items_;
   PatchTree tree_;

@@ -50,6 +50,9 @@ struct PatchTree {
   LargePageArray<PatchBlock> blocks;  // blocks[0] holds the patches of the first level
   LargePageArray<TriangleBlock> triangles;
   double area = 0.0;  // [m^2]
+  // [m], to which the corners of the tree's triangles are from those of the surface. They lie on a grid on
+  // which float32 arithmetic is exact, so that neighbours share their corners and the surface stays closed.
+  double displacement = 0.0;
 
   std::size_t bytes() const;
 };

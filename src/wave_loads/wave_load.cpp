@@ -1,7 +1,9 @@
 #include "wave_loads/wave_load.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -63,6 +65,16 @@ CellGrid grid_over(const std::array<double, 3>& low, const std::array<double, 3>
   return grid;
 }
 
+// A bound on the gradient of the pressure over rho g, in and near the water.
+double steepest_pressure(const SeaSnapshot& snapshot, const SeaExpansion& expansion) {
+  const double slope = snapshot.amplitude_factor() * expansion.amplitude_sums[1];
+  if (snapshot.sea().pressure() == WavePressure::kHydrostatic) return 1.0 + slope;
+  // Of the map to the stretched height.
+  const double rise = snapshot.amplitude_factor() * expansion.amplitude_sums[0] / snapshot.sea().depth();
+  const double stretch = 1.0 / std::max(1.0 - rise, 1e-6);
+  return 1.0 + slope * (1.0 + stretch + (1.0 + rise) * stretch * stretch * slope);
+}
+
 }  // namespace
 
 WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const SeaSnapshot& sea,
@@ -96,6 +108,14 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double crest = sea.amplitude_factor() * expansion.amplitude_sums[0];
   if (height - reach_up > crest) return {};
   query.submerged = height + reach_up < -crest;
+  const bool single = body.tolerance >= 1e-4;
+  // The surface that is integrated is not quite where the body's is: the tree's grid, the rounding of the
+  // body's position, and that of positions on the body.
+  query.displacement =
+      body.tree->displacement + 1e-15 * (pose.p_WB.norm() + mesh.center_B.norm() + std::abs(water.level)) +
+      mesh.diagonal *
+          (single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon());
+  query.steepest = steepest_pressure(sea, expansion);
   // Truncation over the whole surface takes a small share of the tolerance.
   constexpr double kTruncationShare = 0.04;
   const double reach =
@@ -110,14 +130,18 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double bottom = std::min(height - reach_up - usual, top);
   query.grid = grid_over({k * (middle_1 - reach_1), k * (middle_2 - reach_2), k * bottom},
                          {k * (middle_1 + reach_1), k * (middle_2 + reach_2), k * top}, reach);
-  const bool single = body.tolerance >= 1e-4;
   WaveLoad load =
       single ? HWY_DYNAMIC_DISPATCH(wave_load_single)(query) : HWY_DYNAMIC_DISPATCH(wave_load_double)(query);
   if (query.submerged) {
     load.force += mesh.volume * query.up_B;
     const Vec3 lever = mesh.centroid - query.reference;
     load.torque += lever.cross(mesh.volume * query.up_B);
+    load.volume = mesh.volume;
+    load.moment = mesh.volume * mesh.centroid;
   }
+  // The displaced pressure, besides its change, moves the torque.
+  const double deepest = query.submerged ? crest : std::max(reach_up - height, 0.0) + 2.0 * crest;
+  load.torque_bound += query.displacement * body.tree->area * deepest;
   return load;
 }
 

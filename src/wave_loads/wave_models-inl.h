@@ -34,9 +34,12 @@ struct PatchQuery {
   bool hydrostatic = false;
   // Whether the body is wet everywhere: its weight of water is added apart, and patches integrate f alone.
   bool submerged = false;
-  double amplitude = 0.0;      // sum of a k_max
-  double slope = 0.0;          // sum of a k
-  double unit_roundoff = 0.0;  // of Number
+  double amplitude = 0.0;          // sum of a k_max
+  double slope = 0.0;              // sum of a k
+  double unit_roundoff = 0.0;      // of Number
+  double integral_rounding = 0.0;  // of a patch's integrals, relative
+  double displacement = 0.0;       // of the surface, times k_max
+  double steepest = 1.0;           // bound on the gradient of the pressure
 };
 
 template <typename Number>
@@ -59,6 +62,9 @@ PatchQuery<Number> patch_query_of(const WaveQuery& query) {
   patch.amplitude = factor * query.expansion->amplitude_sums[0] * patch.k_max;
   patch.slope = factor * query.expansion->amplitude_sums[1];
   patch.unit_roundoff = 0.5 * std::numeric_limits<Number>::epsilon();
+  patch.integral_rounding = 16.0 * patch.unit_roundoff + std::numeric_limits<float>::epsilon();
+  patch.displacement = query.displacement * patch.k_max;
+  patch.steepest = query.steepest;
   return patch;
 }
 
@@ -190,9 +196,13 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   PatchModel<Number> model;
   model.dry = hn::Gt(s_low, zero);
   const auto wet = hn::Or(hn::Lt(s_high, zero), set_mask<Number>(query.submerged));
+  // Where the expansion says nothing about the surface, the volume is that under the water at rest.
+  const V s_error = hn::MulAdd(L3 * set<Number>(1.0 / 6.0), r * r * r, epsilon);
+  const auto known = hn::Le(s_error, set<Number>(query.amplitude));
+  const auto if_known = [&](const V& number) { return hn::IfThenElseZero(known, hn::Neg(number)); };
   model.s = in_body_axes<Number>(
-      query, s, {hn::Neg(eta1), hn::Neg(eta2), one},
-      {hn::Neg(surface.eta_11), hn::Neg(surface.eta_22), zero, hn::Neg(surface.eta_12), zero, zero});
+      query, place.zeta + if_known(eta), {if_known(eta1), if_known(eta2), one},
+      {if_known(surface.eta_11), if_known(surface.eta_22), zero, if_known(surface.eta_12), zero, zero});
 
   const V still = set<Number>(query.submerged ? 0.0 : 1.0);
   V value, g1, g2, g3, M3, delta, gamma;
@@ -205,7 +215,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     g3 = hn::Neg(still);
     H = {surface.eta_11, surface.eta_22, zero, surface.eta_12, zero, zero};
     M3 = L3;
-    delta = epsilon;
+    delta = hn::MulAdd(set<Number>(query.displacement), still + L1, epsilon);
     gamma = zero;
     model.too_steep = hn::Gt(zero, one);
   } else {
@@ -236,7 +246,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V lowest = hn::Max(hn::MulAdd(l, eta - r * L1 - epsilon, one), set<Number>(1e-6));
     const V q_max = one / lowest;
     stretch = q_max;
-    const V w_max = hn::Max(hn::MulAdd(l, place.zeta + r, one), zero);
+    const V w_max = hn::Max(hn::MulAdd(l, place.zeta + r, one), hn::MulSub(l, r - place.zeta, one));
     const V qq = q_max * q_max;
     const V lL1 = l * L1;
     const V slope2 = hn::MulAdd(two * q_max * lL1, L1, L2) * qq;
@@ -261,8 +271,9 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V Df = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
     const V F1 = hn::MulAdd(r * V1, F2, Df);
     M3 = F3 * V1 * V1 * V1 + set<Number>(3.0) * F2 * V1 * V2 + F1 * V3;
-    delta =
-        hn::MulAdd(F1, shift, inside.truncation) + rounding * (inside.sum + still * hn::Abs(place.zeta) + r);
+    delta = hn::MulAdd(F1, shift, inside.truncation) +
+            rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
+            set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
 
     const V z = stretched<Number>(query, place, eta);
     const V Z = hn::MulAdd(r, hn::Sqrt(hn::MulAdd(b_1, b_1, qq)), shift);
@@ -271,7 +282,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_reach + R);
     const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
     gamma = q_max * (f.f_3 + R * (vertical + half * R * around.third) + around.slope);
-    model.too_steep = hn::And(hn::Ge(q * f.f_3, one), hn::Lt(hn::Abs(z), r));
+    model.too_steep = hn::And(hn::Ge(q * (f.f_3 - around.slope), one), hn::Lt(hn::Abs(z), r));
   }
 
   const auto certain = hn::Or(wet, hn::Lt(gamma, one));
@@ -305,7 +316,9 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V steepness = one + hn::IfThenZeroElse(flat, L1 + hn::IfThenElseZero(use_quadratic, hn::Abs(g3)));
   const V size =
       hn::Abs(model_value) + r * steepness + r * r * model.curvature * set<Number>(1.0 / query.k_max);
-  model.delta = (select(delta, tangent_delta, flat_delta) + set<Number>(16.0 * query.unit_roundoff) * size) *
+  const V displaced = set<Number>(query.displacement * query.steepest);
+  model.delta = (select(delta, tangent_delta + displaced, flat_delta + displaced) +
+                 set<Number>(query.integral_rounding) * size) *
                 set<Number>(1.0 / query.k_max);
   // Which parts are wet: the test of the surface decides for the quadratic model, the model's own sign for
   // the others.

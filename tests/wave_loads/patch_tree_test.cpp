@@ -1,7 +1,9 @@
 #include "wave_loads/patch_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -118,6 +120,29 @@ TEST(PatchTree, BoundsHoldForEveryPatch) {
       ASSERT_GE(block.mu3[lane], 0.95 * mu3);
       ASSERT_LE(block.mu3[lane], radius * block.mu2[lane] * (1.0 + 1e-6));
     }
+  }
+}
+
+TEST(PatchTree, NeighboursShareTheirCorners) {
+  const TriangleMesh mesh = rock(12);
+  const PatchTree tree = build_patch_tree(mesh);
+  std::vector<Corner> triangles;
+  for (std::size_t lane = 0; lane < tree.blocks[0].patches; ++lane) {
+    collect(tree, tree.blocks[0], lane, triangles);
+  }
+  std::set<std::array<double, 3>> corners;
+  for (const Corner& t : triangles) {
+    for (const Vec3& corner : {t.a, t.b, t.c}) corners.insert({corner.x(), corner.y(), corner.z()});
+  }
+  EXPECT_EQ(corners.size(), mesh.vertex_count());
+  EXPECT_LE(tree.displacement, 2e-7);
+  for (const std::array<double, 3>& corner : corners) {
+    double nearest = 1.0;
+    for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+      const Vec3 vertex = mesh.vertex(static_cast<std::int32_t>(i));
+      nearest = std::min(nearest, (vertex - Vec3(corner[0], corner[1], corner[2])).norm());
+    }
+    ASSERT_LE(nearest, tree.displacement);
   }
 }
 
