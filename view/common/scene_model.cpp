@@ -10,6 +10,7 @@
 
 #include "scene/scene_report.h"
 #include "view/common/base64.h"
+#include "view/common/sea_json.h"
 
 namespace buoyancy::view {
 namespace {
@@ -87,6 +88,11 @@ Json json_array(const Vec3& v) {
 Json scene_model(const Scene& scene, const SceneModelOptions& options) {
   Json model = Json::parse(scene_report_json(scene));
   model["scene"] = file_name(model["scene"]);
+  if (scene.sea() != nullptr) {
+    model["sea"] = sea_json(*scene.sea());
+  } else {
+    model.erase("sea");
+  }
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const auto& center = scene.bodies()[i].center_of_mass_B;
     model["bodies"][i]["center_of_mass"] = center ? json_array(*center) : Json(nullptr);

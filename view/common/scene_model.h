@@ -14,7 +14,8 @@ struct SceneModelOptions {
   std::size_t max_triangles = 60'000;
 };
 
-// The object of scene_report_json() with paths reduced to file names, and additionally
+// The object of scene_report_json() with paths reduced to file names, "sea" as in sea_json.h and absent if
+// the water is at rest, and additionally
 //   of each body   "center_of_mass": [3] [m], B, or null if the scene does not specify it
 //   of each mesh   "center": [3] [m], B
 //                  "positions": float32, three per vertex [m], relative to center

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -67,11 +68,16 @@ Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) 
            })}};
 }
 
+// The columns in the page: the time of the sea is not one in water at rest.
+std::size_t column_count(const Scene& scene) {
+  return scene.sea() == nullptr ? kSeaTime : kColumnCount;
+}
+
 // Base64 of the rows, column by column.
-std::string encode_rows(const std::vector<RunRow>& rows) {
+std::string encode_rows(const std::vector<RunRow>& rows, std::size_t columns) {
   std::vector<double> numbers;
-  numbers.reserve(rows.size() * kColumnCount);
-  for (std::size_t column = 0; column < kColumnCount; ++column) {
+  numbers.reserve(rows.size() * columns);
+  for (std::size_t column = 0; column < columns; ++column) {
     for (const RunRow& row : rows) numbers.push_back(row[column]);
   }
   return base64_of<double>(numbers);
@@ -119,7 +125,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
   Json data{{"file", options.file},
             {"version", options.version},
             {"body_statuses", body_statuses()},
-            {"columns", kColumnNames},
+            {"columns", std::vector(kColumnNames.begin(), kColumnNames.begin() + column_count(scene))},
             {"selected", options.selected},
             {"sessions", run.sessions},
             {"computed", run.computed},
@@ -139,8 +145,8 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
                    {"shown", body_run.shown},
                    {"rows", body_run.rows.size()}};
     if (body_run.shown) {
-      described["data"] = encode_rows(body_run.rows);
-      described["evaluations"] = evaluations_json(body, body_run, scene.water());
+      described["data"] = encode_rows(body_run.rows, column_count(scene));
+      if (scene.sea() == nullptr) described["evaluations"] = evaluations_json(body, body_run, scene.water());
       if (body.hydrostatics) described["metacenters"] = encode_metacenters(body, body_run, scene.water());
     }
     data["bodies"].push_back(std::move(described));

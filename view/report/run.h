@@ -28,6 +28,7 @@ namespace buoyancy::view {
 //   kHeave           height of B's origin above the level [m]
 //   kRoll, kPitch    angles from upright [degrees] (attitude.h)
 //   kForce, kTorque  norms [N], [N m]
+//   kSeaTime         time t of the sea at which the row is evaluated [s]; in waves only, hence the last
 enum RunColumn : std::size_t {
   kTime,
   kPx,
@@ -55,12 +56,13 @@ enum RunColumn : std::size_t {
   kPitch,
   kForce,
   kTorque,
+  kSeaTime,
   kColumnCount,
 };
 inline constexpr std::array<std::string_view, kColumnCount> kColumnNames{
-    "time", "px",     "py",         "pz",    "qw",   "qx",    "qy",     "qz",    "status",
-    "fx",   "fy",     "fz",         "tx",    "ty",   "tz",    "volume", "bx",    "by",
-    "bz",   "energy", "round_trip", "heave", "roll", "pitch", "force",  "torque"};
+    "time", "px",     "py",         "pz",    "qw",   "qx",    "qy",     "qz",     "status",
+    "fx",   "fy",     "fz",         "tx",    "ty",   "tz",    "volume", "bx",     "by",
+    "bz",   "energy", "round_trip", "heave", "roll", "pitch", "force",  "torque", "sea_time"};
 
 using RunRow = std::array<double, kColumnCount>;
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -82,8 +84,8 @@ struct BodyRun {
   double max_force = kUnknown;  // [N], of the rows with status OK
   bool shown = false;
   // Only of bodies that are shown:
-  std::vector<RunRow> rows;  // in order of time, after decimation
-  EvaluationCounts evaluations;
+  std::vector<RunRow> rows;      // in order of time, after decimation
+  EvaluationCounts evaluations;  // in water at rest
 };
 
 struct RecordedRun {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "messages/conversions.h"
+#include "view/common/sea_json.h"
 
 namespace buoyancy::view {
 namespace {
@@ -186,7 +187,7 @@ void RunBuilder::add(const RecordedState& recorded) {
     summarize(run_.bodies[*index], recorded, pose);
     return;
   }
-  count_evaluation(*shown, body, pose);
+  if (scene_.sea() == nullptr) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
   BodyWrench wrench =
       recorded.wrench ? *recorded.wrench : compute_wrench(body, {&scene_.water(), nullptr}, pose);
@@ -219,6 +220,8 @@ void RunBuilder::add(const RecordedState& recorded) {
   row[kPitch] = body_attitude.pitch;
   row[kForce] = to_vec3(wrench.force).norm();
   row[kTorque] = to_vec3(wrench.torque).norm();
+  row[kSeaTime] =
+      scene_.sea() == nullptr ? kUnknown : sea_time(*scene_.sea(), recorded.utime, recorded.lead_time);
   shown->rows.add(rows_added_++, row);
 }
 

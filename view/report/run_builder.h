@@ -26,7 +26,8 @@ inline constexpr std::size_t kMaxBodies = 1'000;  // shown in one page
 
 // The contents of a file about one body at one instant.
 struct RecordedState {
-  std::int64_t time = 0;  // [us], on the run's time axis; from RunBuilder::time_of()
+  std::int64_t time = 0;   // [us], on the run's time axis; from RunBuilder::time_of()
+  std::int64_t utime = 0;  // [us], of the request: the time of the sea
   BodyState state;
   double lead_time = 0.0;            // [s]
   std::optional<BodyWrench> wrench;  // nullopt: to be computed

@@ -67,7 +67,7 @@ std::array<double, kSize> array_from(const double* numbers) {
 }
 
 bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions& positions,
-              std::int64_t& utime, RecordedState& row) {
+              RecordedState& row) {
   std::array<std::int64_t, 2> key{};
   std::array<double, 7> pose{};
   std::array<double, 6> velocities{};
@@ -78,7 +78,7 @@ bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions
       !read(fields, positions.wrench, wrench.data()) || !read(fields, positions.energy, &energy)) {
     return false;
   }
-  utime = key[0];
+  row.utime = key[0];
   row.state = {.body_id = static_cast<std::int32_t>(key[1]),
                .position = array_from<3>(pose.data()),
                .quaternion_wxyz = array_from<4>(pose.data() + 3),
@@ -127,13 +127,12 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
     if (line.empty() || line == "\r") continue;
     const std::vector<std::string_view> fields = split_fields(line);
     RecordedState row;
-    std::int64_t utime = 0;
-    if (fields.size() != header.size() || !read_row(fields, positions, utime, row)) {
+    if (fields.size() != header.size() || !read_row(fields, positions, row)) {
       builder.add_warning("line " + std::to_string(number) + " skipped: expected " +
                           std::to_string(header.size()) + " numbers");
       continue;
     }
-    row.time = builder.time_of(row.state.body_id, 0, utime);
+    row.time = builder.time_of(row.state.body_id, 0, row.utime);
     builder.add(row);
     if (number % kRowsBetweenProgress == 0 && options.progress &&
         !options.progress(file.tellg(), bytes, number))

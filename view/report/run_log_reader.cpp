@@ -121,6 +121,7 @@ class ResponseMatcher {
     const WrenchRequest& request = pending.request;
     for (std::size_t i = 0; i < request.bodies.size(); ++i) {
       RecordedState row{.time = pending.times[i],
+                        .utime = request.id.utime,
                         .state = request.bodies[i],
                         .lead_time = request.lead_time,
                         .wrench = std::nullopt,

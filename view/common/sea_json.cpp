@@ -1,0 +1,45 @@
+#include "view/common/sea_json.h"
+
+#include <cmath>
+
+#include "base/vec3.h"
+
+namespace buoyancy::view {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_array(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+}  // namespace
+
+Json sea_json(const Sea& sea) {
+  const PreparedComponents& components = sea.prepared();
+  return {{"e1", json_array(sea.axes().e1_W)},
+          {"e2", json_array(sea.axes().e2_W)},
+          {"up", json_array(sea.water().up_W)},
+          {"level", sea.water().level},
+          {"depth", std::isinf(sea.depth()) ? Json(nullptr) : Json(sea.depth())},
+          {"time_origin", sea.time_origin()},
+          {"ramp", sea.ramp()},
+          {"pressure", to_string(sea.pressure())},
+          {"amplitude", components.amplitude},
+          {"angular_frequency", components.angular_frequency},
+          {"wave_number", components.wave_number},
+          {"k1", components.k1},
+          {"k2", components.k2},
+          {"phase", components.phase}};
+}
+
+double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
+  // In seconds and microseconds, since the difference of two int64 may not be one.
+  constexpr std::int64_t kSecond = 1'000'000;
+  const std::int64_t origin = sea.time_origin();
+  const std::int64_t seconds = utime / kSecond - origin / kSecond;
+  const std::int64_t microseconds = utime % kSecond - origin % kSecond;
+  return static_cast<double>(seconds) + 1e-6 * static_cast<double>(microseconds) + lead_time;
+}
+
+}  // namespace buoyancy::view

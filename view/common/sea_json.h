@@ -1,0 +1,25 @@
+// Describes a sea to a page (view/page/sea.js): the numbers that the service computes with.
+#pragma once
+
+#include <cstdint>
+
+#include <nlohmann/json.hpp>
+
+#include "waves/sea.h"
+
+namespace buoyancy::view {
+
+// "e1", "e2", "up"   [3], W: the horizontal axes, and up
+// "level", "depth"   [m]; depth is null in deep water
+// "time_origin"      [us], the utime of t = 0
+// "ramp"             [s]
+// "pressure"         to_string(WavePressure)
+// "amplitude" [m], "angular_frequency" [rad/s], "wave_number", "k1", "k2" [rad/m] and "phase" [rad]: arrays
+//                    of one number per component, as in PreparedComponents
+// Numbers have the digits from which the same double is read back.
+nlohmann::ordered_json sea_json(const Sea& sea);
+
+// The time t of the sea [s] at utime [us]. Pages get t, since JavaScript's numbers do not hold every utime.
+double sea_time(const Sea& sea, std::int64_t utime, double lead_time);
+
+}  // namespace buoyancy::view
