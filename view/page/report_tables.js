@@ -102,7 +102,15 @@ function bodies_table(data) {
   return table_of(caption, ['id', 'name', 'rows', 'rows by status', 'largest force, N', 'shown'], rows);
 }
 
-function report_tables(data, bodies) {
+// The waves of the scene in a sentence; empty in water at rest.
+function waves_text(sea) {
+  if (!sea) return '';
+  const depth = sea.depth === null ? 'deep water' : `a depth of ${format_number(sea.depth)} m`;
+  return `Waves: ${plural(sea.components, 'component', 'components')}, significant wave height ${format_number(sea.significant_wave_height())} m, ` +
+    `${depth}, ${sea.pressure} pressure. `;
+}
+
+function report_tables(data, bodies, sea) {
   const { water, bodies: described, meshes, simd_target: target } = data.model;
   const section = (title, ...content) => {
     const heading = document.createElement('h2');
@@ -110,7 +118,9 @@ function report_tables(data, bodies) {
     document.getElementById('tables').append(heading, ...content);
   };
   section('The bodies', bodies_table(data));
-  section('Evaluations', ...[evaluations_table(bodies), status_table(data, bodies)].filter((table) => table !== null));
+  const evaluations = sea ? null : evaluations_table(bodies);
+  const statuses = status_table(data, bodies);
+  if (evaluations || statuses) section('Evaluations', ...[evaluations, statuses].filter((table) => table !== null));
   if (data.status) {
     const status = data.status;
     section('Service status', table_of('The last status in the log, totals since the service was started', ['field', 'value'], [
@@ -122,7 +132,7 @@ function report_tables(data, bodies) {
       ['latency, median, 99 %, maximum', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
   }
   section('The scene', table_of(
-    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ` +
+    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(sea)}` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
     described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));

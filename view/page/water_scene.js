@@ -14,7 +14,8 @@ class WaterScene {
     this.model = model;
     this.up = new THREE.Vector3(...model.water.up);
     this.origin = null;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !uses_software_rendering() });
+    this.software_rendering = uses_software_rendering();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.software_rendering });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(WaterScene.colours.sky);
@@ -34,12 +35,24 @@ class WaterScene {
     this.geometries = model.meshes.map((mesh) => this.make_geometry(mesh));
     for (const body of model.bodies) this.bodies.set(body.id, this.make_body(body));
     this.add_water();
+    this.waves = null;
+    this.sea_time = NaN;
+    this.poses_changed = false;
     this.add_listeners();
     new ResizeObserver(() => this.render()).observe(canvas);
   }
 
+  // sea: a Sea, which is drawn from the next render() on, or null for water at rest.
+  use_sea(sea) {
+    if (this.waves) this.waves.remove();
+    this.waves = sea ? new WaveSurface(this, sea) : null;
+  }
+
   // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}]; see snapshot_json.h.
-  show(bodies) {
+  // sea_time: [s], of the sea in waves.
+  show(bodies, sea_time = NaN) {
+    this.sea_time = sea_time;
+    this.poses_changed = true;
     for (const state of bodies) {
       const body = this.bodies.get(state.id);
       if (!body) continue;
@@ -96,6 +109,8 @@ class WaterScene {
     this.fade.value = Math.max(20 * this.distance, 5 * this.size);
     this.camera.lookAt(this.target);
     this.camera.updateProjectionMatrix();
+    if (this.waves) this.waves.update(this.sea_time, this.poses_changed);
+    this.poses_changed = false;
     this.size_markers(back.negate(), 2 * Math.tan(this.camera.fov * Math.PI / 360) / height);
     this.renderer.render(this.scene, this.camera);
   }
@@ -137,38 +152,10 @@ class WaterScene {
   }
 
   make_body(description) {
-    const colour = (name) => ({ value: new THREE.Color(WaterScene.colours[name]) });
     const mesh = this.model.meshes[description.mesh];
-    const material = new THREE.ShaderMaterial({
-      extensions: { derivatives: true },
-      side: THREE.DoubleSide,
-      uniforms: { up: { value: this.up }, dry: colour('dry'), wet: colour('wet'), waterline: colour('waterline'),
-                  min_line_width: { value: 0.002 * mesh.diagonal } },
-      vertexShader: `
-        varying vec3 position_W, position_view;
-        void main() {
-          vec4 world = modelMatrix * vec4(position, 1.0);
-          vec4 view = viewMatrix * world;
-          position_W = world.xyz;
-          position_view = view.xyz;
-          gl_Position = projectionMatrix * view;
-        }`,
-      // Flat shading, since the solver uses flat faces. The waterline is about two pixels wide at any slope.
-      fragmentShader: `
-        uniform vec3 up, dry, wet, waterline;
-        uniform float min_line_width;
-        varying vec3 position_W, position_view;
-        void main() {
-          vec3 normal = normalize(cross(dFdx(position_view), dFdy(position_view)));
-          float light = 0.58 + 0.42 * max(0.0, dot(normal, normalize(vec3(-0.4, 0.8, 0.5))));
-          float height = dot(position_W, up);
-          float line = max(1.6 * fwidth(height), min_line_width);
-          vec3 colour = (height > 0.0 ? dry : wet) * light;
-          gl_FragColor = vec4(abs(height) < line ? waterline : colour, 1.0);
-        }`,
-    });
-    const drawn = new THREE.Mesh(this.geometries[description.mesh], material);
+    const drawn = new THREE.Mesh(this.geometries[description.mesh], hull_material(this.up, mesh.diagonal));
     drawn.position.set(...mesh.center);
+    drawn.mesh_index = description.mesh;
     const group = new THREE.Group();
     group.add(drawn);
     group.visible = false;
@@ -183,7 +170,7 @@ class WaterScene {
       // A ring, so that both are visible if it coincides with the centre of mass.
       metacentre: this.point('metacentre', new THREE.RingGeometry(5, 8, 28)),
     };
-    return { description, group, size, markers, displacement_weight: water.density * water.gravity * Math.abs(mesh.volume) };
+    return { description, group, drawn, size, markers, displacement_weight: water.density * water.gravity * Math.abs(mesh.volume) };
   }
 
   // Markers are visible through the hull.
@@ -273,36 +260,16 @@ class WaterScene {
   add_water() {
     this.grid_cell = { value: 1 };
     this.fade = { value: 1 };
-    const material = new THREE.ShaderMaterial({
-      extensions: { derivatives: true },
-      side: THREE.DoubleSide,
-      transparent: true,
-      depthWrite: false,
-      uniforms: { colour: { value: new THREE.Color(WaterScene.colours.water) }, cell: this.grid_cell, fade: this.fade },
-      vertexShader: `
-        uniform float fade;
-        varying vec2 point;
-        varying float camera_distance;
-        void main() {
-          point = position.xy * fade * 4.0;
-          vec4 view = modelViewMatrix * vec4(point, 0.0, 1.0);
-          camera_distance = length(view.xyz);
-          gl_Position = projectionMatrix * view;
-        }`,
-      fragmentShader: `
-        uniform vec3 colour;
-        uniform float cell, fade;
-        varying vec2 point;
-        varying float camera_distance;
-        void main() {
-          vec2 cells = point / cell;
-          vec2 width = fwidth(cells);
-          vec2 lines = 1.0 - min(abs(fract(cells - 0.5) - 0.5) / max(width, 1e-6), 1.0);
-          float line = max(lines.x, lines.y) * (1.0 - smoothstep(0.1, 0.5, max(width.x, width.y)));
-          float clear = 1.0 - smoothstep(0.3 * fade, fade, camera_distance);
-          gl_FragColor = vec4(mix(colour, 0.45 * colour, 0.5 * line), clear * (0.45 + 0.25 * line));
-        }`,
-    });
+    const material = water_material(this.grid_cell, this.fade, `
+      uniform float fade;
+      varying vec2 point;
+      varying float camera_distance;
+      void main() {
+        point = position.xy * fade * 4.0;
+        vec4 view = modelViewMatrix * vec4(point, 0.0, 1.0);
+        camera_distance = length(view.xyz);
+        gl_Position = projectionMatrix * view;
+      }`);
     this.water = new THREE.Mesh(new THREE.PlaneGeometry(1, 1, 64, 64), material);
     this.water.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), this.up);
     this.water.renderOrder = 1;

@@ -1,0 +1,118 @@
+// The page of buoyancy-report for a run in waves, in a real browser.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/child_process.h"
+#include "tests/support/scene_of.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/timeouts.h"
+#include "tests/view/page_test.h"
+#include "tests/view/waves_on_page.h"
+
+namespace buoyancy::view {
+namespace {
+
+const std::string kBox = R"(
+[[body]]
+id = 1
+name = "box"
+shape = { type = "box", size = [2, 3, 4] }
+)";
+
+// A wave that is long beside the box, towards +x. Its crest is at the box at kTodayUtime.
+const std::string kLongWave = R"(
+[water]
+time_origin = 1790000000123456
+[[water.waves]]
+type = "regular"
+height = 1.0
+period = 8.0
+)";
+
+class ReportPageInWaves : public PageTest {
+ protected:
+  // Opens the page of a run in which the box has a row every 5 s.
+  void open(const std::string& scene, double x, double y, double z) {
+    std::string run = "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz\n";
+    for (int second = 0; second <= 100; second += 5) {
+      run += std::to_string(kTodayUtime + 1'000'000LL * second) + ",1," + std::to_string(x) + "," +
+             std::to_string(y) + "," + std::to_string(z) + ",1,0,0,0,0,0,0,1e5,0,0,0,12,0,0,-1\n";
+    }
+    const FinishedProcess made =
+        run_to_end(command_of({BUOYANCY_REPORT, "--scene", directory_.write("waves.toml", scene),
+                               directory_.write("run.csv", run), directory_.path("run.html")}),
+                   kWaitTimeout);
+    ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+    browser().open_file(directory_.path("run.html"));
+    browser().wait_until("window.buoyancy_report !== undefined");
+  }
+
+  static void go_to(std::int64_t utime) {
+    browser().run("buoyancy_report.seek(arguments[0])", 1e-6 * static_cast<double>(utime - kTodayUtime));
+  }
+
+  // Whether a pixel of the waterline is drawn within 3 pixels of a point in W.
+  static bool waterline_at(const Image& image, double x, double y, double z) {
+    const nlohmann::json at = browser().run(
+        "const box = document.getElementById('canvas').getBoundingClientRect();"
+        "const [x, y] = buoyancy_report.scene.project(arguments[0]); return [x + box.left, y + box.top];",
+        std::array{x, y, z});
+    for (int dy = -3; dy <= 3; ++dy) {
+      const Colour colour =
+          image.pixel(static_cast<int>(at[0].get<double>()), static_cast<int>(at[1].get<double>()) + dy);
+      if (is_near({255, 255, 255}, 45)(colour)) return true;
+    }
+    return false;
+  }
+
+  TempDir directory_;
+};
+
+TEST_F(ReportPageInWaves, DrawsSurfaceOfSea) {
+  for (const NamedWater& water : kSeasOfPages) {
+    SCOPED_TRACE(water.name);
+    const Scene scene = scene_of(water.table + kBox);
+    ASSERT_NO_FATAL_FAILURE(open(water.table + kBox, kBodiesAt[0], kBodiesAt[1], 1.5));
+    SeaSnapshot sea(*scene.sea());
+    for (const std::int64_t utime : kShownUtimes) {
+      SCOPED_TRACE(utime);
+      sea.set_time(utime);
+      go_to(utime);
+      expect_page_draws(browser(), "buoyancy_report.scene", sea);
+    }
+    EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+  }
+}
+
+TEST_F(ReportPageInWaves, DrawsWaterlineWhereSurfaceMeetsHull) {
+  ASSERT_NO_FATAL_FAILURE(open(kLongWave + kBox, 0.0, 0.0, 0.0));
+  const Scene scene = scene_of(kLongWave + kBox);
+  SeaSnapshot sea(*scene.sea());
+  for (const double seconds : {0.0, 4.0}) {  // crest and trough
+    const std::int64_t utime = kTodayUtime + static_cast<std::int64_t>(1e6 * seconds);
+    sea.set_time(utime);
+    go_to(utime);
+    const Image image = browser().screenshot();
+    // The face at y = -1.5 is towards the camera.
+    for (const double x : {-0.7, 0.1, 0.8}) {
+      const double elevation = sea.elevation(x, -1.5);
+      EXPECT_GT(std::abs(elevation), 0.45);
+      EXPECT_TRUE(waterline_at(image, x, -1.5, elevation)) << seconds << " s, x = " << x;
+      EXPECT_FALSE(waterline_at(image, x, -1.5, 0.0)) << seconds << " s, x = " << x;
+    }
+  }
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(ReportPageInWaves, DrawsPlaneOfWaterAtRest) {
+  ASSERT_NO_FATAL_FAILURE(open(kBox, 0.0, 0.0, 0.0));
+  EXPECT_EQ(browser().run("const { data, scene } = buoyancy_report;"
+                          "return ['sea' in data.model, data.columns.includes('sea_time'), scene.waves,"
+                          "        scene.water.visible, buoyancyPage.surfaceHeight(3, 4)];"),
+            nlohmann::json({false, false, nullptr, true, 0}));
+}
+
+}  // namespace
+}  // namespace buoyancy::view
