@@ -100,7 +100,7 @@ int report_main(int argc, char** argv) {
   if (!separate) return fail(separate.error(), kUsageError);
   const Expected<std::string> three = three_js(arguments.three);
   if (!three) return fail(three.error(), kFailure);
-  const Expected<Scene> scene = Scene::load(arguments.scene, {.accept_waves = true});
+  const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
   Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene,

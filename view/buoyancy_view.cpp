@@ -79,7 +79,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   if (const Expected<void> checked = check_arguments(arguments); !checked) {
     return report(app, checked.error(), kUsageError);
   }
-  const Expected<Scene> scene = Scene::load(arguments.scene, {.accept_waves = true});
+  const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kUsageError);
   ObservedChannels channels = arguments.channels;
   Expected<PoseChannels> poses = resolve_pose_channels(

@@ -41,8 +41,7 @@ double amplitude_sum(const SeaAtTime& sea, std::size_t n) {
   return sea.snapshot().amplitude_factor() * sea.prepared().expansion().amplitude_sums[n];
 }
 
-// [m], bound on what the rounding of positions changes in the pressure head: of the body's centre in the
-// world, along up and along the horizontal axes.
+// [m], bound on what the rounding of positions changes in heights over the surface.
 double position_rounding(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
   const double distance =
       pose.p_WB.lpNorm<1>() + mesh.center_B.lpNorm<1>() + std::abs(sea.prepared().sea().water().level);
@@ -163,7 +162,7 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
   outcome.sea_too_steep = load.too_steep;
   outcome.patches = load.patches;
   const double specific_weight = water.density * water.gravity;  // [N/m^3]
-  const double rounding = mesh.area * position_rounding(mesh, sea, pose) + mesh.rounding_bound();
+  const double rounding = mesh.rounding_bound();
   const double force_bound = load.force_bound + rounding;
   result.force_W = specific_weight * (R_WB * load.force);
   result.torque_W = specific_weight * (R_WB * load.torque);

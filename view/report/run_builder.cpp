@@ -65,7 +65,8 @@ void put(RunRow& row, RunColumn first, const std::array<double, kSize>& values) 
 BodyWrench compute_wrench(const Body& body, const CurrentWater& water, const ValidatedPose& pose) {
   BodyOutcome outcome;
   outcome.status = pose.status;
-  if (pose.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
+  if (pose.status == BodyStatus::kOk && water.at_rest == nullptr) outcome.status = BodyStatus::kNoSea;
+  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
   return to_wrench(body.id, outcome);
 }
 
@@ -92,7 +93,7 @@ void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose
 }  // namespace
 
 RunBuilder::RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected)
-    : scene_(scene) {
+    : scene_(scene), water_(scene) {
   const std::size_t max_shown =
       selected.empty() ? std::min(scene.bodies().size(), kMaxBodies) : selected.size();
   max_rows_of_body_ = std::min(max_rows / max_shown, kMaxRowsOfBody);
@@ -190,7 +191,8 @@ void RunBuilder::add(const RecordedState& recorded) {
   if (scene_.sea() == nullptr) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
   BodyWrench wrench =
-      recorded.wrench ? *recorded.wrench : compute_wrench(body, {&scene_.water(), nullptr}, pose);
+      recorded.wrench ? *recorded.wrench
+                      : compute_wrench(body, water_.move_to(recorded.utime, recorded.lead_time).water, pose);
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;

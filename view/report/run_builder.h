@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/body_evaluation.h"
+#include "engine/water_at_time.h"
 #include "messages/bot_core.h"
 #include "scene/scene.h"
 #include "simulation/rigid_body.h"
@@ -82,6 +83,7 @@ class RunBuilder {
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
 
   const Scene& scene_;
+  WaterAtTime water_;
   std::size_t max_rows_of_body_;
   std::size_t free_places_ = 0;  // number of bodies that can still be shown
   std::vector<std::unique_ptr<ShownBody>>
