@@ -74,6 +74,7 @@ void BusMonitor::record_request(const WrenchRequest& request, ArrivalTime arriva
   const bool requested_recently = request_received_ && *request_received_ + kStatusTimeout >= arrival.now;
   if (!waiting_since_ || !requested_recently) waiting_since_ = arrival.now;
   request_received_ = arrival.now;
+  request_time_ = {request.id.utime, std::isfinite(request.lead_time) ? request.lead_time : 0.0};
   for (const BodyState& state : request.bodies) {
     BodyMonitor* const body = find(state.body_id);
     if (body == nullptr) {

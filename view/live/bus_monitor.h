@@ -31,6 +31,12 @@ struct ArrivalTime {
   double now = 0.0;        // [s], monotonic
 };
 
+// The time for which a request was evaluated.
+struct RequestTime {
+  std::int64_t utime = 0;  // [us]
+  double lead_time = 0.0;  // [s], finite
+};
+
 // The latest observations of one body.
 struct BodyMonitor {
   struct Pose {
@@ -103,12 +109,14 @@ class BusMonitor {
   const std::vector<BodyMonitor>& bodies() const { return bodies_; }  // in the scene's order
   const Counts& counts() const { return counts_; }
   const RequestTracker::Counts& tracker() const { return tracker_.counts(); }
-  LatencyPercentiles latency() const { return latency_.percentiles(); }           // [s], since the start
-  const std::deque<SecondStats>& seconds() const { return seconds_; }             // the latest last
-  const std::optional<ServiceStatus>& status() const { return status_; }          // the latest
-  std::optional<double> status_received() const { return status_received_; }      // [s]
-  std::optional<double> response_received() const { return response_received_; }  // [s], of the latest
-  std::optional<double> request_received() const { return request_received_; }    // [s], of the latest
+  LatencyPercentiles latency() const { return latency_.percentiles(); }             // [s], since the start
+  const std::deque<SecondStats>& seconds() const { return seconds_; }               // the latest last
+  const std::optional<ServiceStatus>& status() const { return status_; }            // the latest
+  std::optional<double> status_received() const { return status_received_; }        // [s]
+  std::optional<double> response_received() const { return response_received_; }    // [s], of the latest
+  std::optional<double> request_received() const { return request_received_; }      // [s], of the latest
+  const std::optional<RequestTime>& request_time() const { return request_time_; }  // of the latest
+  const Sea* sea() const { return scene_->sea(); }       // nullptr: the water is at rest
   std::vector<std::int64_t> services(double now) const;  // instance_ids seen within kStatusTimeout
   ServiceState service_state(double now) const;
 
@@ -138,6 +146,7 @@ class BusMonitor {
   std::deque<SecondStats> seconds_;
   std::optional<ServiceStatus> status_;
   std::optional<double> status_received_, response_received_, request_received_;
+  std::optional<RequestTime> request_time_;
   std::optional<double> waiting_since_;  // [s], arrival of the oldest request after the latest response
   std::vector<Service> services_;
   WrenchRequest request_;  // decode buffers, reused

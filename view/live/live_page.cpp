@@ -37,7 +37,8 @@ Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::s
       resources.push_back({std::move(path), content_type, std::string(page_text(name))});
     }
   };
-  add("text/javascript; charset=utf-8", {"format.js", "water_scene.js", "plots.js", "live.js"});
+  add("text/javascript; charset=utf-8", {"format.js", "sea.js", "water_materials.js", "wave_surface.js",
+                                         "water_scene.js", "plots.js", "live.js"});
   add("text/css; charset=utf-8", {"style.css", "live.css"});
   return resources;
 }

@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "view/common/sea_json.h"
+
 namespace buoyancy::view {
 namespace {
 
@@ -180,18 +182,22 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
   };
   json services = json::array();
   for (const std::int64_t id : monitor.services(now)) services.push_back(std::to_string(id));
-  const json rest{{"number", number},
-                  {"time", time},
-                  {"listening", listening},
-                  {"service", to_string(monitor.service_state(now))},
-                  {"services", services},
-                  {"status", monitor.status() ? status_json(*monitor.status()) : json()},
-                  {"status_age", age(monitor.status_received())},
-                  {"response_age", age(monitor.response_received())},
-                  {"request_age", age(monitor.request_received())},
-                  {"second", monitor.seconds().empty() ? json() : second_json(monitor.seconds().back())},
-                  {"latency", percentiles_json(monitor.latency())},
-                  {"counts", counts_json(monitor)}};
+  json rest{{"number", number},
+            {"time", time},
+            {"listening", listening},
+            {"service", to_string(monitor.service_state(now))},
+            {"services", services},
+            {"status", monitor.status() ? status_json(*monitor.status()) : json()},
+            {"status_age", age(monitor.status_received())},
+            {"response_age", age(monitor.response_received())},
+            {"request_age", age(monitor.request_received())},
+            {"second", monitor.seconds().empty() ? json() : second_json(monitor.seconds().back())},
+            {"latency", percentiles_json(monitor.latency())},
+            {"counts", counts_json(monitor)}};
+  if (const Sea* sea = monitor.sea()) {
+    const std::optional<RequestTime>& request = monitor.request_time();
+    rest["sea_time"] = request ? json(sea_time(*sea, request->utime, request->lead_time)) : json();
+  }
   std::string text = dump(rest);
   text.back() = ',';  // replaces the closing brace
   text += R"("bodies":[)";

@@ -33,6 +33,7 @@ namespace buoyancy::view {
 //   status_age, response_age, request_age   [s], or null
 //   second         the last complete second, same as in history_json, or null
 //   latency        p50, p99, p999, max [s] since the start
+//   sea_time       [s], in waves only: the time t of the sea at the latest request, or null without a request
 //   counts         BusMonitor::Counts and RequestTracker::Counts
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now);

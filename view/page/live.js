@@ -33,6 +33,16 @@
                  selected: model.bodies[0].id, following: false, model, body_statuses };
   window.buoyancyView = view;
 
+  let sea = null, sea_time = NaN;  // of the picture
+  // data: see sea_json.h; null or undefined: water at rest.
+  function use_sea(data) {
+    sea = data ? new Sea(data) : null;
+    if (scene) scene.use_sea(sea);
+  }
+  use_sea(model.sea);
+  // [m], over the level: the elevation that is drawn at the distances x and y along the sea's axes from W's origin.
+  window.buoyancyPage = { surfaceHeight: (x, y) => (sea && Number.isFinite(sea_time) ? sea.elevation(x, y, sea_time) : 0) };
+
   // Time series of the bodies' plots, with one point per track_interval.
   const tracks = { times: [], bodies: new Map() };
   let announced = '';
@@ -95,7 +105,7 @@
       make: bus_series([['median', (second) => milliseconds(second.p50)], ['99 %', (second) => milliseconds(second.p99)]]) },
     { title: 'Messages', unit: '1/s', missing: no_data,
       make: bus_series([['requests', (second) => second.requests], ['responses', (second) => second.responses], ['unanswered', (second) => second.unanswered]]) },
-    { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('origin over the water', 'heave') },
+    { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('origin over the level', 'heave') },
     { title: 'Buoyant force on the body', unit: 'N', missing: no_data, make: body_series('upwards', 'force') },
   ];
   for (const plot of plots) {
@@ -244,8 +254,9 @@
   }
 
   function show_bodies(now) {
+    sea_time = typeof now.sea_time === 'number' ? now.sea_time : NaN;
     if (!scene) return;
-    scene.show(now.bodies.map((body) => ({ ...body, f: body.f || [0, 0, 0], t: body.t || [0, 0, 0] })));
+    scene.show(now.bodies.map((body) => ({ ...body, f: body.f || [0, 0, 0], t: body.t || [0, 0, 0] })), sea_time);
     scene.follow(view.following ? view.selected : null);
     scene.render();
     view.renders += 1;
