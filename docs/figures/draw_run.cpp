@@ -5,7 +5,7 @@
 //
 // Orthographic, seen from above the water: what is above it can hide, but never be hidden by, what is below,
 // so the two are painted one after the other, each back to front. The triangles are cut at the water by the
-// very clip that the solvers use.
+// very clip that the solvers use. In waves, the surface is that of the run's time, shaded.
 //
 // --from-ahead: against the x axis instead, with the water's surface as a line, as stability is drawn: the
 // run's force where it acts, the centre of mass, and the metacentre at that pose. Up has to be +z.
@@ -17,6 +17,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/triangle_clip.h"
 #include "scene/scene.h"
+#include "waves/sea_snapshot.h"
 
 namespace buoyancy {
 namespace {
@@ -85,6 +87,29 @@ Mat3 camera(const View& view) {
       .toRotationMatrix();
 }
 
+// The water's surface at one time.
+class Surface {
+ public:
+  Surface(const Scene& scene, double seconds) : water_(scene.water()) {
+    if (scene.sea() == nullptr) return;
+    waves_.emplace(*scene.sea());
+    waves_->set_time(std::llround(seconds * 1e6));
+  }
+
+  bool is_plane() const { return !waves_; }
+  const Water& water() const { return water_; }
+  // [m], over the level, at the place above or below p_W.
+  double elevation(const Vec3& p_W) const {
+    if (!waves_) return 0.0;
+    const HorizontalAxes& axes = waves_->sea().axes();
+    return waves_->elevation(axes.e1_W.dot(p_W), axes.e2_W.dot(p_W));
+  }
+
+ private:
+  Water water_;
+  std::optional<SeaSnapshot> waves_;
+};
+
 struct Facet {
   std::array<Vec3, 3> corners;  // in the picture's axes
   double light = 0.0;           // that falls on it, 0 to 1
@@ -116,16 +141,23 @@ void add_wet_part(const std::array<ClipVertex<double>, 3>& corner, std::vector<F
                         [&](const auto& a, const auto& b, const auto& c) { add_facet(a, b, c, layer); });
 }
 
-void add_body(const Body& body, const Pose& pose, const Water& water, const Mat3& camera, Layers& layers) {
+void add_body(const Body& body, const Pose& pose, const Surface& surface, const Mat3& camera,
+              Layers& layers) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
-  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  const Mat3 R = camera * pose.q_WB.normalized().toRotationMatrix();
+  const WaterPlane plane = water_plane_in_body(pose, surface.water(), mesh.center_B);
+  const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
+  std::vector<double> heights(mesh.surface.vertex_count());
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const Vec3 y = mesh.vertex(static_cast<std::int32_t>(i));
+    heights[i] = plane.height(y) - surface.elevation(pose.p_WB + R_WB * (mesh.center_B + y));
+  }
+  const Mat3 R = camera * R_WB;
   const Vec3 p = camera * pose.p_WB + R * mesh.center_B;
   for (const Triangle& triangle : mesh.surface.triangles) {
     std::array<ClipVertex<double>, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 y = mesh.vertex(triangle[i]);
-      corner[i] = {Point<double>::from(R * y + p), plane.height(y)};
+      corner[i] = {Point<double>::from(R * y + p), heights[static_cast<std::size_t>(triangle[i])]};
     }
     add_wet_part(corner, layers.below);
     std::vector<Vec3> cut_points;
@@ -213,6 +245,36 @@ void draw_water(std::FILE* file, const Water& water, const View& view, const Pan
   std::fputs("z\"/>\n", file);
 }
 
+// A round piece of the surface in waves, back to front, brighter where it faces the light.
+void draw_waves(const Surface& surface, const View& view, const Panel& panel, double extent,
+                std::FILE* file) {
+  constexpr int kRings = 16;
+  constexpr int kSectors = 48;
+  const Vec3 up = surface.water().up_W;
+  const Vec3 along = up.unitOrthogonal();
+  const Vec3 across = up.cross(along);
+  const Mat3 C = camera(view);
+  const auto point = [&](int ring, int sector) -> ClipVertex<double> {
+    const double angle = 2.0 * std::numbers::pi * sector / kSectors;
+    const Vec3 p_W = surface.water().level * up +
+                     extent * ring / kRings * (std::cos(angle) * along + std::sin(angle) * across);
+    return {Point<double>::from(Vec3(C * (p_W + surface.elevation(p_W) * up))), 0.0};
+  };
+  std::vector<Facet> facets;
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const auto inner = point(ring, sector);
+      const auto outer = point(ring + 1, sector + 1);
+      add_facet(inner, point(ring + 1, sector), outer, facets);
+      if (ring > 0) add_facet(inner, outer, point(ring, sector + 1), facets);
+    }
+  }
+  sort_back_to_front(facets);
+  std::fputs(kFacets, file);
+  panel.facets(facets, {0.72, 0.93, 1.08}, 0.2);
+  std::fputs("</g>\n", file);
+}
+
 void draw_point(std::FILE* file, const Panel& panel, const Vec3& at, const char* colour, const char* letter) {
   std::fprintf(file,
                "<circle cx=\"%d\" cy=\"%d\" r=\"42\" fill=\"%s\" stroke=\"#fff\" stroke-width=\"12\"/>\n"
@@ -245,14 +307,19 @@ void draw_balance(std::FILE* file, const Body& body, const Row& row, const Water
 
 void draw_panel(std::FILE* file, const Scene& scene, const std::map<std::int32_t, Row>& at, const View& view,
                 const Panel& panel, double extent, double metres_per_newton) {
+  const Surface surface(scene, at.empty() ? 0.0 : at.begin()->second.seconds);
   Layers layers;
   for (const auto& [id, row] : at) {
-    if (const Body* body = scene.find(id)) add_body(*body, row.pose, scene.water(), camera(view), layers);
+    if (const Body* body = scene.find(id)) add_body(*body, row.pose, surface, camera(view), layers);
   }
   sort_back_to_front(layers.below);
   sort_back_to_front(layers.above);
 
-  draw_water(file, scene.water(), view, panel, extent);
+  if (surface.is_plane() || view.from_ahead) {
+    draw_water(file, scene.water(), view, panel, extent);
+  } else {
+    draw_waves(surface, view, panel, extent, file);
+  }
   std::fputs(kFacets, file);
   panel.facets(layers.below, view.below, view.ambient);
   std::fputs("</g>\n<g stroke=\"#eaf6fb\" stroke-width=\"14\" stroke-linecap=\"round\">\n", file);

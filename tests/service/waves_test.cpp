@@ -1,0 +1,110 @@
+// The service in waves, over UDP: the sea that it publishes, and one that it receives.
+#include <csignal>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "messages/sea_state.h"
+#include "tests/service/raw_lcm.h"
+#include "tests/service/running_service.h"
+#include "tests/support/scene_of.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy {
+namespace {
+
+std::string box_in(const std::string& water) {
+  return "[water]\n" + water +
+         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [2, 2, 2] }\n";
+}
+const std::string kSwell = "depth = 30.0\nwaves = { type = \"regular\", height = 0.5, period = 5.0 }\n";
+const std::string kHigherSwell = "waves = { type = \"regular\", height = 0.8, period = 5.0 }\n";
+
+SeaState sea_of(const std::string& water, std::int64_t instance_id) {
+  return to_sea_state(*scene_of(box_in(water)).sea(), instance_id);
+}
+
+void send_sea(RawLcmSocket& socket, const SeaState& sea) {
+  std::vector<std::uint8_t> bytes;
+  encode(sea, bytes);
+  socket.send("BUOYANCY_SEA", bytes);
+}
+
+SeaState receive_sea(RawLcmSocket& socket) {
+  const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_SEA", kWaitTimeout);
+  SeaState sea;
+  if (!bytes || decode(*bytes, sea)) throw std::runtime_error("no sea");
+  return sea;
+}
+
+// The response to a request that is sent anew until its status is the wanted one.
+RawWrench wrench_with_status(RawLcmSocket& socket, std::int64_t utime, BodyStatus wanted) {
+  for (std::int64_t seq = 1;; ++seq) {
+    RawStates states = one_body(9, seq, 0.2);
+    states.utime = utime;
+    send_request(socket, states);
+    const RawWrench wrench = receive(socket).bodies.at(0);
+    if (wrench.status == static_cast<std::int32_t>(wanted)) return wrench;
+  }
+}
+
+TEST(ServiceInWaves, PublishesItsSeaOnceASecond) {
+  RawLcmSocket socket;
+  const RunningService service({}, box_in(kSwell));
+  const auto status = wait_for_status(socket, [](const ServiceStatus&) { return true; });
+  ASSERT_TRUE(status);
+  const SeaState expected = sea_of(kSwell, status->instance_id);
+  EXPECT_EQ(receive_sea(socket), expected);
+  EXPECT_EQ(receive_sea(socket), expected);
+}
+
+TEST(ServiceInWaves, PublishesTheNewSeaAfterAReload) {
+  RawLcmSocket socket;
+  RunningService service({}, box_in(kSwell));
+  const SeaState before = receive_sea(socket);
+  service.write("scene.toml", box_in(kHigherSwell));
+  service.child().send_signal(SIGHUP);
+  SeaState after = before;
+  while (after == before) after = receive_sea(socket);
+  EXPECT_EQ(after, sea_of(kHigherSwell, before.instance_id));
+}
+
+TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
+  RawLcmSocket socket;
+  const RunningService service({}, box_in("waves = \"received\"\n"));
+  RawStates early = one_body(9, 0, 0.2);
+  send_request(socket, early);
+  const RawWrench without = receive(socket).bodies.at(0);
+  EXPECT_EQ(without.status, static_cast<std::int32_t>(BodyStatus::kNoSea));
+  EXPECT_EQ(without.force, (std::array<double, 3>{}));
+
+  SeaState sea = sea_of(kSwell, 77);
+  sea.utime = 1'000'000;
+  send_sea(socket, sea);
+  const RawWrench in_waves = wrench_with_status(socket, 2'000'000, BodyStatus::kOk);
+  EXPECT_NE(in_waves.force[0], 0.0);
+  EXPECT_EQ(wrench_with_status(socket, 999'999, BodyStatus::kNoSea).force, (std::array<double, 3>{}));
+
+  SeaState other_gravity = sea;
+  other_gravity.gravity = 9.81;
+  send_sea(socket, other_gravity);
+  const auto status =
+      wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.seas_rejected > 0; });
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->counters.seas_received, 1);
+  EXPECT_GT(status->counters.wave_patches, 0);
+  // The service logs warnings after it has published the status that counts them.
+  ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
+  EXPECT_NE(service.log().find("gravity = 9.81"), std::string::npos) << service.log();
+}
+
+TEST(ServiceInWaves, PublishesNoSeaThatItReceives) {
+  RawLcmSocket socket;
+  const RunningService service({}, box_in("waves = \"received\"\n"));
+  // Two statuses: a sea would have come between them.
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
+  EXPECT_FALSE(socket.receive("BUOYANCY_SEA", 0.0));
+}
+
+}  // namespace
+}  // namespace buoyancy
