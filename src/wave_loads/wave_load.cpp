@@ -108,7 +108,12 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double crest = sea.amplitude_factor() * expansion.amplitude_sums[0];
   if (height - reach_up > crest) return {};
   query.submerged = height + reach_up < -crest;
-  const bool single = body.tolerance >= 1e-4;
+  // Single precision where its rounding leaves room for the tolerance.
+  const double heights = 2.0 * sea.amplitude_factor() * expansion.typical_elevation +
+                         (query.submerged ? 0.0 : std::abs(height) + reach_up);
+  const double single_rounding =
+      kRoundingFactor * 0.5 * std::numeric_limits<float>::epsilon() * heights * body.tree->area;
+  const bool single = body.tolerance >= 1e-4 && single_rounding <= 0.5 * query.budget;
   // The surface that is integrated is not quite where the body's is: the tree's grid, the rounding of the
   // body's position, and that of positions on the body.
   query.displacement =

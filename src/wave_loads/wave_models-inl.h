@@ -169,7 +169,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V two = set<Number>(2.0);
   const V r = radius * set<Number>(query.k_max);
   const V l = set<Number>(query.per_depth);
-  const V rounding = set<Number>(100.0 * query.unit_roundoff);
+  const V rounding = set<Number>(kRoundingFactor * query.unit_roundoff);
 
   const V& eta = surface.eta;
   const V& eta1 = surface.eta_1;
@@ -185,7 +185,8 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V L2 = hn::MulAdd(r, L3, hn::Abs(mean) + deviator);
   const V slope_squared = hn::MulAdd(eta1, eta1, eta2 * eta2);
   const V L1 = hn::MulAdd(r, L2, hn::Sqrt(slope_squared));
-  const V epsilon = hn::MulAdd(rounding, above.sum + hn::Abs(place.zeta), above.truncation);
+  const V of_eta = hn::MulAdd(rounding, above.sum, above.truncation);
+  const V epsilon = hn::MulAdd(rounding, hn::Abs(place.zeta), of_eta);
   const V r_squared_half = half * r * r;
   const V s_variation =
       hn::MulAdd(r, hn::Sqrt(one + slope_squared), r_squared_half * r * L3 * set<Number>(1.0 / 3.0));
@@ -215,7 +216,8 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     g3 = hn::Neg(still);
     H = {surface.eta_11, surface.eta_22, zero, surface.eta_12, zero, zero};
     M3 = L3;
-    delta = hn::MulAdd(set<Number>(query.displacement), still + L1, epsilon);
+    delta = hn::MulAdd(still * rounding, hn::Abs(place.zeta), of_eta) +
+            set<Number>(query.displacement) * (still + L1);
     gamma = zero;
     model.too_steep = hn::Gt(zero, one);
   } else {
@@ -282,7 +284,10 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_reach + R);
     const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
     gamma = q_max * (f.f_3 + R * (vertical + half * R * around.third) + around.slope);
-    model.too_steep = hn::And(hn::Ge(q * (f.f_3 - around.slope), one), hn::Lt(hn::Abs(z), r));
+    // Only where the expansion knows the surface well.
+    const auto near_surface =
+        hn::And(hn::Lt(hn::Abs(z), r), hn::Lt(epsilon, set<Number>(0.01 * query.amplitude)));
+    model.too_steep = hn::And(hn::Ge(q * (f.f_3 - around.slope), one), near_surface);
   }
 
   const auto certain = hn::Or(wet, hn::Lt(gamma, one));

@@ -17,6 +17,9 @@ namespace buoyancy {
 inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 4'096;
 
+// The rounding error of an expansion, over the sum of its terms' absolute values and the unit roundoff.
+inline constexpr double kRoundingFactor = 100.0;
+
 // Cells are boxes of the same size. Lengths over 1 / k_max, horizontally from the body's centre, heights z'
 // over the level.
 struct CellGrid {
