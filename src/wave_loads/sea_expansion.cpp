@@ -159,11 +159,17 @@ SeaExpansion::SeaExpansion(const Sea& sea)
 double SeaExpansion::reach_within(double error) const {
   constexpr double kShortest = 0.1;
   constexpr double kFactor = 0.9;
+  const auto power = [](double x, int n) {
+    double product = 1.0;
+    for (int i = 0; i < n; ++i) product *= x;
+    return product;
+  };
   double reach = 4.0;
   for (; reach > kShortest; reach *= kFactor) {
     const double ratio = 1.0 / (1.0 - reach / (kNormDegree + 2));
-    const double left_out = typical_norm * std::pow(reach, kDegree + 1) * (1.0 + 0.2 * reach) +
-                            tail * std::pow(reach, kNormDegree + 1) * ratio;
+    const double next = power(reach, kDegree + 1);
+    const double left_out =
+        typical_norm * next * (1.0 + 0.2 * reach) + tail * next * power(reach, kNormDegree - kDegree) * ratio;
     if (left_out <= error) break;
   }
   return reach;

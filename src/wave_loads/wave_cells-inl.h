@@ -30,6 +30,9 @@ namespace HWY_NAMESPACE {
 // A vector is stored at the place of its first number; the numbers behind it are overwritten by the next.
 inline constexpr std::size_t kOverhang = 15;
 
+// The degree of the third derivatives that are evaluated. The rest of them is bounded.
+inline constexpr int kThirdDegree = 4;
+
 // Bounds on what an expansion leaves out and on its derivatives, from the norms sigma_l of its degrees.
 template <typename Number>
 struct CellBounds {
@@ -42,6 +45,7 @@ struct alignas(64) SurfaceCell {
   std::array<Number, monomials_to(kDegree) + kOverhang> eta;
   std::array<Number, monomials_to(kDegree - 1) + kOverhang> eta_1, eta_2;
   std::array<Number, monomials_to(kDegree - 2) + kOverhang> eta_11, eta_12, eta_22;
+  std::array<Number, monomials_to(kThirdDegree) + kOverhang> eta_111, eta_112, eta_122, eta_222;
   CellBounds<Number> bounds;
 };
 
@@ -50,6 +54,7 @@ struct alignas(64) VolumeCell {
   std::array<Number, harmonics_to(kDegree) + kOverhang> f;
   std::array<Number, harmonics_to(kDegree - 1) + kOverhang> f_1, f_2, f_3;
   std::array<Number, harmonics_to(kDegree - 2) + kOverhang> f_11, f_12, f_13, f_23, f_33;
+  std::array<Number, harmonics_to(kThirdDegree) + kOverhang> f_111, f_112, f_113, f_123, f_133, f_233, f_333;
   CellBounds<Number> bounds;
 };
 
@@ -217,7 +222,7 @@ constexpr double factorial(int n) {
 }
 
 // Rows of numbers by degree l, with room for vectors that start in a row and for orders below 0.
-inline constexpr std::size_t kBefore = 2;
+inline constexpr std::size_t kBefore = 3;
 inline constexpr std::size_t kRowLength = 32;
 template <typename Number>
 struct alignas(64) DegreeRows {
@@ -245,8 +250,9 @@ HWY_INLINE void for_each_row(int degree, const Store& store) {
 // What monomials are multiplied with when they are differentiated.
 template <typename Number>
 struct MonomialFactors {
-  DegreeRows<Number> in_1, in_2, in_11, in_12, in_22;  // by l and q of the derivative
-  DegreeRows<Number> norm;                             // of Bombieri's norm
+  // By l and q of the derivative.
+  DegreeRows<Number> in_1, in_2, in_11, in_12, in_22, in_111, in_112, in_122, in_222;
+  DegreeRows<Number> norm;  // of Bombieri's norm
 
   MonomialFactors() {
     for (int l = 0; l <= kNormDegree; ++l) {
@@ -257,6 +263,10 @@ struct MonomialFactors {
         in_11.number(l, q) = static_cast<Number>((p + 1) * (p + 2));
         in_12.number(l, q) = static_cast<Number>((p + 1) * (q + 1));
         in_22.number(l, q) = static_cast<Number>((q + 1) * (q + 2));
+        in_111.number(l, q) = static_cast<Number>((p + 1) * (p + 2) * (p + 3));
+        in_112.number(l, q) = static_cast<Number>((p + 1) * (p + 2) * (q + 1));
+        in_122.number(l, q) = static_cast<Number>((p + 1) * (q + 1) * (q + 2));
+        in_222.number(l, q) = static_cast<Number>((q + 1) * (q + 2) * (q + 3));
         norm.number(l, q) = static_cast<Number>(factorial(p) * factorial(q) / factorial(l));
       }
     }
@@ -282,6 +292,12 @@ HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Numbe
     hn::StoreU(factors.in_11.at(l, q) * e.at(l + 2, q), d, &cell.eta_11[place(l, q)]);
     hn::StoreU(factors.in_12.at(l, q) * e.at(l + 2, q + 1), d, &cell.eta_12[place(l, q)]);
     hn::StoreU(factors.in_22.at(l, q) * e.at(l + 2, q + 2), d, &cell.eta_22[place(l, q)]);
+  });
+  for_each_row<Number>(kThirdDegree, [&](int l, int q) {
+    hn::StoreU(factors.in_111.at(l, q) * e.at(l + 3, q), d, &cell.eta_111[place(l, q)]);
+    hn::StoreU(factors.in_112.at(l, q) * e.at(l + 3, q + 1), d, &cell.eta_112[place(l, q)]);
+    hn::StoreU(factors.in_122.at(l, q) * e.at(l + 3, q + 2), d, &cell.eta_122[place(l, q)]);
+    hn::StoreU(factors.in_222.at(l, q) * e.at(l + 3, q + 3), d, &cell.eta_222[place(l, q)]);
   });
   // Bombieri's norm bounds a homogeneous polynomial on the unit circle.
   for (int l = 0; l <= kNormDegree; ++l) {
@@ -344,8 +360,10 @@ HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Numbe
     }
     A.number(l, -1) = -A.number(l, 1);
     A.number(l, -2) = A.number(l, 2);
+    A.number(l, -3) = -A.number(l, 3);
     B.number(l, -1) = B.number(l, 1);
     B.number(l, -2) = -B.number(l, 2);
+    B.number(l, -3) = B.number(l, 3);
   }
   // a(l, m) and b(l, m): the coefficients from (l, m) on.
   const auto store = [&]<std::size_t kNumber>(int degree, std::array<Number, kNumber>& out, const auto& a,
@@ -395,6 +413,36 @@ HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Numbe
   store(
       kDegree - 2, cell.f_33, [&](int l, int m) { return A.at(l + 2, m); },
       [&](int l, int m) { return B.at(l + 2, m); });
+  const V eighth = set<Number>(0.125);
+  const V three = set<Number>(3.0);
+  store(
+      kThirdDegree, cell.f_111,
+      [&](int l, int m) {
+        return eighth * hn::NegMulAdd(three, difference(A, l + 3, m, 1), difference(A, l + 3, m, 3));
+      },
+      [&](int l, int m) {
+        return eighth * hn::NegMulAdd(three, difference(B, l + 3, m, 1), difference(B, l + 3, m, 3));
+      });
+  store(
+      kThirdDegree, cell.f_112,
+      [&](int l, int m) { return eighth * (sum(B, l + 3, m, 3) - sum(B, l + 3, m, 1)); },
+      [&](int l, int m) { return eighth * (sum(A, l + 3, m, 1) - sum(A, l + 3, m, 3)); });
+  store(
+      kThirdDegree, cell.f_113,
+      [&](int l, int m) { return quarter * hn::NegMulAdd(two, A.at(l + 3, m), sum(A, l + 3, m, 2)); },
+      [&](int l, int m) { return quarter * hn::NegMulAdd(two, B.at(l + 3, m), sum(B, l + 3, m, 2)); });
+  store(
+      kThirdDegree, cell.f_123, [&](int l, int m) { return quarter * difference(B, l + 3, m, 2); },
+      [&](int l, int m) { return hn::Neg(quarter * difference(A, l + 3, m, 2)); });
+  store(
+      kThirdDegree, cell.f_133, [&](int l, int m) { return half * difference(A, l + 3, m, 1); },
+      [&](int l, int m) { return half * difference(B, l + 3, m, 1); });
+  store(
+      kThirdDegree, cell.f_233, [&](int l, int m) { return half * sum(B, l + 3, m, 1); },
+      [&](int l, int m) { return hn::Neg(half * sum(A, l + 3, m, 1)); });
+  store(
+      kThirdDegree, cell.f_333, [&](int l, int m) { return A.at(l + 3, m); },
+      [&](int l, int m) { return B.at(l + 3, m); });
   // By Cauchy's inequality and the addition theorem for spherical harmonics.
   for (int l = 0; l <= kNormDegree; ++l) {
     V squares = hn::Zero(d);

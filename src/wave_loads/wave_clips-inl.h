@@ -65,19 +65,27 @@ HWY_INLINE hn::Mask<LanesOf<Number>> leaves(const PatchTree& tree, const UnitsOf
   return hn::Gt(hn::Load(LanesOf<Number>(), blocks.data()), set<Number>(0.0));
 }
 
-// The leaves of the tree whose surface the water's crosses: their triangles are clipped, with the model of
-// the leaf. Triangles of all leaves of a round are clipped together.
+// Leaves of the tree that the surface of the water crosses, with the models that their triangles can be
+// clipped with. Triangles of all leaves of a round are clipped together.
 template <typename Number>
 class Clips {
  public:
   using V = VectorOf<Number>;
 
-  // Keeps the models of a batch, and replaces the integrals of its clipped leaves by what clipping does not
-  // change of their bounds.
-  HWY_INLINE void keep(const PatchQuery<Number>& query, const PatchMoments<Number>& moments,
-                       const PatchModel<Number>& model, const hn::Mask<LanesOf<Number>>& clipped,
-                       PatchIntegrals<Number>& integrals) {
+  void clear() {
+    models_.clear();
+    leaves_.clear();
+    tasks_.clear();
+  }
+
+  // Keeps the models of a batch and returns their number.
+  HWY_INLINE std::uint32_t keep(const PatchQuery<Number>& query, const PatchMoments<Number>& moments,
+                                const PatchModel<Number>& model) {
     const Vectors3<Number> lever = moments.center - axis_of<Number>(query.reference);
+    const V sixth = set<Number>(1.0 / 6.0);
+    const V mu1 = hn::Sqrt(moments.area * moments.mu2);
+    const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
+    const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
     const std::array<V, kModelRows> all{model.phi.value,
                                         model.phi.gradient.x,
                                         model.phi.gradient.y,
@@ -105,55 +113,57 @@ class Clips {
                                         lever.z,
                                         moments.center.x,
                                         moments.center.y,
-                                        moments.center.z};
+                                        moments.center.z,
+                                        remainder,
+                                        hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local)};
     models_.emplace_back();
     for (std::size_t row = 0; row < kModelRows; ++row) {
       hn::Store(all[row], LanesOf<Number>(), models_.back().rows[row].data());
     }
-    const V sixth = set<Number>(1.0 / 6.0);
-    const V mu1 = hn::Sqrt(moments.area * moments.mu2);
-    const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
-    const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
-    clear_where<Number>(clipped, integrals);
-    integrals.force_error = hn::IfThenElse(clipped, remainder, integrals.force_error);
-    integrals.torque_error = hn::IfThenElse(
-        clipped, hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local), integrals.torque_error);
+    return static_cast<std::uint32_t>(models_.size() - 1);
   }
 
-  // Notes the triangles of the clipped leaves of the batch that was kept last; its results are numbered from
-  // `first_result` on.
-  void add(const PatchTree& tree, const UnitsOfVector<Number>& units,
-           const hn::Mask<LanesOf<Number>>& clipped, std::size_t first_result) {
-    std::array<std::uint8_t, 8> bits{};
-    hn::StoreMaskBits(LanesOf<Number>(), clipped, bits.data());
-    const auto model = static_cast<std::uint32_t>(models_.size() - 1);
-    for (std::uint32_t lane = 0; lane < kLanes<Number>; ++lane) {
-      if ((bits[lane / 8] >> (lane % 8) & 1U) == 0) continue;
-      const Unit& unit = units[lane / kUnit<Number>];
-      const PatchBlock& block = tree.blocks[unit.block];
-      const std::size_t place = unit.first + lane % kUnit<Number>;
-      for (std::uint32_t b = 0; b < block.triangle_blocks[place]; ++b) {
-        for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
-          tasks_.push_back({block.child[place] + b, first, model, lane, first_result + lane});
-        }
+  // What clipping does not change of the bound on the force [m^3].
+  Number remainder(std::uint32_t models, std::size_t lane) const {
+    return models_[models].rows[kRemainder][lane];
+  }
+
+  // Notes a leaf that is to be clipped, which has been removed from the results.
+  void add(const PatchBlock& block, std::size_t place, std::uint32_t models, std::size_t result) {
+    const auto lane = static_cast<std::uint32_t>(result % kLanes<Number>);
+    for (std::uint32_t b = 0; b < block.triangle_blocks[place]; ++b) {
+      for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
+        tasks_.push_back({block.child[place] + b, first, models, lane, result});
       }
     }
+    leaves_.push_back({models, lane, result});
   }
 
-  // Clips what was noted and adds it to the results.
+  // Clips what was noted and puts it in the place of the results.
   void finish(const PatchTree& tree, const PatchQuery<Number>& query, Results<Number>& results) {
+    for (const Leaf& leaf : leaves_) {
+      const auto& rows = models_[leaf.models].rows;
+      results.add_errors(leaf.result, rows[kRemainder][leaf.lane], rows[kTorqueRemainder][leaf.lane]);
+    }
     for (std::size_t n = 0; n < tasks_.size(); n += kUnitsPerVector<Number>) {
       const std::size_t count = std::min(kUnitsPerVector<Number>, tasks_.size() - n);
       clip(tree, query, &tasks_[n], count, results);
     }
+    for (const Leaf& leaf : leaves_) results.finish(leaf.result);
+    leaves_.clear();
     tasks_.clear();
-    models_.clear();
   }
 
  private:
-  static constexpr std::size_t kModelRows = 28;
+  static constexpr std::size_t kModelRows = 30;
+  static constexpr std::size_t kRemainder = 28;
+  static constexpr std::size_t kTorqueRemainder = 29;
   struct Models {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kModelRows> rows;
+  };
+  struct Leaf {
+    std::uint32_t models, lane;
+    std::size_t result;
   };
   // kUnit triangles of a leaf.
   struct Task {
@@ -220,6 +230,7 @@ class Clips {
   }
 
   std::vector<Models> models_;
+  std::vector<Leaf> leaves_;
   std::vector<Task> tasks_;
 };
 

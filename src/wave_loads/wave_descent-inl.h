@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,7 +34,7 @@ namespace HWY_NAMESPACE {
 template <typename Number>
 struct UnitPlace {
   std::array<Number, kUnit<Number>> x1, x2, zeta;
-  std::array<Number, kUnit<Number>> eta, eta_1, eta_2, eta_11, eta_12, eta_22;
+  std::array<Number, kUnit<Number>> eta, eta_1, eta_2, eta_11, eta_12, eta_22, eta_third;
 };
 
 template <typename Number>
@@ -56,8 +57,9 @@ class Descent {
   Descent(const WaveQuery& query, DescentWorkspace<Number>& work)
       : query_(query), work_(work), patch_(patch_query_of<Number>(query)) {
     work_.cells.start(query);
-    work_.results.clear();
+    work_.results.start(query.max_lever);
     work_.pieces.clear();
+    work_.clips.clear();
     work_.units.clear();
   }
 
@@ -90,7 +92,7 @@ class Descent {
 
   // The blocks of the first level that has at least kFirst of them.
   void add_first_level() {
-    constexpr std::size_t kFirst = 4;
+    constexpr std::size_t kFirst = 16;
     std::vector<std::uint32_t>& level = work_.level;
     level.assign(1, 0);
     while (level.size() < kFirst) {
@@ -106,7 +108,32 @@ class Descent {
       if (!all_inner) break;
       level.swap(work_.next_level);
     }
-    for (const std::uint32_t b : level) add_block(b);
+    for (const std::uint32_t b : level) {
+      const PatchBlock& block = query_.tree->blocks[b];
+      // A model of a leaf that is too large would be of no use.
+      bool large = false;
+      for (std::size_t lane = 0; lane < block.patches; ++lane) {
+        large |= block.triangle_blocks[lane] > 0 && static_cast<double>(block.radius[lane]) > largest_piece();
+      }
+      if (!large) {
+        add_block(b);
+        continue;
+      }
+      for (std::size_t lane = 0; lane < block.patches; ++lane) {
+        if (block.triangle_blocks[lane] > 0) {
+          work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
+        } else {
+          add_block(block.child[lane]);
+        }
+      }
+    }
+  }
+
+  // The radius of pieces [m] at which their models begin to be of use; more where there would be too many.
+  double largest_piece() const {
+    constexpr double kMaxPieceReach = 1.1;
+    constexpr double kFirstPieces = 1000.0;
+    return std::max(kMaxPieceReach / patch_.k_max, std::sqrt(query_.tree->area / kFirstPieces));
   }
 
   void add_block(std::uint32_t block) {
@@ -120,9 +147,10 @@ class Descent {
     }
   }
 
-  // Replaces results above a threshold by those of their children. Returns whether there are any.
+  // Replaces results above a threshold by those of their children, or clips them. Returns whether there are
+  // any.
   bool refine() {
-    const double limit = refinement_limit(work_.results.errors(), work_.results.total(), query_.budget);
+    const double limit = refinement_limit(work_.results.errors(), work_.results.expected(), query_.budget);
     const std::size_t count = work_.results.errors().size();
     bool any = false;
     for (std::size_t n = 0; n < count; ++n) {
@@ -131,17 +159,22 @@ class Descent {
       any = true;
       const Unit unit = work_.results.unit_of(n);
       const std::size_t lane = unit.first + n % kUnit<Number>;
+      const std::uint32_t models = work_.results.clip_models(n);
+      // Where children are expected to be above the limit as well.
+      const bool grandchildren = static_cast<double>(work_.results.expected()[n]) > kChildrenAbove * limit;
       work_.results.remove(n);
-      const bool far_above = error > kEachDecay * limit;
       if (unit.of_pieces) {
-        work_.pieces.bisect(unit, lane, far_above ? 2 : 1);
+        work_.pieces.quarter(unit, lane);
+        continue;
+      }
+      const PatchBlock& block = query_.tree->blocks[unit.block];
+      if (block.triangle_blocks[lane] == 0) {
+        add_children(block.child[lane], grandchildren);
+      } else if (models != kNone &&
+                 static_cast<double>(work_.clips.remainder(models, n % kLanes<Number>)) < limit) {
+        work_.clips.add(block, lane, models, n);
       } else {
-        const PatchBlock& block = query_.tree->blocks[unit.block];
-        if (block.triangle_blocks[lane] > 0) {
-          work_.pieces.add_triangles(*query_.tree, block, lane);
-        } else {
-          add_children(block.child[lane], far_above);
-        }
+        work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
       }
     }
     return any;
@@ -175,7 +208,6 @@ class Descent {
       });
     }
     work_.clips.finish(*query_.tree, patch_, work_.results);
-    work_.results.finish_round(query_.max_lever);
     work_.units.clear();
   }
 
@@ -295,6 +327,7 @@ class Descent {
       write(batch, values.eta_11, &UnitPlace<Number>::eta_11);
       write(batch, values.eta_12, &UnitPlace<Number>::eta_12);
       write(batch, values.eta_22, &UnitPlace<Number>::eta_22);
+      write(batch, values.third, &UnitPlace<Number>::eta_third);
     });
   }
 
@@ -303,15 +336,16 @@ class Descent {
     const Place<Number> place{read(batch, &UnitPlace<Number>::x1), read(batch, &UnitPlace<Number>::x2),
                               read(batch, &UnitPlace<Number>::zeta)};
     const SurfaceValues<Number> surface{
-        read(batch, &UnitPlace<Number>::eta),    read(batch, &UnitPlace<Number>::eta_1),
-        read(batch, &UnitPlace<Number>::eta_2),  read(batch, &UnitPlace<Number>::eta_11),
-        read(batch, &UnitPlace<Number>::eta_12), read(batch, &UnitPlace<Number>::eta_22)};
+        read(batch, &UnitPlace<Number>::eta),      read(batch, &UnitPlace<Number>::eta_1),
+        read(batch, &UnitPlace<Number>::eta_2),    read(batch, &UnitPlace<Number>::eta_11),
+        read(batch, &UnitPlace<Number>::eta_12),   read(batch, &UnitPlace<Number>::eta_22),
+        read(batch, &UnitPlace<Number>::eta_third)};
     const CellCenter& above = work_.cells.surface_center(surface_cell);
     const V x1 = place.x1 - set<Number>(above.x1);
     const V x2 = place.x2 - set<Number>(above.x2);
     const V horizontal = hn::MulAdd(x1, x1, x2 * x2);
     const CellBounds<Number>& surface_bounds = work_.cells.surface(surface_cell).bounds;
-    VolumeValues<Number> f{zero, zero, zero, zero, zero, zero, zero, zero, zero};
+    VolumeValues<Number> f{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
     V volume_reach = zero;
     const CellBounds<Number>* volume_bounds = &surface_bounds;
     if (!query_.hydrostatic) {
@@ -338,7 +372,7 @@ class Descent {
       PatchIntegrals<Number> integrals = integrate<Number>(patch_, piece, model);
       clear_where<Number>(hn::Or(model.dry, hn::Not(in_use)), integrals);
       patches_ += hn::CountTrue(LanesOf<Number>(), hn::AndNot(model.dry, in_use));
-      work_.results.add(units, integrals);
+      work_.results.add(units, integrals, Clippable());
     } else {
       const PatchMoments<Number> moments = read_moments<Number>(*query_.tree, units);
       const PatchModel<Number> model = model_at(moments.radius);
@@ -347,14 +381,13 @@ class Descent {
       patches_ += hn::CountTrue(LanesOf<Number>(), counts);
       PatchIntegrals<Number> integrals = integrate<Number>(patch_, moments, model);
       clear_where<Number>(hn::Not(counts), integrals);
-      auto clipped = hn::AndNot(model.whole, counts);
-      if (!hn::AllFalse(LanesOf<Number>(), clipped)) {
-        clipped = hn::And(clipped, leaves<Number>(*query_.tree, units));
+      Clippable clippable;
+      const auto crossing = hn::AndNot(model.whole, counts);
+      if (!hn::AllFalse(LanesOf<Number>(), crossing)) {
+        clippable.lanes = bits_of<Number>(hn::And(crossing, leaves<Number>(*query_.tree, units)));
+        if (clippable.lanes != 0) clippable.models = work_.clips.keep(patch_, moments, model);
       }
-      const bool any_clipped = !hn::AllFalse(LanesOf<Number>(), clipped);
-      if (any_clipped) work_.clips.keep(patch_, moments, model, clipped, integrals);
-      const std::size_t first = work_.results.add(units, integrals);
-      if (any_clipped) work_.clips.add(*query_.tree, units, clipped, first);
+      work_.results.add(units, integrals, clippable);
     }
   }
 

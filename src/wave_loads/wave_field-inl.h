@@ -22,11 +22,13 @@ namespace HWY_NAMESPACE {
 template <typename Number>
 struct SurfaceValues {
   VectorOf<Number> eta, eta_1, eta_2, eta_11, eta_12, eta_22;
+  VectorOf<Number> third;  // bound on the operator norm of the third derivative, without `third_rest`
 };
 
 template <typename Number>
 struct VolumeValues {
   VectorOf<Number> f, f_1, f_2, f_3, f_11, f_12, f_13, f_23, f_33;
+  VectorOf<Number> third;  // bound on the operator norm of the third derivative, without `third_rest`
 };
 
 // Horner's scheme in two variables.
@@ -47,6 +49,20 @@ HWY_INLINE VectorOf<Number> polynomial(const std::array<Number, kNumber>& terms,
   return sum;
 }
 
+// A bound on the operator norm of a symmetric 2 x 2 x 2 tensor: its part without a trace t has the norm
+// |(t_111, t_112)|, and a vector v times the metric that of v.
+template <typename Number>
+HWY_INLINE VectorOf<Number> norm_of_third(const VectorOf<Number>& t111, const VectorOf<Number>& t112,
+                                          const VectorOf<Number>& t122, const VectorOf<Number>& t222) {
+  const auto quarter = set<Number>(0.25);
+  const auto three = set<Number>(3.0);
+  const auto v1 = t111 + t122;
+  const auto v2 = t112 + t222;
+  const auto w1 = hn::NegMulAdd(three, t122, t111);
+  const auto w2 = hn::MulSub(three, t112, t222);
+  return quarter * (three * hn::Sqrt(hn::MulAdd(v1, v1, v2 * v2)) + hn::Sqrt(hn::MulAdd(w1, w1, w2 * w2)));
+}
+
 // x1, x2: from the cell's centre, over 1 / k_max.
 template <typename Number>
 HWY_INLINE SurfaceValues<Number> evaluate(const SurfaceCell<Number>& cell, const VectorOf<Number>& x1,
@@ -56,7 +72,11 @@ HWY_INLINE SurfaceValues<Number> evaluate(const SurfaceCell<Number>& cell, const
           polynomial<kDegree - 1, Number>(cell.eta_2, x1, x2),
           polynomial<kDegree - 2, Number>(cell.eta_11, x1, x2),
           polynomial<kDegree - 2, Number>(cell.eta_12, x1, x2),
-          polynomial<kDegree - 2, Number>(cell.eta_22, x1, x2)};
+          polynomial<kDegree - 2, Number>(cell.eta_22, x1, x2),
+          norm_of_third<Number>(polynomial<kThirdDegree, Number>(cell.eta_111, x1, x2),
+                                polynomial<kThirdDegree, Number>(cell.eta_112, x1, x2),
+                                polynomial<kThirdDegree, Number>(cell.eta_122, x1, x2),
+                                polynomial<kThirdDegree, Number>(cell.eta_222, x1, x2))};
 }
 
 template <typename Number>
@@ -93,10 +113,29 @@ HWY_INLINE VolumeValues<Number> evaluate(const VolumeCell<Number>& cell, const V
     }
   }
   const V zero = hn::Zero(d);
-  VolumeValues<Number> v{zero, zero, zero, zero, zero, zero, zero, zero, zero};
-  const auto add = [&](std::size_t t, V& sum, const auto& terms) {
-    sum = hn::MulAdd(u[t], hn::Set(d, terms[t]), sum);
-  };
+  VolumeValues<Number> v{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  V f_111 = zero, f_112 = zero, f_113 = zero, f_123 = zero, f_133 = zero, f_233 = zero, f_333 = zero;
+  const auto add = [&](std::size_t t, V& sum, const auto& terms)
+                       HWY_ATTR { sum = hn::MulAdd(u[t], hn::Set(d, terms[t]), sum); };
+  for (std::size_t t = 0; t < harmonics_to(kThirdDegree); ++t) {
+    add(t, f_111, cell.f_111);
+    add(t, f_112, cell.f_112);
+    add(t, f_113, cell.f_113);
+    add(t, f_123, cell.f_123);
+    add(t, f_133, cell.f_133);
+    add(t, f_233, cell.f_233);
+    add(t, f_333, cell.f_333);
+  }
+  // A harmonic function's third derivative has no trace. Its operator norm is at most sqrt(2/5) times its
+  // Frobenius norm.
+  const V f_122 = hn::Neg(f_111 + f_133);
+  const V f_222 = hn::Neg(f_112 + f_233);
+  const V f_223 = hn::Neg(f_113 + f_333);
+  const V once = hn::MulAdd(f_111, f_111, hn::MulAdd(f_222, f_222, f_333 * f_333));
+  const V thrice = hn::MulAdd(f_112, f_112, f_113 * f_113) + hn::MulAdd(f_122, f_122, f_223 * f_223) +
+                   hn::MulAdd(f_133, f_133, f_233 * f_233);
+  const V squares = hn::MulAdd(set<Number>(3.0), thrice, hn::MulAdd(set<Number>(6.0) * f_123, f_123, once));
+  v.third = hn::Sqrt(set<Number>(0.4) * squares);
   for (std::size_t t = 0; t < harmonics_to(kDegree - 2); ++t) {
     add(t, v.f, cell.f);
     add(t, v.f_1, cell.f_1);
@@ -125,6 +164,8 @@ struct ReachBounds {
   VectorOf<Number> truncation;  // [m], e_0
   VectorOf<Number> slope;       // [m k_max], e_1
   VectorOf<Number> third;       // [m k_max^3], G_3
+  VectorOf<Number> fourth;      // [m k_max^4], G_4
+  VectorOf<Number> third_rest;  // [m k_max^3], what of G_3 has a degree above kThirdDegree
   VectorOf<Number> sum;         // [m], sum of sigma_l reach^l
 };
 
@@ -135,13 +176,22 @@ HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const
   ReachBounds<Number> result;
   result.sum = sigma(kDegree);
   result.third = set<Number>(1.0 * kDegree * (kDegree - 1) * (kDegree - 2)) * sigma(kDegree);
+  result.fourth = set<Number>(1.0 * kDegree * (kDegree - 1) * (kDegree - 2) * (kDegree - 3)) * sigma(kDegree);
+  result.third_rest = result.third;
 #pragma GCC unroll 16
   for (int l = kDegree - 1; l >= 0; --l) {
     result.sum = hn::MulAdd(result.sum, reach, sigma(l));
+    if (l >= 4) {
+      result.fourth =
+          hn::MulAdd(result.fourth, reach, set<Number>(1.0 * l * (l - 1) * (l - 2) * (l - 3)) * sigma(l));
+    }
     if (l >= 3) {
+      if (l == kThirdDegree + 3) result.third_rest = result.third;
       result.third = hn::MulAdd(result.third, reach, set<Number>(1.0 * l * (l - 1) * (l - 2)) * sigma(l));
     }
   }
+  // From the terms above kThirdDegree to the power of theirs.
+  for (int power = 0; power <= kThirdDegree; ++power) result.third_rest = result.third_rest * reach;
   // Degrees above kNormDegree: a geometric series, which ends where the ratio reaches one.
   constexpr int kTail = kNormDegree + 1;
   const auto one = set<Number>(1.0);

@@ -26,6 +26,8 @@ struct PatchIntegrals {
   VectorOf<Number> volume;  // [m^3]
   Vectors3<Number> moment;  // [m^4], int (x - c) dV
   VectorOf<Number> force_error, torque_error;
+  VectorOf<Number>
+      expected;  // estimate of the sum of the force errors once the patch is replaced by its children
 };
 
 template <typename Number>
@@ -137,7 +139,7 @@ HWY_INLINE void clear_where(const hn::Mask<LanesOf<Number>>& mask, PatchIntegral
   for (VectorOf<Number>* v :
        {&integrals.force.x, &integrals.force.y, &integrals.force.z, &integrals.torque.x, &integrals.torque.y,
         &integrals.torque.z, &integrals.volume, &integrals.moment.x, &integrals.moment.y, &integrals.moment.z,
-        &integrals.force_error, &integrals.torque_error}) {
+        &integrals.force_error, &integrals.torque_error, &integrals.expected}) {
     *v = hn::IfThenZeroElse(mask, *v);
   }
 }
@@ -191,7 +193,14 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V mu1 = hn::Sqrt(m.area * m.mu2);
   const V remainder = model.third * m.mu3 * set<Number>(1.0 / 6.0) + model.delta * m.area;
   const V of_hessian = hn::IfThenElse(model.whole, set<Number>(0.0), set<Number>(0.25));
-  result.force_error = remainder + phi.quadratic_error * m.area + of_hessian * model.curvature * m.mu2;
+  const V of_crossing = phi.quadratic_error * m.area + of_hessian * model.curvature * m.mu2;
+  result.force_error = remainder + of_crossing;
+  // Radii halve, and the surface crosses about half of the children.
+  const V quarter = set<Number>(0.25);
+  // The order of the operands matters where the first is not a number.
+  result.expected = hn::Min(hn::MulAdd(model.third_of_parts, m.mu3 * set<Number>(1.0 / 48.0),
+                                       quarter * hn::MulAdd(model.delta_of_parts, m.area, of_crossing)),
+                            quarter * result.force_error);
   const V local = phi.linear_error * mu1 + model.delta * mu1 +
                   half * hn::MulAdd(model.third * m.radius, set<Number>(1.0 / 3.0), model.curvature) * m.mu3;
   result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -122,6 +123,15 @@ HWY_INLINE VectorOf<Number> frobenius_squared(const Symmetric<Number>& h) {
   const auto two = set<Number>(2.0);
   const auto off = hn::MulAdd(h[3], h[3], hn::MulAdd(h[4], h[4], h[5] * h[5]));
   return hn::MulAdd(two, off, hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], h[2] * h[2])));
+}
+
+// The lanes of a mask, the first in the lowest bit.
+template <typename Number>
+HWY_INLINE std::uint32_t bits_of(const hn::Mask<LanesOf<Number>>& mask) {
+  static_assert(kLanes<Number> <= 16);
+  std::array<std::uint8_t, 8> bits{};
+  hn::StoreMaskBits(LanesOf<Number>(), mask, bits.data());
+  return bits[0] + 256U * bits[1];
 }
 
 template <typename Number>

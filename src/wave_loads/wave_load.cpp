@@ -3,39 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <Eigen/Geometry>
 
-#define HWY_BROKEN_EMU128 1
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "wave_loads/wave_load.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
-
-#include "wave_loads/wave_descent-inl.h"
 #include "wave_loads/wave_query.h"
 
-HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
-namespace HWY_NAMESPACE {
-
-WaveLoad wave_load_single(const WaveQuery& query) {
-  return run_descent<float>(query);
-}
-WaveLoad wave_load_double(const WaveQuery& query) {
-  return run_descent<double>(query);
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace buoyancy
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace buoyancy {
-
-HWY_EXPORT(wave_load_single);
-HWY_EXPORT(wave_load_double);
 
 namespace {
 
@@ -55,9 +30,10 @@ CellGrid grid_over(const std::array<double, 3>& low, const std::array<double, 3>
     }
     return axis;
   };
-  // Very long boxes at once.
+  // Of very long boxes, most at once.
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    cells[axis] = std::max(1.0, std::floor(edge(axis) / (2.0 * reach)));
+    const double fewest = std::floor(edge(axis) / (2.0 * reach));
+    cells[axis] = std::max(1.0, fewest > 16.0 ? std::floor(1.6 * fewest) : fewest);
   }
   while (std::hypot(edge(0), edge(1), edge(2)) > 2.0 * reach) cells[longest()] += 1.0;
   for (std::size_t axis = 0; axis < 3; ++axis) grid.edge[axis] = edge(axis);
@@ -121,8 +97,8 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
       mesh.diagonal *
           (single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon());
   query.steepest = steepest_pressure(sea, expansion);
-  // Truncation over the whole surface takes a small share of the tolerance.
-  constexpr double kTruncationShare = 0.04;
+  // Truncation where it is largest, over the whole surface, as a share of the tolerance: it takes less of it.
+  constexpr double kTruncationShare = 0.4;
   const double reach =
       expansion.reach_within(kTruncationShare * query.budget / (body.tree->area * sea.amplitude_factor()));
   const double k = expansion.k_max;
@@ -135,8 +111,7 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double bottom = std::min(height - reach_up - usual, top);
   query.grid = grid_over({k * (middle_1 - reach_1), k * (middle_2 - reach_2), k * bottom},
                          {k * (middle_1 + reach_1), k * (middle_2 + reach_2), k * top}, reach);
-  WaveLoad load =
-      single ? HWY_DYNAMIC_DISPATCH(wave_load_single)(query) : HWY_DYNAMIC_DISPATCH(wave_load_double)(query);
+  WaveLoad load = single ? descend_in_single_precision(query) : descend_in_double_precision(query);
   if (query.submerged) {
     load.force += mesh.volume * query.up_B;
     const Vec3 lever = mesh.centroid - query.reference;
@@ -151,4 +126,3 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
 }
 
 }  // namespace buoyancy
-#endif  // HWY_ONCE

@@ -81,6 +81,8 @@ struct PatchModel {
   Quadratic<Number> phi;                 // model of the pressure over rho g
   Quadratic<Number> s;                   // of the height over the surface
   VectorOf<Number> third;                // [1/m^2], M_3; 0 where the model is linear by intent
+  VectorOf<Number> third_of_parts;       // [1/m^2], an estimate of M_3 for patches of half the radius
+  VectorOf<Number> delta_of_parts;       // [m], an estimate as well
   VectorOf<Number> curvature;            // [1/m], |H|
   VectorOf<Number> delta;                // [m], error of the model over the whole patch
   hn::Mask<LanesOf<Number>> dry, whole;  // nothing is wet; all is, so that nothing is clipped
@@ -153,6 +155,15 @@ HWY_INLINE VectorOf<Number> stretched(const PatchQuery<Number>& query, const Pla
   return (place.zeta - eta) / hn::MulAdd(eta, set<Number>(query.per_depth), one);
 }
 
+// A bound on the third derivative within a distance of a point, by that at the point and by the cell's norms.
+// bounds: at the farthest reach.
+template <typename Number>
+HWY_INLINE VectorOf<Number> third_within(const VectorOf<Number>& at_point, const ReachBounds<Number>& bounds,
+                                         const VectorOf<Number>& distance, const VectorOf<Number>& rounding) {
+  const VectorOf<Number> there = hn::MulAdd(rounding, bounds.third, at_point + bounds.third_rest);
+  return hn::Min(bounds.third, hn::MulAdd(distance, bounds.fourth, there));
+}
+
 // radius: [m]. surface, surface_cells: the cell of the surface; f: of the volume, unused where the pressure
 // is hydrostatic.
 template <typename Number>
@@ -167,6 +178,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V one = set<Number>(1.0);
   const V half = set<Number>(0.5);
   const V two = set<Number>(2.0);
+  const V three = set<Number>(3.0);
   const V r = radius * set<Number>(query.k_max);
   const V l = set<Number>(query.per_depth);
   const V rounding = set<Number>(kRoundingFactor * query.unit_roundoff);
@@ -181,8 +193,9 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V mean = half * (surface.eta_11 + surface.eta_22);
   const V difference = half * (surface.eta_11 - surface.eta_22);
   const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
-  const V L3 = above.third;
-  const V L2 = hn::MulAdd(r, L3, hn::Abs(mean) + deviator);
+  const V L3 = third_within<Number>(surface.third, above, r, rounding);
+  const V L2_at_point = hn::Abs(mean) + deviator;
+  const V L2 = hn::MulAdd(r, L3, L2_at_point);
   const V slope_squared = hn::MulAdd(eta1, eta1, eta2 * eta2);
   const V L1 = hn::MulAdd(r, L2, hn::Sqrt(slope_squared));
   const V of_eta = hn::MulAdd(rounding, above.sum, above.truncation);
@@ -207,6 +220,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
 
   const V still = set<Number>(query.submerged ? 0.0 : 1.0);
   V value, g1, g2, g3, M3, delta, gamma;
+  V M3_at_point;    // about M_3 of a small patch
   V stretch = one;  // bound on q
   Symmetric<Number> H;
   if (query.hydrostatic) {
@@ -216,6 +230,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     g3 = hn::Neg(still);
     H = {surface.eta_11, surface.eta_22, zero, surface.eta_12, zero, zero};
     M3 = L3;
+    M3_at_point = surface.third;
     delta = hn::MulAdd(still * rounding, hn::Abs(place.zeta), of_eta) +
             set<Number>(query.displacement) * (still + L1);
     gamma = zero;
@@ -267,12 +282,14 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const ReachBounds<Number> inside =
         bounds_at<Number>(volume_bounds, volume_reach + hn::MulAdd(r, V1, shift));
     const Symmetric<Number> Df2{f.f_11, f_22, f.f_33, f.f_12, f.f_13, f.f_23};
-    const V F3 = inside.third;
+    const V F3 = third_within<Number>(f.third, inside, r * V1, rounding);
     // The largest eigenvalue of a traceless symmetric matrix is at most sqrt(2/3) times its Frobenius norm.
-    const V F2 = hn::MulAdd(r * V1, F3, hn::Sqrt(set<Number>(2.0 / 3.0) * frobenius_squared<Number>(Df2)));
+    const V F2_at_point = hn::Sqrt(set<Number>(2.0 / 3.0) * frobenius_squared<Number>(Df2));
+    const V F2 = hn::MulAdd(r * V1, F3, F2_at_point);
     const V Df = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
     const V F1 = hn::MulAdd(r * V1, F2, Df);
-    M3 = F3 * V1 * V1 * V1 + set<Number>(3.0) * F2 * V1 * V2 + F1 * V3;
+    M3_at_point = f.third + three * F2_at_point * L2_at_point + Df * surface.third;
+    M3 = F3 * V1 * V1 * V1 + three * F2 * V1 * V2 + F1 * V3;
     delta = hn::MulAdd(F1, shift, inside.truncation) +
             rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
             set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
@@ -283,7 +300,8 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V R = hn::Sqrt(hn::MulAdd(r, r, column * column));
     const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_reach + R);
     const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
-    gamma = q_max * (f.f_3 + R * (vertical + half * R * around.third) + around.slope);
+    const V third = third_within<Number>(f.third, around, R, rounding);
+    gamma = q_max * (f.f_3 + R * (vertical + half * R * third) + around.slope);
     // Only where the expansion knows the surface well.
     const auto near_surface =
         hn::And(hn::Lt(hn::Abs(z), r), hn::Lt(epsilon, set<Number>(0.01 * query.amplitude)));
@@ -314,8 +332,12 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   model.phi = in_body_axes<Number>(
       query, model_value,
       {select(g1, eta1, zero), select(g2, eta2, zero), select(g3, hn::Neg(one), hn::Neg(still))}, H);
-  model.third = hn::IfThenElseZero(use_quadratic, M3) * set<Number>(query.k_max * query.k_max);
+  const V per_area = set<Number>(query.k_max * query.k_max);
+  model.third = hn::IfThenElseZero(use_quadratic, M3) * per_area;
+  // Bounds over a ball grow faster than exponentially with its radius.
+  model.third_of_parts = hn::Sqrt(hn::Sqrt(M3 * M3_at_point) * M3_at_point) * per_area;
   model.curvature = hn::Sqrt(frobenius_squared<Number>(H)) * set<Number>(query.k_max);
+  model.delta_of_parts = hn::IfThenElseZero(use_quadratic, delta) * set<Number>(1.0 / query.k_max);
   // The rounding of the integrals themselves.
   const auto flat = hn::Not(hn::Or(use_quadratic, use_tangent));
   const V steepness = one + hn::IfThenZeroElse(flat, L1 + hn::IfThenElseZero(use_quadratic, hn::Abs(g3)));

@@ -6,6 +6,7 @@
 #define BUOYANCY_WAVE_PIECES_INL_H
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -60,7 +61,13 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V sixth = set<Number>(1.0 / 6.0);
   const V remainder = area * hn::MulAdd(model.third * mean3, sixth, model.delta);
   const V local = area * hn::MulAdd(model.delta, hn::Sqrt(mean2), sixth * model.third * piece.radius * mean3);
+  const V quarter = set<Number>(0.25);
   result.force_error = result.force_error + remainder;
+  const V of_clipping = quarter * quarter * (result.force_error - remainder);
+  // The order of the operands matters where the first is not a number.
+  result.expected = hn::Min(hn::MulAdd(area * model.third_of_parts, mean3 * set<Number>(1.0 / 48.0),
+                                       hn::MulAdd(quarter * model.delta_of_parts, area, of_clipping)),
+                            quarter * result.force_error);
   result.torque_error =
       result.torque_error + hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local);
   return result;
@@ -77,8 +84,8 @@ class Pieces {
     taken_ = 0;
   }
 
-  // Adds the triangles of a leaf.
-  void add_triangles(const PatchTree& tree, const PatchBlock& block, std::size_t lane) {
+  // Adds the triangles of a leaf, cut until their radii are at most `largest` [m].
+  void add_triangles(const PatchTree& tree, const PatchBlock& block, std::size_t lane, double largest) {
     for (std::uint32_t b = 0; b < block.triangle_blocks[lane]; ++b) {
       const TriangleBlock& triangles = tree.triangles[block.child[lane] + b];
       for (std::size_t i = 0; i < kSiblings; ++i) {
@@ -89,23 +96,22 @@ class Pieces {
           point &= from_center == triangles.corners[row % 3][i];
           piece[row] = static_cast<Number>(block.center[row % 3][lane]) + static_cast<Number>(from_center);
         }
-        if (!point) add(piece);
+        if (!point) cut(piece, static_cast<Number>(largest * largest));
       }
     }
+    fill_unit();
   }
 
-  // Adds the two halves of a piece, or their halves: across the longest edges. unit: of pieces.
-  void bisect(const Unit& unit, std::size_t lane, int times) { bisect(read(unit.block, lane), times); }
+  // Adds the four quarters of a piece: it and its halves are bisected across their longest edges. They are
+  // neighbours, so that they fill a unit. unit: of pieces.
+  void quarter(const Unit& unit, std::size_t lane) {
+    bisect(read(unit.block, lane), 2, [this](const Piece& piece) { add(piece); });
+    fill_unit();
+  }
 
   // Calls take(unit) for the units of the pieces that were added since the last call.
   template <typename Take>
   void take_new(const Take& take) {
-    // Points fill the last unit: nothing is integrated over them.
-    if (count_ % kUnit<Number> != 0) {
-      Piece point = read(static_cast<std::uint32_t>((count_ - 1) / kSiblings), (count_ - 1) % kSiblings);
-      for (std::size_t row = 3; row < kRows; ++row) point[row] = point[row % 3];
-      while (count_ % kUnit<Number> != 0) add(point);
-    }
     for (; taken_ < count_; taken_ += kUnit<Number>) {
       Unit unit;
       unit.block = static_cast<std::uint32_t>(taken_ / kSiblings);
@@ -153,19 +159,53 @@ class Pieces {
     return piece;
   }
 
-  void bisect(const Piece& piece, int times) {
-    if (times == 0) {
-      add(piece);
-      return;
+  // Fills the last unit with points: nothing is integrated over them.
+  void fill_unit() {
+    if (count_ % kUnit<Number> == 0) return;
+    Piece point = read(static_cast<std::uint32_t>((count_ - 1) / kSiblings), (count_ - 1) % kSiblings);
+    for (std::size_t row = 3; row < kRows; ++row) point[row] = point[row % 3];
+    while (count_ % kUnit<Number> != 0) add(point);
+  }
+
+  static Number squared_distance(const Piece& piece, std::size_t from, std::size_t to) {
+    Number squared = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Number difference = piece[3 * to + axis] - piece[3 * from + axis];
+      squared += difference * difference;
     }
+    return squared;
+  }
+
+  // Adds the parts of a piece in an order in which neighbours follow each other.
+  void cut(const Piece& piece, Number largest_squared) {
+    if (squared_radius(piece) <= largest_squared) {
+      add(piece);
+    } else {
+      bisect(piece, 1, [&](const Piece& part) { cut(part, largest_squared); });
+    }
+  }
+
+  static Number squared_radius(const Piece& piece) {
+    Number largest = 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      Number squared = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Number center = (piece[axis] + piece[3 + axis] + piece[6 + axis]) / Number{3};
+        squared += (piece[3 * corner + axis] - center) * (piece[3 * corner + axis] - center);
+      }
+      largest = std::max(largest, squared);
+    }
+    return largest;
+  }
+
+  // Calls take() for the parts of a piece.
+  template <typename Take>
+  static void bisect(const Piece& piece, int times, const Take& take) {
+    if (times == 0) return take(piece);
     std::size_t longest = 0;
     Number length = -1;
     for (std::size_t i = 0; i < 3; ++i) {
-      Number squared = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Number difference = piece[3 * ((i + 1) % 3) + axis] - piece[3 * i + axis];
-        squared += difference * difference;
-      }
+      const Number squared = squared_distance(piece, i, (i + 1) % 3);
       if (squared > length) {
         length = squared;
         longest = i;
@@ -180,8 +220,8 @@ class Pieces {
       first[to + axis] = middle;
       second[from + axis] = middle;
     }
-    bisect(first, times - 1);
-    bisect(second, times - 1);
+    bisect(first, times - 1, take);
+    bisect(second, times - 1, take);
   }
 
   std::vector<Block> blocks_;

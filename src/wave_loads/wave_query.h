@@ -1,4 +1,4 @@
-// Internal to wave_load.cpp: what its instruction sets share.
+// Internal to wave_load.cpp and its descents: what all instruction sets share.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "wave_loads/patch_tree.h"
 #include "wave_loads/sea_expansion.h"
+#include "wave_loads/wave_load.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {
@@ -46,5 +47,10 @@ struct WaveQuery {
 
   bool deep_water() const { return std::isinf(depth); }
 };
+
+// The load by a descent through the patches, with the best instruction set of this processor. One source
+// each, so that they compile at the same time.
+WaveLoad descend_in_single_precision(const WaveQuery& query);
+WaveLoad descend_in_double_precision(const WaveQuery& query);
 
 }  // namespace buoyancy

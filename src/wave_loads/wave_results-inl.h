@@ -6,7 +6,9 @@
 #define BUOYANCY_WAVE_RESULTS_INL_H
 #endif
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,6 +24,11 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
+// The errors of a patch's children together, and the error of a patch once it is clipped, over its own error:
+// typical values of small patches.
+inline constexpr double kErrorOfChildren = 0.15;
+inline constexpr double kErrorOfClipping = 0.02;
+
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // What is evaluated together: kUnit patches of a block of the tree, or as many pieces of triangles.
@@ -36,21 +43,30 @@ struct Unit {
 template <typename Number>
 using UnitsOfVector = std::array<Unit, kUnitsPerVector<Number>>;
 
+// The patches of a batch whose triangles can be clipped.
+struct Clippable {
+  std::uint32_t lanes = 0;  // bits
+  std::uint32_t models = kNone;
+};
+
 // The integrals of all patches so far, batch by batch, and the bounds on their errors. Results are numbered
 // by their lanes.
 template <typename Number>
 class Results {
  public:
-  void clear() {
+  // max_lever: [m], L_r.
+  void start(double max_lever) {
+    per_lever_ = 1.0 / max_lever;
     batches_.clear();
     units_.clear();
+    clippable_.clear();
     errors_.clear();
-    finished_ = 0;
     total_ = 0.0;
   }
 
-  // Returns the number of the first result. The first `count` units are in use.
-  std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals) {
+  // Returns the number of the first result.
+  std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals,
+                  const Clippable& clippable) {
     const LanesOf<Number> d;
     batches_.emplace_back();
     auto& rows = batches_.back().rows;
@@ -59,8 +75,23 @@ class Results {
         integrals.torque.y, integrals.torque.z, integrals.moment.x,    integrals.moment.y,
         integrals.moment.z, integrals.volume,   integrals.force_error, integrals.torque_error};
     for (std::size_t row = 0; row < kRows; ++row) hn::Store(all[row], d, rows[row].data());
+    const std::size_t first = errors_.size();
+    errors_.resize(first + kLanes<Number>);
+    expected_.resize(errors_.size());
+    const VectorOf<Number> error =
+        hn::Max(integrals.force_error, set<Number>(per_lever_) * integrals.torque_error);
+    // As much less than the error as the force's is.
+    const VectorOf<Number> share = integrals.expected / hn::Max(integrals.force_error, set<Number>(1e-30));
+    hn::StoreU(error, d, &errors_[first]);
+    hn::StoreU(error * share, d, &expected_[first]);
+    total_ += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, error)));
+    for (std::uint32_t lanes = clippable.lanes; lanes != 0; lanes &= lanes - 1) {
+      const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
+      expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
+    }
     units_.insert(units_.end(), units.begin(), units.end());
-    return (batches_.size() - 1) * kLanes<Number>;
+    clippable_.push_back(clippable);
+    return first;
   }
 
   // Adds kRows numbers to a result, in the order of add().
@@ -69,31 +100,42 @@ class Results {
     for (std::size_t row = 0; row < kRows; ++row) rows[row][result % kLanes<Number>] += numbers[row * stride];
   }
 
-  // Sets the errors of the results that were added since the last call.
-  void finish_round(double max_lever) {
-    const LanesOf<Number> d;
-    errors_.resize(batches_.size() * kLanes<Number>);
-    const VectorOf<Number> per_lever = set<Number>(1.0 / max_lever);
-    for (; finished_ < batches_.size(); ++finished_) {
-      const auto& rows = batches_[finished_].rows;
-      const VectorOf<Number> error =
-          hn::Max(hn::Load(d, rows[kForceError].data()), per_lever * hn::Load(d, rows[kTorqueError].data()));
-      hn::StoreU(error, d, &errors_[finished_ * kLanes<Number>]);
-      for (std::size_t lane = 0; lane < kLanes<Number>; ++lane) {
-        total_ += static_cast<double>(errors_[finished_ * kLanes<Number> + lane]);
-      }
-    }
+  void add_errors(std::size_t result, Number force_error, Number torque_error) {
+    auto& rows = batches_[result / kLanes<Number>].rows;
+    rows[kForceError][result % kLanes<Number>] += force_error;
+    rows[kTorqueError][result % kLanes<Number>] += torque_error;
+  }
+
+  // Sets the error of a result that has been replaced.
+  void finish(std::size_t result) {
+    const auto& rows = batches_[result / kLanes<Number>].rows;
+    const std::size_t lane = result % kLanes<Number>;
+    const Number error =
+        std::max(rows[kForceError][lane], rows[kTorqueError][lane] * static_cast<Number>(per_lever_));
+    errors_[result] = error;
+    expected_[result] = error * static_cast<Number>(kErrorOfChildren);
+    total_ += static_cast<double>(error);
   }
 
   void remove(std::size_t result) {
     total_ -= static_cast<double>(errors_[result]);
     errors_[result] = Number{0};
+    expected_[result] = Number{0};
+    clippable_[result / kLanes<Number>].lanes &= ~(std::uint32_t{1} << (result % kLanes<Number>));
     for (auto& row : batches_[result / kLanes<Number>].rows) row[result % kLanes<Number>] = Number{0};
   }
 
   // Per result [m^3], the larger of the bound on the force and of that on the torque / L_r.
   const std::vector<Number>& errors() const { return errors_; }
+  // What the errors of a patch's children, or that of the patch once it is clipped, are expected to add up
+  // to.
+  const std::vector<Number>& expected() const { return expected_; }
   double total() const { return total_; }
+  // The models that the patch can be clipped with; kNone if there are none.
+  std::uint32_t clip_models(std::size_t result) const {
+    const Clippable& of_batch = clippable_[result / kLanes<Number>];
+    return (of_batch.lanes >> (result % kLanes<Number>)&1U) != 0 ? of_batch.models : kNone;
+  }
   const Unit& unit_of(std::size_t result) const { return units_[result / kUnit<Number>]; }
 
   WaveLoad sum() const {
@@ -133,10 +175,11 @@ class Results {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
   };
   std::vector<BatchRows> batches_;
-  std::vector<Unit> units_;  // kUnitsPerVector of each batch
-  std::vector<Number> errors_;
-  std::size_t finished_ = 0;  // batches with errors
-  double total_ = 0.0;        // of the errors
+  std::vector<Unit> units_;           // kUnitsPerVector of each batch
+  std::vector<Clippable> clippable_;  // per batch
+  std::vector<Number> errors_, expected_;
+  double per_lever_ = 1.0;
+  double total_ = 0.0;  // of the errors
 };
 
 }  // namespace HWY_NAMESPACE

@@ -216,6 +216,7 @@ HWY_INLINE PatchIntegrals<Number> to_patch(const TriangleIntegrals<Number>& sums
   result.volume = sums.volume;
   result.moment = scaled<Number>(sums.volume, center) + sums.moment;
   result.force_error = sums.strip;
+  result.expected = sums.strip;
   result.torque_error = hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)) + radius, sums.strip, sums.cubic);
   return result;
 }
