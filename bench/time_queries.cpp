@@ -1,9 +1,9 @@
 #include "time_queries.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "clock_cost.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "median.h"
 #include "memory_read_baseline.h"
@@ -12,23 +12,7 @@
 namespace buoyancy::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kWarmUpNs = 2e7;
-
-double nanoseconds(Clock::time_point from, Clock::time_point to) {
-  return std::chrono::duration<double, std::nano>(to - from).count();
-}
-
-// Minimum difference between two consecutive readings of the clock.
-double clock_cost_ns() {
-  double min_ns = std::numeric_limits<double>::max();
-  for (int i = 0; i < 10'000; ++i) {
-    const auto start = Clock::now();
-    min_ns = std::min(min_ns, nanoseconds(start, Clock::now()));
-  }
-  return min_ns;
-}
 
 // Sinks for the results, so that the compiler cannot omit a query.
 volatile double result_sink;

@@ -290,8 +290,10 @@ HWY_EXPORT(integrate_double);
 
 namespace {
 
-WaveLoad surface_load(SurfaceMethod method, const HydrostaticMesh& mesh, const SeaSnapshot& snapshot,
-                      const Pose& pose, const Vec3& reference_B) {
+enum class Precision { kAsNeeded, kDouble };
+
+WaveLoad surface_load(SurfaceMethod method, Precision precision, const HydrostaticMesh& mesh,
+                      const SeaSnapshot& snapshot, const Pose& pose, const Vec3& reference_B) {
   const Sea& sea = snapshot.sea();
   const Water& water = sea.water();
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
@@ -321,8 +323,9 @@ WaveLoad surface_load(SurfaceMethod method, const HydrostaticMesh& mesh, const S
   const double x2 = sea.axes().e2_W.dot(c_W);
   // The error of float32 sums is a fraction of the waves' height over the whole surface.
   constexpr double kHeightPerEdge = 10.0;
-  const bool single = snapshot.amplitude_factor() * sea.significant_wave_height() * mesh.area <
-                      kHeightPerEdge * std::abs(mesh.volume);
+  const bool single = precision == Precision::kAsNeeded &&
+                      snapshot.amplitude_factor() * sea.significant_wave_height() * mesh.area <
+                          kHeightPerEdge * std::abs(mesh.volume);
   thread_local std::vector<double> phases;
   SurfaceSum sum;
   if (single) {
@@ -349,12 +352,17 @@ WaveLoad surface_load(SurfaceMethod method, const HydrostaticMesh& mesh, const S
 
 WaveLoad fast_surface_in_waves(const HydrostaticMesh& mesh, const SeaSnapshot& sea, const Pose& pose,
                                const Vec3& reference_B) {
-  return surface_load(SurfaceMethod::kFast, mesh, sea, pose, reference_B);
+  return surface_load(SurfaceMethod::kFast, Precision::kAsNeeded, mesh, sea, pose, reference_B);
 }
 
 WaveLoad exact_surface_in_waves(const HydrostaticMesh& mesh, const SeaSnapshot& sea, const Pose& pose,
                                 const Vec3& reference_B) {
-  return surface_load(SurfaceMethod::kExact, mesh, sea, pose, reference_B);
+  return surface_load(SurfaceMethod::kExact, Precision::kAsNeeded, mesh, sea, pose, reference_B);
+}
+
+WaveLoad exact_surface_in_double(const HydrostaticMesh& mesh, const SeaSnapshot& sea, const Pose& pose,
+                                 const Vec3& reference_B) {
+  return surface_load(SurfaceMethod::kExact, Precision::kDouble, mesh, sea, pose, reference_B);
 }
 
 }  // namespace buoyancy

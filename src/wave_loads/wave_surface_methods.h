@@ -23,5 +23,8 @@ WaveLoad fast_surface_in_waves(const HydrostaticMesh& mesh, const SeaSnapshot& s
                                const Vec3& reference_B);
 WaveLoad exact_surface_in_waves(const HydrostaticMesh& mesh, const SeaSnapshot& sea, const Pose& pose,
                                 const Vec3& reference_B);
+// The same with sums in double for every body, as a reference for measurements.
+WaveLoad exact_surface_in_double(const HydrostaticMesh& mesh, const SeaSnapshot& sea, const Pose& pose,
+                                 const Vec3& reference_B);
 
 }  // namespace buoyancy

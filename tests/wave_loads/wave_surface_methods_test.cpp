@@ -156,6 +156,16 @@ TEST_P(WaveSurfaceMethods, MatchTheirDefinitionsOnAllTargets) {
   }
 }
 
+TEST_P(WaveSurfaceMethods, ExactSurfaceInDoubleHasNoSinglePrecisionError) {
+  const HydrostaticMesh mesh = rock(1.0, 5);
+  const SeaAtTime at(sea(0.5), kUtime);
+  // Nothing is cut: the test's own definition may halve a quadrangle along the other diagonal.
+  const Pose deep = tilted(-1.6);
+  const Vec3 reference_B(0.4, -0.2, 0.7);
+  expect_near(exact_surface_in_double(mesh, at.snapshot, deep, reference_B),
+              Definition(mesh, at.snapshot, deep, reference_B).exact_surface(), 1e-12);
+}
+
 TEST_P(WaveSurfaceMethods, SumInDoubleWhereWavesAreHighForTheBody) {
   const HydrostaticMesh mesh = rock(0.05, 5);
   const SeaAtTime at(sea(0.5), kUtime);
