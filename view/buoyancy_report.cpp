@@ -47,6 +47,7 @@ decimated; its extremes are kept.
   app.add_option("--scene", arguments.scene, "Scene file (TOML): water and bodies")->required();
   add_states_channel_option(app, arguments.file.states_channel);
   add_wrenches_channel_option(app, arguments.file.wrenches_channel);
+  add_sea_channel_option(app, arguments.file.sea_channel);
   add_status_channel_option(app, arguments.file.status_channel);
   add_viewer_options(app, arguments.poses);
   app.add_option(
@@ -102,9 +103,10 @@ int report_main(int argc, char** argv) {
   if (!three) return fail(three.error(), kFailure);
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  Expected<PoseChannels> poses = resolve_pose_channels(
-      arguments.poses, *scene,
-      {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.status_channel});
+  Expected<PoseChannels> poses =
+      resolve_pose_channels(arguments.poses, *scene,
+                            {arguments.file.states_channel, arguments.file.wrenches_channel,
+                             arguments.file.sea_channel, arguments.file.status_channel});
   if (!poses) return fail(poses.error(), kUsageError);
   arguments.file.poses = *std::move(poses);
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/request_handler.h"
+#include "messages/sea_state.h"
 #include "recording/event_log.h"
 #include "tests/engine/box_scene.h"
 #include "tests/messages/encoded_by_lcm.h"
@@ -158,6 +159,58 @@ TEST_F(RunFileTest, CountsRetriesOnceAndComputesMissingResponses) {
   EXPECT_NEAR(run.bodies[0].rows[0][kFz], 9.0 * kDensity * kGravity, 1e-6);
   EXPECT_TRUE(std::isnan(run.bodies[0].rows[0][kRoundTrip]));
   EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first request";
+}
+
+class RunFileInWavesTest : public RunFileTest {
+ protected:
+  static std::string box_in(const std::string& waves) {
+    return "[water]\nwaves = " + waves +
+           "\n[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [2, 2, 2] }\n";
+  }
+  static inline const std::string kSwell = "{ type = \"regular\", height = 0.6, period = 4.0 }";
+
+  // The forces that a request handler gives in the swell.
+  double force_at(const WrenchRequest& request) {
+    std::vector<std::uint8_t> bytes;
+    encode(request, bytes);
+    WrenchResponse response;
+    EXPECT_FALSE(decode(in_swell_.handle(bytes), response));
+    return response.bodies.at(0).force[0];
+  }
+
+  Scene swell_ = scene_of(box_in(kSwell));
+  RequestHandler in_swell_{swell_};
+};
+
+TEST_F(RunFileInWavesTest, ComputesMissingWrenchesAtTheirTime) {
+  scene_ = scene_of(box_in(kSwell));
+  for (std::int64_t i = 1; i <= 3; ++i) log_request(i, request_at(500 * i, 0.1));
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 3U);
+  for (std::int64_t i = 1; i <= 3; ++i) {
+    const double expected = force_at(request_at(500 * i, 0.1));
+    EXPECT_DOUBLE_EQ(run.bodies[0].rows[static_cast<std::size_t>(i - 1)][kFx], expected) << i;
+  }
+  EXPECT_NE(run.bodies[0].rows[0][kFx], run.bodies[0].rows[1][kFx]);
+}
+
+TEST_F(RunFileInWavesTest, ReceivesTheSeaOfTheLog) {
+  scene_ = scene_of(box_in("\"received\""));
+  SeaState sea = to_sea_state(*swell_.sea(), 1);
+  sea.utime = 900'000;
+  std::vector<std::uint8_t> bytes;
+  encode(sea, bytes);
+  log(1, kSeaChannel, bytes);
+  bytes.pop_back();
+  log(2, kSeaChannel, bytes);
+  log_request(3, request_at(500, 0.1));
+  log_request(4, request_at(1'000, 0.1));
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.bodies[0].rows.size(), 2U);
+  EXPECT_EQ(run.bodies[0].rows[0][kStatus], static_cast<double>(BodyStatus::kNoSea));
+  EXPECT_NEAR(run.bodies[0].rows[1][kFx], force_at(request_at(1'000, 0.1)), 1e-3);
+  ASSERT_EQ(run.warnings.size(), 1U);
+  EXPECT_EQ(run.warnings[0].rfind("event at 2 us skipped: a message of the sea", 0), 0U) << run.warnings[0];
 }
 
 TEST_F(RunFileTest, AppendsSessionWithRestartedClock) {

@@ -227,6 +227,13 @@ void RunBuilder::add(const RecordedState& recorded) {
   shown->rows.add(rows_added_++, row);
 }
 
+void RunBuilder::receive_sea(std::int64_t timestamp, Bytes message) {
+  if (!scene_.receives_sea()) return;
+  if (const Expected<void> received = water_.receive_sea(message); !received) {
+    add_warning("event at " + std::to_string(timestamp) + " us skipped: " + received.error().message());
+  }
+}
+
 void RunBuilder::add_warning(std::string warning) {
   if (run_.warnings.size() < kMaxWarnings) {
     run_.warnings.push_back(std::move(warning));

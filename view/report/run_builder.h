@@ -52,6 +52,8 @@ class RunBuilder {
   std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
   // In any order.
   void add(const RecordedState& recorded);
+  // A sea_state_t of a scene that receives its sea: wrenches that are computed afterwards are those in it.
+  void receive_sea(std::int64_t timestamp, Bytes message);
   void add_warning(std::string warning);
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 

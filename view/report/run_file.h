@@ -26,6 +26,7 @@ namespace buoyancy::view {
 struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
+  std::string sea_channel{kSeaChannel};  // of a log, for a scene that receives its sea
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log
   std::vector<std::size_t> bodies;  // to show, see RunBuilder; empty: the first in the run

@@ -156,6 +156,8 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
        [&](const RecordedEvent& event) { matcher.on_request(event.timestamp, event.bytes); }},
       {options.wrenches_channel,
        [&](const RecordedEvent& event) { matcher.on_response(event.timestamp, event.bytes); }},
+      {options.sea_channel,
+       [&](const RecordedEvent& event) { builder.receive_sea(event.timestamp, event.bytes); }},
       {options.status_channel, [&](const RecordedEvent& event) {
          if (ServiceStatus status; !decode(event.bytes, status)) builder.set_status(std::move(status));
        }}};
