@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
 
 #include <Eigen/Geometry>
 
-#include "base/format.h"
 #include "geometry/shapes.h"
 #include "waves/sea_snapshot.h"
 
@@ -18,7 +16,6 @@ namespace buoyancy {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double log_uniform(RandomPoses& random, double low, double high) {
   return std::exp(random.uniform(std::log(low), std::log(high)));
@@ -319,52 +316,7 @@ void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random)
   request.pose.p_WB = c_W - R_WB * body.mesh.center_B;
 }
 
-std::string number(double value) {
-  return format_shortest(value);
-}
-
-std::string numbers(const Vec3& v) {
-  return format_vector(v, 17);
-}
-
-std::string describe(const WaveSystem& system) {
-  std::string text;
-  if (const auto* irregular = std::get_if<IrregularWaves>(&system)) {
-    text = "  irregular: significant_wave_height " + number(irregular->significant_wave_height) +
-           ", peak_period " + number(irregular->peak_period) + ", gamma " +
-           (irregular->gamma ? number(*irregular->gamma) : "default") + ", direction " +
-           number(irregular->direction) + ", spreading " + number(irregular->spreading.value_or(0.0)) +
-           ", cutoff " + number(irregular->cutoff) + ", seed " + std::to_string(irregular->seed) + "\n";
-  }
-  if (const auto* components = std::get_if<WaveComponents>(&system)) {
-    for (const WaveComponent& wave : *components) {
-      text += "  amplitude " + number(wave.amplitude) + ", angular_frequency " +
-              number(wave.angular_frequency) + ", direction " + number(wave.direction) + ", phase " +
-              number(wave.phase) + "\n";
-    }
-  }
-  return text;
-}
-
 }  // namespace
-
-std::string_view to_string(SeaKind kind) {
-  switch (kind) {
-    case SeaKind::kRegular:
-      return "regular";
-    case SeaKind::kSeveral:
-      return "2 to 16 components";
-    case SeaKind::kIrregular:
-      return "irregular, 200 components";
-    case SeaKind::kShort:
-      return "short";
-    case SeaKind::kSteep:
-      return "steep";
-    case SeaKind::kLong:
-      return "very long";
-  }
-  return "";
-}
 
 WaveMesh random_wave_mesh(RandomPoses& random) {
   const double triangles = log_uniform(random, 12.0, 30e3);
@@ -421,21 +373,6 @@ WaveRequest random_wave_request(const WaveMesh& mesh, RandomPoses& random) {
   if (random.pick(2) == 0) request.reference_B += size * random_offset(random, 0.01, 3.0);
   if (random.pick(8) == 0) request.reference_B = Vec3::Zero();
   return request;
-}
-
-std::string describe(const WaveRequest& request) {
-  const Eigen::Quaterniond& q = request.pose.q_WB;
-  const SeaDescription& sea = request.description;
-  std::string text = "  " + std::string(to_string(request.kind)) + ", " + request.placement + ", pressure " +
-                     std::string(to_string(sea.pressure)) + ", tolerance " + number(request.tolerance) +
-                     "\n  depth " + number(sea.depth) + ", time_origin " + std::to_string(sea.time_origin) +
-                     ", ramp " + number(sea.ramp) + "\n";
-  for (const WaveSystem& system : sea.systems) text += describe(system);
-  text += "  up " + numbers(request.water.up_W) + ", level " + number(request.water.level) + ", gravity " +
-          number(request.water.gravity) + "\n  utime " + std::to_string(request.utime) + ", lead_time " +
-          number(request.lead_time) + "\n  p_WB " + numbers(request.pose.p_WB) + "\n  q_WB " + number(q.w()) +
-          ", " + numbers(q.vec()) + "\n  reference_B " + numbers(request.reference_B) + "\n";
-  return text;
 }
 
 }  // namespace buoyancy

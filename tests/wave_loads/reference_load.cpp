@@ -5,60 +5,16 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "tests/wave_loads/reference_elements.h"
+
 namespace buoyancy {
+namespace reference {
 namespace {
-
-enum class State : unsigned char { kUnknown, kCrossing, kWet, kDry };
-
-// A triangle or a part of one, with its integrals.
-struct Element {
-  std::array<Vec3, 3> corners;
-  std::uint32_t triangle = 0;
-  State state = State::kUnknown;
-  bool done = false;                                         // replaced by its parts
-  double highest = std::numeric_limits<double>::infinity();  // [m], over the surface, of a wet element
-  std::array<double, 3> heights{};                           // at the corners
-  // Integrals of the pressure, of the pressure times y, and of the height.
-  double pressure = 0.0, height = 0.0;
-  Vec3 moment = Vec3::Zero();
-  double force_error = 0.0, torque_error = 0.0, volume_error = 0.0;
-  double score = 0.0;  // the largest of the errors over what is requested of the whole
-};
-
-// A triangle to integrate over, wet throughout.
-struct Part {
-  std::array<Vec3, 3> corners;
-  double area;
-  std::size_t element;
-};
-
-// Rules of degree 4 (Dunavant) and 2, one point of each orbit: barycentric coordinates of the two corners
-// that have the same one, and weight.
-struct Orbit {
-  double same, weight;
-};
-constexpr std::array<Orbit, 3> kOrbits{
-    {{0.445948490915965, 0.223381589678011}, {0.091576213509771, 0.109951743655322}, {1.0 / 6.0, 1.0 / 3.0}}};
-constexpr std::size_t kPointsPerPart = 9;
-
-double longest_edge(const std::array<Vec3, 3>& c) {
-  return std::sqrt(
-      std::max({(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(), (c[0] - c[2]).squaredNorm()}));
-}
-
-// The mean of max(u, 0) over a triangle on which u is linear.
-double mean_positive_part(std::array<double, 3> u) {
-  std::sort(u.begin(), u.end());
-  if (u[0] >= 0.0) return (u[0] + u[1] + u[2]) / 3.0;
-  if (u[2] <= 0.0) return 0.0;
-  if (u[1] <= 0.0) return u[2] * (u[2] / (u[2] - u[0])) * (u[2] / (u[2] - u[1])) / 3.0;
-  const double below = -u[0] * (u[0] / (u[0] - u[1])) * (u[0] / (u[0] - u[2])) / 3.0;
-  return (u[0] + u[1] + u[2]) / 3.0 + below;
-}
 
 class Integrator {
  public:
@@ -91,7 +47,7 @@ class Integrator {
       total_area_ += area;
       elements_.push_back(element);
     }
-    set_resolution();
+    resolution_.emplace(sea_, negligible());
   }
 
   ReferenceLoad run() {
@@ -114,23 +70,6 @@ class Integrator {
 
   // What may be left out of waves that are shorter than the points of an element are apart.
   double negligible() const { return 0.05 * goal_.force_error / total_area_; }
-
-  void set_resolution() {
-    const double first = 0.02 / std::max(sea_.resolved_wave_number(0.0, 0.0), 1e-12);
-    double depth = 0.0;
-    for (int i = 0; i < 60; ++i) {
-      resolution_.push_back({depth, sea_.resolved_wave_number(depth, negligible())});
-      depth = i == 0 ? first : 1.25 * depth;
-    }
-  }
-  double resolved_wave_number(double depth) const {
-    double k = resolution_.front().wave_number;
-    for (const Resolution& at : resolution_) {
-      if (at.depth > depth) break;
-      k = at.wave_number;
-    }
-    return k;
-  }
 
   double largest_lever(const Element& element) const {
     double squared = 0.0;
@@ -206,7 +145,7 @@ class Integrator {
           high = std::max({high, middles[i], element.heights[i]});
         }
         // Midpoints show nothing of waves that are shorter than the edges.
-        const bool coarse = edge * resolved_wave_number(0.0) > kLongestEdge;
+        const bool coarse = edge * resolution_->wave_number(0.0) > kLongestEdge;
         if (coarse) {
           leave(element);
           continue;
@@ -216,7 +155,7 @@ class Integrator {
       }
       if (element.state == State::kDry) continue;
       if (element.state == State::kWet) {
-        if (longest_edge(element.corners) * resolved_wave_number(-element.highest) > kLongestEdge) {
+        if (longest_edge(element.corners) * resolution_->wave_number(-element.highest) > kLongestEdge) {
           leave(element);
           continue;
         }
@@ -432,10 +371,6 @@ class Integrator {
   static constexpr double kLongestEdge = 1.5;
   static constexpr double kShareOfElements = 0.9;
 
-  struct Resolution {
-    double depth, wave_number;
-  };
-
   const ReferenceSea& sea_;
   ReferenceGoal goal_;
   Vec3 reference_;
@@ -445,15 +380,16 @@ class Integrator {
   std::size_t new_elements_ = 0;
   std::vector<Part> parts_;
   SeaPoints points_;
-  std::vector<Resolution> resolution_;
+  std::optional<WaveResolution> resolution_;
   ReferenceLoad result_;
 };
 
 }  // namespace
+}  // namespace reference
 
 ReferenceLoad reference_load(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceSea& sea,
                              const Vec3& reference_B, const ReferenceGoal& goal) {
-  return Integrator(surface_B, center_B, sea, reference_B, goal).run();
+  return reference::Integrator(surface_B, center_B, sea, reference_B, goal).run();
 }
 
 }  // namespace buoyancy
