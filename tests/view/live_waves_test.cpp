@@ -1,9 +1,11 @@
 // The live page in waves, in a real browser: buoyancy-view receives the requests that a test sends.
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "messages/sea_state.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/support/scene_of.h"
 #include "tests/view/page_test.h"
@@ -48,6 +50,13 @@ class LivePageInWaves : public PageTest {
     browser().wait_until("Math.abs(buoyancyView.scene.sea_time - " + std::to_string(t) + ") < 1e-5");
   }
 
+  void send_sea(SeaState state, std::int64_t utime) {
+    state.utime = utime;
+    std::vector<std::uint8_t> bytes;
+    encode(state, bytes);
+    socket_.send(std::string(kSeaChannel), bytes);
+  }
+
   RawLcmSocket socket_;
   std::unique_ptr<RunningView> view_;
   std::int64_t seq_ = 0;
@@ -72,6 +81,51 @@ TEST_F(LivePageInWaves, DrawsSurfaceOfSea) {
     }
     EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   }
+}
+
+TEST_F(LivePageInWaves, DrawsReceivedSeaThatHolds) {
+  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kBox;
+  const Water water = scene_of(received).water();
+  const Scene first = scene_of(kSeasOfPages[0].table + kBox);
+  const Scene second = scene_of(kSeasOfPages[1].table + kBox);
+  open(received);
+  send_request(kTodayUtime, 0.0);
+  browser().wait_until("buoyancyView.last.bodies.length === 1");
+  EXPECT_EQ(browser().run("return [buoyancyView.last.sea_time, buoyancyView.scene.water.visible];"),
+            nlohmann::json({nullptr, true}))
+      << "no sea yet";
+
+  const auto expect_drawn = [this, &water](const Sea& sent, std::int64_t utime) {
+    SCOPED_TRACE(utime);
+    const Expected<Sea> sea = to_sea(to_sea_state(sent, 7), water);
+    ASSERT_TRUE(sea) << sea.error().message();
+    SeaSnapshot snapshot(*sea);
+    snapshot.set_time(utime);
+    send_request(utime, 0.0);
+    wait_for_time(sea_time(*sea, utime, 0.0));
+    expect_page_draws(browser(), "buoyancyView.scene", snapshot);
+  };
+  send_sea(to_sea_state(*first.sea(), 7), kTodayUtime);
+  send_sea(to_sea_state(*second.sea(), 7), kTodayUtime + 20'000'000);
+  expect_drawn(*first.sea(), kTodayUtime + 19'000'000);
+  expect_drawn(*second.sea(), kTodayUtime + 20'000'000);
+
+  SeaState wrong = to_sea_state(*first.sea(), 7);
+  wrong.gravity = 1.0;
+  send_sea(wrong, kTodayUtime);
+  browser().wait_until("buoyancyView.last.counts.seas_rejected === 1");
+  expect_drawn(*second.sea(), kTodayUtime + 40'000'000);
+
+  SeaState calm = to_sea_state(*second.sea(), 7);
+  for (auto* numbers : {&calm.amplitude, &calm.angular_frequency, &calm.direction, &calm.phase})
+    numbers->clear();
+  send_sea(calm, kTodayUtime + 50'000'000);
+  send_request(kTodayUtime + 50'000'000, 0.0);
+  wait_for_time(0.0);
+  EXPECT_EQ(browser().run("return [buoyancyPage.surfaceHeight(3, 4), buoyancyView.scene.waves.level];"),
+            nlohmann::json({0, 1.0}))
+      << "at the level of the message";
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 }  // namespace

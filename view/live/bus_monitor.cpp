@@ -35,7 +35,7 @@ std::string_view to_string(ServiceState state) {
 }
 
 BusMonitor::BusMonitor(const Scene& scene, double now, PoseChannels poses)
-    : scene_(&scene), poses_(std::move(poses)), second_start_(now) {
+    : scene_(&scene), seas_(scene), poses_(std::move(poses)), second_start_(now) {
   for (const Body& body : scene.bodies()) {
     bodies_.emplace_back().id = body.id;
   }
@@ -154,6 +154,15 @@ void BusMonitor::on_status(Bytes bytes, double now) {
   if (services_.size() == kMaxServices)
     services_.erase(std::ranges::min_element(services_, {}, &Service::last_seen));
   services_.push_back({id, now});
+}
+
+void BusMonitor::on_sea(Bytes bytes) {
+  if (!seas_.receive(bytes, *scene_)) ++counts_.seas_rejected;
+}
+
+std::shared_ptr<const SeaPeriod> BusMonitor::sea_period() const {
+  const std::shared_ptr<const SeaPeriod>* period = request_time_ ? seas_.at(request_time_->utime) : nullptr;
+  return period == nullptr ? nullptr : *period;
 }
 
 void BusMonitor::record_drops(const DropCounts& drops) {

@@ -2,17 +2,19 @@
 // of the scene, response times, lost and malformed messages, and which services are present and responding.
 //
 // Input is bytes and times: the class uses neither LCM nor a clock. Memory is bounded whatever arrives, by
-// the scene, by RequestTracker, by kMaxServices, and by the largest message received.
+// the scene, by RequestTracker, by kMaxServices, by SeaTimeline, and by the largest message received.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "engine/sea_timeline.h"
 #include "messages/hydrostatics.h"
 #include "messages/latency_histogram.h"
 #include "messages/request.h"
@@ -87,6 +89,7 @@ class BusMonitor {
     DropCounts drops;
     std::int64_t bodies_not_in_scene = 0;  // bodies of requests
     std::int64_t statuses = 0;
+    std::int64_t seas_rejected = 0;
     std::int64_t services_started = 0;  // instance_ids that were not known yet, including the first
   };
 
@@ -101,6 +104,7 @@ class BusMonitor {
   void on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arrival);
   void on_hydrostatics(Bytes bytes);
   void on_status(Bytes bytes, double now);
+  void on_sea(Bytes bytes);                    // of a scene that receives its sea
   void record_drops(const DropCounts& drops);  // totals since the start
 
   // Drops expired requests and closes a second that is over; to be called many times per second.
@@ -116,7 +120,10 @@ class BusMonitor {
   std::optional<double> response_received() const { return response_received_; }    // [s], of the latest
   std::optional<double> request_received() const { return request_received_; }      // [s], of the latest
   const std::optional<RequestTime>& request_time() const { return request_time_; }  // of the latest
-  const Sea* sea() const { return scene_->sea(); }       // nullptr: the water is at rest
+  bool in_waves() const { return scene_->sea() != nullptr || scene_->receives_sea(); }
+  // The sea of the latest request; nullptr: no request yet, or no sea has been received that holds at its
+  // time.
+  std::shared_ptr<const SeaPeriod> sea_period() const;
   std::vector<std::int64_t> services(double now) const;  // instance_ids seen within kStatusTimeout
   ServiceState service_state(double now) const;
 
@@ -134,6 +141,7 @@ class BusMonitor {
   void record_response(const RequestId& id, ArrivalTime arrival);
 
   const Scene* scene_;
+  SeaTimeline seas_;
   PoseTracker poses_;
   std::vector<BodyMonitor> bodies_;
   RequestTracker tracker_;

@@ -68,7 +68,8 @@ LiveView::LiveView(const Scene& scene, UdpmReceiver receiver, std::vector<Route>
       broadcaster_(&broadcaster),
       start_(seconds_now()),
       now_(start_),
-      monitor_(scene, start_, std::move(poses)) {}
+      monitor_(scene, start_, std::move(poses)),
+      receives_sea_(scene.receives_sea()) {}
 
 Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url,
                                   const ObservedChannels& channels, SnapshotBroadcaster& broadcaster) {
@@ -81,6 +82,7 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
       {channels.wrenches, {MessageKind::kResponse}},
       {channels.hydrostatics, {MessageKind::kHydrostatics}},
       {channels.status, {MessageKind::kStatus}}};
+  if (scene.receives_sea()) subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
   // Several pose channels of one body may share its force-torque channel.
   std::set<std::string> force_torque_channels;
   for (std::size_t i = 0; i < channels.poses.channels.size(); ++i) {
@@ -140,6 +142,8 @@ void LiveView::dispatch(const Route& route, Bytes bytes, ArrivalTime arrival) {
       return monitor_.on_hydrostatics(bytes);
     case MessageKind::kStatus:
       return monitor_.on_status(bytes, arrival.now);
+    case MessageKind::kSea:
+      return monitor_.on_sea(bytes);
     case MessageKind::kPose:
       return monitor_.on_pose(route.index, bytes, arrival);
     case MessageKind::kForceTorque:
@@ -148,8 +152,16 @@ void LiveView::dispatch(const Route& route, Bytes bytes, ArrivalTime arrival) {
 }
 
 void LiveView::publish() {
+  if (receives_sea_) {
+    const std::shared_ptr<const SeaPeriod> sea = monitor_.sea_period();
+    if (sea && sea != sea_) {
+      sea_ = sea;
+      sea_text_ = std::make_shared<const std::string>(sea_period_json(*sea));
+    }
+  }
   broadcaster_->publish(history_json(monitor_),
-                        snapshot_json(monitor_, ++snapshots_, seconds_since_1970(), now_ - start_, now_));
+                        snapshot_json(monitor_, ++snapshots_, seconds_since_1970(), now_ - start_, now_),
+                        sea_text_);
 }
 
 }  // namespace buoyancy::view

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct ObservedChannels {
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
   std::string status{kStatusChannel};
+  std::string sea{kSeaChannel};
   PoseChannels poses;
 };
 
@@ -49,7 +51,7 @@ class LiveView {
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
  private:
-  enum class MessageKind { kRequest, kResponse, kHydrostatics, kStatus, kPose, kForceTorque };
+  enum class MessageKind { kRequest, kResponse, kHydrostatics, kStatus, kSea, kPose, kForceTorque };
   struct Route {
     MessageKind kind;
     std::size_t index = 0;  // of the pose channel
@@ -69,6 +71,9 @@ class LiveView {
   double now_;
   BusMonitor monitor_;
   std::int64_t snapshots_ = 0;
+  bool receives_sea_;
+  std::shared_ptr<const SeaPeriod> sea_;  // the received one that sea_text_ describes
+  SnapshotBroadcaster::Text sea_text_;
 };
 
 }  // namespace buoyancy::view

@@ -331,8 +331,8 @@ class PageServer::Http : public httplib::Server {
     if (!connections_.set_phase(*current_connection, Connections::Phase::kStream)) return;
     response.status = 200;
     response.set_chunked_content_provider(
-        "text/event-stream",
-        [listener, first = true](std::size_t /*offset*/, httplib::DataSink& sink) mutable {
+        "text/event-stream", [listener, first = true, sea = SnapshotBroadcaster::Text()](
+                                 std::size_t /*offset*/, httplib::DataSink& sink) mutable {
           const SnapshotBroadcaster::Published published = listener->next();
           if (published.number == 0) {
             sink.done();
@@ -341,6 +341,10 @@ class PageServer::Http : public httplib::Server {
           std::string events;
           if (std::exchange(first, false)) {
             events = "retry: 1000\nevent: history\ndata: " + *published.history + "\n\n";
+          }
+          if (published.sea && published.sea != sea) {
+            sea = published.sea;
+            events += "event: sea\ndata: " + *sea + "\n\n";
           }
           events += "data: " + *published.snapshot + "\n\n";
           return sink.write(events.data(), events.size());

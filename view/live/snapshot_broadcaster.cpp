@@ -27,9 +27,9 @@ SnapshotBroadcaster::Published SnapshotBroadcaster::Listener::next() {
   return broadcaster_.latest_;
 }
 
-void SnapshotBroadcaster::publish(std::string history, std::string snapshot) {
+void SnapshotBroadcaster::publish(std::string history, std::string snapshot, Text sea) {
   Published next{0, std::make_shared<const std::string>(std::move(history)),
-                 std::make_shared<const std::string>(std::move(snapshot))};
+                 std::make_shared<const std::string>(std::move(snapshot)), std::move(sea)};
   {
     const std::lock_guard lock(mutex_);
     next.number = latest_.number + 1;

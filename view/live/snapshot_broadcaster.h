@@ -17,6 +17,7 @@ class SnapshotBroadcaster {
   struct Published {
     std::int64_t number = 0;  // 0: nothing published yet
     Text history, snapshot;
+    Text sea;  // nullptr: none, or that of the scene
   };
 
   // A listener is admitted if there are fewer than max_listeners.
@@ -36,7 +37,8 @@ class SnapshotBroadcaster {
     std::int64_t received_ = 0;
   };
 
-  void publish(std::string history, std::string snapshot);
+  // sea: sent to a listener before the snapshot if it is another object than the one that it received last.
+  void publish(std::string history, std::string snapshot, Text sea = nullptr);
   int listeners() const;
   void close();  // every next() returns, now and later
 

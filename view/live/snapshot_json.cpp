@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -165,7 +166,13 @@ json counts_json(const BusMonitor& monitor) {
           {"fragments_dropped", counts.drops.fragments},
           {"bodies_not_in_scene", counts.bodies_not_in_scene},
           {"statuses", counts.statuses},
-          {"services_started", counts.services_started}};
+          {"services_started", counts.services_started},
+          {"seas_rejected", counts.seas_rejected}};
+}
+
+// A calm sea is the same at all times.
+double time_of_sea(const SeaPeriod& period, const RequestTime& request) {
+  return period.sea ? sea_time(period.sea->sea(), request.utime, request.lead_time) : 0.0;
 }
 
 // Replaces invalid UTF-8, which a scene's name may contain, instead of throwing.
@@ -194,9 +201,9 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
             {"second", monitor.seconds().empty() ? json() : second_json(monitor.seconds().back())},
             {"latency", percentiles_json(monitor.latency())},
             {"counts", counts_json(monitor)}};
-  if (const Sea* sea = monitor.sea()) {
-    const std::optional<RequestTime>& request = monitor.request_time();
-    rest["sea_time"] = request ? json(sea_time(*sea, request->utime, request->lead_time)) : json();
+  if (monitor.in_waves()) {
+    const std::shared_ptr<const SeaPeriod> period = monitor.sea_period();
+    rest["sea_time"] = period ? json(time_of_sea(*period, *monitor.request_time())) : json();
   }
   std::string text = dump(rest);
   text.back() = ',';  // replaces the closing brace
@@ -209,6 +216,11 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
   }
   text += "]}";
   return text;
+}
+
+std::string sea_period_json(const SeaPeriod& period) {
+  if (period.sea) return sea_json(period.sea->sea()).dump();
+  return sea_json(Sea::make({}, period.water).value()).dump();
 }
 
 std::string history_json(const BusMonitor& monitor) {

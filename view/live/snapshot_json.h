@@ -33,10 +33,15 @@ namespace buoyancy::view {
 //   status_age, response_age, request_age   [s], or null
 //   second         the last complete second, same as in history_json, or null
 //   latency        p50, p99, p999, max [s] since the start
-//   sea_time       [s], in waves only: the time t of the sea at the latest request, or null without a request
+//   sea_time       [s], in waves only: the time t of the sea at the latest request; null without a request,
+//   or
+//                  if no sea has been received that holds at its time
 //   counts         BusMonitor::Counts and RequestTracker::Counts
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now);
+
+// A received sea, see sea_json.h; one line. A calm one has no components.
+std::string sea_period_json(const SeaPeriod& period);
 
 // The last minute: an array, the latest second last, of {"number", "requests", "responses", "unanswered",
 // "p50", "p99", "max"}; the last three are null for a second without responses.

@@ -33,13 +33,14 @@
                  selected: model.bodies[0].id, following: false, model, body_statuses };
   window.buoyancyView = view;
 
-  let sea = null, sea_time = NaN;  // of the picture
-  // data: see sea_json.h; null or undefined: water at rest.
-  function use_sea(data) {
-    sea = data ? new Sea(data) : null;
+  let sea = null, sea_time = NaN;      // of the picture
+  let newest_sea = model.sea || null;  // data that is not in the picture yet, see sea_json.h: of the scene, or received
+  function use_newest_sea() {
+    if (newest_sea === null) return;
+    sea = new Sea(newest_sea);
+    newest_sea = null;
     if (scene) scene.use_sea(sea);
   }
-  use_sea(model.sea);
   // [m], over the level: the elevation that is drawn at the distances x and y along the sea's axes from W's origin.
   window.buoyancyPage = { surfaceHeight: (x, y) => (sea && Number.isFinite(sea_time) ? sea.elevation(x, y, sea_time) : 0) };
 
@@ -214,6 +215,7 @@
       ['unanswered', counts.unanswered], ['requests missed by this view', counts.requests_missed], ['sessions', counts.sessions],
       ...Object.entries(counts.malformed).map(([cause, count]) => [`malformed: ${cause}`, count]),
       ['packets dropped by the kernel', counts.packets_dropped], ['fragments of incomplete messages', counts.fragments_dropped], ['services started', counts.services_started],
+      ['seas rejected', counts.seas_rejected],
     ];
     const tables = [table_of('Observed on the bus', ['since this view was started', ''], observed)];
     if (!now.status) return tables;
@@ -254,6 +256,7 @@
   }
 
   function show_bodies(now) {
+    use_newest_sea();
     sea_time = typeof now.sea_time === 'number' ? now.sea_time : NaN;
     if (!scene) return;
     scene.show(now.bodies.map((body) => ({ ...body, f: body.f || [0, 0, 0], t: body.t || [0, 0, 0] })), sea_time);
@@ -339,6 +342,7 @@
       }
     });
     events.addEventListener('history', (event) => { view.history = JSON.parse(event.data); });
+    events.addEventListener('sea', (event) => { newest_sea = JSON.parse(event.data); });
     events.addEventListener('message', (event) => on_snapshot(JSON.parse(event.data)));
     events.addEventListener('error', () => {
       set_state('connecting');

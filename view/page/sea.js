@@ -29,14 +29,14 @@ class Sea {
     return phase - 2 * Math.PI * Math.round(phase / (2 * Math.PI));
   }
 
-  // [rad/m]: waves of larger wave numbers hold at most 2 % of the energy.
+  // [rad/m]: waves of larger wave numbers hold at most 2 % of the energy. 0 in a calm sea.
   largest_relevant_wave_number() {
     const order = Array.from(this.wave_number.keys()).sort((a, b) => this.wave_number[b] - this.wave_number[a]);
     const energy = (i) => this.amplitude[i] * this.amplitude[i];
     const enough = 0.02 * order.reduce((sum, i) => sum + energy(i), 0);
     let sum = 0;
     const found = order.find((i) => { sum += energy(i); return sum > enough; });
-    return this.wave_number[found];
+    return found === undefined ? 0 : this.wave_number[found];
   }
 
   significant_wave_height() {

@@ -17,7 +17,7 @@ class WaveSurface {
     this.e1 = new THREE.Vector3(...sea.e1);
     this.e2 = new THREE.Vector3(...sea.e2);
     this.up = new THREE.Vector3(...sea.up);
-    const affordable = Math.sqrt(WaveSurface.max_work / sea.components);
+    const affordable = Math.sqrt(WaveSurface.max_work / Math.max(1, sea.components));
     const max_lines = WaveSurface.max_lines(water_scene.software_rendering);
     const lines = 2 * Math.floor(0.5 * Math.min(max_lines, Math.max(WaveSurface.min_lines, affordable))) + 1;
     this.outer_lines = Math.round(0.15 * lines);  // on each side
@@ -25,6 +25,7 @@ class WaveSurface {
     this.grid = new SeaGrid(sea, lines);
     this.coordinates = new Float64Array(lines);
     this.wavelength = 2 * Math.PI / sea.largest_relevant_wave_number();
+    this.level = sea.level - water_scene.model.water.level;  // [m], a received sea has a level of its own
     this.spacing = this.reach = this.anchor1 = this.anchor2 = this.time = NaN;  // of what is drawn
     this.add_surface(lines);
     for (const body of water_scene.bodies.values()) this.add_heights(body);
@@ -142,7 +143,7 @@ class WaveSurface {
       const before = Math.max(0, n - 1), after = Math.min(lines - 1, n + 1);
       for (let m = 0; m < lines; m += 1, at += 3) {
         const left = Math.max(0, m - 1), right = Math.min(lines - 1, m + 1);
-        water.array[at] = elevation[n * lines + m];
+        water.array[at] = this.level + elevation[n * lines + m];
         water.array[at + 1] = (elevation[n * lines + right] - elevation[n * lines + left]) / (x[right] - x[left]);
         water.array[at + 2] = (elevation[after * lines + m] - elevation[before * lines + m]) / (x[after] - x[before]);
       }
@@ -201,7 +202,7 @@ class WaveSurface {
       const u = along1.x * x + along1.y * y + along1.z * z + along1.w - this.anchor1;
       const v = along2.x * x + along2.y * y + along2.z * z + along2.w - this.anchor2;
       const zeta = upwards.x * x + upwards.y * y + upwards.z * z + upwards.w;
-      heights.array[i] = zeta - this.grid.drawn_elevation(u, v);
+      heights.array[i] = zeta - this.level - this.grid.drawn_elevation(u, v);
     }
     heights.needsUpdate = true;
   }
