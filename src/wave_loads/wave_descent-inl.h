@@ -199,6 +199,7 @@ class Descent {
     link_units(work_.cells.surface_count(), &Unit::surface_cell);
     evaluate_surface();
     if (query_.hydrostatic) {
+      link_units(work_.cells.surface_count(), &Unit::surface_cell);
       for_each_batch([this](const Batch& batch, std::size_t cell) { evaluate_batch(batch, cell, 0); });
     } else {
       find_volume_cells();
@@ -260,13 +261,14 @@ class Descent {
 
   void find_volume_cells() {
     for (std::size_t n = 0; n < work_.units.size(); ++n) {
+      Unit& unit = work_.units[n];
+      if (unit.dry) continue;
       const UnitPlace<Number>& place = work_.places[n];
       double z = 0.0;
       for (std::size_t lane = 0; lane < kUnit<Number>; ++lane) {
         const double eta = static_cast<double>(place.eta[lane]);
         z += (static_cast<double>(place.zeta[lane]) - eta) / (1.0 + eta * patch_.per_depth);
       }
-      Unit& unit = work_.units[n];
       unit.volume_cell = work_.cells.find_volume(unit.surface_cell, z / static_cast<double>(kUnit<Number>));
     }
     work_.cells.build_volume();
@@ -276,6 +278,7 @@ class Descent {
     work_.heads.assign(cells, kNone);
     for (std::size_t n = work_.units.size(); n-- > 0;) {
       Unit& unit = work_.units[n];
+      if (unit.dry) continue;
       std::uint32_t& head = work_.heads[unit.*cell];
       unit.next = head;
       head = static_cast<std::uint32_t>(n);
@@ -328,10 +331,39 @@ class Descent {
       write(batch, values.eta_12, &UnitPlace<Number>::eta_12);
       write(batch, values.eta_22, &UnitPlace<Number>::eta_22);
       write(batch, values.third, &UnitPlace<Number>::eta_third);
+      note_dry(batch, cell, x1, x2, values);
     });
   }
 
+  // Finds the units that are dry as a whole: there is nothing else to be computed of them.
+  HWY_INLINE void note_dry(const Batch& batch, std::size_t cell, const V& x1, const V& x2,
+                           const SurfaceValues<Number>& values) {
+    const UnitsOfVector<Number> units = units_of(batch);
+    const V radius =
+        units[0].of_pieces ? work_.pieces.lanes(units).radius : gather_units<Number>([&](std::size_t n) {
+          return &query_.tree->blocks[units[n].block].radius[units[n].first];
+        });
+    const SurfaceRange<Number> range =
+        range_of<Number>(read(batch, &UnitPlace<Number>::zeta), radius * set<Number>(patch_.k_max), values,
+                         work_.cells.surface(cell).bounds, hn::Sqrt(hn::MulAdd(x1, x1, x2 * x2)),
+                         set<Number>(patch_.rounding()));
+    const std::uint32_t dry = bits_of<Number>(hn::Gt(range.low, set<Number>(0.0)));
+    constexpr std::uint32_t kAll = (std::uint32_t{1} << kUnit<Number>)-1;
+    for (std::size_t n = 0; n < batch.count; ++n) {
+      work_.units[batch.units[n]].dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
+    }
+  }
+
   void evaluate_batch(const Batch& batch, std::size_t surface_cell, std::size_t volume_cell) {
+    if (work_.units[batch.units[0]].of_pieces) {
+      evaluate_batch<true>(batch, surface_cell, volume_cell);
+    } else {
+      evaluate_batch<false>(batch, surface_cell, volume_cell);
+    }
+  }
+
+  template <bool kPieces>
+  HWY_NOINLINE void evaluate_batch(const Batch& batch, std::size_t surface_cell, std::size_t volume_cell) {
     const V zero = set<Number>(0.0);
     const Place<Number> place{read(batch, &UnitPlace<Number>::x1), read(batch, &UnitPlace<Number>::x2),
                               read(batch, &UnitPlace<Number>::zeta)};
@@ -356,39 +388,36 @@ class Descent {
       volume_reach = hn::Sqrt(hn::MulAdd(z, z, horizontal));
       volume_bounds = &cell.bounds;
     }
-    const auto model_at = [&](const V& radius) HWY_ATTR {
-      return model_of<Number>(patch_, place, radius, surface, surface_bounds, hn::Sqrt(horizontal), f,
-                              *volume_bounds, volume_reach);
-    };
     const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kUnit<Number>);
     const UnitsOfVector<Number> units = units_of(batch);
-    const auto note_steepness = [&](const PatchModel<Number>& model) {
-      too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
-    };
-    if (units[0].of_pieces) {
+    PatchIntegrals<Number> integrals;
+    Clippable clippable;
+    hn::Mask<LanesOf<Number>> counts;
+    if constexpr (kPieces) {
       const PieceLanes<Number> piece = work_.pieces.lanes(units);
-      const PatchModel<Number> model = model_at(piece.radius);
-      note_steepness(model);
-      PatchIntegrals<Number> integrals = integrate<Number>(patch_, piece, model);
-      clear_where<Number>(hn::Or(model.dry, hn::Not(in_use)), integrals);
-      patches_ += hn::CountTrue(LanesOf<Number>(), hn::AndNot(model.dry, in_use));
-      work_.results.add(units, integrals, Clippable());
+      const PatchModel<Number> model =
+          model_of<Number>(patch_, place, piece.radius, surface, surface_bounds, hn::Sqrt(horizontal), f,
+                           *volume_bounds, volume_reach);
+      too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
+      counts = hn::AndNot(model.dry, in_use);
+      integrals = integrate<Number>(patch_, piece, model);
     } else {
       const PatchMoments<Number> moments = read_moments<Number>(*query_.tree, units);
-      const PatchModel<Number> model = model_at(moments.radius);
-      note_steepness(model);
-      const auto counts = hn::AndNot(model.dry, in_use);
-      patches_ += hn::CountTrue(LanesOf<Number>(), counts);
-      PatchIntegrals<Number> integrals = integrate<Number>(patch_, moments, model);
-      clear_where<Number>(hn::Not(counts), integrals);
-      Clippable clippable;
+      const PatchModel<Number> model =
+          model_of<Number>(patch_, place, moments.radius, surface, surface_bounds, hn::Sqrt(horizontal), f,
+                           *volume_bounds, volume_reach);
+      too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
+      counts = hn::AndNot(model.dry, in_use);
+      integrals = integrate<Number>(patch_, moments, model);
       const auto crossing = hn::AndNot(model.whole, counts);
       if (!hn::AllFalse(LanesOf<Number>(), crossing)) {
         clippable.lanes = bits_of<Number>(hn::And(crossing, leaves<Number>(*query_.tree, units)));
         if (clippable.lanes != 0) clippable.models = work_.clips.keep(patch_, moments, model);
       }
-      work_.results.add(units, integrals, clippable);
     }
+    patches_ += hn::CountTrue(LanesOf<Number>(), counts);
+    clear_where<Number>(hn::Not(counts), integrals);
+    work_.results.add(units, integrals, clippable);
   }
 
   const WaveQuery& query_;

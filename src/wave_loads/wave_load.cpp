@@ -97,8 +97,9 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
       mesh.diagonal *
           (single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon());
   query.steepest = steepest_pressure(sea, expansion);
-  // Truncation where it is largest, over the whole surface, as a share of the tolerance: it takes less of it.
-  constexpr double kTruncationShare = 0.4;
+  // What a cell leaves out at its corners, over the whole surface and relative to the tolerance. It grows
+  // with the ninth power of the distance from the centre: on average it is less than a tenth of this.
+  constexpr double kTruncationShare = 2.0;
   const double reach =
       expansion.reach_within(kTruncationShare * query.budget / (body.tree->area * sea.amplitude_factor()));
   const double k = expansion.k_max;

@@ -40,6 +40,8 @@ struct PatchQuery {
   double integral_rounding = 0.0;  // of a patch's integrals, relative
   double displacement = 0.0;       // of the surface, times k_max
   double steepest = 1.0;           // bound on the gradient of the pressure
+
+  double rounding() const { return kRoundingFactor * unit_roundoff; }  // of an expansion
 };
 
 template <typename Number>
@@ -164,6 +166,46 @@ HWY_INLINE VectorOf<Number> third_within(const VectorOf<Number>& at_point, const
   return hn::Min(bounds.third, hn::MulAdd(distance, bounds.fourth, there));
 }
 
+// The height over the surface on a patch, over its ball, and the bounds on the derivatives of eta there.
+template <typename Number>
+struct SurfaceRange {
+  VectorOf<Number> s, low, high;
+  VectorOf<Number> L1, L2, L3, L2_at_point;
+  VectorOf<Number> of_eta;   // error of eta
+  VectorOf<Number> epsilon;  // error of s
+};
+
+// r: radius over 1 / k_max.
+template <typename Number>
+HWY_INLINE SurfaceRange<Number> range_of(const VectorOf<Number>& zeta, const VectorOf<Number>& r,
+                                         const SurfaceValues<Number>& surface,
+                                         const CellBounds<Number>& bounds, const VectorOf<Number>& reach,
+                                         const VectorOf<Number>& rounding) {
+  using V = VectorOf<Number>;
+  const V zero = set<Number>(0.0);
+  const V half = set<Number>(0.5);
+  SurfaceRange<Number> range;
+  range.s = zeta - surface.eta;
+  const ReachBounds<Number> above = bounds_at<Number>(bounds, reach + r);
+  const V mean = half * (surface.eta_11 + surface.eta_22);
+  const V difference = half * (surface.eta_11 - surface.eta_22);
+  const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
+  range.L3 = third_within<Number>(surface.third, above, r, rounding);
+  range.L2_at_point = hn::Abs(mean) + deviator;
+  range.L2 = hn::MulAdd(r, range.L3, range.L2_at_point);
+  const V slope_squared = hn::MulAdd(surface.eta_1, surface.eta_1, surface.eta_2 * surface.eta_2);
+  range.L1 = hn::MulAdd(r, range.L2, hn::Sqrt(slope_squared));
+  range.of_eta = hn::MulAdd(rounding, above.sum, above.truncation);
+  range.epsilon = hn::MulAdd(rounding, hn::Abs(zeta), range.of_eta);
+  const V r_squared_half = half * r * r;
+  const V variation = hn::MulAdd(r, hn::Sqrt(set<Number>(1.0) + slope_squared),
+                                 r_squared_half * r * range.L3 * set<Number>(1.0 / 3.0));
+  // -D^2 eta has the eigenvalues -mean -+ deviator.
+  range.low = range.s - variation + r_squared_half * hn::Min(zero, hn::Neg(mean) - deviator) - range.epsilon;
+  range.high = range.s + variation + r_squared_half * hn::Max(zero, deviator - mean) + range.epsilon;
+  return range;
+}
+
 // radius: [m]. surface, surface_cells: the cell of the surface; f: of the volume, unused where the pressure
 // is hydrostatic.
 template <typename Number>
@@ -181,31 +223,21 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V three = set<Number>(3.0);
   const V r = radius * set<Number>(query.k_max);
   const V l = set<Number>(query.per_depth);
-  const V rounding = set<Number>(kRoundingFactor * query.unit_roundoff);
+  const V rounding = set<Number>(query.rounding());
 
   const V& eta = surface.eta;
   const V& eta1 = surface.eta_1;
   const V& eta2 = surface.eta_2;
-  const V s = place.zeta - eta;
-
-  // The surface over the ball of radius r.
-  const ReachBounds<Number> above = bounds_at<Number>(surface_bounds, surface_reach + r);
-  const V mean = half * (surface.eta_11 + surface.eta_22);
-  const V difference = half * (surface.eta_11 - surface.eta_22);
-  const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
-  const V L3 = third_within<Number>(surface.third, above, r, rounding);
-  const V L2_at_point = hn::Abs(mean) + deviator;
-  const V L2 = hn::MulAdd(r, L3, L2_at_point);
-  const V slope_squared = hn::MulAdd(eta1, eta1, eta2 * eta2);
-  const V L1 = hn::MulAdd(r, L2, hn::Sqrt(slope_squared));
-  const V of_eta = hn::MulAdd(rounding, above.sum, above.truncation);
-  const V epsilon = hn::MulAdd(rounding, hn::Abs(place.zeta), of_eta);
-  const V r_squared_half = half * r * r;
-  const V s_variation =
-      hn::MulAdd(r, hn::Sqrt(one + slope_squared), r_squared_half * r * L3 * set<Number>(1.0 / 3.0));
-  // -D^2 eta has the eigenvalues -mean -+ deviator.
-  const V s_low = s - s_variation + r_squared_half * hn::Min(zero, hn::Neg(mean) - deviator) - epsilon;
-  const V s_high = s + s_variation + r_squared_half * hn::Max(zero, deviator - mean) + epsilon;
+  const SurfaceRange<Number> range =
+      range_of<Number>(place.zeta, r, surface, surface_bounds, surface_reach, rounding);
+  const V& s = range.s;
+  const V& s_low = range.low;
+  const V& s_high = range.high;
+  const V& L1 = range.L1;
+  const V& L2 = range.L2;
+  const V& L3 = range.L3;
+  const V& epsilon = range.epsilon;
+  const V& of_eta = range.of_eta;
 
   PatchModel<Number> model;
   model.dry = hn::Gt(s_low, zero);
@@ -288,7 +320,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V F2 = hn::MulAdd(r * V1, F3, F2_at_point);
     const V Df = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
     const V F1 = hn::MulAdd(r * V1, F2, Df);
-    M3_at_point = f.third + three * F2_at_point * L2_at_point + Df * surface.third;
+    M3_at_point = f.third + three * F2_at_point * range.L2_at_point + Df * surface.third;
     M3 = F3 * V1 * V1 * V1 + three * F2 * V1 * V2 + F1 * V3;
     delta = hn::MulAdd(F1, shift, inside.truncation) +
             rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +

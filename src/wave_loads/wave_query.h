@@ -21,8 +21,8 @@ inline constexpr std::size_t kMaxCells = 4'096;
 // The rounding error of an expansion, over the sum of its terms' absolute values and the unit roundoff.
 inline constexpr double kRoundingFactor = 100.0;
 
-// Cells are boxes of the same size. Lengths over 1 / k_max, horizontally from the body's centre, heights z'
-// over the level.
+// Cells are boxes of the same size, all but the highest ones twice as high. Lengths over 1 / k_max,
+// horizontally from the body's centre, heights z' over the level.
 struct CellGrid {
   std::array<double, 3> edge{1.0, 1.0, 1.0};
   std::array<double, 3> origin{};  // a corner of cells in x1 and x2, the top of cells in z

@@ -59,7 +59,7 @@ double refinement_limit(const std::vector<Number>& errors, const std::vector<Num
   for (const Number error : errors) largest = std::max(largest, error);
   Number low = static_cast<Number>(1e-12) * largest;
   Number high = static_cast<Number>(0.999) * largest;
-  constexpr double kMargin = 0.9;
+  constexpr double kMargin = 0.95;
   for (int step = 0; step < 12; ++step) {
     const Number middle = std::sqrt(low * high);
     (predicted(errors, expected, middle) <= kMargin * budget ? low : high) = middle;

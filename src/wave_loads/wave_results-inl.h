@@ -36,6 +36,7 @@ struct Unit {
   std::uint32_t block = 0;  // of the tree, or of the pieces
   std::uint32_t first = 0;  // lane of the block
   bool of_pieces = false;
+  bool dry = false;  // all of its patches are
   std::uint32_t surface_cell = 0, volume_cell = 0;
   std::uint32_t next = kNone;  // in the same cell
 };

@@ -84,12 +84,15 @@ class SeaCells {
   }
   // Below or above a cell of the surface; z: z' over 1 / k_max.
   std::uint32_t find_volume(std::uint32_t surface_cell, double z) {
-    // The highest cells reach up to the highest patches.
-    const std::int32_t k = std::min(place(z, 2), -1);
+    // The highest cells reach up to the highest patches. All others are twice as high: short waves, which
+    // limit the size of a cell, do not reach down to them.
+    const std::int32_t depth = std::max(-1 - place(z, 2), 0);
+    const std::int32_t k = (depth + 1) / 2;
     const std::uint32_t cell = volume_index_.find_or_add(static_cast<std::int32_t>(surface_cell), 0, k);
     if (cell == volume_centers_.size()) {
       const CellCenter& above = surface_centers_[surface_cell];
-      volume_centers_.push_back({above.x1, above.x2, center_of(k, 2)});
+      const double center = k == 0 ? 0.5 : 2.0 * k;  // in edges, below the top
+      volume_centers_.push_back({above.x1, above.x2, query_->grid.origin[2] - center * query_->grid.edge[2]});
       column_of_volume_.push_back(surface_cell);
     }
     return cell;
