@@ -234,7 +234,7 @@ struct alignas(64) DegreeRows {
                      &rows[static_cast<std::size_t>(l)][kBefore + static_cast<std::size_t>(order)]);
   }
   Number& number(int l, int order) {
-    return rows[static_cast<std::size_t>(l)][static_cast<std::size_t>(order + static_cast<int>(kBefore))];
+    return rows[static_cast<std::size_t>(l)][kBefore + static_cast<std::size_t>(order)];
   }
 };
 

@@ -86,7 +86,7 @@ class Descent {
  private:
   // A batch of units. Where there are too few, the first repeats, and only `count` results are used.
   struct Batch {
-    std::array<std::uint32_t, kUnitsPerVector<Number>> units;
+    std::array<std::uint32_t, kUnitsPerVector<Number>> units{};
     std::size_t count = 0;
   };
 
@@ -157,6 +157,8 @@ class Descent {
       const double error = static_cast<double>(work_.results.errors()[n]);
       if (!(error > limit)) continue;
       any = true;
+      // What one round adds is capped as well: it may reach a new cell with each of its units.
+      if (units_of_next_round() > kMaxUnits) break;
       const Unit unit = work_.results.unit_of(n);
       const std::size_t lane = unit.first + n % kUnit<Number>;
       const std::uint32_t models = work_.results.clip_models(n);
@@ -178,6 +180,10 @@ class Descent {
       }
     }
     return any;
+  }
+
+  std::size_t units_of_next_round() const {
+    return work_.units.size() + work_.pieces.new_count() / kUnit<Number>;
   }
 
   void add_children(std::uint32_t b, bool grandchildren) {

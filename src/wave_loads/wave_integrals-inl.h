@@ -173,7 +173,7 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
     };
     return hn::Neg(dot<Number>(up, {of(0), of(1), of(2)}));
   };
-  // int (y - s/2 up) s n_z dA; s^2 as the product of the linear models.
+  // int (y - s/2 up) s n_z dA; s^2 to second order, as the product of the depth with its clipped model.
   const Vectors3<Number> depth_gradient{hn::Neg(model.s.gradient.x), hn::Neg(model.s.gradient.y),
                                         hn::Neg(model.s.gradient.z)};
   Quadratic<Number> squared;
@@ -186,6 +186,12 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V two = set<Number>(2.0);
   squared.hessian = {two * p.x * t.x,       two * p.y * t.y,       two * p.z * t.z,
                      p.x * t.y + p.y * t.x, p.x * t.z + p.z * t.x, p.y * t.z + p.z * t.y};
+  const V of_clipped = hn::IfThenElse(model.whole, set<Number>(1.0), half);
+  const V curvature_factor = hn::MulAdd(of_clipped, depth_value, depth.linear_value);
+#pragma GCC unroll 6
+  for (std::size_t i = 0; i < 6; ++i) {
+    squared.hessian[i] = hn::NegMulAdd(curvature_factor, model.s.hessian[i], squared.hessian[i]);
+  }
   const V half_square = half * dot<Number>(up, integral_with_normal<Number>(m, squared));
   result.moment = scaled<Number>(result.volume, m.center) +
                   Vectors3<Number>{along_up(0), along_up(1), along_up(2)} - scaled<Number>(half_square, up);

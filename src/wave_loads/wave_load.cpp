@@ -99,9 +99,10 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   query.steepest = steepest_pressure(sea, expansion);
   // What a cell leaves out at its corners, over the whole surface and relative to the tolerance. It grows
   // with the ninth power of the distance from the centre: on average it is less than a tenth of this.
-  constexpr double kTruncationShare = 2.0;
+  // Fine tolerances need more of the tolerance for themselves.
+  const double truncation_share = single ? 2.0 : 0.2;
   const double reach =
-      expansion.reach_within(kTruncationShare * query.budget / (body.tree->area * sea.amplitude_factor()));
+      expansion.reach_within(truncation_share * query.budget / (body.tree->area * sea.amplitude_factor()));
   const double k = expansion.k_max;
   const double reach_1 = extent.dot(query.e1_B.cwiseAbs());
   const double reach_2 = extent.dot(query.e2_B.cwiseAbs());

@@ -109,6 +109,8 @@ class Pieces {
     fill_unit();
   }
 
+  std::size_t new_count() const { return count_ - taken_; }  // added since the last call of take_new()
+
   // Calls take(unit) for the units of the pieces that were added since the last call.
   template <typename Take>
   void take_new(const Take& take) {
@@ -178,7 +180,8 @@ class Pieces {
 
   // Adds the parts of a piece in an order in which neighbours follow each other.
   void cut(const Piece& piece, Number largest_squared) {
-    if (squared_radius(piece) <= largest_squared) {
+    // A needle of a small area may be longer than any number of pieces.
+    if (squared_radius(piece) <= largest_squared || new_count() > kMaxUnits) {
       add(piece);
     } else {
       bisect(piece, 1, [&](const Piece& part) { cut(part, largest_squared); });

@@ -17,6 +17,7 @@ namespace buoyancy {
 // The caps on the work of a query.
 inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 4'096;
+inline constexpr std::size_t kMaxUnits = 20'000;  // of a round; a result that is replaced may add some more
 
 // The rounding error of an expansion, over the sum of its terms' absolute values and the unit roundoff.
 inline constexpr double kRoundingFactor = 100.0;

@@ -46,7 +46,9 @@ class CellIndex {
   }
 
  private:
-  static constexpr std::size_t kSlots = 4 * kMaxCells;
+  // More than there can be cells: kMaxCells / 2 before a round, and one for each unit of a round.
+  static constexpr std::size_t kSlots = 32'768;
+  static_assert(kSlots > kMaxCells / 2 + kMaxUnits + 4'096);
   struct Slot {
     std::uint32_t generation = 0;
     std::int32_t i = 0, j = 0, k = 0;

@@ -88,8 +88,9 @@ HWY_INLINE void add_triangle(const std::array<Vectors3<Number>, 3>& corners,
   integrate_one(t.s, mean, offset, middle, gradient);
   const V vertical = dot<Number>(up, area);
   sum.volume = hn::MulAdd(vertical, mean, sum.volume);
-  const V half_square =
-      half * hn::MulAdd(middle, middle, dot<Number>(gradient, product<Number>(c, gradient)));
+  // The mean of s^2 to second order.
+  const V half_square = half * hn::MulAdd(middle, middle + contraction(t.s.hessian),
+                                          dot<Number>(gradient, product<Number>(c, gradient)));
   sum.moment = sum.moment + scaled<Number>(vertical, offset - scaled<Number>(half_square, up));
   const V trace = c[0] + c[1] + c[2];
   sum.cubic =

@@ -18,6 +18,7 @@
 #include "tests/hydrostatics/forced_target.h"
 #include "tests/support/allocation_count.h"
 #include "tests/wave_loads/brute_force.h"
+#include "wave_loads/wave_surface_methods.h"
 
 namespace buoyancy {
 namespace {
@@ -288,6 +289,16 @@ TEST(WaveLoad, DoesNotDependOnTheWorldsOrigin) {
   const WaveLoad here = one.load(pose);
   const WaveLoad there = one.load(far);
   EXPECT_NEAR((here.force - there.force).norm(), 0.0, 1e-6);
+}
+
+TEST(WaveLoad, MomentIsThatOfTheVolumeUnderTheSurface) {
+  const Case one(BoxShape{{2.0, 2.0, 2.0}, {12, 12, 12}}, wind_sea(0.5), 1e-4);
+  Pose pose;
+  pose.p_WB = {3.0, 4.0, 0.1};
+  pose.q_WB = Eigen::Quaterniond(0.9, 0.3, -0.2, 0.1).normalized();
+  const WaveLoad load = one.load(pose);
+  const WaveLoad baseline = exact_surface_in_waves(one.mesh, one.snapshot, pose, Vec3::Zero());
+  EXPECT_NEAR((load.moment - baseline.moment).norm(), 0.0, 2e-5 * one.mesh.volume);
 }
 
 TEST(WaveLoad, AllocatesNothingAfterTheFirstQuery) {
