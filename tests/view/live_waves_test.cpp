@@ -26,6 +26,11 @@ shape = { type = "box", size = [2, 3, 4] }
 class LivePageInWaves : public PageTest {
  protected:
   void open(const std::string& scene) {
+    if (view_ != nullptr) {
+      // A page that is still open would report that its server is gone.
+      browser().open("about:blank");
+      view_.reset();
+    }
     view_ = std::make_unique<RunningView>(scene);
     browser().open(view_->url());
     browser().wait_until("window.buoyancyView && buoyancyView.snapshots > 0");

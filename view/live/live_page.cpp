@@ -19,6 +19,17 @@ std::string model_json(const Scene& scene, const std::string& version) {
   return data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+// One file: a browser opens a connection for each, and gives up those that a busy machine serves late.
+std::string page_script() {
+  std::string script;
+  for (const char* name : {"format.js", "sea.js", "water_materials.js", "wave_surface.js", "water_scene.js",
+                           "plots.js", "live.js"}) {
+    script += page_text(name);
+    script += '\n';
+  }
+  return script;
+}
+
 }  // namespace
 
 Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::string& version,
@@ -37,8 +48,7 @@ Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::s
       resources.push_back({std::move(path), content_type, std::string(page_text(name))});
     }
   };
-  add("text/javascript; charset=utf-8", {"format.js", "sea.js", "water_materials.js", "wave_surface.js",
-                                         "water_scene.js", "plots.js", "live.js"});
+  resources.push_back({"/page.js", "text/javascript; charset=utf-8", page_script()});
   add("text/css; charset=utf-8", {"style.css", "live.css"});
   return resources;
 }
