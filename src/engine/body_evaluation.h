@@ -58,8 +58,8 @@ struct CurrentWater {
   const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
 };
 
-// The result of a body at a pose. Precondition: the water is known. No heap allocation, except, in waves, by
-// a thread's first query of its kind.
+// The result of a body at a pose. Precondition: the water is known. No heap allocation, except, in waves,
+// until a thread's buffers are as large as its queries need.
 WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose);
 
 // Preconditions: validated.status is kOk, and the water is known.

@@ -31,8 +31,7 @@ struct WaveBuoyancyResult {
 };
 
 // wave_mesh: of the solver's mesh. The solver's method is hierarchical, fast_surface or exact_surface. pose,
-// reference_B, statuses: as for buoyancy(). No heap after a thread's first query of its kind. Complexity:
-// that of the method.
+// reference_B, statuses: as for buoyancy(). Heap and complexity: those of the method.
 WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTime& sea,
                                      const Pose& pose, const Vec3& reference_B);
 

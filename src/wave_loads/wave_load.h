@@ -7,8 +7,8 @@
 // pressure; patches are refined until the sum of their bounds is within the tolerance, or until the work
 // reaches its cap. The bound that is returned holds in every case.
 //
-// Complexity: hardly depends on the numbers of triangles and of components. No heap after a thread's first
-// query of its kind.
+// Complexity: hardly depends on the numbers of triangles and of components. No heap once a
+// thread's buffers are as large as its queries need.
 #pragma once
 
 #include <cstdint>

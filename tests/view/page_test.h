@@ -27,7 +27,12 @@ class PageTest : public testing::Test {
   }
 
   void TearDown() override {
-    if (!HasFailure() || !browser_) return;
+    if (!browser_) return;
+    if (!HasFailure()) {
+      // A page that stays open reports that its server is gone, perhaps to the next test.
+      browser_->open("about:blank");
+      return;
+    }
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     const std::string path =
         std::string(BUOYANCY_PICTURES) + "/" + test.test_suite_name() + "." + test.name() + ".png";

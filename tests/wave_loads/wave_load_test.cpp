@@ -301,15 +301,17 @@ TEST(WaveLoad, MomentIsThatOfTheVolumeUnderTheSurface) {
   EXPECT_NEAR((load.moment - baseline.moment).norm(), 0.0, 2e-5 * one.mesh.volume);
 }
 
-TEST(WaveLoad, AllocatesNothingAfterTheFirstQuery) {
+TEST(WaveLoad, AllocatesNothingAfterWarmUp) {
   Case one(RockShape{1.0, 16, 0.4, 3}, wind_sea(0.5), 1e-3);
   Pose pose;
   pose.p_WB = {1.0, 2.0, -0.1};
-  one.load(pose);
+  const auto load_at = [&](std::int64_t utime) {
+    one.snapshot.set_time(utime);
+    EXPECT_GT(one.load(pose).force_bound, 0.0);
+  };
+  for (std::int64_t i = 0; i < 50; ++i) load_at(100'000 * i);
   const AllocationCount allocations;
-  one.snapshot.set_time(1'000'000);
-  const WaveLoad load = one.load(pose);
-  EXPECT_GT(load.force_bound, 0.0);
+  for (std::int64_t i = 0; i < 50; ++i) load_at(100'000 * i);
   EXPECT_EQ(allocations.count(), 0);
 }
 
