@@ -562,11 +562,14 @@ TEST_F(InterruptedPart, LeavesNothingThatJoinAccepts) {
 TEST_F(InterruptedPart, IsNotWrittenByTwoProcessesAtOnce) {
   ChildProcess child(part_command());
   wait_for_output(child);
+  child.send_signal(SIGSTOP);  // it must not finish before the second one has started
   const FinishedProcess second = run_part(path("in.csv"), path("out.csv"), {2, 2});
   EXPECT_EQ(second.exit_code, 1);
   EXPECT_NE(second.standard_error.find("is being written by another process"), std::string::npos)
       << second.standard_error;
-  EXPECT_FALSE(child.wait(0)) << "the first goes on: " << child.standard_error();
+  child.send_signal(SIGCONT);
+  EXPECT_EQ(child.wait(kWaitTimeout), 0) << "the first goes on: " << child.standard_error();
+  EXPECT_TRUE(std::filesystem::exists(manifest_of(part_of("out.csv", 2, 2))));
 }
 
 TEST_F(InterruptedPart, KeepsEarlierCompletePart) {
