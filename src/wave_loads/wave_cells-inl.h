@@ -279,8 +279,9 @@ HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Numbe
   static const MonomialFactors<Number> factors;
   const LanesOf<Number> d;
   DegreeRows<Number> e;
+  const MonomialColumns& columns = monomial_columns();
   for (int l = 0; l <= kNormDegree; ++l) {
-    for (int q = 0; q <= l; ++q) e.number(l, q) = sums[monomial_columns()[monomial_place(l - q, q)]];
+    for (int q = 0; q <= l; ++q) e.number(l, q) = sums[columns[monomial_place(l - q, q)]];
   }
   const auto place = [](int l, int q) { return monomial_place(l - q, q); };
   for_each_row<Number>(kDegree, [&](int l, int q) { hn::StoreU(e.at(l, q), d, &cell.eta[place(l, q)]); });
@@ -352,11 +353,12 @@ HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Numbe
   using V = VectorOf<Number>;
   const LanesOf<Number> d;
   DegreeRows<Number> A, B;
+  const HarmonicColumns& columns = harmonic_columns();
   for (int l = 0; l <= kNormDegree; ++l) {
-    A.number(l, 0) = Number{2} * sums[harmonic_columns()[cosine_place(l, 0)]];
+    A.number(l, 0) = Number{2} * sums[columns[cosine_place(l, 0)]];
     for (int m = 1; m <= l; ++m) {
-      A.number(l, m) = sums[harmonic_columns()[cosine_place(l, m)]];
-      B.number(l, m) = sums[harmonic_columns()[sine_place(l, m)]];
+      A.number(l, m) = sums[columns[cosine_place(l, m)]];
+      B.number(l, m) = sums[columns[sine_place(l, m)]];
     }
     A.number(l, -1) = -A.number(l, 1);
     A.number(l, -2) = A.number(l, 2);

@@ -44,6 +44,7 @@ struct DescentWorkspace {
   std::vector<UnitPlace<Number>> places;  // of each
   std::vector<std::uint32_t> heads;       // the first unit of each cell
   Results<Number> results;
+  std::vector<Number> roots;  // of the results' expected errors
   Pieces<Number> pieces;
   Clips<Number> clips;
   std::vector<std::uint32_t> level, next_level;  // blocks
@@ -150,7 +151,8 @@ class Descent {
   // Replaces results above a threshold by those of their children, or clips them. Returns whether there are
   // any.
   bool refine() {
-    const double limit = refinement_limit(work_.results.errors(), work_.results.expected(), query_.budget);
+    const double limit =
+        refinement_limit(work_.results.errors(), work_.results.expected(), work_.roots, query_.budget);
     const std::size_t count = work_.results.errors().size();
     bool any = false;
     for (std::size_t n = 0; n < count; ++n) {

@@ -153,7 +153,14 @@ HWY_INLINE VolumeValues<Number> evaluate(const VolumeCell<Number>& cell, const V
     add(t, v.f_2, cell.f_2);
     add(t, v.f_3, cell.f_3);
   }
-  for (std::size_t t = harmonics_to(kDegree - 1); t < harmonics_to(kDegree); ++t) add(t, v.f, cell.f);
+  // Two sums, since one alone would wait for each addition.
+  V f_odd = zero;
+  for (std::size_t t = harmonics_to(kDegree - 1); t + 1 < harmonics_to(kDegree); t += 2) {
+    add(t, v.f, cell.f);
+    add(t + 1, f_odd, cell.f);
+  }
+  add(harmonics_to(kDegree) - 1, v.f, cell.f);
+  v.f = v.f + f_odd;
   return v;
 }
 

@@ -100,7 +100,7 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   // What a cell leaves out at its corners, over the whole surface and relative to the tolerance. It grows
   // with the ninth power of the distance from the centre: on average it is less than a tenth of this.
   // Fine tolerances need more of the tolerance for themselves.
-  const double truncation_share = single ? 2.0 : 0.2;
+  const double truncation_share = single ? 4.0 : 0.2;
   const double reach =
       expansion.reach_within(truncation_share * query.budget / (body.tree->area * sea.amplitude_factor()));
   const double k = expansion.k_max;

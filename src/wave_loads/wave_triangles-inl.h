@@ -44,6 +44,31 @@ HWY_INLINE VectorOf<Number> value_at(const Quadratic<Number>& q, const Vectors3<
   return q.value + dot<Number>(q.gradient, y) + set<Number>(0.5) * dot<Number>(h, y);
 }
 
+// Of a quadratic function over a triangle.
+template <typename Number>
+struct TriangleMeans {
+  VectorOf<Number> mean;
+  VectorOf<Number> at_mid;     // the value at the triangle's centroid
+  VectorOf<Number> curvature;  // the contraction of the Hessian with the triangle's second moments
+  Vectors3<Number> offset;     // mean of the function times y; of its linear part about the centroid alone
+  Vectors3<Number> gradient;   // at the centroid
+};
+
+// mid: the triangle's centroid. c: the mean of (y - mid) (y - mid)^T.
+template <typename Number>
+HWY_INLINE TriangleMeans<Number> means_of(const Quadratic<Number>& q, const Vectors3<Number>& mid,
+                                          const Symmetric<Number>& c) {
+  TriangleMeans<Number> m;
+  m.gradient = q.gradient + product<Number>(q.hessian, mid);
+  m.at_mid = value_at<Number>(q, mid);
+  const Symmetric<Number>& h = q.hessian;
+  m.curvature = hn::MulAdd(h[0], c[0], hn::MulAdd(h[1], c[1], h[2] * c[2])) +
+                set<Number>(2.0) * hn::MulAdd(h[3], c[3], hn::MulAdd(h[4], c[4], h[5] * c[5]));
+  m.mean = hn::MulAdd(set<Number>(0.5), m.curvature, m.at_mid);
+  m.offset = scaled<Number>(m.mean, mid) + product<Number>(c, m.gradient);
+  return m;
+}
+
 // Adds `weight` times the integrals over a triangle with these corners and this area vector.
 template <typename Number>
 HWY_INLINE void add_triangle(const std::array<Vectors3<Number>, 3>& corners,
@@ -68,30 +93,17 @@ HWY_INLINE void add_triangle(const std::array<Vectors3<Number>, 3>& corners,
     far = hn::Max(far, dot<Number>(y, y));
   }
   for (V& entry : c) entry = entry * set<Number>(1.0 / 12.0);
-  const auto contraction = [&](const Symmetric<Number>& h) {
-    return hn::MulAdd(h[0], c[0], hn::MulAdd(h[1], c[1], h[2] * c[2])) +
-           set<Number>(2.0) * hn::MulAdd(h[3], c[3], hn::MulAdd(h[4], c[4], h[5] * c[5]));
-  };
-  const auto integrate_one = [&](const Quadratic<Number>& q, V& mean, Vectors3<Number>& offset, V& middle,
-                                 Vectors3<Number>& gradient) {
-    gradient = q.gradient + product<Number>(q.hessian, mid);
-    middle = value_at<Number>(q, mid);
-    mean = hn::MulAdd(half, contraction(q.hessian), middle);
-    offset = scaled<Number>(mean, mid) + product<Number>(c, gradient);
-  };
-  V mean, middle;
-  Vectors3<Number> offset, gradient;
   const Vectors3<Number> area = scaled<Number>(weight, area_vector);
-  integrate_one(t.phi, mean, offset, middle, gradient);
-  sum.force = sum.force + scaled<Number>(mean, area);
-  sum.offset_torque = sum.offset_torque + cross<Number>(offset, area);
-  integrate_one(t.s, mean, offset, middle, gradient);
+  const TriangleMeans<Number> phi = means_of<Number>(t.phi, mid, c);
+  sum.force = sum.force + scaled<Number>(phi.mean, area);
+  sum.offset_torque = sum.offset_torque + cross<Number>(phi.offset, area);
+  const TriangleMeans<Number> s = means_of<Number>(t.s, mid, c);
   const V vertical = dot<Number>(up, area);
-  sum.volume = hn::MulAdd(vertical, mean, sum.volume);
+  sum.volume = hn::MulAdd(vertical, s.mean, sum.volume);
   // The mean of s^2 to second order.
-  const V half_square = half * hn::MulAdd(middle, middle + contraction(t.s.hessian),
-                                          dot<Number>(gradient, product<Number>(c, gradient)));
-  sum.moment = sum.moment + scaled<Number>(vertical, offset - scaled<Number>(half_square, up));
+  const V half_square = half * hn::MulAdd(s.at_mid, s.at_mid + s.curvature,
+                                          dot<Number>(s.gradient, product<Number>(c, s.gradient)));
+  sum.moment = sum.moment + scaled<Number>(vertical, s.offset - scaled<Number>(half_square, up));
   const V trace = c[0] + c[1] + c[2];
   sum.cubic =
       hn::MulAdd(half * t.curvature * hn::Abs(weight) * hn::Sqrt(dot<Number>(area_vector, area_vector)),
