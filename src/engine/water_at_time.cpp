@@ -19,6 +19,11 @@ void WaterAtTime::set_scene(const Scene& scene) {
   scene_ = &scene;
 }
 
+std::shared_ptr<const SeaPeriod> WaterAtTime::sea_at(std::int64_t utime) const {
+  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);
+  return period == nullptr ? nullptr : *period;
+}
+
 WaterAtTime::Change WaterAtTime::move_to(std::int64_t utime, double lead_time) {
   if (scene_->sea() == nullptr && !scene_->receives_sea()) return {{&scene_->water(), nullptr}, false};
   const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);

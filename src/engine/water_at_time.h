@@ -24,6 +24,8 @@ class WaterAtTime {
   // See SeaTimeline::receive().
   Expected<void> receive_sea(Bytes message) { return seas_.receive(message, *scene_); }
   void set_seas(SeaTimeline seas) { seas_ = std::move(seas); }
+  // The sea that holds at this time; nullptr: none is known for it, or the scene's water is at rest.
+  std::shared_ptr<const SeaPeriod> sea_at(std::int64_t utime) const;
 
   struct Change {
     CurrentWater water;

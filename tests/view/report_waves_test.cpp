@@ -1,9 +1,15 @@
 // The page of buoyancy-report for a run in waves, in a real browser.
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "messages/request.h"
+#include "messages/sea_state.h"
+#include "recording/event_log.h"
 #include "tests/support/child_process.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -40,9 +46,12 @@ class ReportPageInWaves : public PageTest {
       run += std::to_string(kTodayUtime + 1'000'000LL * second) + ",1," + std::to_string(x) + "," +
              std::to_string(y) + "," + std::to_string(z) + ",1,0,0,0,0,0,0,1e5,0,0,0,12,0,0,-1\n";
     }
+    open_run(scene, directory_.write("run.csv", run));
+  }
+  void open_run(const std::string& scene, const std::string& run) {
     const FinishedProcess made =
-        run_to_end(command_of({BUOYANCY_REPORT, "--scene", directory_.write("waves.toml", scene),
-                               directory_.write("run.csv", run), directory_.path("run.html")}),
+        run_to_end(command_of({BUOYANCY_REPORT, "--scene", directory_.write("waves.toml", scene), run,
+                               directory_.path("run.html")}),
                    kWaitTimeout);
     ASSERT_EQ(made.exit_code, 0) << made.standard_error;
     browser().open_file(directory_.path("run.html"));
@@ -84,6 +93,54 @@ TEST_F(ReportPageInWaves, DrawsSurfaceOfSea) {
     }
     EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   }
+}
+
+TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
+  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kBox;
+  std::vector<std::uint8_t> log;
+  auto add = [&log, number = std::int64_t{0}](std::int64_t utime, std::string_view channel,
+                                              const auto& message) mutable {
+    std::vector<std::uint8_t> bytes;
+    encode(message, bytes);
+    std::vector<std::uint8_t> event;
+    encode_event(number++, utime, channel, bytes, event);
+    log.insert(log.end(), event.begin(), event.end());
+  };
+  std::vector<SeaState> seas;
+  for (const NamedWater& water : kSeasOfPages) {
+    seas.push_back(to_sea_state(*scene_of(water.table + kBox).sea(), 7));
+    seas.back().utime = kTodayUtime + 10'000'000LL * static_cast<std::int64_t>(seas.size());
+  }
+  for (std::int64_t second = 0; second <= 40; ++second) {
+    const std::int64_t utime = kTodayUtime + 1'000'000 * second;
+    for (const SeaState& sea : seas) {
+      if (sea.utime == utime) add(utime, kSeaChannel, sea);
+    }
+    WrenchRequest request;
+    request.id = {.utime = utime, .session_id = 1, .seq = second};
+    request.bodies = {{.body_id = 1,
+                       .position = {kBodiesAt[0], kBodiesAt[1], 1.5},
+                       .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}}};
+    add(utime, kStatesChannel, request);
+  }
+  ASSERT_NO_FATAL_FAILURE(open_run(
+      received, directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log.data()), log.size()})));
+
+  go_to(kTodayUtime + 5'000'000);
+  EXPECT_EQ(browser().run("const { scene } = buoyancy_report; return [scene.waves, scene.water.visible];"),
+            nlohmann::json({nullptr, true}))
+      << "no sea yet";
+  const Water water = scene_of(received).water();
+  for (const std::int64_t seconds : {12, 29, 10, 20}) {
+    SCOPED_TRACE(seconds);
+    const Expected<Sea> sea = to_sea(seas[seconds < 20 ? 0 : 1], water);
+    ASSERT_TRUE(sea) << sea.error().message();
+    SeaSnapshot snapshot(*sea);
+    snapshot.set_time(kTodayUtime + 1'000'000 * seconds);
+    go_to(kTodayUtime + 1'000'000 * seconds);
+    expect_page_draws(browser(), "buoyancy_report.scene", snapshot);
+  }
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(ReportPageInWaves, DrawsWaterlineWhereSurfaceMeetsHull) {

@@ -33,6 +33,10 @@ Json sea_json(const Sea& sea) {
           {"phase", components.phase}};
 }
 
+Json sea_json(const SeaPeriod& period) {
+  return sea_json(period.sea ? period.sea->sea() : Sea::make({}, period.water).value());
+}
+
 double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
   // In seconds and microseconds, since the difference of two int64 may not be one.
   constexpr std::int64_t kSecond = 1'000'000;
@@ -40,6 +44,10 @@ double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
   const std::int64_t seconds = utime / kSecond - origin / kSecond;
   const std::int64_t microseconds = utime % kSecond - origin % kSecond;
   return static_cast<double>(seconds) + 1e-6 * static_cast<double>(microseconds) + lead_time;
+}
+
+double sea_time(const SeaPeriod& period, std::int64_t utime, double lead_time) {
+  return period.sea ? sea_time(period.sea->sea(), utime, lead_time) : 0.0;
 }
 
 }  // namespace buoyancy::view

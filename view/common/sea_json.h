@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/sea_timeline.h"
 #include "waves/sea.h"
 
 namespace buoyancy::view {
@@ -18,8 +19,12 @@ namespace buoyancy::view {
 //                    of one number per component, as in PreparedComponents
 // Numbers have the digits from which the same double is read back.
 nlohmann::ordered_json sea_json(const Sea& sea);
+// A calm sea has no components.
+nlohmann::ordered_json sea_json(const SeaPeriod& period);
 
 // The time t of the sea [s] at utime [us]. Pages get t, since JavaScript's numbers do not hold every utime.
 double sea_time(const Sea& sea, std::int64_t utime, double lead_time);
+// 0 in a calm sea, which is the same at all times.
+double sea_time(const SeaPeriod& period, std::int64_t utime, double lead_time);
 
 }  // namespace buoyancy::view

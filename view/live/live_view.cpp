@@ -11,6 +11,7 @@
 
 #include "base/format.h"
 #include "transport/message_limits.h"
+#include "view/common/sea_json.h"
 #include "view/live/snapshot_json.h"
 
 namespace buoyancy::view {
@@ -156,7 +157,7 @@ void LiveView::publish() {
     const std::shared_ptr<const SeaPeriod> sea = monitor_.sea_period();
     if (sea && sea != sea_) {
       sea_ = sea;
-      sea_text_ = std::make_shared<const std::string>(sea_period_json(*sea));
+      sea_text_ = std::make_shared<const std::string>(sea_json(*sea).dump());
     }
   }
   broadcaster_->publish(history_json(monitor_),

@@ -170,11 +170,6 @@ json counts_json(const BusMonitor& monitor) {
           {"seas_rejected", counts.seas_rejected}};
 }
 
-// A calm sea is the same at all times.
-double time_of_sea(const SeaPeriod& period, const RequestTime& request) {
-  return period.sea ? sea_time(period.sea->sea(), request.utime, request.lead_time) : 0.0;
-}
-
 // Replaces invalid UTF-8, which a scene's name may contain, instead of throwing.
 std::string dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -203,7 +198,9 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
             {"counts", counts_json(monitor)}};
   if (monitor.in_waves()) {
     const std::shared_ptr<const SeaPeriod> period = monitor.sea_period();
-    rest["sea_time"] = period ? json(time_of_sea(*period, *monitor.request_time())) : json();
+    rest["sea_time"] =
+        period ? json(sea_time(*period, monitor.request_time()->utime, monitor.request_time()->lead_time))
+               : json();
   }
   std::string text = dump(rest);
   text.back() = ',';  // replaces the closing brace
@@ -216,11 +213,6 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
   }
   text += "]}";
   return text;
-}
-
-std::string sea_period_json(const SeaPeriod& period) {
-  if (period.sea) return sea_json(period.sea->sea()).dump();
-  return sea_json(Sea::make({}, period.water).value()).dump();
 }
 
 std::string history_json(const BusMonitor& monitor) {

@@ -40,9 +40,6 @@ namespace buoyancy::view {
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now);
 
-// A received sea, see sea_json.h; one line. A calm one has no components.
-std::string sea_period_json(const SeaPeriod& period);
-
 // The last minute: an array, the latest second last, of {"number", "requests", "responses", "unanswered",
 // "p50", "p99", "max"}; the last three are null for a second without responses.
 std::string history_json(const BusMonitor& monitor);

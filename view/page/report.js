@@ -21,8 +21,7 @@
 
   const scene = make_water_scene(element('canvas'), { ...data.model, bodies: bodies.map((body) => body.description) });
 
-  const sea = data.model.sea ? new Sea(data.model.sea) : null;
-  if (scene) scene.use_sea(sea);
+  const seas = data.seas.map((sea) => new Sea(sea));
 
   const position_names = ['px', 'py', 'pz'], quaternion_names = ['qw', 'qx', 'qy', 'qz'];
   const at_row = (body, names, row) => names.map((name) => body.columns[name][row]);
@@ -47,18 +46,19 @@
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
-  // The time of the sea [s] when the selected body is shown at a time of the run: that of its row before, and the time
-  // since then. Without waves, NaN.
-  function sea_time_at(when) {
-    if (!sea) return NaN;
-    const { time: times, sea_time: sea_times } = selected.columns;
+  // The sea when the selected body is shown at a time of the run, and its time [s]: those of the body's row before, and
+  // the time since then. In water at rest, and where the sea is not known, null and NaN.
+  function sea_at(when) {
+    if (seas.length === 0) return { sea: null, sea_time: NaN };
+    const { time: times, sea_time: sea_times, sea: places } = selected.columns;
     const row = row_at(times, when);
-    return sea_times[row] + (when - times[row]);
+    return Number.isNaN(places[row]) ? { sea: null, sea_time: NaN } : { sea: seas[places[row]], sea_time: sea_times[row] + (when - times[row]) };
   }
+  let drawn_sea = null;
 
   // is_valid: whether a row's value has a meaning; a response whose status is not OK holds zeros.
   const groups = [
-    { key: 'heave', title: 'Heave', unit: 'm', columns: { [sea ? 'B\'s origin over the level' : 'B\'s origin over the water']: 'heave' }, is_valid: has_pose },
+    { key: 'heave', title: 'Heave', unit: 'm', columns: { [seas.length > 0 ? 'B\'s origin over the level' : 'B\'s origin over the water']: 'heave' }, is_valid: has_pose },
     { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' }, is_valid: has_pose },
     { key: 'force', title: 'Buoyant force', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok },
     { key: 'torque', title: 'Buoyant torque', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, is_valid: is_ok },
@@ -79,7 +79,12 @@
 
   function show() {
     if (scene) {
-      scene.show(bodies.map((body) => body_at(body, time)), sea_time_at(time));
+      const { sea, sea_time } = sea_at(time);
+      if (sea !== drawn_sea) {
+        scene.use_sea(sea);
+        drawn_sea = sea;
+      }
+      scene.show(bodies.map((body) => body_at(body, time)), sea_time);
       scene.follow(selected.id);
       scene.render();
     }
@@ -169,7 +174,7 @@
     line.textContent = notice;
     element('notices').append(line);
   }
-  report_tables(data, bodies, sea);
+  report_tables(data, bodies, seas);
   element('footer').textContent = `buoyancy-report ${data.version}. Rendered with three.js. Requires no network.`;
   // page.html#t=12.5 opens at that time.
   function seek_to_hash() {
@@ -181,7 +186,10 @@
   seek_to_hash();
 
   // [m], over the level: the elevation that is drawn at the distances x and y along the sea's axes from W's origin.
-  window.buoyancyPage = { surfaceHeight: (x, y) => (sea ? sea.elevation(x, y, sea_time_at(time)) : 0) };
+  window.buoyancyPage = { surfaceHeight: (x, y) => {
+    const { sea, sea_time } = sea_at(time);
+    return sea ? sea.elevation(x, y, sea_time) : 0;
+  } };
   // For tests and measurements. shown_after: [ms] since the navigation started.
   window.buoyancy_report = { shown_after: performance.now(), data, bodies, plots, scene, seek, play, select, body_at,
                              state: () => ({ time, speed, playing, start, end, body: selected.id }) };

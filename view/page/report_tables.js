@@ -102,15 +102,17 @@ function bodies_table(data) {
   return table_of(caption, ['id', 'name', 'rows', 'rows by status', 'largest force, N', 'shown'], rows);
 }
 
-// The waves of the scene in a sentence; empty in water at rest.
-function waves_text(sea) {
-  if (!sea) return '';
+// The waves of a run in a sentence; empty in water at rest.
+function waves_text(seas) {
+  if (seas.length === 0) return '';
+  if (seas.length > 1) return `Waves: ${seas.length} different seas, received one after the other. `;
+  const sea = seas[0];
   const depth = sea.depth === null ? 'deep water' : `a depth of ${format_number(sea.depth)} m`;
   return `Waves: ${plural(sea.components, 'component', 'components')}, significant wave height ${format_number(sea.significant_wave_height())} m, ` +
     `${depth}, ${sea.pressure} pressure. `;
 }
 
-function report_tables(data, bodies, sea) {
+function report_tables(data, bodies, seas) {
   const { water, bodies: described, meshes, simd_target: target } = data.model;
   const section = (title, ...content) => {
     const heading = document.createElement('h2');
@@ -118,7 +120,7 @@ function report_tables(data, bodies, sea) {
     document.getElementById('tables').append(heading, ...content);
   };
   section('The bodies', bodies_table(data));
-  const evaluations = sea ? null : evaluations_table(bodies);
+  const evaluations = bodies.every((body) => body.evaluations) ? evaluations_table(bodies) : null;
   const statuses = status_table(data, bodies);
   if (evaluations || statuses) section('Evaluations', ...[evaluations, statuses].filter((table) => table !== null));
   if (data.status) {
@@ -132,7 +134,7 @@ function report_tables(data, bodies, sea) {
       ['latency, median, 99 %, maximum', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
   }
   section('The scene', table_of(
-    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(sea)}` +
+    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(seas)}` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
     described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "view/common/body_statuses.h"
 #include "view/common/page_assets.h"
 #include "view/common/scene_model.h"
+#include "view/common/sea_json.h"
 
 namespace buoyancy::view {
 namespace {
@@ -68,9 +70,9 @@ Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) 
            })}};
 }
 
-// The columns in the page: the time of the sea is not one in water at rest.
+// The columns in the page: those of the sea do not exist in water at rest.
 std::size_t column_count(const Scene& scene) {
-  return scene.sea() == nullptr ? kSeaTime : kColumnCount;
+  return has_waves(scene) ? kColumnCount : kSeaTime;
 }
 
 // Base64 of the rows, column by column.
@@ -119,6 +121,12 @@ Json status_json(const ServiceStatus& status) {
           {"max", status.latency.max}};
 }
 
+Json seas_json(const RecordedRun& run) {
+  Json seas = Json::array();
+  for (const std::shared_ptr<const SeaPeriod>& sea : run.seas) seas.push_back(sea_json(*sea));
+  return seas;
+}
+
 }  // namespace
 
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options) {
@@ -134,7 +142,9 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
             {"suppressed_warnings", run.suppressed_warnings},
             {"status", run.status ? status_json(*run.status) : Json(nullptr)},
             {"model", scene_model(scene)},
+            {"seas", seas_json(run)},
             {"bodies", Json::array()}};
+  data["model"].erase("sea");  // it is one of "seas"
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
     const BodyRun& body_run = run.bodies[i];
@@ -146,7 +156,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
                    {"rows", body_run.rows.size()}};
     if (body_run.shown) {
       described["data"] = encode_rows(body_run.rows, column_count(scene));
-      if (scene.sea() == nullptr) described["evaluations"] = evaluations_json(body, body_run, scene.water());
+      if (!has_waves(scene)) described["evaluations"] = evaluations_json(body, body_run, scene.water());
       if (body.hydrostatics) described["metacenters"] = encode_metacenters(body, body_run, scene.water());
     }
     data["bodies"].push_back(std::move(described));

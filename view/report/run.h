@@ -5,13 +5,16 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/sea_timeline.h"
 #include "messages/request.h"
 #include "messages/status.h"
+#include "scene/scene.h"
 
 namespace buoyancy::view {
 
@@ -28,7 +31,9 @@ namespace buoyancy::view {
 //   kHeave           height of B's origin above the level [m]
 //   kRoll, kPitch    angles from upright [degrees] (attitude.h)
 //   kForce, kTorque  norms [N], [N m]
-//   kSeaTime         time t of the sea at which the row is evaluated [s]; in waves only, hence the last
+//   kSeaTime         time t of the sea at which the row is evaluated [s]
+//   kSea             that sea's place in RecordedRun::seas; kUnknown if it is not known
+// The last two exist in waves only.
 enum RunColumn : std::size_t {
   kTime,
   kPx,
@@ -57,14 +62,20 @@ enum RunColumn : std::size_t {
   kForce,
   kTorque,
   kSeaTime,
+  kSea,
   kColumnCount,
 };
 inline constexpr std::array<std::string_view, kColumnCount> kColumnNames{
-    "time", "px",     "py",         "pz",    "qw",   "qx",    "qy",     "qz",     "status",
-    "fx",   "fy",     "fz",         "tx",    "ty",   "tz",    "volume", "bx",     "by",
-    "bz",   "energy", "round_trip", "heave", "roll", "pitch", "force",  "torque", "sea_time"};
+    "time",       "px",    "py",   "pz",    "qw",    "qx",     "qy",       "qz", "status", "fx",
+    "fy",         "fz",    "tx",   "ty",    "tz",    "volume", "bx",       "by", "bz",     "energy",
+    "round_trip", "heave", "roll", "pitch", "force", "torque", "sea_time", "sea"};
 
 using RunRow = std::array<double, kColumnCount>;
+// Whether the water of a scene moves, or can.
+inline bool has_waves(const Scene& scene) {
+  return scene.sea() != nullptr || scene.receives_sea();
+}
+
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Rows of a body by how the service evaluates their poses.
@@ -95,7 +106,8 @@ struct RecordedRun {
   std::int64_t computed = 0;  // rows of shown bodies without a recorded response, computed from the scene
   std::vector<std::string> warnings;  // the first ones about input that could not be read
   std::int64_t suppressed_warnings = 0;
-  std::optional<ServiceStatus> status;  // the last one recorded
+  std::vector<std::shared_ptr<const SeaPeriod>> seas;  // of the shown rows: the scene's, or those received
+  std::optional<ServiceStatus> status;                 // the last one recorded
 };
 
 }  // namespace buoyancy::view

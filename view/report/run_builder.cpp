@@ -188,7 +188,7 @@ void RunBuilder::add(const RecordedState& recorded) {
     summarize(run_.bodies[*index], recorded, pose);
     return;
   }
-  if (scene_.sea() == nullptr) count_evaluation(*shown, body, pose);
+  if (!has_waves(scene_)) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
   BodyWrench wrench =
       recorded.wrench ? *recorded.wrench
@@ -222,9 +222,26 @@ void RunBuilder::add(const RecordedState& recorded) {
   row[kPitch] = body_attitude.pitch;
   row[kForce] = to_vec3(wrench.force).norm();
   row[kTorque] = to_vec3(wrench.torque).norm();
-  row[kSeaTime] =
-      scene_.sea() == nullptr ? kUnknown : sea_time(*scene_.sea(), recorded.utime, recorded.lead_time);
+  const std::shared_ptr<const SeaPeriod> sea = has_waves(scene_) ? water_.sea_at(recorded.utime) : nullptr;
+  row[kSeaTime] = sea ? sea_time(*sea, recorded.utime, recorded.lead_time) : kUnknown;
+  row[kSea] = sea ? place_of(sea) : kUnknown;
   shown->rows.add(rows_added_++, row);
+}
+
+double RunBuilder::place_of(const std::shared_ptr<const SeaPeriod>& sea) {
+  std::vector<std::shared_ptr<const SeaPeriod>>& seas = run_.seas;
+  // Most rows have the sea of the row before.
+  const auto found = std::find(seas.rbegin(), seas.rend(), sea);
+  if (found != seas.rend()) return static_cast<double>(seas.rend() - found - 1);
+  if (seas.size() == kMaxSeasShown) {
+    if (!std::exchange(warned_of_seas_, true)) {
+      add_warning("the file holds more than " + std::to_string(kMaxSeasShown) +
+                  " different seas; the surface of the others is not drawn");
+    }
+    return kUnknown;
+  }
+  seas.push_back(sea);
+  return static_cast<double>(seas.size() - 1);
 }
 
 void RunBuilder::receive_sea(std::int64_t timestamp, Bytes message) {

@@ -23,7 +23,8 @@
 
 namespace buoyancy::view {
 
-inline constexpr std::size_t kMaxBodies = 1'000;  // shown in one page
+inline constexpr std::size_t kMaxBodies = 1'000;   // shown in one page
+inline constexpr std::size_t kMaxSeasShown = 100;  // about 20 kB each, of 200 components
 
 // The contents of a file about one body at one instant.
 struct RecordedState {
@@ -82,6 +83,7 @@ class RunBuilder {
 
   // Returns nullptr if the body is not shown.
   ShownBody* show(std::size_t index);
+  double place_of(const std::shared_ptr<const SeaPeriod>& sea);  // in run_.seas, see kSea
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
 
   const Scene& scene_;
@@ -94,6 +96,7 @@ class RunBuilder {
   std::optional<std::int64_t> first_utime_;
   std::int64_t latest_ = 0;  // [us], on the axis, of all bodies
   std::int64_t rows_added_ = 0;
+  bool warned_of_seas_ = false;
   RecordedRun run_;
 };
 
