@@ -14,6 +14,7 @@
 
 #include "wave_loads/sea_expansion.h"
 #include "wave_loads/wave_cells-inl.h"
+#include "wave_loads/wave_coefficients-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

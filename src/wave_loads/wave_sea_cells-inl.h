@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_cells-inl.h"
+#include "wave_loads/wave_coefficients-inl.h"
 #include "wave_loads/wave_query.h"
 
 HWY_BEFORE_NAMESPACE();

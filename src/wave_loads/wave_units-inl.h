@@ -1,0 +1,248 @@
+// The patches of a round: where they are, in which cells of the sea, and the elevation of its surface there,
+// with SIMD. Included once per instruction set.
+#if defined(BUOYANCY_WAVE_UNITS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_UNITS_INL_H
+#undef BUOYANCY_WAVE_UNITS_INL_H
+#else
+#define BUOYANCY_WAVE_UNITS_INL_H
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <hwy/highway.h>
+
+#include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_pieces-inl.h"
+#include "wave_loads/wave_query.h"
+#include "wave_loads/wave_results-inl.h"
+#include "wave_loads/wave_sea_cells-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace buoyancy {
+namespace HWY_NAMESPACE {
+
+// The places of a unit's patches over 1 / k_max, and the elevation of the surface there.
+template <typename Number>
+struct UnitPlace {
+  std::array<Number, kUnit<Number>> x1, x2, zeta;
+  std::array<Number, kUnit<Number>> eta, eta_1, eta_2, eta_11, eta_12, eta_22, eta_third;
+};
+
+// Of a round and of one cell. Where there are too few, the first repeats, and only `count` results are used.
+template <typename Number>
+struct Batch {
+  std::array<std::uint32_t, kUnitsPerVector<Number>> units{};
+  std::size_t count = 0;
+};
+
+template <typename Number>
+class RoundUnits {
+ public:
+  using V = VectorOf<Number>;
+
+  // The arguments must outlive the query.
+  void start(const WaveQuery& query, const PatchQuery<Number>& patch, Pieces<Number>& pieces) {
+    query_ = &query;
+    patch_ = &patch;
+    pieces_ = &pieces;
+    cells_.start(query);
+    units_.clear();
+  }
+
+  const SeaCells<Number>& cells() const { return cells_; }
+  std::size_t count() const { return units_.size(); }
+  void clear() { units_.clear(); }
+
+  void add_block(std::uint32_t block) {
+    for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
+      if (first < query_->tree->blocks[block].patches) {
+        Unit unit;
+        unit.block = block;
+        unit.first = first;
+        units_.push_back(unit);
+      }
+    }
+  }
+
+  // Adds the new pieces, and finds what is known of all units of the round from the surface alone.
+  void evaluate_surface() {
+    pieces_->take_new([this](const Unit& unit) { units_.push_back(unit); });
+    if (places_.size() < units_.size()) places_.resize(units_.size());
+    place_units();
+    link_units(cells_.surface_count(), &Unit::surface_cell);
+    evaluate_elevations();
+  }
+
+  // Calls work(batch, cell) for the units that are not dry, by cells of the surface.
+  template <typename Work>
+  HWY_INLINE void for_each_batch_of_surface(const Work& work) {
+    link_units(cells_.surface_count(), &Unit::surface_cell);
+    for_each_batch(work);
+  }
+  // The same, by cells of the volume.
+  template <typename Work>
+  HWY_INLINE void for_each_batch_of_volume(const Work& work) {
+    find_volume_cells();
+    link_units(cells_.volume_count(), &Unit::volume_cell);
+    for_each_batch(work);
+  }
+
+  using UnitNumbers = std::array<Number, kUnit<Number>>;
+  HWY_INLINE V read(const Batch<Number>& batch, UnitNumbers UnitPlace<Number>::*row) const {
+    return gather_units<Number>([&](std::size_t n) { return (places_[batch.units[n]].*row).data(); });
+  }
+  UnitsOfVector<Number> units_of(const Batch<Number>& batch) const {
+    UnitsOfVector<Number> units;
+    for (std::size_t n = 0; n < units.size(); ++n) units[n] = units_[batch.units[n]];
+    return units;
+  }
+  bool holds_pieces(const Batch<Number>& batch) const { return units_[batch.units[0]].of_pieces; }
+
+ private:
+  static double mean_of(const std::array<Number, kUnit<Number>>& numbers) {
+    double sum = 0.0;
+    for (const Number number : numbers) sum += static_cast<double>(number);
+    return sum / static_cast<double>(kUnit<Number>);
+  }
+
+  void place_units() {
+    Batch<Number> batch;
+    for (std::size_t first = 0; first < units_.size(); first += batch.count) {
+      const bool pieces = units_[first].of_pieces;
+      batch.count = 0;
+      while (batch.count < kUnitsPerVector<Number> && first + batch.count < units_.size() &&
+             units_[first + batch.count].of_pieces == pieces) {
+        ++batch.count;
+      }
+      for (std::size_t n = 0; n < kUnitsPerVector<Number>; ++n) {
+        batch.units[n] = static_cast<std::uint32_t>(first + (n < batch.count ? n : 0));
+      }
+      const Place<Number> place = place_of<Number>(*patch_, centers_of(batch));
+      write(batch, place.x1, &UnitPlace<Number>::x1);
+      write(batch, place.x2, &UnitPlace<Number>::x2);
+      write(batch, place.zeta, &UnitPlace<Number>::zeta);
+      for (std::size_t n = 0; n < batch.count; ++n) {
+        const UnitPlace<Number>& of_unit = places_[first + n];
+        units_[first + n].surface_cell = cells_.find_surface(mean_of(of_unit.x1), mean_of(of_unit.x2));
+      }
+    }
+    cells_.build_surface();
+  }
+
+  Vectors3<Number> centers_of(const Batch<Number>& batch) const {
+    const UnitsOfVector<Number> units = units_of(batch);
+    if (units[0].of_pieces) return pieces_->lanes(units).center;
+    const auto axis = [&](std::size_t i) HWY_ATTR {
+      return gather_units<Number>(
+          [&](std::size_t n) { return &query_->tree->blocks[units[n].block].center[i][units[n].first]; });
+    };
+    return {axis(0), axis(1), axis(2)};
+  }
+
+  void find_volume_cells() {
+    for (std::size_t n = 0; n < units_.size(); ++n) {
+      Unit& unit = units_[n];
+      if (unit.dry) continue;
+      const UnitPlace<Number>& place = places_[n];
+      double z = 0.0;
+      for (std::size_t lane = 0; lane < kUnit<Number>; ++lane) {
+        const double eta = static_cast<double>(place.eta[lane]);
+        z += (static_cast<double>(place.zeta[lane]) - eta) / (1.0 + eta * patch_->per_depth);
+      }
+      unit.volume_cell = cells_.find_volume(unit.surface_cell, z / static_cast<double>(kUnit<Number>));
+    }
+    cells_.build_volume();
+  }
+
+  void link_units(std::size_t cells, std::uint32_t Unit::*cell) {
+    heads_.assign(cells, kNone);
+    for (std::size_t n = units_.size(); n-- > 0;) {
+      Unit& unit = units_[n];
+      if (unit.dry) continue;
+      std::uint32_t& head = heads_[unit.*cell];
+      unit.next = head;
+      head = static_cast<std::uint32_t>(n);
+    }
+  }
+
+  // Calls work(batch, cell) for the linked units.
+  template <typename Work>
+  HWY_INLINE void for_each_batch(const Work& work) {
+    for (std::size_t cell = 0; cell < heads_.size(); ++cell) {
+      for (std::uint32_t n = heads_[cell]; n != kNone;) {
+        // A batch holds patches of the tree, or triangles.
+        Batch<Number> batch;
+        const bool pieces = units_[n].of_pieces;
+        while (n != kNone && batch.count < kUnitsPerVector<Number> && units_[n].of_pieces == pieces) {
+          batch.units[batch.count++] = n;
+          n = units_[n].next;
+        }
+        for (std::size_t i = batch.count; i < kUnitsPerVector<Number>; ++i) {
+          batch.units[i] = batch.units[0];
+        }
+        work(batch, cell);
+      }
+    }
+  }
+
+  HWY_INLINE void write(const Batch<Number>& batch, const V& vector, UnitNumbers UnitPlace<Number>::*row) {
+    alignas(64) std::array<Number, kLanes<Number>> numbers;
+    hn::Store(vector, LanesOf<Number>(), numbers.data());
+    for (std::size_t n = 0; n < batch.count; ++n) {
+      std::copy_n(numbers.data() + n * kUnit<Number>, kUnit<Number>, (places_[batch.units[n]].*row).data());
+    }
+  }
+
+  void evaluate_elevations() {
+    for_each_batch([this](const Batch<Number>& batch, std::size_t cell) HWY_ATTR {
+      const CellCenter& center = cells_.surface_center(cell);
+      const V x1 = read(batch, &UnitPlace<Number>::x1) - set<Number>(center.x1);
+      const V x2 = read(batch, &UnitPlace<Number>::x2) - set<Number>(center.x2);
+      const SurfaceValues<Number> values = evaluate<Number>(cells_.surface(cell), x1, x2);
+      write(batch, values.eta, &UnitPlace<Number>::eta);
+      write(batch, values.eta_1, &UnitPlace<Number>::eta_1);
+      write(batch, values.eta_2, &UnitPlace<Number>::eta_2);
+      write(batch, values.eta_11, &UnitPlace<Number>::eta_11);
+      write(batch, values.eta_12, &UnitPlace<Number>::eta_12);
+      write(batch, values.eta_22, &UnitPlace<Number>::eta_22);
+      write(batch, values.third, &UnitPlace<Number>::eta_third);
+      note_dry(batch, cell, x1, x2, values);
+    });
+  }
+
+  // Finds the units that are dry as a whole: there is nothing else to be computed of them.
+  HWY_INLINE void note_dry(const Batch<Number>& batch, std::size_t cell, const V& x1, const V& x2,
+                           const SurfaceValues<Number>& values) {
+    const UnitsOfVector<Number> units = units_of(batch);
+    const V radius =
+        units[0].of_pieces ? pieces_->lanes(units).radius : gather_units<Number>([&](std::size_t n) {
+          return &query_->tree->blocks[units[n].block].radius[units[n].first];
+        });
+    const SurfaceRange<Number> range = range_of<Number>(
+        read(batch, &UnitPlace<Number>::zeta), radius * set<Number>(patch_->k_max), values,
+        cells_.surface(cell).bounds, hn::Sqrt(hn::MulAdd(x1, x1, x2 * x2)), set<Number>(patch_->rounding()));
+    const std::uint32_t dry = bits_of<Number>(hn::Gt(range.low, set<Number>(0.0)));
+    constexpr std::uint32_t kAll = (std::uint32_t{1} << kUnit<Number>)-1;
+    for (std::size_t n = 0; n < batch.count; ++n) {
+      units_[batch.units[n]].dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
+    }
+  }
+
+  const WaveQuery* query_ = nullptr;
+  const PatchQuery<Number>* patch_ = nullptr;
+  Pieces<Number>* pieces_ = nullptr;
+  SeaCells<Number> cells_;
+  std::vector<Unit> units_;
+  std::vector<UnitPlace<Number>> places_;  // of each
+  std::vector<std::uint32_t> heads_;       // the first unit of each cell
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace buoyancy
+HWY_AFTER_NAMESPACE();
+
+#endif  // BUOYANCY_WAVE_UNITS_INL_H
