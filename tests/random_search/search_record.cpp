@@ -2,19 +2,15 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
+
+#include "tests/random_search/record_files.h"
 
 namespace buoyancy {
 namespace {
 
 using Json = nlohmann::json;
-constexpr const char* kPrefix = "seed-";
-
-std::filesystem::path file_of(const std::filesystem::path& directory, std::uint64_t seed) {
-  return directory / (kPrefix + std::to_string(seed) + ".json");
-}
 
 Json to_json(const SearchStats& stats) {
   Json json{{"cases", stats.cases}, {"results", stats.results}, {"failed_cases", stats.failed_cases}};
@@ -48,53 +44,21 @@ SearchStats from_json(const Json& json) {
   return stats;
 }
 
-Expected<SearchStats> load(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  const Json json = Json::parse(file, nullptr, false);
-  try {
-    return from_json(json);
-  } catch (const Json::exception&) {
-    return make_error({path.string(), "is not a record of a search", "a file written by an earlier run",
-                       "another version or another program wrote it", "Remove the file"});
-  }
-}
+constexpr RecordFiles<SearchStats> kFiles{"seed-", "a record of a search", &to_json, &from_json};
 
 }  // namespace
 
 Expected<SearchStats> load_stats(const std::filesystem::path& directory, std::uint64_t seed) {
-  const std::filesystem::path path = file_of(directory, seed);
-  if (!std::filesystem::exists(path)) return SearchStats{};
-  return load(path);
+  return kFiles.load(directory, seed);
 }
 
 Expected<void> save_stats(const std::filesystem::path& directory, std::uint64_t seed,
                           const SearchStats& stats) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  const std::filesystem::path path = file_of(directory, seed);
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh);
-  file << to_json(stats).dump(1) << '\n';
-  file.close();
-  if (file) std::filesystem::rename(fresh, path, error);
-  if (!file || error) {
-    return make_error({path.string(), "cannot be written", "a writable directory for the records", "",
-                       "Choose another directory with --record"});
-  }
-  return {};
+  return kFiles.save(directory, seed, stats);
 }
 
 Expected<SearchStats> load_all(const std::filesystem::path& directory) {
-  SearchStats total;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
-    Expected<SearchStats> stats = load(entry.path());
-    if (!stats) return stats;
-    total += *stats;
-  }
-  return total;
+  return kFiles.load_all(directory);
 }
 
 std::string markdown(const SearchStats& stats) {

@@ -2,19 +2,15 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
+
+#include "tests/random_search/record_files.h"
 
 namespace buoyancy {
 namespace {
 
 using Json = nlohmann::json;
-constexpr const char* kPrefix = "waves-seed-";
-
-std::filesystem::path file_of(const std::filesystem::path& directory, std::uint64_t seed) {
-  return directory / (kPrefix + std::to_string(seed) + ".json");
-}
 
 // Calls visit(name, member) for every counter.
 template <typename Figures, typename Visit>
@@ -71,17 +67,8 @@ WaveSearchStats from_json(const Json& json) {
   return stats;
 }
 
-Expected<WaveSearchStats> load(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  const Json json = Json::parse(file, nullptr, false);
-  try {
-    return from_json(json);
-  } catch (const Json::exception&) {
-    return make_error({path.string(), "is not a record of a search in waves",
-                       "a file written by an earlier run", "another version or another program wrote it",
-                       "Remove the file"});
-  }
-}
+constexpr RecordFiles<WaveSearchStats> kFiles{"waves-seed-", "a record of a search in waves", &to_json,
+                                              &from_json};
 
 double percent(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
@@ -101,39 +88,16 @@ std::string row_of(const std::string& name, const WaveFigures& figures) {
 }  // namespace
 
 Expected<WaveSearchStats> load_wave_stats(const std::filesystem::path& directory, std::uint64_t seed) {
-  const std::filesystem::path path = file_of(directory, seed);
-  if (!std::filesystem::exists(path)) return WaveSearchStats{};
-  return load(path);
+  return kFiles.load(directory, seed);
 }
 
 Expected<void> save_wave_stats(const std::filesystem::path& directory, std::uint64_t seed,
                                const WaveSearchStats& stats) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  const std::filesystem::path path = file_of(directory, seed);
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh);
-  file << to_json(stats).dump(1) << '\n';
-  file.close();
-  if (file) std::filesystem::rename(fresh, path, error);
-  if (!file || error) {
-    return make_error({path.string(), "cannot be written", "a writable directory for the records", "",
-                       "Choose another directory with --record"});
-  }
-  return {};
+  return kFiles.save(directory, seed, stats);
 }
 
 Expected<WaveSearchStats> load_all_wave_stats(const std::filesystem::path& directory) {
-  WaveSearchStats total;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(kPrefix) || entry.path().extension() != ".json") continue;
-    Expected<WaveSearchStats> stats = load(entry.path());
-    if (!stats) return stats;
-    total += *stats;
-  }
-  return total;
+  return kFiles.load_all(directory);
 }
 
 std::string markdown(const WaveSearchStats& stats) {

@@ -5,26 +5,20 @@
 
 #include "messages/sea_state.h"
 #include "messages/status.h"
+#include "tests/service/box_in_waves.h"
 #include "tests/service/replay_fixture.h"
-#include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {
 
-std::string box_in(const std::string& water) {
-  return "[water]\n" + water +
-         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [2, 2, 2] }\n";
-}
 const std::string kSwell = "waves = { type = \"regular\", height = 0.5, period = 5.0 }\n";
 const std::string kHigherSwell = "waves = { type = \"regular\", height = 0.8, period = 4.0 }\n";
 const std::string kReceived = "waves = \"received\"\n";
 
 std::vector<std::uint8_t> sea_bytes(const std::string& water, std::int64_t utime) {
-  SeaState state = to_sea_state(*scene_of(box_in(water)).sea(), 3);
+  SeaState state = sea_of(water, 3);
   state.utime = utime;
-  std::vector<std::uint8_t> bytes;
-  encode(state, bytes);
-  return bytes;
+  return encoded(state);
 }
 
 std::string contents_of(const std::string& path) {

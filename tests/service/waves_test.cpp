@@ -5,29 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "messages/sea_state.h"
+#include "tests/service/box_in_waves.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/running_service.h"
-#include "tests/support/scene_of.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-std::string box_in(const std::string& water) {
-  return "[water]\n" + water +
-         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [2, 2, 2] }\n";
-}
 const std::string kSwell = "depth = 30.0\nwaves = { type = \"regular\", height = 0.5, period = 5.0 }\n";
 const std::string kHigherSwell = "waves = { type = \"regular\", height = 0.8, period = 5.0 }\n";
 
-SeaState sea_of(const std::string& water, std::int64_t instance_id) {
-  return to_sea_state(*scene_of(box_in(water)).sea(), instance_id);
-}
-
 void send_sea(RawLcmSocket& socket, const SeaState& sea) {
-  std::vector<std::uint8_t> bytes;
-  encode(sea, bytes);
-  socket.send("BUOYANCY_SEA", bytes);
+  socket.send("BUOYANCY_SEA", encoded(sea));
 }
 
 SeaState receive_sea(RawLcmSocket& socket) {

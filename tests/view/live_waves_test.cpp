@@ -16,13 +16,6 @@
 namespace buoyancy::view {
 namespace {
 
-const std::string kBox = R"(
-[[body]]
-id = 1
-name = "box"
-shape = { type = "box", size = [2, 3, 4] }
-)";
-
 class LivePageInWaves : public PageTest {
  protected:
   void open(const std::string& scene) {

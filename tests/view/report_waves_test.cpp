@@ -20,13 +20,6 @@
 namespace buoyancy::view {
 namespace {
 
-const std::string kBox = R"(
-[[body]]
-id = 1
-name = "box"
-shape = { type = "box", size = [2, 3, 4] }
-)";
-
 // A wave that is long beside the box, towards +x. Its crest is at the box at kTodayUtime.
 const std::string kLongWave = R"(
 [water]

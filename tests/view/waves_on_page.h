@@ -57,6 +57,14 @@ frequencies = 25
 inline constexpr std::array<std::int64_t, 3> kShownUtimes{kTodayUtime + 12'000'000, kTodayUtime + 29'500'000,
                                                           kTodayUtime + 95'250'000};
 
+// A body of a scene.
+inline const std::string kBox = R"(
+[[body]]
+id = 1
+name = "box"
+shape = { type = "box", size = [2, 3, 4] }
+)";
+
 // Where the bodies of these tests are: kilometres from W's origin.
 inline constexpr std::array<double, 2> kBodiesAt{3'200.0, -1'700.0};
 
