@@ -88,11 +88,21 @@ WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, cons
                            body.reference_B);
 }
 
+WaveDetails details_of(const Body& body, const CurrentWater& water, const WaveBuoyancyResult& computed) {
+  if (water.waves == nullptr) return {};
+  // The pressure -s integrates to the volume, so that the bound on the force holds for it too.
+  const bool hydrostatic = water.waves->prepared().sea().pressure() == WavePressure::kHydrostatic;
+  const double specific_weight = water.at_rest->density * water.at_rest->gravity;
+  return {computed.work_capped, computed.sea_too_steep,
+          hydrostatic && specific_weight > 0.0 ? computed.result.force_error_bound / specific_weight
+                                               : body.solver.mesh().volume};
+}
+
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
               BodyOutcome& outcome) {
   const WaveBuoyancyResult computed = buoyancy_of(body, water, validated.pose);
   outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, {computed.work_capped, computed.sea_too_steep}, outcome);
+  complete_outcome(validated.quaternion_normalised, details_of(body, water, computed), outcome);
 }
 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
@@ -107,7 +117,7 @@ bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged,
   return true;
 }
 
-void complete_outcome(bool quaternion_normalised, WaveFlags in_waves, BodyOutcome& outcome) {
+void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome) {
   outcome.status = to_body_status(outcome.result.status);
   outcome.quaternion_normalised = quaternion_normalised;
   outcome.unchanged = false;

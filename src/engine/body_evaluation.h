@@ -38,9 +38,10 @@ Pose to_pose(const PoseBits& bits);
 bool equal_branch_free(const PoseBits& a, const PoseBits& b);
 
 // What a load in waves reports beside its result, see WaveBuoyancyResult.
-struct WaveFlags {
+struct WaveDetails {
   bool work_capped = false;
   bool sea_too_steep = false;
+  double volume_error_bound = 0.0;  // [m^3]
 };
 
 // A body's result, and what the service's counters record about it.
@@ -48,7 +49,7 @@ struct BodyOutcome {
   BodyStatus status = BodyStatus::kOk;
   bool quaternion_normalised = false;
   bool unchanged = false;  // the body's last result was reused
-  WaveFlags in_waves;
+  WaveDetails in_waves;
   BuoyancyResult result;  // zeros if status is not kOk
 };
 
@@ -62,6 +63,9 @@ struct CurrentWater {
 // until a thread's buffers are as large as its queries need.
 WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose);
 
+// The details of a result of buoyancy_of().
+WaveDetails details_of(const Body& body, const CurrentWater& water, const WaveBuoyancyResult& computed);
+
 // Preconditions: validated.status is kOk, and the water is known.
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
               BodyOutcome& outcome);
@@ -71,7 +75,7 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 // Sets the fields of outcome that accompany its result, which was computed at a valid pose.
-void complete_outcome(bool quaternion_normalised, WaveFlags in_waves, BodyOutcome& outcome);
+void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 

@@ -68,6 +68,8 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   }
   last_.assign(scene.bodies().size(), {});
   results_.assign(scene.bodies().size(), {});
+  has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
+  last_twists_.assign(scene.bodies_with_hydrodynamics() > 0 ? scene.bodies().size() : 0, {});
 }
 
 void BodyEvaluator::clear_cache() {
@@ -80,6 +82,7 @@ void BodyEvaluator::prepare_buffers(std::size_t states) {
     for (LastPose& last : last_) last.request = 0;
     request_number_ = 1;
   }
+  if (scene_->bodies_with_loads() > 0 && states > loads_.size()) loads_.resize(states);
   // Buffers only grow: shrinking and growing again would initialise them again.
   if (states <= pending_.size()) return;
   pending_.resize(states);
@@ -132,8 +135,13 @@ void BodyEvaluator::evaluate_chunk(const RequestView& request, ResponseWriter& r
   for (std::size_t i = begin; i < end; ++i) {
     const BodyState state = request.body(i);
     BodyOutcome outcome;
-    switch (evaluate_cheaply(state, request.lead_time(), i, pending_[begin + result.pending], outcome)) {
+    Pending& pending = pending_[begin + result.pending];
+    switch (evaluate_cheaply(state, request.lead_time(), i, pending, outcome)) {
       case Progress::kDone:
+        if (has_loads_ && outcome.status == BodyStatus::kOk) {
+          respond(pending, outcome, request, response, result.counters);
+          break;
+        }
         response.set(i, to_wrench(state.body_id, outcome));
         add_to_counters(outcome, result.counters);
         break;
@@ -161,6 +169,10 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
     outcome.quaternion_normalised = validated.quaternion_normalised;
     return Progress::kDone;
   }
+  if (has_loads_ && scene_->bodies()[*body].hydrodynamics != nullptr && !twist_of(state).is_finite()) {
+    outcome.status = BodyStatus::kNonFiniteTwist;
+    return Progress::kDone;
+  }
   if (water_.at_rest == nullptr) {
     outcome.status = BodyStatus::kNoSea;
     return Progress::kDone;
@@ -170,11 +182,10 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
     return Progress::kDone;
   }
   if (!mark_first(last_[*body].request, request_number_)) return Progress::kRepeated;
-  if (evaluate_cheaply(validated, *body, outcome)) return Progress::kDone;
   pending = {.state = static_cast<std::uint32_t>(i),
              .body = static_cast<std::uint32_t>(*body),
              .quaternion_normalised = validated.quaternion_normalised};
-  return Progress::kPending;
+  return evaluate_cheaply(validated, *body, outcome) ? Progress::kDone : Progress::kPending;
 }
 
 bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome) {
@@ -245,19 +256,56 @@ void BodyEvaluator::compute(const Pending& pending, const RequestView& request, 
   const Body& example = example_of(pending.body);
   const WaveBuoyancyResult computed = buoyancy_of(example, water_, to_pose(last_[pending.body].pose));
   counters.wave_patches += computed.patches;
-  set_result(pending, computed.result, {computed.work_capped, computed.sea_too_steep}, request, response,
-             counters);
+  set_result(pending, computed.result, details_of(example, water_, computed), request, response, counters);
 }
 
-void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result, WaveFlags in_waves,
-                               const RequestView& request, ResponseWriter& response,
-                               ServiceCounters& counters) {
+void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result,
+                               const WaveDetails& in_waves, const RequestView& request,
+                               ResponseWriter& response, ServiceCounters& counters) {
   BodyOutcome& outcome = results_[pending.body];
   outcome.result = result;
   complete_outcome(pending.quaternion_normalised, in_waves, outcome);
   if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
-  response.set(pending.state, to_wrench(request.body_id(pending.state), outcome));
+  respond(pending, outcome, request, response, counters);
+}
+
+void BodyEvaluator::respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
+                            ResponseWriter& response, ServiceCounters& counters) {
+  BodyWrench wrench = to_wrench(request.body_id(pending.state), buoyancy);
+  if (!has_loads_ || buoyancy.status != BodyStatus::kOk) {
+    response.set(pending.state, wrench);
+    add_to_counters(buoyancy, counters);
+    return;
+  }
+  BodyOutcome outcome = buoyancy;
+  outcome.unchanged = add_loads(pending, buoyancy, request, wrench);
+  outcome.status = wrench.status;
+  response.set(pending.state, wrench);
   add_to_counters(outcome, counters);
+}
+
+bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
+                              BodyWrench& wrench) {
+  const Body& body = scene_->bodies()[pending.body];
+  const Vec3& current_W = scene_->current_W();
+  if (body.hydrodynamics == nullptr) {
+    if (body.loads) {
+      const Pose pose = to_pose(last_[pending.body].pose);
+      loads_[pending.state] = to_loads(body, wrench, water_motion(water_, current_W, pose.p_WB));
+    }
+    return buoyancy.unchanged;
+  }
+  const Pose pose = to_pose(last_[pending.body].pose);
+  const BodyTwist twist = twist_of(request.body(pending.state));
+  const HydrodynamicState state = hydrodynamic_state(body, water_, current_W, pose, twist, buoyancy);
+  const HydrodynamicLoad load = body.hydrodynamics->load(state);
+  if (body.loads) loads_[pending.state] = to_loads(body, wrench, state, load);
+  add_hydrodynamic_load(load, wrench);
+  BodyTwist& last = last_twists_[pending.body];
+  const bool unchanged = buoyancy.unchanged && last.velocity_W == twist.velocity_W &&
+                         last.angular_velocity_W == twist.angular_velocity_W;
+  last = twist;
+  return unchanged;
 }
 
 void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
@@ -265,15 +313,14 @@ void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter
   const BodyState state = request.body(i);
   const std::size_t body = scene_->index_of(state.body_id, i).value();
   const ValidatedPose validated = validate_pose(state, request.lead_time());
+  const Pending pending{.state = static_cast<std::uint32_t>(i),
+                        .body = static_cast<std::uint32_t>(body),
+                        .quaternion_normalised = validated.quaternion_normalised};
   BodyOutcome outcome;
   if (evaluate_cheaply(validated, body, outcome)) {
-    response.set(i, to_wrench(state.body_id, outcome));
-    add_to_counters(outcome, counters);
+    respond(pending, outcome, request, response, counters);
   } else {
-    compute({.state = static_cast<std::uint32_t>(i),
-             .body = static_cast<std::uint32_t>(body),
-             .quaternion_normalised = validated.quaternion_normalised},
-            request, response, counters);
+    compute(pending, request, response, counters);
   }
 }
 

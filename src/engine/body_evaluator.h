@@ -1,6 +1,7 @@
 // Computes the wrenches on the bodies of one request and skips the work that the scene does not need.
 //
-// A body whose pose equals, bit for bit, that of its last result gets that result again. A dry or a fully
+// A body whose pose equals, bit for bit, that of its last result gets that result again; drag and added mass,
+// which depend on its velocities, are added to it anew. A dry or a fully
 // submerged body is evaluated from its bounds. The other bodies are computed. Large requests are shared among
 // threads where the estimated work justifies it. One thread computes each body's result from that body's
 // state alone, so the result's bits do not depend on the number of threads.
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "engine/body_evaluation.h"
+#include "engine/load_evaluation.h"
 #include "engine/thread_pool.h"
 
 namespace buoyancy {
@@ -37,6 +39,10 @@ class BodyEvaluator {
   // as request.
   void evaluate_all(const RequestView& request, const CurrentWater& water, ResponseWriter& response,
                     ServiceCounters& counters);
+
+  // The loads of the i-th state of the last request. Precondition: its body has the loads output, and its
+  // wrench the status kOk.
+  const BodyLoads& loads(std::size_t i) const { return loads_[i]; }
 
   // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
@@ -95,7 +101,7 @@ class BodyEvaluator {
   // Evaluates the states of a chunk as far as cached results and bounds go; adds the others to pending_ and
   // repeated_.
   void evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk);
-  // state: the i-th of the request. Sets outcome if done, and pending if that is the result.
+  // state: the i-th of the request. Sets outcome if done, and pending unless the status says why not.
   Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
                             BodyOutcome& outcome);
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
@@ -106,8 +112,14 @@ class BodyEvaluator {
                      ResponseWriter& response, ServiceCounters& counters);
   void compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
                ServiceCounters& counters);
-  void set_result(const Pending& pending, const BuoyancyResult& result, WaveFlags in_waves,
+  void set_result(const Pending& pending, const BuoyancyResult& result, const WaveDetails& in_waves,
                   const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  // Sets the wrench of a state, and counts it.
+  void respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
+               ResponseWriter& response, ServiceCounters& counters);
+  // Adds drag and added mass to the wrench of a body, if it has them. Returns whether the body is unchanged.
+  bool add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
+                 BodyWrench& wrench);
   const Body& example_of(std::size_t body) const { return *kinds_[kind_of_[body]].example; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
   void evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
@@ -120,9 +132,12 @@ class BodyEvaluator {
   std::vector<std::uint32_t> kind_of_;  // by body: index into kinds_
   std::vector<LastPose> last_;          // by body
   std::vector<BodyOutcome> results_;    // by body
+  bool has_loads_ = false;              // does any body have drag, added mass or the loads output?
+  std::vector<BodyTwist> last_twists_;  // by body; empty if no body has drag or added mass
   std::uint32_t request_number_ = 0;
 
   // Of the current request. Chunk c's part of pending_ and repeated_ begins at the chunk's first state.
+  std::vector<BodyLoads> loads_;  // by state; empty if no body has this output
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> repeated_;        // indices of states
   std::vector<std::uint32_t> pending_order_;   // indices into pending_, without gaps

@@ -130,6 +130,9 @@ void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& s
   compute_hydrostatics(request, response);
   session.last_hydrostatics.clear();
   if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
+  collect_loads(request, response);
+  session.last_loads.clear();
+  if (!loads_.bodies.empty()) encode(loads_, session.last_loads);
   session.last_request.assign(bytes.begin(), bytes.end());
 }
 
@@ -151,6 +154,24 @@ void RequestHandler::compute_hydrostatics(const RequestView& request, const Resp
       cached.valid = cached.hydrostatics.status == BodyStatus::kOk;
     }
     hydrostatics_.bodies.push_back(cached.hydrostatics);
+  }
+}
+
+void RequestHandler::collect_loads(const RequestView& request, const ResponseWriter& response) {
+  loads_.id = request.id();
+  loads_.bodies.clear();
+  for (std::size_t i = 0; scene_->bodies_with_loads() > 0 && i < request.size(); ++i) {
+    const std::int32_t id = request.body_id(i);
+    const std::optional<std::size_t> index = scene_->index_of(id, i);
+    if (!index || !scene_->bodies()[*index].loads) continue;
+    const BodyStatus status = response.wrench(i).status;
+    BodyLoads& loads = loads_.bodies.emplace_back();
+    if (status == BodyStatus::kOk) {
+      loads = evaluator_.loads(i);
+    } else {
+      loads.body_id = id;
+      loads.status = status;
+    }
   }
 }
 

@@ -50,6 +50,9 @@ class RequestHandler {
     return last_session_ ? Bytes(sessions_[*last_session_].last_hydrostatics) : Bytes();
   }
 
+  // Likewise the loads: the bytes of a bodies_loads_t.
+  Bytes last_loads() const { return last_session_ ? Bytes(sessions_[*last_session_].last_loads) : Bytes(); }
+
   // The session of the last request. Precondition: handle() did not reject that request.
   std::int64_t last_session_id() const { return sessions_[last_session_.value()].id; }
 
@@ -92,12 +95,14 @@ class RequestHandler {
     std::vector<std::uint8_t> last_request;
     std::vector<std::uint8_t> last_response;
     std::vector<std::uint8_t> last_hydrostatics;  // empty: no body of the last request has this output
+    std::vector<std::uint8_t> last_loads;         // likewise
   };
 
   void count_decode_error(DecodeError error);
   Session& start_session(const RequestId& first);  // evicts the least recently used session if necessary
   void compute(Bytes bytes, const RequestView& request, Session& session);
   void compute_hydrostatics(const RequestView& request, const ResponseWriter& response);
+  void collect_loads(const RequestView& request, const ResponseWriter& response);
 
   const Scene* scene_;
   std::size_t max_sessions_;
@@ -107,6 +112,7 @@ class RequestHandler {
   BodyEvaluator evaluator_;
   WaterAtTime water_;
   BodiesHydrostatics hydrostatics_;  // reused
+  BodiesLoads loads_;                // reused
   struct CachedHydrostatics {
     bool valid = false;
     PoseBits pose{};

@@ -122,4 +122,26 @@ std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose
   return result;
 }
 
+WettedArea wetted_area(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
+  switch (immersion(mesh, plane)) {
+    case Immersion::kDry:
+      return {};
+    case Immersion::kSubmerged:
+      return {mesh.area, 64.0 * kEpsilon * mesh.area};
+    case Immersion::kPiercing:
+      break;
+  }
+  const auto area_at = [&](double rise) {
+    WaterPlane moved = plane;
+    moved.h_c += rise;
+    moved.h_c_rest = 0.0;
+    return std::clamp(wetted_moments(*mesh.tree, moved).area, 0.0, mesh.area);
+  };
+  const double rise = 32.0 * kEpsilon * mesh.diagonal;  // more than heights are off
+  const double value = area_at(0.0);
+  return {value, std::max(area_at(rise) - value, value - area_at(-rise)) + 64.0 * kEpsilon * mesh.area};
+}
+
 }  // namespace buoyancy

@@ -55,4 +55,15 @@ std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose
                                          const Vec3& reference_B,
                                          const std::optional<Vec3>& center_of_mass_B);
 
+struct WettedArea {
+  double value = 0.0;  // [m^2]
+  double error = 0.0;  // [m^2], bound on the error
+};
+
+// The area of the body's surface under water alone. mesh: with its tree. The bound comes from the areas
+// under slightly lower and higher water, since the area changes by much where a face is level with the
+// surface. Complexity: O(triangles that the water cuts + log n), three times; O(1) for a dry or fully
+// submerged body; no heap.
+WettedArea wetted_area(const HydrostaticMesh& mesh, const Pose& pose, const Water& water);
+
 }  // namespace buoyancy

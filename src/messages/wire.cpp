@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include <buoyancy/bodies_hydrostatics_t.hpp>
+#include <buoyancy/bodies_loads_t.hpp>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 
@@ -20,6 +21,7 @@ std::int64_t fingerprint() {
   if constexpr (std::is_same_v<Message, WrenchRequest>) return body_states_t::getHash();
   if constexpr (std::is_same_v<Message, WrenchResponse>) return body_wrenches_t::getHash();
   if constexpr (std::is_same_v<Message, BodiesHydrostatics>) return bodies_hydrostatics_t::getHash();
+  if constexpr (std::is_same_v<Message, BodiesLoads>) return bodies_loads_t::getHash();
 }
 
 // Size [bytes] of everything before the first body: fingerprint, header, number of bodies.
@@ -118,6 +120,9 @@ std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response) {
 std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics) {
   return decode_message(bytes, hydrostatics);
 }
+std::optional<DecodeError> decode(Bytes bytes, BodiesLoads& loads) {
+  return decode_message(bytes, loads);
+}
 
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes) {
   const auto view = RequestView::of(bytes);
@@ -151,6 +156,9 @@ std::size_t response_size(std::size_t bodies) {
 std::size_t hydrostatics_size(std::size_t bodies) {
   return encoded_size<BodiesHydrostatics>(bodies);
 }
+std::size_t loads_size(std::size_t bodies) {
+  return encoded_size<BodiesLoads>(bodies);
+}
 
 void encode(const BorrowedRequest& request, std::vector<std::uint8_t>& bytes) {
   encode_message(WrenchRequest{.id = request.id, .lead_time = request.lead_time, .bodies = {}},
@@ -161,6 +169,9 @@ void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes) {
 }
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes) {
   encode_message(hydrostatics, hydrostatics.bodies, bytes);
+}
+void encode(const BodiesLoads& loads, std::vector<std::uint8_t>& bytes) {
+  encode_message(loads, loads.bodies, bytes);
 }
 
 RequestId response_id(Bytes bytes) {

@@ -12,6 +12,7 @@
 #include <tl/expected.hpp>
 
 #include "messages/hydrostatics.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 
 namespace buoyancy {
@@ -19,6 +20,7 @@ namespace buoyancy {
 inline constexpr std::string_view kStatesChannel = "BUOYANCY_STATES";
 inline constexpr std::string_view kWrenchesChannel = "BUOYANCY_WRENCHES";
 inline constexpr std::string_view kHydrostaticsChannel = "BUOYANCY_HYDROSTATICS";
+inline constexpr std::string_view kLoadsChannel = "BUOYANCY_LOADS";
 inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 inline constexpr std::string_view kSeaChannel = "BUOYANCY_SEA";
 
@@ -40,6 +42,7 @@ const char* to_string(DecodeError error);  // for logs: "shorter than the fixed 
 std::optional<DecodeError> decode(Bytes bytes, WrenchRequest& request);
 std::optional<DecodeError> decode(Bytes bytes, WrenchResponse& response);
 std::optional<DecodeError> decode(Bytes bytes, BodiesHydrostatics& hydrostatics);
+std::optional<DecodeError> decode(Bytes bytes, BodiesLoads& loads);
 
 // Makes the same checks and decodes the request's id only. O(1).
 tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
@@ -48,15 +51,17 @@ tl::expected<RequestId, DecodeError> peek_request_id(Bytes bytes);
 std::size_t request_size(std::size_t bodies);
 std::size_t response_size(std::size_t bodies);
 std::size_t hydrostatics_size(std::size_t bodies);
+std::size_t loads_size(std::size_t bodies);
 
 // Replace bytes by the encoded message: no heap allocation once its capacity suffices for the largest
 // message.
 void encode(const BorrowedRequest& request, std::vector<std::uint8_t>& bytes);
 void encode(const WrenchResponse& response, std::vector<std::uint8_t>& bytes);
 void encode(const BodiesHydrostatics& hydrostatics, std::vector<std::uint8_t>& bytes);
+void encode(const BodiesLoads& loads, std::vector<std::uint8_t>& bytes);
 
-// Reads the id of an encoded WrenchResponse or BodiesHydrostatics, or changes its seq. Precondition: bytes
-// hold such a message, or at least kResponseHeaderSize bytes. O(1).
+// Reads the id of an encoded WrenchResponse, BodiesHydrostatics or BodiesLoads, or changes its seq.
+// Precondition: bytes hold such a message, or at least kResponseHeaderSize bytes. O(1).
 inline constexpr std::size_t kResponseHeaderSize = 32;  // [bytes], fingerprint and id
 RequestId response_id(Bytes bytes);
 void set_response_seq(std::int64_t seq, std::span<std::uint8_t> bytes);

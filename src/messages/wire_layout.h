@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include "messages/hydrostatics.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
@@ -48,6 +49,13 @@ void visit_fields(Body& body, Visitor& visitor) {
           body.stiffness);
 }
 
+template <MaybeConst<BodyLoads> Body, typename Visitor>
+void visit_fields(Body& body, Visitor& visitor) {
+  visitor(body.body_id, body.status, body.immersion, body.buoyancy_force, body.buoyancy_torque,
+          body.drag_force, body.drag_torque, body.added_mass_force, body.added_mass_torque, body.added_mass,
+          body.damping, body.water_velocity);
+}
+
 // A header holds the fields before the number of bodies.
 template <MaybeConst<WrenchRequest> Message, typename Visitor>
 void visit_header(Message& request, Visitor& visitor) {
@@ -63,6 +71,11 @@ void visit_header(Message& response, Visitor& visitor) {
 template <MaybeConst<BodiesHydrostatics> Message, typename Visitor>
 void visit_header(Message& hydrostatics, Visitor& visitor) {
   visit_fields(hydrostatics.id, visitor);
+}
+
+template <MaybeConst<BodiesLoads> Message, typename Visitor>
+void visit_header(Message& loads, Visitor& visitor) {
+  visit_fields(loads.id, visitor);
 }
 
 // A sea consists of a header, the number of components, and an array for each of a component's numbers.

@@ -123,7 +123,55 @@ std::optional<Error> error_in_waves(const BodyDescription& body) {
                  "waterplane, metacentres and stiffness belong to a plane water surface",
                  "Remove \"hydrostatics\", or compute it in a scene without waves"};
   }
+  const bool by_area = (body.drag && body.drag->immersion == ImmersionScaling::kWettedArea) ||
+                       (body.added_mass && body.added_mass->immersion == ImmersionScaling::kWettedArea);
+  if (by_area) {
+    return Error{subject, "immersion = \"wetted_area\"", "\"volume\" or \"none\" in waves",
+                 "the wetted area is computed under a plane water surface, which waves are not",
+                 "Use immersion = \"volume\""};
+  }
   return std::nullopt;
+}
+
+// The centre of drag or of added mass.
+Expected<Vec3> coefficient_center(const BodyDescription& body, const PreparedMesh& prepared,
+                                  const char* table, const std::optional<Vec3>& given,
+                                  ImmersionScaling immersion) {
+  const bool open = prepared.mesh.is_open();
+  if (open && immersion == ImmersionScaling::kVolume) {
+    return make_error(
+        with_body(body, {table, "immersion = \"volume\" with an open mesh", "\"wetted_area\" or \"none\"",
+                         "an open mesh encloses no volume that the submerged one could be compared with",
+                         "Set immersion, or close the mesh"}));
+  }
+  if (given) return *given;
+  if (const std::optional<Vec3> known = center_of_mass(body.dynamics, prepared)) return *known;
+  if (!open) return prepared.mass_properties.centroid_B;
+  return make_error(with_body(body, {table, "no center", "center = [x, y, z] (m, body frame)",
+                                     "an open mesh encloses no volume whose centroid could be taken", ""}));
+}
+
+Expected<HydrodynamicCoefficients> make_coefficients(const BodyDescription& body,
+                                                     const PreparedMesh& prepared) {
+  HydrodynamicCoefficients coefficients;
+  if (body.drag) {
+    const Expected<Vec3> center =
+        coefficient_center(body, prepared, "[body.drag]", body.drag->center_B, body.drag->immersion);
+    if (!center) return make_error(center.error());
+    coefficients.drag = {body.drag->linear, body.drag->quadratic, *center, body.drag->immersion};
+  }
+  if (body.added_mass) {
+    const Expected<Vec3> center = coefficient_center(body, prepared, "[body.added_mass]",
+                                                     body.added_mass->center_B, body.added_mass->immersion);
+    if (!center) return make_error(center.error());
+    coefficients.added_mass = {body.added_mass->matrix, *center, body.added_mass->immersion};
+  }
+  return coefficients;
+}
+
+bool scales_with_wetted_area(const HydrodynamicCoefficients& coefficients) {
+  return (coefficients.drag && coefficients.drag->immersion == ImmersionScaling::kWettedArea) ||
+         (coefficients.added_mass && coefficients.added_mass->immersion == ImmersionScaling::kWettedArea);
 }
 
 // Loads in waves are computed with float32 numbers whose range is finite.
@@ -143,6 +191,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   scene.name_ = description.name;
   scene.water_ = description.water;
   scene.receives_sea_ = description.waves_received;
+  scene.current_W_ = description.current_W;
   Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));
   scene.sea_ = *std::move(sea);
@@ -166,7 +215,11 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       keys.push_back(std::move(key));
     }
     PreparedMesh& prepared = *scene.meshes_[index];
-    if ((body.method == Method::kHierarchical || body.hydrostatics) && !prepared.mesh.tree) {
+    const Expected<HydrodynamicCoefficients> coefficients = make_coefficients(body, prepared);
+    if (!coefficients) return make_error(coefficients.error());
+    if ((body.method == Method::kHierarchical || body.hydrostatics ||
+         scales_with_wetted_area(*coefficients)) &&
+        !prepared.mesh.tree) {
       prepared.mesh.tree = build_moment_tree(prepared.mesh);
     }
     if (is_of_paper(body.method) && !prepared.mesh.meshlets) {
@@ -179,10 +232,18 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       prepared.wave_mesh = make_wave_mesh(prepared.mesh);
     }
     if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
+    if (body.loads) ++scene.bodies_with_loads_;
+    const HydrodynamicModel* hydrodynamics = nullptr;
+    if (coefficients->any()) {
+      ++scene.bodies_with_hydrodynamics_;
+      hydrodynamics = scene.hydrodynamic_models_
+                          .emplace_back(std::make_unique<HydrodynamicModel>(*coefficients, body.reference_B))
+                          .get();
+    }
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance.value_or(default_tolerance)),
-                             body.reference_B, body.hydrostatics, center_of_mass(body.dynamics, prepared),
-                             body.dynamics});
+                             body.reference_B, body.hydrostatics, body.loads, hydrodynamics,
+                             center_of_mass(body.dynamics, prepared), body.dynamics});
   }
   std::vector<std::int32_t> ids;
   for (const Body& body : scene.bodies_) ids.push_back(body.id);

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_report.h"
+#include "hydrodynamics/hydrodynamic_load.h"
 #include "hydrostatics/solver.h"
 #include "scene/id_index.h"
 #include "scene/scene_file.h"
@@ -40,6 +41,10 @@ struct Body {
   Solver solver;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested; the mesh then has a moment tree
+  bool loads = false;               // requested
+  // Of a body with drag or added mass, else nullptr; owned by the scene. A body whose coefficients scale with
+  // the wetted area has a mesh with a moment tree.
+  const HydrodynamicModel* hydrodynamics = nullptr;
   // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
   std::optional<Vec3> center_of_mass_B;
   DynamicsSpec dynamics;  // section [body.client]
@@ -48,8 +53,10 @@ struct Body {
 class Scene {
  public:
   // Imports or generates each mesh once, scales it in double, validates and prepares it. Errors name the
-  // scene file, the line, the body and the mesh. In waves, bodies of the methods fast, improved and exact,
-  // bodies with hydrostatics and a tolerance of 0 for hierarchical are errors, also where waves are received.
+  // scene file, the line, the body and the mesh. A body with drag or added mass has a closed mesh where its
+  // volume scales them, and a centre, given or derived, for each. In waves, also where they are received,
+  // these are errors: the methods fast, improved and exact; hydrostatics; a tolerance of 0 for hierarchical;
+  // coefficients that scale with the wetted area.
   static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
   // Reads a scene file and prepares the scene.
@@ -65,6 +72,7 @@ class Scene {
   bool receives_sea() const { return receives_sea_; }
   // One per wave system; none if the water is at rest.
   const std::vector<WaveSystemReport>& wave_systems() const { return wave_systems_; }
+  const Vec3& current_W() const { return current_W_; }         // [m/s], of the water beside the waves
   const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
   const Body* find(std::int32_t id) const;  // nullptr if unknown; O(1)
@@ -73,6 +81,9 @@ class Scene {
     return index_.find(id, likely);
   }
   std::size_t bodies_with_hydrostatics() const { return bodies_with_hydrostatics_; }
+  std::size_t bodies_with_loads() const { return bodies_with_loads_; }  // that request this output
+  // With drag or added mass, whose wrenches depend on their velocities.
+  std::size_t bodies_with_hydrodynamics() const { return bodies_with_hydrodynamics_; }
 
  private:
   std::string name_;
@@ -80,10 +91,14 @@ class Scene {
   std::shared_ptr<const PreparedSea> sea_;
   bool receives_sea_ = false;
   std::vector<WaveSystemReport> wave_systems_;
+  Vec3 current_W_ = Vec3::Zero();
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
+  std::vector<std::unique_ptr<HydrodynamicModel>> hydrodynamic_models_;
   std::vector<Body> bodies_;
   IdIndex index_;  // into bodies_
   std::size_t bodies_with_hydrostatics_ = 0;
+  std::size_t bodies_with_loads_ = 0;
+  std::size_t bodies_with_hydrodynamics_ = 0;
 };
 
 }  // namespace buoyancy

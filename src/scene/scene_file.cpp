@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "base/spelling_suggestion.h"
 #include "base/text_file.h"
+#include "scene/loads_toml.h"
 #include "scene/sea_toml.h"
 #include "scene/shape_toml.h"
 #include "scene/toml_table.h"
@@ -39,6 +40,7 @@ void read_water(const toml::table& toml, SceneDescription& scene, const std::fil
   table.read("level", scene.water.level, NumberRange::any("m"));
   table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
   scene.waves_received = parse_sea(table, directory, context, scene.sea);
+  parse_current(table, context, scene.current_W);
   table.finish();
 }
 
@@ -143,10 +145,11 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
   if (const auto chosen = table.choice("open", names)) open = kOpenPolicyNames[*chosen].second;
 }
 
-// Every response holds wrenches, so that only hydrostatics need a flag.
-void read_outputs(TomlTable& table, bool& hydrostatics) {
-  constexpr std::string_view kExpected = "[\"wrench\"] or [\"wrench\", \"hydrostatics\"]";
-  constexpr std::array<std::string_view, 2> kWords{"wrench", "hydrostatics"};
+// Every response holds wrenches, so that only the other outputs need a flag.
+void read_outputs(TomlTable& table, BodyDescription& body) {
+  constexpr std::string_view kExpected =
+      "[\"wrench\"], and in it \"hydrostatics\", \"loads\" or both if they are wanted";
+  constexpr std::array<std::string_view, 3> kWords{"wrench", "hydrostatics", "loads"};
   const toml::node* outputs = table.node("outputs");
   if (outputs == nullptr) return;
   const toml::array* array = outputs->as_array();
@@ -169,9 +172,10 @@ void read_outputs(TomlTable& table, bool& hydrostatics) {
   }
   if (named[0] == 0) {
     return table.fail_at("outputs", std::string(kExpected), "every response holds wrenches",
-                         "Write outputs = [\"wrench\", \"hydrostatics\"]");
+                         "Add \"wrench\" to the list");
   }
-  hydrostatics = named[1] == 1;
+  body.hydrostatics = named[1] == 1;
+  body.loads = named[2] == 1;
 }
 
 void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
@@ -210,7 +214,10 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
   table.read("reference_point", body.reference_B, "m");
-  read_outputs(table, body.hydrostatics);
+  read_outputs(table, body);
+  const std::string body_name = "body " + std::to_string(body.id);
+  parse_drag(table, body_name, context, body.drag);
+  parse_added_mass(table, body_name, context, body.added_mass);
   const toml::table* client = table.table("client");
 
   // Missing keys are checked last, so that a mistyped key is reported as unknown and not as missing.
@@ -221,8 +228,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
                "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
   }
   if (client != nullptr) {
-    read_dynamics(TomlTable(*client, "body " + std::to_string(body.id) + ", [body.client]", context),
-                  body.dynamics);
+    read_dynamics(TomlTable(*client, body_name + ", [body.client]", context), body.dynamics);
   }
   return body;
 }

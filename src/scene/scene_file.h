@@ -18,6 +18,7 @@
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
 #include "geometry/shapes.h"
+#include "hydrodynamics/coefficients.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
 #include "waves/sea_description.h"
@@ -44,6 +45,20 @@ struct DynamicsSpec {
   double angular_damping_quadratic = 0.0;  // [N m/(rad/s)^2], >= 0: torque -c |w| w
 };
 
+// Sections [body.drag] and [body.added_mass]: coefficients.h, with a centre that may be left out.
+struct DragDescription {
+  Mat6 linear = Mat6::Zero();
+  Mat6 quadratic = Mat6::Zero();
+  std::optional<Vec3>
+      center_B;  // [m]; default: the centre of mass if it is known, else the volume's centroid
+  ImmersionScaling immersion = ImmersionScaling::kVolume;
+};
+struct AddedMassDescription {
+  Mat6 matrix = Mat6::Zero();
+  std::optional<Vec3> center_B;  // [m]; default: as for the drag
+  ImmersionScaling immersion = ImmersionScaling::kVolume;
+};
+
 struct MeshFile {
   std::filesystem::path path;  // resolved against the scene file's directory
 };
@@ -59,8 +74,11 @@ struct BodyDescription {
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
-  DynamicsSpec dynamics;            // section [body.client]
-  std::string source_location;      // "scene.toml:12", for errors; empty without a scene file
+  bool loads = false;               // likewise
+  std::optional<DragDescription> drag;
+  std::optional<AddedMassDescription> added_mass;
+  DynamicsSpec dynamics;        // section [body.client]
+  std::string source_location;  // "scene.toml:12", for errors; empty without a scene file
 };
 
 // The names in the scene file's `open` and buoyancy-replay's --open.
@@ -73,9 +91,10 @@ inline constexpr double kDefaultWaveTolerance = 1e-3;
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
-  SeaDescription sea;           // without wave systems: water at rest
-  bool waves_received = false;  // waves = "received": the sea comes in messages, and `sea` says nothing
-  std::string water_location;   // of [water]: "scene.toml:3", for errors; empty without it
+  SeaDescription sea;             // without wave systems: water at rest
+  bool waves_received = false;    // waves = "received": the sea comes in messages, and `sea` says nothing
+  Vec3 current_W = Vec3::Zero();  // [m/s], section [water.current]
+  std::string water_location;     // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };

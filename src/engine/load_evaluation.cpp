@@ -1,0 +1,179 @@
+#include "engine/load_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hydrostatics/hydrostatics.h"
+#include "messages/conversions.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+// Does the body displace more than rounding?
+bool is_wet(const Body& body, const BodyOutcome& outcome) {
+  return outcome.result.immersion != Immersion::kDry &&
+         outcome.result.volume > body.solver.mesh().volume_tolerance();
+}
+
+// [m^3], bound on the error of the submerged volume.
+double volume_error_bound(const Body& body, const CurrentWater& water, const BodyOutcome& outcome) {
+  const HydrostaticMesh& mesh = body.solver.mesh();
+  const bool constant =
+      outcome.result.immersion == Immersion::kSubmerged && body.solver.method() == Method::kHierarchical;
+  if (constant) return mesh.rounding_bound();
+  if (water.waves != nullptr) return outcome.in_waves.volume_error_bound;
+  // At rest the force along up is rho g V, also as the approximations compute both.
+  const double specific_weight = water.at_rest->density * water.at_rest->gravity;
+  return specific_weight > 0.0 ? outcome.result.force_error_bound / specific_weight : mesh.volume;
+}
+
+ImmersionFactor volume_fraction(const Body& body, const CurrentWater& water, const BodyOutcome& outcome) {
+  const HydrostaticMesh& mesh = body.solver.mesh();
+  const double error = volume_error_bound(body, water, outcome) / mesh.volume + 4.0 * kEpsilon;
+  const double value = std::clamp(outcome.result.volume / mesh.volume, 0.0, 1.0);
+  return {value, std::min(error, std::max(value, 1.0 - value))};
+}
+
+ImmersionFactor area_fraction(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
+  const WettedArea area = wetted_area(mesh, pose, water);
+  return {std::min(area.value / mesh.area, 1.0), area.error / mesh.area + 4.0 * kEpsilon};
+}
+
+ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, const CurrentWater& water,
+                                 const Pose& pose, const BodyOutcome& outcome) {
+  if (!is_wet(body, outcome)) return {0.0, 0.0};
+  switch (scaling) {
+    case ImmersionScaling::kVolume:
+      return volume_fraction(body, water, outcome);
+    case ImmersionScaling::kWettedArea:
+      return area_fraction(body.solver.mesh(), pose, *water.at_rest);
+    case ImmersionScaling::kNone:
+      break;
+  }
+  return {1.0, 0.0};
+}
+
+void set_matrix(const Mat6& matrix, std::array<std::array<double, 6>, 6>& fields) {
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 6; ++column) {
+      fields[row][column] = matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+    }
+  }
+}
+
+std::array<double, 3> force_of(const Vec6& wrench) {
+  return {wrench[0], wrench[1], wrench[2]};
+}
+std::array<double, 3> torque_of(const Vec6& wrench) {
+  return {wrench[3], wrench[4], wrench[5]};
+}
+
+void add(const Vec6& wrench_W, BodyWrench& wrench) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    wrench.force[i] += wrench_W[static_cast<Eigen::Index>(i)];
+    wrench.torque[i] += wrench_W[static_cast<Eigen::Index>(i + 3)];
+  }
+}
+
+BodyLoads buoyancy_alone(const BodyWrench& buoyancy) {
+  BodyLoads loads;
+  loads.body_id = buoyancy.body_id;
+  loads.status = buoyancy.status;
+  loads.buoyancy_force = buoyancy.force;
+  loads.buoyancy_torque = buoyancy.torque;
+  return loads;
+}
+
+bool is_finite(const BodyWrench& wrench) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return std::ranges::all_of(wrench.force, finite) && std::ranges::all_of(wrench.torque, finite) &&
+         !std::isnan(wrench.force_error_bound) && !std::isnan(wrench.torque_error_bound);
+}
+
+}  // namespace
+
+BodyTwist twist_of(const BodyState& state) {
+  return {to_vec3(state.linear_velocity), to_vec3(state.angular_velocity)};
+}
+
+WaterMotion water_motion(const CurrentWater& water, const Vec3& current_W, const Vec3& p_W) {
+  WaterMotion motion;
+  motion.velocity_W = current_W;
+  if (water.waves == nullptr) return motion;
+  const WaterAtPoint point = water.waves->snapshot().at(p_W);
+  motion.velocity_W += point.velocity_W;
+  motion.acceleration_W = point.acceleration_W;
+  // Every component's acceleration is at most g a k, and its velocity that over its frequency. Their phases
+  // are exact to 1e-15 of a turn, and their position is rounded.
+  const Sea& sea = water.waves->prepared().sea();
+  const SeaExpansion& expansion = water.waves->prepared().expansion();
+  const double steepness = expansion.amplitude_sums[1];
+  const double phase =
+      1e-14 + kEpsilon * static_cast<double>(sea.components().size()) +
+      8.0 * kEpsilon * (p_W.lpNorm<1>() + std::abs(sea.water().level)) * expansion.k_max * (1.0 + steepness);
+  motion.acceleration_error = sea.water().gravity * steepness * phase;
+  motion.velocity_error = motion.acceleration_error / std::ranges::min(sea.prepared().angular_frequency);
+  return motion;
+}
+
+HydrodynamicState hydrodynamic_state(const Body& body, const CurrentWater& water, const Vec3& current_W,
+                                     const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome) {
+  HydrodynamicState state;
+  state.motion = {pose.q_WB.normalized().toRotationMatrix(), twist.velocity_W, twist.angular_velocity_W};
+  const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
+  const auto water_at = [&](const Vec3& center_B) {
+    return water_motion(water, current_W, pose.p_WB + state.motion.R_WB * center_B);
+  };
+  if (coefficients.drag) {
+    state.at_drag.water = water_at(coefficients.drag->center_B);
+    state.at_drag.immersion = immersion_factor(coefficients.drag->immersion, body, water, pose, outcome);
+  }
+  if (coefficients.added_mass) {
+    const AddedMassCoefficients& added = *coefficients.added_mass;
+    const bool same_place = coefficients.drag && coefficients.drag->center_B == added.center_B;
+    const bool same_immersion = coefficients.drag && coefficients.drag->immersion == added.immersion;
+    state.at_added_mass.water = same_place ? state.at_drag.water : water_at(added.center_B);
+    state.at_added_mass.immersion = same_immersion
+                                        ? state.at_drag.immersion
+                                        : immersion_factor(added.immersion, body, water, pose, outcome);
+  }
+  return state;
+}
+
+void add_hydrodynamic_load(const HydrodynamicLoad& load, BodyWrench& wrench) {
+  add(load.drag_W, wrench);
+  add(load.added_mass_W, wrench);
+  wrench.force_error_bound += load.force_error_bound;
+  wrench.torque_error_bound += load.torque_error_bound;
+  if (!is_finite(wrench)) wrench = {.body_id = wrench.body_id, .status = BodyStatus::kOutOfRange};
+}
+
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const WaterMotion& at_origin) {
+  BodyLoads loads = buoyancy_alone(buoyancy);
+  const HydrostaticMesh& mesh = body.solver.mesh();
+  if (!mesh.is_open()) loads.immersion = std::clamp(buoyancy.submerged_volume / mesh.volume, 0.0, 1.0);
+  loads.water_velocity = to_array(at_origin.velocity_W);
+  return loads;
+}
+
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const HydrodynamicState& state,
+                   const HydrodynamicLoad& load) {
+  BodyLoads loads = buoyancy_alone(buoyancy);
+  const Surroundings& surroundings =
+      body.hydrodynamics->coefficients().drag ? state.at_drag : state.at_added_mass;
+  loads.immersion = surroundings.immersion.value;
+  loads.water_velocity = to_array(surroundings.water.velocity_W);
+  loads.drag_force = force_of(load.drag_W);
+  loads.drag_torque = torque_of(load.drag_W);
+  loads.added_mass_force = force_of(load.added_mass_W);
+  loads.added_mass_torque = torque_of(load.added_mass_W);
+  const HydrodynamicMatrices matrices = body.hydrodynamics->matrices(state);
+  set_matrix(matrices.added_mass_W, loads.added_mass);
+  set_matrix(matrices.damping_W, loads.damping);
+  return loads;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,40 @@
+// Evaluates the loads of a moving body: adds drag and added mass to its buoyant wrench, and fills in the
+// message that has them apart.
+#pragma once
+
+#include "engine/body_evaluation.h"
+#include "hydrodynamics/hydrodynamic_load.h"
+#include "messages/loads.h"
+
+namespace buoyancy {
+
+// The velocities of a state, if it is used with a pose.
+struct BodyTwist {
+  Vec3 velocity_W = Vec3::Zero();          // [m/s], of B's origin
+  Vec3 angular_velocity_W = Vec3::Zero();  // [rad/s]
+
+  bool is_finite() const { return velocity_W.allFinite() && angular_velocity_W.allFinite(); }
+};
+BodyTwist twist_of(const BodyState& state);
+
+// The undisturbed water at a point: the current, and the waves if there are any. Precondition: the water is
+// known. Complexity: O(components) in waves.
+WaterMotion water_motion(const CurrentWater& water, const Vec3& current_W, const Vec3& p_W);
+
+// The state of a body in the water, as the load formulas need it. outcome: its buoyancy at the pose, kOk.
+// No heap allocation. Complexity: O(1) in water at rest where the volume scales the coefficients.
+HydrodynamicState hydrodynamic_state(const Body& body, const CurrentWater& water, const Vec3& current_W,
+                                     const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome);
+
+// Adds the body's drag and added mass to its wrench, and what they contribute to its bounds. Sets the status
+// to kOutOfRange, and force, torque, volume, centre and bounds to zero, if a sum exceeds double's range.
+// Preconditions: the body has a hydrodynamic model, and the wrench's status is kOk.
+void add_hydrodynamic_load(const HydrodynamicLoad& load, BodyWrench& wrench);
+
+// The loads of a body with this output. buoyancy: its buoyant wrench alone, with status kOk.
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const HydrodynamicState& state,
+                   const HydrodynamicLoad& load);
+// The same for a body without a hydrodynamic model. at_origin: the water at the body's origin.
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const WaterMotion& at_origin);
+
+}  // namespace buoyancy

@@ -1,0 +1,164 @@
+#include "hydrodynamics/hydrodynamic_load.h"
+
+#include <limits>
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+// Longest chain of operations of a load's component, several times over.
+constexpr double kRoundings = 64.0;
+
+// Magnitudes that bound a load and its error at a centre.
+struct Magnitudes {
+  double v = 0.0;        // [m/s], sum of what the relative velocity consists of
+  double w = 0.0;        // [rad/s]
+  double v_error = 0.0;  // [m/s], of the relative velocity
+};
+
+Magnitudes magnitudes_of(const BodyMotion& motion, const Vec3& center_B, const WaterMotion& water) {
+  Magnitudes m;
+  m.w = motion.angular_velocity_W.norm();
+  m.v = motion.velocity_W.norm() + m.w * center_B.norm() + water.velocity_W.norm();
+  m.v_error = water.velocity_error + 16.0 * kEpsilon * m.v;
+  return m;
+}
+
+// Adds the error of a load with these bounds at s = 1 about its centre: `full` of its size, `error` of what
+// its input is off. lever: [m], from the centre to the reference point.
+struct PartBound {
+  double force = 0.0, torque = 0.0;              // [N], [N m]
+  double force_error = 0.0, torque_error = 0.0;  // [N], [N m]
+};
+
+void add_error(const PartBound& part, const ImmersionFactor& s, double lever, HydrodynamicLoad& load) {
+  const double rounding = kRoundings * kEpsilon * s.value;
+  const double force = s.value * part.force_error + (rounding + s.error) * part.force;
+  const double torque = s.value * part.torque_error + (rounding + s.error) * part.torque;
+  load.force_error_bound += force;
+  load.torque_error_bound += torque + lever * force;
+}
+
+// A wrench in B's axes about a centre, in W's axes and about the reference point.
+Vec6 to_reference_W(const Vec6& wrench_B, const Vec3& center_to_reference_B, const Mat3& R_WB) {
+  const Vec6 moved = wrench_about(wrench_B, center_to_reference_B);
+  Vec6 wrench_W;
+  wrench_W.head<3>() = R_WB * moved.head<3>();
+  wrench_W.tail<3>() = R_WB * moved.tail<3>();
+  return wrench_W;
+}
+
+Mat6 drag_matrix(const DragCoefficients& drag, const Vec6& twist, double quadratic_factor) {
+  return drag.linear + drag.quadratic * (quadratic_factor * twist.cwiseAbs()).asDiagonal();
+}
+
+}  // namespace
+
+HydrodynamicModel::BlockNorms HydrodynamicModel::block_norms(const Mat6& matrix) {
+  return {.force_v = matrix.topLeftCorner<3, 3>().norm(),
+          .force_w = matrix.topRightCorner<3, 3>().norm(),
+          .torque_v = matrix.bottomLeftCorner<3, 3>().norm(),
+          .torque_w = matrix.bottomRightCorner<3, 3>().norm()};
+}
+
+HydrodynamicModel::HydrodynamicModel(const HydrodynamicCoefficients& coefficients, const Vec3& reference_B)
+    : coefficients_(coefficients), reference_B_(reference_B) {
+  if (coefficients_.drag) {
+    linear_ = block_norms(coefficients_.drag->linear);
+    quadratic_ = block_norms(coefficients_.drag->quadratic);
+  }
+  if (coefficients_.added_mass) added_mass_ = block_norms(coefficients_.added_mass->matrix);
+}
+
+Vec6 relative_twist_B(const BodyMotion& motion, const Vec3& center_B, const Vec3& water_velocity_W) {
+  Vec6 twist;
+  twist.tail<3>() = motion.R_WB.transpose() * motion.angular_velocity_W;
+  twist.head<3>() =
+      motion.R_WB.transpose() * (motion.velocity_W - water_velocity_W) + twist.tail<3>().cross(center_B);
+  return twist;
+}
+
+HydrodynamicLoad HydrodynamicModel::load(const HydrodynamicState& state) const {
+  HydrodynamicLoad load;
+  if (coefficients_.drag && state.at_drag.immersion.value > 0.0) add_drag(state, load);
+  if (coefficients_.added_mass && state.at_added_mass.immersion.value > 0.0) add_added_mass(state, load);
+  return load;
+}
+
+void HydrodynamicModel::add_drag(const HydrodynamicState& state, HydrodynamicLoad& load) const {
+  const DragCoefficients& drag = *coefficients_.drag;
+  const auto& [water, s] = state.at_drag;
+  const Vec6 nu = relative_twist_B(state.motion, drag.center_B, water.velocity_W);
+  const Vec6 drag_B = -s.value * (drag.linear * nu + drag.quadratic * nu.cwiseAbs().cwiseProduct(nu));
+  const Vec3 lever_B = reference_B_ - drag.center_B;
+  load.drag_W = to_reference_W(drag_B, lever_B, state.motion.R_WB);
+
+  const Magnitudes m = magnitudes_of(state.motion, drag.center_B, water);
+  PartBound bound;
+  bound.force =
+      (linear_.force_v + quadratic_.force_v * m.v) * m.v + (linear_.force_w + quadratic_.force_w * m.w) * m.w;
+  bound.torque = (linear_.torque_v + quadratic_.torque_v * m.v) * m.v +
+                 (linear_.torque_w + quadratic_.torque_w * m.w) * m.w;
+  bound.force_error = (linear_.force_v + 2.0 * quadratic_.force_v * (m.v + m.v_error)) * m.v_error;
+  bound.torque_error = (linear_.torque_v + 2.0 * quadratic_.torque_v * (m.v + m.v_error)) * m.v_error;
+  add_error(bound, s, lever_B.norm(), load);
+}
+
+void HydrodynamicModel::add_added_mass(const HydrodynamicState& state, HydrodynamicLoad& load) const {
+  const AddedMassCoefficients& added = *coefficients_.added_mass;
+  const auto& [water, s] = state.at_added_mass;
+  const Vec6 nu = relative_twist_B(state.motion, added.center_B, water.velocity_W);
+  const Vec6 momentum = added.matrix * nu;
+  const Vec3 v = nu.head<3>();
+  const Vec3 w = nu.tail<3>();
+  const Vec3 water_v = state.motion.R_WB.transpose() * water.velocity_W;
+  const Vec3 water_a = state.motion.R_WB.transpose() * water.acceleration_W - w.cross(water_v);
+  Vec6 load_B = added.matrix.leftCols<3>() * water_a;
+  load_B.head<3>() -= w.cross(momentum.head<3>());
+  load_B.tail<3>() -= v.cross(momentum.head<3>()) + w.cross(momentum.tail<3>());
+  load_B *= s.value;
+  const Vec3 lever_B = reference_B_ - added.center_B;
+  load.added_mass_W = to_reference_W(load_B, lever_B, state.motion.R_WB);
+
+  const Magnitudes m = magnitudes_of(state.motion, added.center_B, water);
+  const BlockNorms& A = added_mass_;
+  const double p = A.force_v * m.v + A.force_w * m.w;
+  const double l = A.torque_v * m.v + A.torque_w * m.w;
+  const double a = water.acceleration_W.norm() + m.w * water.velocity_W.norm();
+  const double a_error = water.acceleration_error + m.w * water.velocity_error;
+  const double p_error = A.force_v * m.v_error;
+  PartBound bound;
+  bound.force = m.w * p + A.force_v * a;
+  bound.torque = m.v * p + m.w * l + A.torque_v * a;
+  bound.force_error = m.w * p_error + A.force_v * a_error;
+  bound.torque_error =
+      m.v_error * (p + p_error) + m.v * p_error + m.w * A.torque_v * m.v_error + A.torque_v * a_error;
+  add_error(bound, s, lever_B.norm(), load);
+}
+
+HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state) const {
+  HydrodynamicMatrices matrices;
+  const Mat3& R_WB = state.motion.R_WB;
+  if (coefficients_.drag) {
+    const DragCoefficients& drag = *coefficients_.drag;
+    const auto& [water, s] = state.at_drag;
+    const Vec6 nu = relative_twist_B(state.motion, drag.center_B, water.velocity_W);
+    const Mat6 damping_B = s.value * drag_matrix(drag, nu, 2.0);
+    matrices.damping_W = rotated(matrix_at(damping_B, reference_B_ - drag.center_B), R_WB);
+  }
+  if (coefficients_.added_mass) {
+    const AddedMassCoefficients& added = *coefficients_.added_mass;
+    const auto& [water, s] = state.at_added_mass;
+    const Vec6 nu = relative_twist_B(state.motion, added.center_B, water.velocity_W);
+    const Mat6 mass_B = s.value * added.matrix;
+    // -s A (w x v_water) varies with w as well: its derivative is s A [v_water].
+    Mat6 damping_B = coriolis_derivative(mass_B, nu);
+    damping_B.rightCols<3>() -= mass_B.leftCols<3>() * cross_matrix(R_WB.transpose() * water.velocity_W);
+    const Vec3 lever_B = reference_B_ - added.center_B;
+    matrices.added_mass_W = rotated(matrix_at(mass_B, lever_B), R_WB);
+    matrices.damping_W += rotated(matrix_at(damping_B, lever_B), R_WB);
+  }
+  return matrices;
+}
+
+}  // namespace buoyancy
