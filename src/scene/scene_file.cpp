@@ -147,8 +147,7 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
 
 // Every response holds wrenches, so that only the other outputs need a flag.
 void read_outputs(TomlTable& table, BodyDescription& body) {
-  constexpr std::string_view kExpected =
-      "[\"wrench\"], and in it \"hydrostatics\", \"loads\" or both if they are wanted";
+  constexpr std::string_view kExpected = "[\"wrench\"], with \"hydrostatics\" and \"loads\" in it as needed";
   constexpr std::array<std::string_view, 3> kWords{"wrench", "hydrostatics", "loads"};
   const toml::node* outputs = table.node("outputs");
   if (outputs == nullptr) return;

@@ -159,7 +159,7 @@ TEST(SceneFile, ReportsCompleteErrors) {
   EXPECT_EQ(
       parse_error("[water]\ndesnity = 1000\n" + scene_with_crate()),
       "pool.toml:2: [water]: unknown key 'desnity'; expected one of level, density, depth, wave_pressure, "
-      "time_origin, ramp, waves. The nearest known key is 'density'.");
+      "time_origin, ramp, waves, current. The nearest known key is 'density'.");
 }
 
 TEST(SceneFile, SuggestsNearestKeyInEveryTable) {
@@ -174,7 +174,7 @@ TEST(SceneFile, SuggestsNearestKeyInEveryTable) {
       {scene_with_crate("metod = \"exact\"\n"), "nearest known key is 'method'"},
       {scene_with_crate("metod = \"exact\"\n"),
        "expected one of id, name, mesh, scale, shape, method, tolerance, open, reference_point, outputs, "
-       "client."},
+       "drag, added_mass, client."},
       {scene_with_crate("[body.clinet]\n"), "nearest known key is 'client'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},
@@ -211,16 +211,16 @@ TEST(SceneFile, RejectsWrongTypesAndRanges) {
        "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
       {scene_with_crate("open = true\n"), "open = true"},
       {scene_with_crate("outputs = [\"hydrostatics\"]\n"),
-       "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"] or [\"wrench\", "
-       "\"hydrostatics\"]. Likely cause: every response holds wrenches. Write outputs = "
-       "[\"wrench\", \"hydrostatics\"]."},
+       "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"], with \"hydrostatics\" and "
+       "\"loads\" in it as needed. Likely cause: every response holds wrenches. Add \"wrench\" to the list."},
       {scene_with_crate("outputs = [\"wrench\", \"hydrostatic\"]\n"),
        "The nearest to 'hydrostatic' is 'hydrostatics'."},
-      {scene_with_crate("outputs = [\"wrench\", \"wrench\"]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+      {scene_with_crate("outputs = [\"wrench\", \"wrench\"]\n"), "expected [\"wrench\"], with "},
+      {scene_with_crate("outputs = [\"wrench\", \"load\"]\n"), "The nearest to 'load' is 'loads'."},
       {scene_with_crate("outputs = []\n"),
-       "outputs = []; expected [\"wrench\"] or [\"wrench\", \"hydrostatics\"]"},
-      {scene_with_crate("outputs = \"wrench\"\n"), "expected [\"wrench\"] or [\"wrench\", "},
-      {scene_with_crate("outputs = [\"wrench\", 1]\n"), "expected [\"wrench\"] or [\"wrench\", "},
+       "outputs = []; expected [\"wrench\"], with \"hydrostatics\" and \"loads\" in it as needed"},
+      {scene_with_crate("outputs = \"wrench\"\n"), "expected [\"wrench\"], with "},
+      {scene_with_crate("outputs = [\"wrench\", 1]\n"), "expected [\"wrench\"], with "},
 
       {scene_with_crate("reference_point = [1, 2]\n"), "expected an array of 3 finite numbers (m)"},
       {scene_with_crate("reference_point = [1, 2, inf]\n"), "expected an array of 3 finite numbers (m)"},
