@@ -139,12 +139,12 @@ void HydrodynamicModel::add_added_mass(const HydrodynamicState& state, Hydrodyna
 HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state) const {
   HydrodynamicMatrices matrices;
   const Mat3& R_WB = state.motion.R_WB;
+  Mat6 damping_B = Mat6::Zero();  // about the reference point
   if (coefficients_.drag) {
     const DragCoefficients& drag = *coefficients_.drag;
     const auto& [water, s] = state.at_drag;
     const Vec6 nu = relative_twist_B(state.motion, drag.center_B, water.velocity_W);
-    const Mat6 damping_B = s.value * drag_matrix(drag, nu, 2.0);
-    matrices.damping_W = rotated(matrix_at(damping_B, reference_B_ - drag.center_B), R_WB);
+    damping_B = matrix_at(s.value * drag_matrix(drag, nu, 2.0), reference_B_ - drag.center_B);
   }
   if (coefficients_.added_mass) {
     const AddedMassCoefficients& added = *coefficients_.added_mass;
@@ -152,12 +152,13 @@ HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state)
     const Vec6 nu = relative_twist_B(state.motion, added.center_B, water.velocity_W);
     const Mat6 mass_B = s.value * added.matrix;
     // -s A (w x v_water) varies with w as well: its derivative is s A [v_water].
-    Mat6 damping_B = coriolis_derivative(mass_B, nu);
-    damping_B.rightCols<3>() -= mass_B.leftCols<3>() * cross_matrix(R_WB.transpose() * water.velocity_W);
+    Mat6 derivative = coriolis_derivative(mass_B, nu);
+    derivative.rightCols<3>() -= mass_B.leftCols<3>() * cross_matrix(R_WB.transpose() * water.velocity_W);
     const Vec3 lever_B = reference_B_ - added.center_B;
     matrices.added_mass_W = rotated(matrix_at(mass_B, lever_B), R_WB);
-    matrices.damping_W += rotated(matrix_at(damping_B, lever_B), R_WB);
+    damping_B += matrix_at(derivative, lever_B);
   }
+  matrices.damping_W = rotated(damping_B, R_WB);
   return matrices;
 }
 
