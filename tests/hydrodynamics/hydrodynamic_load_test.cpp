@@ -166,16 +166,20 @@ TEST(HydrodynamicLoad, IsWithinItsBound) {
 }
 
 TEST(HydrodynamicLoad, BoundContainsTheErrorOfImmersionAndWater) {
+  // One source of errors at a time, so that none hides behind another.
   std::mt19937 random(12);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
+    const double immersion_error = i % 3 == 0 ? 0.01 : 0.0;
+    const double velocity_scale = i % 3 == 1 ? 1e-3 : 0.0;
+    const double acceleration_scale = i % 3 == 2 ? 1e-3 : 0.0;
     const HydrodynamicModel model(random_coefficients(random), random_vec3(random));
     const HydrodynamicState truth = random_state(random);
     HydrodynamicState off = truth;
     for (Surroundings* surroundings : {&off.at_drag, &off.at_added_mass}) {
-      surroundings->immersion.value = std::min(1.0, surroundings->immersion.value * 1.01);
-      surroundings->immersion.error = 0.01;
-      const Vec3 velocity_error = 1e-3 * random_vec3(random);
-      const Vec3 acceleration_error = 1e-3 * random_vec3(random);
+      surroundings->immersion.value = std::min(1.0, surroundings->immersion.value * (1.0 + immersion_error));
+      surroundings->immersion.error = immersion_error;
+      const Vec3 velocity_error = velocity_scale * random_vec3(random);
+      const Vec3 acceleration_error = acceleration_scale * random_vec3(random);
       surroundings->water.velocity_W += velocity_error;
       surroundings->water.velocity_error = velocity_error.norm();
       surroundings->water.acceleration_W += acceleration_error;
