@@ -88,32 +88,33 @@ WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, cons
                            body.reference_B);
 }
 
-WaveDetails details_of(const Body& body, const CurrentWater& water, const WaveBuoyancyResult& computed) {
-  if (water.waves == nullptr) return {};
-  // The pressure -s integrates to the volume, so that the bound on the force holds for it too.
-  const bool hydrostatic = water.waves->prepared().sea().pressure() == WavePressure::kHydrostatic;
-  const double specific_weight = water.at_rest->density * water.at_rest->gravity;
-  return {computed.work_capped, computed.sea_too_steep,
-          hydrostatic && specific_weight > 0.0 ? computed.result.force_error_bound / specific_weight
-                                               : body.solver.mesh().volume};
+WaveDetails details_of(const WaveBuoyancyResult& computed) {
+  return {computed.work_capped, computed.sea_too_steep, computed.volume_error_bound};
 }
 
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
               BodyOutcome& outcome) {
   const WaveBuoyancyResult computed = buoyancy_of(body, water, validated.pose);
   outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, details_of(body, water, computed), outcome);
+  complete_outcome(validated.quaternion_normalised, details_of(computed), outcome);
 }
 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
-  const bool decided =
-      water.waves == nullptr
-          ? try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)
-          : try_buoyancy_in_waves_from_bounds(body.solver, submerged, *water.waves, validated.pose,
-                                              body.reference_B, outcome.result);
-  if (!decided) return false;
-  complete_outcome(validated.quaternion_normalised, {}, outcome);
+  if (water.waves == nullptr) {
+    if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)) {
+      return false;
+    }
+    complete_outcome(validated.quaternion_normalised, {}, outcome);
+    return true;
+  }
+  WaveBuoyancyResult computed;
+  if (!try_buoyancy_in_waves_from_bounds(body.solver, submerged, *water.waves, validated.pose,
+                                         body.reference_B, computed)) {
+    return false;
+  }
+  outcome.result = computed.result;
+  complete_outcome(validated.quaternion_normalised, details_of(computed), outcome);
   return true;
 }
 

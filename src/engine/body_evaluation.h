@@ -64,7 +64,7 @@ struct CurrentWater {
 WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose);
 
 // The details of a result of buoyancy_of().
-WaveDetails details_of(const Body& body, const CurrentWater& water, const WaveBuoyancyResult& computed);
+WaveDetails details_of(const WaveBuoyancyResult& computed);
 
 // Preconditions: validated.status is kOk, and the water is known.
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,

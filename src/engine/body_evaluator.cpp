@@ -256,7 +256,7 @@ void BodyEvaluator::compute(const Pending& pending, const RequestView& request, 
   const Body& example = example_of(pending.body);
   const WaveBuoyancyResult computed = buoyancy_of(example, water_, to_pose(last_[pending.body].pose));
   counters.wave_patches += computed.patches;
-  set_result(pending, computed.result, details_of(example, water_, computed), request, response, counters);
+  set_result(pending, computed.result, details_of(computed), request, response, counters);
 }
 
 void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result,

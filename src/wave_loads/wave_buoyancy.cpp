@@ -66,10 +66,12 @@ bool boundary_is_dry(const HydrostaticMesh& mesh, const WaveMesh& wave_mesh, con
   });
 }
 
-bool is_finite(const BuoyancyResult& result) {
+bool is_finite(const WaveBuoyancyResult& outcome) {
+  const BuoyancyResult& result = outcome.result;
   return result.force_W.allFinite() && result.torque_W.allFinite() &&
          result.center_of_buoyancy_W.allFinite() && std::isfinite(result.volume) &&
-         !std::isnan(result.force_error_bound) && !std::isnan(result.torque_error_bound);
+         !std::isnan(result.force_error_bound) && !std::isnan(result.torque_error_bound) &&
+         !std::isnan(outcome.volume_error_bound);
 }
 
 BuoyancyResult failed_result(BuoyancyStatus status, Immersion where) {
@@ -170,12 +172,13 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
   result.torque_error_bound =
       specific_weight * (load.torque_bound + rounding * mesh.max_lever_arm(reference_B));
   result.volume = load.volume;
+  outcome.volume_error_bound = load.volume_bound + rounding;
   const double min_volume =
       solver.method() == Method::kHierarchical ? 2.0 * force_bound : mesh.volume_tolerance();
   if (load.volume > min_volume) {
     result.center_of_buoyancy_W = R_WB * (mesh.center_B + load.moment / load.volume);
   }
-  if (!is_finite(result)) {
+  if (!is_finite(outcome)) {
     outcome = {};
     result = failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
@@ -184,13 +187,13 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
 
 bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerged& submerged,
                                        const SeaAtTime& sea, const Pose& pose, const Vec3& reference_B,
-                                       BuoyancyResult& result) {
+                                       WaveBuoyancyResult& outcome) {
   const HydrostaticMesh& mesh = solver.mesh();
   const Immersion where = immersion_in_waves(mesh, sea, pose);
   if (where == Immersion::kPiercing) return false;
   if (where == Immersion::kDry) {
-    result = {};
-    result.immersion = where;
+    outcome = {};
+    outcome.result.immersion = where;
     return true;
   }
   if (solver.method() != Method::kHierarchical) return false;
@@ -203,16 +206,18 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
   const double per_volume = max_wave_force_per_volume(sea, (middle + reach) / plane.norm_squared,
                                                       (middle - reach) / plane.norm_squared);
   if (!(per_volume <= solver.tolerance())) return false;
-  BuoyancyResult still;
+  WaveBuoyancyResult calm;
+  BuoyancyResult& still = calm.result;
   if (!try_buoyancy_from_bounds(solver, submerged, pose, water, still) ||
       still.status != BuoyancyStatus::kOk) {
     return false;
   }
+  calm.volume_error_bound = mesh.rounding_bound();
   const double wave_force = per_volume * submerged.buoyant_force;
   still.force_error_bound += wave_force;
   still.torque_error_bound += wave_force * mesh.max_lever_arm(reference_B);
-  if (!is_finite(still)) return false;
-  result = still;
+  if (!is_finite(calm)) return false;
+  outcome = calm;
   return true;
 }
 

@@ -28,6 +28,7 @@ struct WaveBuoyancyResult {
   bool work_capped = false;    // the work reached its cap before the bound was within the tolerance
   bool sea_too_steep = false;  // the modelled pressure falls downwards at the surface somewhere on the body
   std::int32_t patches = 0;    // evaluated
+  double volume_error_bound = 0.0;  // [m^3], bound on |result.volume - true volume|
 };
 
 // wave_mesh: of the solver's mesh. The solver's method is hierarchical, fast_surface or exact_surface. pose,
@@ -35,12 +36,12 @@ struct WaveBuoyancyResult {
 WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTime& sea,
                                      const Pose& pose, const Vec3& reference_B);
 
-// Sets `result` to a result for the pose if bounds suffice for it: if the body is above the highest crest or,
-// with `hierarchical`, so deep in calm water that waves change its load by less than the tolerance, which the
-// bounds then include. Returns false, and leaves `result` unchanged, otherwise. submerged:
+// Sets `outcome` to a result for the pose if bounds suffice for it: if the body is above the highest crest
+// or, with `hierarchical`, so deep in calm water that waves change its load by less than the tolerance, which
+// the bounds then include. Returns false, and leaves `outcome` unchanged, otherwise. submerged:
 // submerged_constants() of the solver's mesh, about the reference point. Complexity: O(1).
 bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerged& submerged,
                                        const SeaAtTime& sea, const Pose& pose, const Vec3& reference_B,
-                                       BuoyancyResult& result);
+                                       WaveBuoyancyResult& outcome);
 
 }  // namespace buoyancy

@@ -86,6 +86,7 @@ class Clips {
     const V mu1 = hn::Sqrt(moments.area * moments.mu2);
     const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
     const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
+    const V of_volume = volume_remainder<Number>(moments.area, moments.mu3, model);
     const std::array<V, kModelRows> all{model.phi.value,
                                         model.phi.gradient.x,
                                         model.phi.gradient.y,
@@ -115,7 +116,9 @@ class Clips {
                                         moments.center.y,
                                         moments.center.z,
                                         remainder,
-                                        hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local)};
+                                        hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local),
+                                        hn::MulAdd(model.s_per_phi, remainder, of_volume),
+                                        model.s_per_phi};
     models_.emplace_back();
     for (std::size_t row = 0; row < kModelRows; ++row) {
       hn::Store(all[row], LanesOf<Number>(), models_.back().rows[row].data());
@@ -143,7 +146,8 @@ class Clips {
   void finish(const PatchTree& tree, const PatchQuery<Number>& query, Results<Number>& results) {
     for (const Leaf& leaf : leaves_) {
       const auto& rows = models_[leaf.models].rows;
-      results.add_errors(leaf.result, rows[kRemainder][leaf.lane], rows[kTorqueRemainder][leaf.lane]);
+      results.add_errors(leaf.result, rows[kRemainder][leaf.lane], rows[kTorqueRemainder][leaf.lane],
+                         rows[kVolumeRemainder][leaf.lane]);
     }
     for (std::size_t n = 0; n < tasks_.size(); n += kUnitsPerVector<Number>) {
       const std::size_t count = std::min(kUnitsPerVector<Number>, tasks_.size() - n);
@@ -155,9 +159,10 @@ class Clips {
   }
 
  private:
-  static constexpr std::size_t kModelRows = 30;
+  static constexpr std::size_t kModelRows = 32;
   static constexpr std::size_t kRemainder = 28;
   static constexpr std::size_t kTorqueRemainder = 29;
+  static constexpr std::size_t kVolumeRemainder = 30;
   struct Models {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kModelRows> rows;
   };
@@ -205,7 +210,7 @@ class Clips {
     t.whole = set_mask<Number>(false);
     t.none = set_mask<Number>(false);
     const PatchIntegrals<Number> integrals =
-        to_patch<Number>(integrate<Number>(query, t), vector(22), vector(25), of_model(21));
+        to_patch<Number>(integrate<Number>(query, t), vector(22), vector(25), of_model(21), of_model(31));
     add_sums(integrals, tasks, count, results);
   }
 
@@ -213,10 +218,11 @@ class Clips {
   static HWY_INLINE void add_sums(const PatchIntegrals<Number>& integrals, const Task* tasks,
                                   std::size_t count, Results<Number>& results) {
     constexpr std::size_t kRows = Results<Number>::kRows;
-    const std::array<V, kRows> all{integrals.force.x,  integrals.force.y,     integrals.force.z,
-                                   integrals.torque.x, integrals.torque.y,    integrals.torque.z,
-                                   integrals.moment.x, integrals.moment.y,    integrals.moment.z,
-                                   integrals.volume,   integrals.force_error, integrals.torque_error};
+    const std::array<V, kRows> all{integrals.force.x,     integrals.force.y,     integrals.force.z,
+                                   integrals.torque.x,    integrals.torque.y,    integrals.torque.z,
+                                   integrals.moment.x,    integrals.moment.y,    integrals.moment.z,
+                                   integrals.volume,      integrals.force_error, integrals.torque_error,
+                                   integrals.volume_error};
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> numbers;
     for (std::size_t row = 0; row < kRows; ++row) {
       V sum = all[row];

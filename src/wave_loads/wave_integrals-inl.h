@@ -25,7 +25,7 @@ struct PatchIntegrals {
   Vectors3<Number> torque;  // [m^4], about the reference point
   VectorOf<Number> volume;  // [m^3]
   Vectors3<Number> moment;  // [m^4], int (x - c) dV
-  VectorOf<Number> force_error, torque_error;
+  VectorOf<Number> force_error, torque_error, volume_error;
   VectorOf<Number>
       expected;  // estimate of the sum of the force errors once the patch is replaced by its children
 };
@@ -139,9 +139,16 @@ HWY_INLINE void clear_where(const hn::Mask<LanesOf<Number>>& mask, PatchIntegral
   for (VectorOf<Number>* v :
        {&integrals.force.x, &integrals.force.y, &integrals.force.z, &integrals.torque.x, &integrals.torque.y,
         &integrals.torque.z, &integrals.volume, &integrals.moment.x, &integrals.moment.y, &integrals.moment.z,
-        &integrals.force_error, &integrals.torque_error, &integrals.expected}) {
+        &integrals.force_error, &integrals.torque_error, &integrals.volume_error, &integrals.expected}) {
     *v = hn::IfThenZeroElse(mask, *v);
   }
+}
+
+// A bound on the integral over a patch of what the model of s leaves out [m^3].
+template <typename Number>
+HWY_INLINE VectorOf<Number> volume_remainder(const VectorOf<Number>& area, const VectorOf<Number>& mu3,
+                                             const PatchModel<Number>& model) {
+  return hn::MulAdd(model.s_third * set<Number>(1.0 / 6.0), mu3, model.s_delta * area);
 }
 
 // The integrals of a model over whole patches, or over patches that the surface crosses and that are not
@@ -210,6 +217,10 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V local = phi.linear_error * mu1 + model.delta * mu1 +
                   half * hn::MulAdd(model.third * m.radius, set<Number>(1.0 / 3.0), model.curvature) * m.mu3;
   result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;
+  result.volume_error =
+      volume_remainder<Number>(m.area, m.mu3, model) +
+      hn::IfThenElse(model.whole, model.s_per_phi * model.delta * m.area,
+                     hn::MulAdd(depth.quadratic_error, m.area, quarter * model.s_curvature * m.mu2));
   clear_where<Number>(model.dry, result);
   return result;
 }

@@ -119,6 +119,7 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
     const Vec3 lever = mesh.centroid - query.reference;
     load.torque += lever.cross(mesh.volume * query.up_B);
     load.volume = mesh.volume;
+    load.volume_bound = 0.0;
     load.moment = mesh.volume * mesh.centroid;
   }
   // The displaced pressure, besides its change, moves the torque.

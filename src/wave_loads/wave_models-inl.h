@@ -80,13 +80,18 @@ struct Quadratic {
 
 template <typename Number>
 struct PatchModel {
-  Quadratic<Number> phi;                 // model of the pressure over rho g
-  Quadratic<Number> s;                   // of the height over the surface
-  VectorOf<Number> third;                // [1/m^2], M_3; 0 where the model is linear by intent
-  VectorOf<Number> third_of_parts;       // [1/m^2], an estimate of M_3 for patches of half the radius
-  VectorOf<Number> delta_of_parts;       // [m], an estimate as well
-  VectorOf<Number> curvature;            // [1/m], |H|
-  VectorOf<Number> delta;                // [m], error of the model over the whole patch
+  Quadratic<Number> phi;            // model of the pressure over rho g
+  Quadratic<Number> s;              // of the height over the surface
+  VectorOf<Number> third;           // [1/m^2], M_3; 0 where the model is linear by intent
+  VectorOf<Number> third_of_parts;  // [1/m^2], an estimate of M_3 for patches of half the radius
+  VectorOf<Number> delta_of_parts;  // [m], an estimate as well
+  VectorOf<Number> curvature;       // [1/m], |H|
+  VectorOf<Number> delta;           // [m], error of the model over the whole patch
+  VectorOf<Number> s_third;         // [1/m^2], L_3; 0 where the model of s is linear
+  VectorOf<Number> s_curvature;     // [1/m], |D^2 eta|, as s_third
+  VectorOf<Number> s_delta;         // [m], error of the model of s over the whole patch
+  // Bound on |s| over |phi| where the pressure's model alone finds a point wet, or dry.
+  VectorOf<Number> s_per_phi;
   hn::Mask<LanesOf<Number>> dry, whole;  // nothing is wet; all is, so that nothing is clipped
   hn::Mask<LanesOf<Number>> too_steep;
 };
@@ -249,6 +254,14 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   model.s = in_body_axes<Number>(
       query, place.zeta + if_known(eta), {if_known(eta1), if_known(eta2), one},
       {if_known(surface.eta_11), if_known(surface.eta_22), zero, if_known(surface.eta_12), zero, zero});
+  const V s_size = hn::IfThenElse(known, hn::MulAdd(r, L1, hn::Abs(s)), hn::Abs(place.zeta)) + r;
+  const V s_rest =
+      hn::IfThenElse(known, epsilon, hn::MulAdd(rounding, hn::Abs(place.zeta), set<Number>(query.amplitude)));
+  model.s_delta =
+      (hn::MulAdd(set<Number>(query.integral_rounding), s_size, s_rest) + set<Number>(query.displacement)) *
+      set<Number>(1.0 / query.k_max);
+  model.s_third = hn::IfThenElseZero(known, L3) * set<Number>(query.k_max * query.k_max);
+  model.s_curvature = hn::IfThenElseZero(known, range.L2_at_point) * set<Number>(query.k_max);
 
   const V still = set<Number>(query.submerged ? 0.0 : 1.0);
   V value, g1, g2, g3, M3, delta, gamma;
@@ -383,6 +396,9 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   // the others.
   model.whole = hn::Or(hn::And(hn::Not(flat), wet),
                        hn::And(flat, hn::Or(hn::Lt(highest, zero), set_mask<Number>(query.submerged))));
+  const V of_certificate = one / hn::Max(one - gamma - rounding, set<Number>(1e-30));
+  model.s_per_phi =
+      hn::IfThenZeroElse(hn::And(model.whole, wet), hn::IfThenElse(use_quadratic, of_certificate, one));
   model.dry = hn::Or(model.dry, hn::And(flat, hn::And(hn::Gt(place.zeta - r, amplitude),
                                                       hn::Not(set_mask<Number>(query.submerged)))));
   return model;

@@ -44,7 +44,7 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   t.none = model.dry;
   const Vectors3<Number> lever = piece.center - axis_of<Number>(query.reference);
   PatchIntegrals<Number> result =
-      to_patch<Number>(integrate<Number>(query, t), lever, piece.center, piece.radius);
+      to_patch<Number>(integrate<Number>(query, t), lever, piece.center, piece.radius, model.s_per_phi);
   const Vectors3<Number> normal = cross<Number>(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
   const V area = set<Number>(0.500001) * hn::Sqrt(dot<Number>(normal, normal));
   V second = set<Number>(0.0);
@@ -70,6 +70,8 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
                             quarter * result.force_error);
   result.torque_error =
       result.torque_error + hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local);
+  result.volume_error = hn::MulAdd(model.s_per_phi, remainder, result.volume_error) +
+                        volume_remainder<Number>(area, area * mean3, model);
   return result;
 }
 

@@ -72,9 +72,10 @@ class Results {
     batches_.emplace_back();
     auto& rows = batches_.back().rows;
     const std::array<VectorOf<Number>, kRows> all{
-        integrals.force.x,  integrals.force.y,  integrals.force.z,     integrals.torque.x,
-        integrals.torque.y, integrals.torque.z, integrals.moment.x,    integrals.moment.y,
-        integrals.moment.z, integrals.volume,   integrals.force_error, integrals.torque_error};
+        integrals.force.x,     integrals.force.y,  integrals.force.z,     integrals.torque.x,
+        integrals.torque.y,    integrals.torque.z, integrals.moment.x,    integrals.moment.y,
+        integrals.moment.z,    integrals.volume,   integrals.force_error, integrals.torque_error,
+        integrals.volume_error};
     for (std::size_t row = 0; row < kRows; ++row) hn::Store(all[row], d, rows[row].data());
     const std::size_t first = errors_.size();
     errors_.resize(first + kLanes<Number>);
@@ -101,10 +102,11 @@ class Results {
     for (std::size_t row = 0; row < kRows; ++row) rows[row][result % kLanes<Number>] += numbers[row * stride];
   }
 
-  void add_errors(std::size_t result, Number force_error, Number torque_error) {
+  void add_errors(std::size_t result, Number force_error, Number torque_error, Number volume_error) {
     auto& rows = batches_[result / kLanes<Number>].rows;
     rows[kForceError][result % kLanes<Number>] += force_error;
     rows[kTorqueError][result % kLanes<Number>] += torque_error;
+    rows[kVolumeError][result % kLanes<Number>] += volume_error;
   }
 
   // Sets the error of a result that has been replaced.
@@ -164,14 +166,16 @@ class Results {
     load.volume = total[9];
     load.force_bound = total[kForceError];
     load.torque_bound = total[kTorqueError];
+    load.volume_bound = total[kVolumeError];
     return load;
   }
 
-  static constexpr std::size_t kRows = 12;
+  static constexpr std::size_t kRows = 13;
 
  private:
   static constexpr std::size_t kForceError = 10;
   static constexpr std::size_t kTorqueError = 11;
+  static constexpr std::size_t kVolumeError = 12;
   struct BatchRows {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
   };

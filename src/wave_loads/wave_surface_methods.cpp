@@ -344,7 +344,7 @@ WaveLoad surface_load(SurfaceMethod method, Precision precision, const Hydrostat
   load.torque = in_body(sum.torque);
   load.volume = sum.volume;
   load.moment = in_body(sum.moment);
-  load.force_bound = load.torque_bound = std::numeric_limits<double>::infinity();
+  load.force_bound = load.torque_bound = load.volume_bound = std::numeric_limits<double>::infinity();
   return load;
 }
 

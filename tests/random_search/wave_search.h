@@ -1,6 +1,5 @@
-// The random search in waves: the load that wave_load() gives must be within its own bound of the truth, and
-// the volume within twice that of the force. (Where waves are shorter than two bodies, what the volume lacks
-// may be as high as a crest.) The sea itself must be that of the formulas at a few points of the body.
+// The random search in waves: force, torque and volume that wave_load() gives must be within their own bounds
+// of the truth. The sea itself must be that of the formulas at a few points of the body.
 //
 // Cases are numbered from 0; each depends only on the seed and its number, not on the number of threads or on
 // where a run begins. Each mesh has 8 cases. The truth comes from reference_load(), whose own error is
@@ -47,7 +46,7 @@ struct WaveFigures {
   // Cases whose mean wavelength is above twice the body's diagonal, and those of them whose bound is within
   // the tolerance.
   std::int64_t long_waves = 0, long_within = 0;
-  LargestInWaves force, torque, volume;  // error over bound, or over what is allowed to volumes
+  LargestInWaves force, torque, volume;  // error over bound
   RatioHistogram ratios;                 // of forces
 
   WaveFigures& operator+=(const WaveFigures& other);

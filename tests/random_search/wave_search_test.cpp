@@ -38,6 +38,7 @@ EvaluateWaves with_bounds_times(double factor) {
     WaveLoad load = product_load(body, expansion, sea, request);
     load.force_bound *= factor;
     load.torque_bound *= factor;
+    load.volume_bound *= factor;
     return load;
   };
 }

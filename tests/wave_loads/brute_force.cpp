@@ -138,6 +138,7 @@ BruteForceLoad brute_force_load(const TriangleMesh& surface, const Vec3& center_
   const BruteForceLoad coarse = integrate(surface, center_B, sea, pose, reference_B, cuts / 2);
   load.force_error = (load.force - coarse.force).norm();
   load.torque_error = (load.torque - coarse.torque).norm();
+  load.volume_error = std::abs(load.volume - coarse.volume);
   return load;
 }
 

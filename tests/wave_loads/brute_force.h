@@ -14,6 +14,7 @@ struct BruteForceLoad {
   double volume = 0.0;         // [m^3]
   double force_error = 0.0;    // [m^3], estimate, by comparison with half as many cuts
   double torque_error = 0.0;   // [m^4]
+  double volume_error = 0.0;   // [m^3]
 };
 
 // surface: relative to center_B. cuts: of each edge; even. The error falls with the fourth power of the
