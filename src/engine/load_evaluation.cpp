@@ -12,12 +12,6 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// Does the body displace more than rounding?
-bool is_wet(const Body& body, const BodyOutcome& outcome) {
-  return outcome.result.immersion != Immersion::kDry &&
-         outcome.result.volume > body.solver.mesh().volume_tolerance();
-}
-
 // [m^3], bound on the error of the submerged volume.
 double volume_error_bound(const Body& body, const CurrentWater& water, const BodyOutcome& outcome) {
   const HydrostaticMesh& mesh = body.solver.mesh();
@@ -30,30 +24,35 @@ double volume_error_bound(const Body& body, const CurrentWater& water, const Bod
   return specific_weight > 0.0 ? outcome.result.force_error_bound / specific_weight : mesh.volume;
 }
 
-ImmersionFactor volume_fraction(const Body& body, const CurrentWater& water, const BodyOutcome& outcome) {
-  const HydrostaticMesh& mesh = body.solver.mesh();
-  const double error = volume_error_bound(body, water, outcome) / mesh.volume + 4.0 * kEpsilon;
-  const double value = std::clamp(outcome.result.volume / mesh.volume, 0.0, 1.0);
-  return {value, std::min(error, std::max(value, 1.0 - value))};
-}
-
-ImmersionFactor area_fraction(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {
-  const WettedArea area = wetted_area(mesh, pose, water);
-  return {std::min(area.value / mesh.area, 1.0), area.error / mesh.area + 4.0 * kEpsilon};
+// A factor within [0, 1] whose error cannot exceed the distance to the farther end.
+ImmersionFactor factor_within_unit(double value, double error) {
+  const double inside = std::clamp(value, 0.0, 1.0);
+  return {inside, std::min(error, std::max(inside, 1.0 - inside))};
 }
 
 ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, const CurrentWater& water,
                                  const Pose& pose, const BodyOutcome& outcome) {
-  if (!is_wet(body, outcome)) return {0.0, 0.0};
+  if (outcome.result.immersion == Immersion::kDry) return {0.0, 0.0};
+  const HydrostaticMesh& mesh = body.solver.mesh();
+  const double volume = outcome.result.volume;
+  const bool wet = volume > mesh.volume_tolerance();
   switch (scaling) {
     case ImmersionScaling::kVolume:
-      return volume_fraction(body, water, outcome);
-    case ImmersionScaling::kWettedArea:
-      return area_fraction(body.solver.mesh(), pose, *water.at_rest);
-    case ImmersionScaling::kNone:
-      break;
+      return factor_within_unit(wet ? volume / mesh.volume : 0.0,
+                                volume_error_bound(body, water, outcome) / mesh.volume + 4.0 * kEpsilon);
+    case ImmersionScaling::kWettedArea: {
+      const WettedArea area = wetted_area(mesh, pose, *water.at_rest);
+      return factor_within_unit(area.value / mesh.area, area.error / mesh.area + 4.0 * kEpsilon);
+    }
+    case ImmersionScaling::kNone: {
+      // The factor jumps at the volume that counts as none. Rounding defines on which side a body is; what
+      // an approximation of the volume left out does not.
+      const double error = volume_error_bound(body, water, outcome);
+      const bool undecided = error > 4.0 * mesh.volume_tolerance() && std::abs(volume) <= error;
+      return {wet ? 1.0 : 0.0, undecided ? 1.0 : 0.0};
+    }
   }
-  return {1.0, 0.0};
+  return {0.0, 0.0};
 }
 
 void set_matrix(const Mat6& matrix, std::array<std::array<double, 6>, 6>& fields) {

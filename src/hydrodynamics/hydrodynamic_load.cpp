@@ -80,8 +80,9 @@ Vec6 relative_twist_B(const BodyMotion& motion, const Vec3& center_B, const Vec3
 
 HydrodynamicLoad HydrodynamicModel::load(const HydrodynamicState& state) const {
   HydrodynamicLoad load;
-  if (coefficients_.drag && state.at_drag.immersion.value > 0.0) add_drag(state, load);
-  if (coefficients_.added_mass && state.at_added_mass.immersion.value > 0.0) add_added_mass(state, load);
+  const auto may_be_wet = [](const ImmersionFactor& s) { return s.value > 0.0 || s.error > 0.0; };
+  if (coefficients_.drag && may_be_wet(state.at_drag.immersion)) add_drag(state, load);
+  if (coefficients_.added_mass && may_be_wet(state.at_added_mass.immersion)) add_added_mass(state, load);
   return load;
 }
 
