@@ -29,6 +29,13 @@ CLI::Option* add_hydrostatics_channel_option(CLI::App& app, std::string& channel
       ->capture_default_str();
 }
 
+CLI::Option* add_loads_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--loads-channel", channel,
+                  "LCM channel for loads (bodies_loads_t) of bodies whose outputs in the scene include them")
+      ->capture_default_str();
+}
+
 CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel) {
   return app
       .add_option("--sea-channel", channel,

@@ -14,6 +14,7 @@ CLI::Option* add_lcm_url_option(CLI::App& app, std::string& url);
 CLI::Option* add_states_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_wrenches_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_hydrostatics_channel_option(CLI::App& app, std::string& channel);
+CLI::Option* add_loads_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel);
 // poses: the poses that the option applies to, in words.
