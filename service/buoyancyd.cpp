@@ -59,11 +59,16 @@ int run(int argc, char** argv) {
     return kUsageError;
   }
   const ChannelNames& channels = options.channels;
-  Expected<PoseChannels> poses = resolve_pose_channels(
-      options.poses, *scene,
-      {channels.states, channels.wrenches, channels.hydrostatics, channels.sea, channels.status});
+  Expected<PoseChannels> poses =
+      resolve_pose_channels(options.poses, *scene,
+                            {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
+                             channels.sea, channels.status});
   if (!poses) {
     print_error(app, poses.error());
+    return kUsageError;
+  }
+  if (const Expected<void> checked = check_velocities_usable(*poses, *scene); !checked) {
+    print_error(app, checked.error());
     return kUsageError;
   }
   if (options.check) {

@@ -14,6 +14,10 @@ const char* remedy_for(BodyStatus status) {
     return "no sea has been received that holds at the time of the requests: start what publishes it before "
            "the clients";
   }
+  if (status == BodyStatus::kNonFiniteTwist) {
+    return "a velocity is NaN or infinite where it is needed: with a lead_time, and for bodies with drag or "
+           "added mass";
+  }
   return "";
 }
 
@@ -84,6 +88,14 @@ std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts&
         {"fragments of incomplete or contradictory messages dropped", now.fragments - before.fragments, {}});
   }
   return warnings;
+}
+
+std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count) {
+  const Body* const body = scene.find(pose.body_id);
+  if (body == nullptr || body->hydrodynamics == nullptr) return std::nullopt;
+  return LogEvent{fmt::format("poses without velocities on {}, whose body '{}' has drag or added mass",
+                              pose.channel, body->name),
+                  count, kMissingVelocitiesRemedy};
 }
 
 std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency) {

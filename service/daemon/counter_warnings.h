@@ -1,10 +1,13 @@
 // Turns the growth of counters into warnings for the log.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/pose_request_adapter.h"
 #include "messages/status.h"
+#include "scene/scene.h"
 #include "service/daemon/rate_limited_log.h"
 #include "transport/udpm_receiver.h"
 
@@ -17,6 +20,9 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
 // One event per kind of loss whose counter has grown.
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,
                                      const BufferLimit& receive_buffer_limit);
+
+// The event of `count` poses without velocities on a channel; nullopt: its body needs none in this scene.
+std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count);
 
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".
 std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency);

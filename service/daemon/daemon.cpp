@@ -72,7 +72,8 @@ Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Ser
       latest_(kMaxSessions),
       start_(seconds_now()),
       instance_id_(random_id()),
-      instances_(instance_id_) {}
+      instances_(instance_id_),
+      reported_without_velocities_(poses_.channels().size()) {}
 
 Expected<void> Daemon::subscribe() {
   Expected<void> subscribed =
@@ -120,10 +121,11 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   prepare_for_messages();
   spdlog::info(
-      "ready: {}; requests on {}, responses on {}, hydrostatics on {}, status on {}; {}, mode {}, "
+      "ready: {}; requests on {}, responses on {}, hydrostatics on {}, loads on {}, status on {}; {}, mode "
+      "{}, "
       "instance {}",
       format_body_count(scene_->bodies()), channels_.states, channels_.wrenches, channels_.hydrostatics,
-      channels_.status, connection_.url(), to_string(mode_), instance_id_);
+      channels_.loads, channels_.status, connection_.url(), to_string(mode_), instance_id_);
   for (const PoseChannel& pose : poses_.channels()) {
     spdlog::info("poses of body {} on {}, responses on {}", pose.body_id, pose.channel,
                  pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
@@ -223,6 +225,7 @@ void Daemon::handle(Bytes request, double arrival) {
   if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
   }
+  if (const Bytes loads = handler_.last_loads(); !loads.empty()) publish(channels_.loads, loads);
 }
 
 bool Daemon::publish_response(Bytes response) {
@@ -242,6 +245,17 @@ bool Daemon::publish(const std::string& channel, Bytes bytes) {
 
 void Daemon::publish_sea() {
   if (!sea_bytes_.empty()) publish(channels_.sea, sea_bytes_);
+}
+
+void Daemon::warn_of_missing_velocities(double now) {
+  for (std::size_t i = 0; i < poses_.channels().size(); ++i) {
+    const std::int64_t count = poses_.without_velocities(i);
+    const std::int64_t increase = count - std::exchange(reported_without_velocities_[i], count);
+    if (increase == 0) continue;
+    if (const std::optional<LogEvent> warning = missing_velocities(poses_.channels()[i], *scene_, increase)) {
+      warnings_.add(*warning, now);
+    }
+  }
 }
 
 void Daemon::begin_reload() {
@@ -302,6 +316,7 @@ void Daemon::publish_status() {
   for (const LogEvent& warning : warnings_since(reported_drops_, drops, receive_buffer_limit_)) {
     warnings_.add(warning, now);
   }
+  warn_of_missing_velocities(now);
   for (const std::string& line : warnings_.drain(now)) spdlog::warn("{}", line);
   for (const std::int64_t other : instances_.take_new()) {
     spdlog::warn(

@@ -1,7 +1,8 @@
 // The live service: receives requests over LCM, has a RequestHandler compute the responses, and publishes its
 // status once a second. It runs on one thread; SIGINT and SIGTERM stop it between two messages.
 //
-// Poses of single bodies on channels of their own are requests too: each channel is a session.
+// Poses of single bodies on channels of their own are requests too: each channel is a session. Those without
+// velocities, of bodies with drag or added mass, are logged as a warning that says why they get no load.
 //
 // In waves, the sea of the scene is published when the scene is loaded and once a second. Where the scene
 // says that waves are received, its sea is that of the messages on the same channel (SeaTimeline).
@@ -43,6 +44,7 @@ struct ChannelNames {
   std::string states{kStatesChannel};
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
+  std::string loads{kLoadsChannel};
   std::string sea{kSeaChannel};
   std::string status{kStatusChannel};
 };
@@ -81,6 +83,7 @@ class Daemon {
   void end_reload();
   void publish_status();  // and the sea, and logs the warnings that are due
   void publish_sea();
+  void warn_of_missing_velocities(double now);
 
   std::unique_ptr<const Scene> scene_;  // used by handler_
   SceneLoader loader_;
@@ -103,11 +106,12 @@ class Daemon {
   SystemdNotifier systemd_;
   ServiceCounters reported_;
   DropCounts reported_drops_;
-  BufferLimit receive_buffer_limit_;              // for the largest request about the scene
-  std::vector<std::uint8_t> status_bytes_;        // reused
-  std::vector<std::uint8_t> sea_bytes_;           // of the scene's sea; empty: it has none
-  WrenchResponse response_;                       // reused, for poses
-  std::vector<std::uint8_t> force_torque_bytes_;  // reused
+  std::vector<std::int64_t> reported_without_velocities_;  // by pose channel
+  BufferLimit receive_buffer_limit_;                       // for the largest request about the scene
+  std::vector<std::uint8_t> status_bytes_;                 // reused
+  std::vector<std::uint8_t> sea_bytes_;                    // of the scene's sea; empty: it has none
+  WrenchResponse response_;                                // reused, for poses
+  std::vector<std::uint8_t> force_torque_bytes_;           // reused
 };
 
 }  // namespace buoyancy::service

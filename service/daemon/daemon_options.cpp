@@ -32,6 +32,7 @@ void add_options(CLI::App& app, DaemonOptions& options) {
   add_states_channel_option(app, options.channels.states);
   add_wrenches_channel_option(app, options.channels.wrenches);
   add_hydrostatics_channel_option(app, options.channels.hydrostatics);
+  add_loads_channel_option(app, options.channels.loads);
   add_sea_channel_option(app, options.channels.sea);
   add_status_channel_option(app, options.channels.status);
   add_options(app, options.poses);
@@ -55,8 +56,9 @@ void add_options(CLI::App& app, DaemonOptions& options) {
 
 Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
-  if (Expected<void> checked = check_channels_distinct(
-          {channels.states, channels.wrenches, channels.hydrostatics, channels.sea, channels.status});
+  if (Expected<void> checked =
+          check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
+                                   channels.sea, channels.status});
       !checked) {
     return checked;
   }

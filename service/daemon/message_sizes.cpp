@@ -35,6 +35,10 @@ Json to_json(const LargestMessage& message) {
   return {{"bytes", message.bytes}, {"packets", message.packets}};
 }
 
+Json to_json(const std::optional<LargestMessage>& message) {
+  return message ? to_json(*message) : Json(nullptr);
+}
+
 std::vector<Warning> warnings_of(const Scene& scene, const LargestMessages& messages,
                                  const std::optional<ReceiveBuffer>& buffer) {
   std::vector<Warning> warnings = scene_warnings(scene);
@@ -50,10 +54,14 @@ LargestMessages largest_messages(const Scene& scene, const ChannelNames& channel
   LargestMessages messages{
       .request = make_message("request", bodies, request_size(bodies), channels.states),
       .response = make_message("response", bodies, response_size(bodies), channels.wrenches),
-      .hydrostatics = std::nullopt};
+      .hydrostatics = std::nullopt,
+      .loads = std::nullopt};
   if (with_hydrostatics > 0) {
     messages.hydrostatics = make_message("hydrostatics", with_hydrostatics,
                                          hydrostatics_size(with_hydrostatics), channels.hydrostatics);
+  }
+  if (const std::size_t with_loads = scene.bodies_with_loads(); with_loads > 0) {
+    messages.loads = make_message("loads", with_loads, loads_size(with_loads), channels.loads);
   }
   return messages;
 }
@@ -72,6 +80,7 @@ std::vector<Warning> size_warnings(const LargestMessages& messages, const Receiv
     if (warning) warnings.push_back(*warning);
   }
   if (messages.hydrostatics) fits(*messages.hydrostatics);
+  if (messages.loads) fits(*messages.loads);
   return warnings;
 }
 
@@ -92,6 +101,7 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
   std::string text = scene_report_text(scene) + "\nmessages\n";
   text += to_text(messages.request) + to_text(messages.response);
   if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
+  if (messages.loads) text += to_text(*messages.loads);
   if (buffer) {
     text += "  receive buffer that this machine grants this user: " + std::to_string(buffer->max_message) +
             " bytes\n";
@@ -105,10 +115,10 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer) {
   Json report = Json::parse(scene_report_json(scene));
-  report["messages"] = {
-      {"request", to_json(messages.request)},
-      {"response", to_json(messages.response)},
-      {"hydrostatics", messages.hydrostatics ? to_json(*messages.hydrostatics) : Json(nullptr)}};
+  report["messages"] = {{"request", to_json(messages.request)},
+                        {"response", to_json(messages.response)},
+                        {"hydrostatics", to_json(messages.hydrostatics)},
+                        {"loads", to_json(messages.loads)}};
   report["receive_buffer"] = buffer ? Json(buffer->max_message) : Json(nullptr);
   report["warnings"] = Json::array();
   for (const Warning& warning : warnings_of(scene, messages, buffer)) {

@@ -22,15 +22,16 @@ struct LargestMessage {
   std::size_t packets = 0;
 };
 
-// A request for all bodies of a scene, its response, and its hydrostatics if a body has that output.
+// A request for all bodies of a scene, its response, and its hydrostatics and loads if a body has that
+// output.
 struct LargestMessages {
   LargestMessage request, response;
-  std::optional<LargestMessage> hydrostatics;
+  std::optional<LargestMessage> hydrostatics, loads;
 };
 
 LargestMessages largest_messages(const Scene& scene, const ChannelNames& channels);
 
-// Warnings about a request or hydrostatics that no receiver accepts, and about a request that may lose
+// Warnings about a request, hydrostatics or loads that no receiver accepts, and about a request that may lose
 // packets because the receive buffer of the service is too small for it. The response is smaller than the
 // request.
 std::vector<Warning> size_warnings(const LargestMessages& messages, const ReceiveBuffer& buffer);
@@ -43,9 +44,9 @@ std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& mess
 // The reports of scene_report.h with the messages and the warnings. buffer: nullopt for memq://.
 std::string check_report_text(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer);
-// In addition to scene_report_json(): "messages", an object with "request", "response" and "hydrostatics"
-// (null if no body has that output), each with "bytes" and "packets"; "receive_buffer" [bytes], null for
-// memq://; "warnings", an array of texts.
+// In addition to scene_report_json(): "messages", an object with "request", "response", "hydrostatics" and
+// "loads" (each of these two is null if no body has that output), each with "bytes" and "packets";
+// "receive_buffer" [bytes], null for memq://; "warnings", an array of texts.
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer);
 

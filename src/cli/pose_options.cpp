@@ -69,7 +69,7 @@ void add_velocity_options(CLI::App& app, PoseOptions& options) {
            options.velocity_frame = frame == "body" ? VelocityFrame::kBody : VelocityFrame::kWorld;
          },
          "Frame of pose_t.vel and pose_t.rotation_rate (libbot2 documents world; some senders use body); "
-         "required with --lead-time")
+         "required with --lead-time, and for bodies with drag or added mass")
       ->check(CLI::IsMember({"world", "body"}));
   add_lead_time_option(app, options.lead_time, "the poses of --pose");
 }
@@ -148,6 +148,21 @@ Expected<PoseChannels> resolve_pose_channels(const PoseOptions& options, const S
   poses.lead_time = options.lead_time;
   poses.velocity_frame = options.velocity_frame;
   return poses;
+}
+
+Expected<void> check_velocities_usable(const PoseChannels& poses, const Scene& scene) {
+  if (poses.velocity_frame) return {};
+  for (const PoseChannel& pose : poses.channels) {
+    const Body* const body = scene.find(pose.body_id);
+    if (body == nullptr || body->hydrodynamics == nullptr) continue;
+    return make_error({"--pose " + pose.channel + "=" + std::to_string(pose.body_id), "no --velocity-frame",
+                       "--velocity-frame world or body, since body '" + body->name +
+                           "' has drag or added mass, which depend on its velocities",
+                       "senders use pose_t with either frame, and the message does not state which",
+                       "State the frame of the sender; a rigid_transform_t has no velocities and cannot be "
+                       "used for such a body"});
+  }
+  return {};
 }
 
 }  // namespace buoyancy

@@ -35,4 +35,8 @@ void add_viewer_channel_options(CLI::App& app, PoseOptions& options);
 Expected<PoseChannels> resolve_pose_channels(const PoseOptions& options, const Scene& scene,
                                              const std::vector<std::string>& reserved);
 
+// For programs that respond to the poses. Errors: a body with drag or added mass, whose velocities are needed
+// and whose frame is not given.
+Expected<void> check_velocities_usable(const PoseChannels& poses, const Scene& scene);
+
 }  // namespace buoyancy

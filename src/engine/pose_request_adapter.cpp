@@ -1,6 +1,9 @@
 #include "engine/pose_request_adapter.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -13,6 +16,12 @@ namespace {
 std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_B) {
   const auto& [w, x, y, z] = q_WB;
   return to_array(Eigen::Quaterniond(w, x, y, z).normalized() * to_vec3(v_B));
+}
+
+bool has_velocities(const BodyState& state) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return std::ranges::all_of(state.linear_velocity, finite) &&
+         std::ranges::all_of(state.angular_velocity, finite);
 }
 
 }  // namespace
@@ -32,7 +41,10 @@ tl::expected<StampedBodyState, DecodeError> decode_pose(const PoseChannels& pose
 }
 
 PoseRequestAdapter::PoseRequestAdapter(PoseChannels poses, std::int64_t first_session)
-    : poses_(std::move(poses)), first_session_(first_session), next_seq_(poses_.channels.size()) {
+    : poses_(std::move(poses)),
+      first_session_(first_session),
+      next_seq_(poses_.channels.size()),
+      without_velocities_(poses_.channels.size()) {
   request_.lead_time = poses_.lead_time;
   request_.bodies.resize(1);
 }
@@ -51,7 +63,13 @@ tl::expected<Bytes, DecodeError> PoseRequestAdapter::make_request(std::size_t in
   const tl::expected<StampedBodyState, DecodeError> stamped = decode_pose(poses_, index, pose);
   if (!stamped) return tl::unexpected(stamped.error());
   request_.id = {stamped->utime, session_of(index), next_seq_[index]++};
-  request_.bodies.front() = stamped->state;
+  BodyState& state = request_.bodies.front();
+  state = stamped->state;
+  if (!poses_.velocity_frame) {
+    state.linear_velocity.fill(std::numeric_limits<double>::quiet_NaN());
+    state.angular_velocity = state.linear_velocity;
+  }
+  if (!has_velocities(state)) ++without_velocities_[index];
   encode(request_, bytes_);
   return Bytes(bytes_);
 }

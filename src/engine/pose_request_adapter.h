@@ -13,7 +13,8 @@
 
 namespace buoyancy {
 
-// The frame of a pose's velocities. It matters only where lead_time is not 0.
+// The frame of a pose's velocities. It matters where lead_time is not 0, and for bodies with drag or added
+// mass.
 enum class VelocityFrame { kWorld, kBody };
 
 struct PoseChannel {
@@ -25,7 +26,8 @@ struct PoseChannel {
 struct PoseChannels {
   std::vector<PoseChannel> channels;
   std::optional<VelocityFrame> velocity_frame{};  // nullopt: unknown, the velocities are unusable
-  double lead_time = 0.0;  // [s], of every request; if not 0, a rigid_transform_t cannot be evaluated
+  // [s], of every request. If it is not 0, a rigid_transform_t cannot be evaluated.
+  double lead_time = 0.0;
 };
 
 struct StampedBodyState {
@@ -36,6 +38,11 @@ struct StampedBodyState {
 // Decodes a message of channel poses.channels[index]. Errors: those of decode_bot_pose().
 tl::expected<StampedBodyState, DecodeError> decode_pose(const PoseChannels& poses, std::size_t index,
                                                         Bytes pose);
+
+// What to do about poses without velocities of bodies with drag or added mass.
+inline constexpr const char* kMissingVelocitiesRemedy =
+    "such a body needs its velocities: without them it has the status NON_FINITE_TWIST and carries zeros. "
+    "Send pose_t instead of rigid_transform_t, and give the frame of its velocities with --velocity-frame";
 
 class PoseRequestAdapter {
  public:
@@ -48,17 +55,22 @@ class PoseRequestAdapter {
 
   std::int64_t session_of(std::size_t index) const;
   std::int64_t next_seq(std::size_t index) const { return next_seq_[index]; }
+  // Of the requests of this channel, the number without usable velocities.
+  std::int64_t without_velocities(std::size_t index) const { return without_velocities_[index]; }
 
   // Converts a message of channel channels()[index] into a request's bytes, with the pose's utime and the
-  // next seq of its session. Valid until the next call. No heap allocation after the first call.
+  // next seq of its session. Valid until the next call. No heap allocation after the first call. Velocities
+  // of a rigid_transform_t, and those of an unknown frame, are NaN in the request: a body that needs them
+  // gets the status kNonFiniteTwist, never a load at velocity 0.
   tl::expected<Bytes, DecodeError> make_request(std::size_t index, Bytes pose);
 
  private:
   PoseChannels poses_;
   std::int64_t first_session_;
-  std::vector<std::int64_t> next_seq_;  // by channel
-  WrenchRequest request_;               // reused
-  std::vector<std::uint8_t> bytes_;     // reused
+  std::vector<std::int64_t> next_seq_;            // by channel
+  std::vector<std::int64_t> without_velocities_;  // by channel
+  WrenchRequest request_;                         // reused
+  std::vector<std::uint8_t> bytes_;               // reused
 };
 
 // Replaces bytes by a six_axis_force_torque_t: force and torque in W, about the body's reference point. It
