@@ -60,6 +60,19 @@ void warn_of_unseen(const CLI::App& app, const ReplayOptions& options,
   }
 }
 
+void warn_of_missing_velocities(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task) {
+  const std::vector<PoseChannel>& channels = task.poses.channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Body* const body = task.scene.find(channels[i].body_id);
+    if (task.poses.without_velocities(i) == 0 || body->hydrodynamics == nullptr) continue;
+    print_warning(app, Warning{"channel " + channels[i].channel,
+                               std::to_string(task.poses.without_velocities(i)) + " poses in " +
+                                   options.input.string() + " without velocities",
+                               "velocities, since body '" + body->name + "' has drag or added mass", "",
+                               kMissingVelocitiesRemedy});
+  }
+}
+
 // part: nullptr for a replay of the whole.
 int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTask& task, PartOutput* part) {
   TerminationSignals signals;
@@ -89,6 +102,7 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
                               ? "; nothing was kept of part " + options.part + ": run it again"
                               : "; " + options.output.string() + " holds the responses written until then"));
   }
+  if (!stopped) warn_of_missing_velocities(app, options, task);
   // A channel may have no events in one part only.
   if (!stopped && part == nullptr) warn_of_unseen(app, options, task.channels.unseen_channels());
   const std::string text =
@@ -162,25 +176,29 @@ int run(int argc, char** argv) {
       ReplayInput::open(options.input, plan->input_format,
                         [&channels](std::string_view channel) { return channels.role_of(channel).any(); });
   if (!input) return fail(input.error(), kUsageError);
+  if (const Expected<void> checked = check_velocity_columns(*input, options, *scene); !checked) {
+    return fail(checked.error(), kUsageError);
+  }
+  const OutputLayout layout{plan->output_format, options.wrenches_channel, options.hydrostatics_channel,
+                            options.loads_channel, !options.loads.empty()};
   std::optional<ReplayComparison> comparison;
   if (!options.baseline.empty()) {
-    Expected<ReplayComparison> opened = ReplayComparison::open(options.baseline, options.wrenches_channel,
-                                                               options.hydrostatics_channel, *scene);
+    Expected<ReplayComparison> opened = ReplayComparison::open(options.baseline, layout, *scene);
     if (!opened) return fail(opened.error(), kUsageError);
     comparison = *std::move(opened);
   }
-  const auto run_with = [&](ReplayOutput& output, PartOutput* part) {
-    return run_replay(
-        app, options,
-        {.scene = *scene,
-         .input = *input,
-         .channels = channels,
-         .poses = poses,
-         .output = output,
-         .layout = {plan->output_format, options.wrenches_channel, options.hydrostatics_channel},
-         .comparison = comparison ? &*comparison : nullptr,
-         .jobs = options.jobs},
-        part);
+  const auto run_with = [&](ReplayOutput& output, ReplayOutput* loads, PartOutput* part) {
+    return run_replay(app, options,
+                      {.scene = *scene,
+                       .input = *input,
+                       .channels = channels,
+                       .poses = poses,
+                       .output = output,
+                       .layout = layout,
+                       .loads = loads,
+                       .comparison = comparison ? &*comparison : nullptr,
+                       .jobs = options.jobs},
+                      part);
   };
   if (plan->part) {
     const Expected<ReplayFacts> facts = replay_facts(options, *scene, poses.channels(), input->size());
@@ -189,11 +207,14 @@ int run(int argc, char** argv) {
     if (!restricted) return fail(restricted.error(), kUsageError);
     Expected<PartOutput> part = PartOutput::create(options.output, plan->output_format, *plan->part, *facts);
     if (!part) return fail(part.error(), kFailure);
-    return run_with(part->responses(), &*part);
+    return run_with(part->responses(), nullptr, &*part);
   }
   Expected<ReplayOutput> output = ReplayOutput::create(options.output, plan->output_format);
   if (!output) return fail(output.error(), kFailure);
-  return run_with(*output, nullptr);
+  if (options.loads.empty()) return run_with(*output, nullptr, nullptr);
+  Expected<ReplayOutput> loads = ReplayOutput::create_loads(options.loads);
+  if (!loads) return fail(loads.error(), kFailure);
+  return run_with(*output, &*loads, nullptr);
 }
 
 }  // namespace

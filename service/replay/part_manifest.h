@@ -27,6 +27,7 @@ using ReplayFacts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr const char* kInstructionSetFact = "instruction set";
 inline constexpr const char* kWrenchesChannelFact = "--wrenches-channel";
 inline constexpr const char* kHydrostaticsChannelFact = "--hydrostatics-channel";
+inline constexpr const char* kLoadsChannelFact = "--loads-channel";
 
 // channels: those of plan_routes(), so that a body counts as the same by its id and by its name. Errors: the
 // scene file is not readable.

@@ -91,9 +91,13 @@ Expected<void> write(const ReplayTask& task, Round& round) {
   for (std::size_t i = 0; i < round.filled; ++i) {
     ReplayBatch& batch = round.batches[i];
     if (Expected<void> written = task.output.write(batch.records()); !written) return written;
+    if (task.loads != nullptr) {
+      if (Expected<void> written = task.loads->write(batch.loads_records()); !written) return written;
+    }
     if (task.comparison != nullptr) {
       batch.each_response([&task](Bytes response) { task.comparison->add(response); });
       batch.each_hydrostatics([&task](Bytes message) { task.comparison->add_hydrostatics(message); });
+      batch.each_loads([&task](Bytes message) { task.comparison->add_loads(message); });
     }
   }
   return {};
@@ -132,6 +136,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   };
 
   task.output.give_up_after(signals.fileno());
+  if (task.loads != nullptr) task.loads->give_up_after(signals.fileno());
   ReadState state = ReadState::kReading;
   SeaTimeline seas(task.scene);
   read(task, signals, seas, rounds[0], summary, state);
@@ -158,6 +163,9 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   report_input_errors(last, callbacks);
   if (written = write(task, last); !written) return tl::unexpected(written.error());
   if (Expected<void> flushed = task.output.flush(); !flushed) return tl::unexpected(flushed.error());
+  if (task.loads != nullptr) {
+    if (Expected<void> flushed = task.loads->flush(); !flushed) return tl::unexpected(flushed.error());
+  }
   if (state == ReadState::kStopped) summary.stopped_by = signals.consume();
   if (task.comparison != nullptr) task.comparison->finish();
   const ReplaySummary sum = total();

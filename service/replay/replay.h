@@ -48,6 +48,7 @@ struct ReplayTask {
   PoseRequestAdapter& poses;
   ReplayOutput& output;
   OutputLayout layout;
+  ReplayOutput* loads = nullptr;           // with layout.loads_csv: the file of its rows
   ReplayComparison* comparison = nullptr;  // nullptr: none
   unsigned jobs = 0;                       // threads; 0: number of hardware threads
 };

@@ -5,7 +5,10 @@
 namespace buoyancy::service {
 
 ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
-    : handler_(scene, {.threads = 1}), keep_responses_(keep_responses), records_(layout) {}
+    : handler_(scene, {.threads = 1}),
+      loads_csv_(layout.loads_csv),
+      keep_responses_(keep_responses),
+      records_(layout) {}
 
 void ReplayBatch::start(SeaTimeline seas) {
   items_.clear();
@@ -13,9 +16,11 @@ void ReplayBatch::start(SeaTimeline seas) {
   seas_.push_back(std::move(seas));
   bytes_.clear();
   records_.clear();
+  loads_records_.clear();
   input_errors_.clear();
   responses_.clear();
   hydrostatics_.clear();
+  loads_.clear();
 }
 
 ReplayBatch::Item& ReplayBatch::add(Kind kind, std::int64_t timestamp, Bytes message) {
@@ -91,12 +96,13 @@ void ReplayBatch::handle_request(const Item& item) {
     report_invalid(item, "request", peek_request_id(request).error());
     return;
   }
-  records_.add_response(item.timestamp, response, handler_.last_hydrostatics(), item.force_torque_channel);
+  const ResponseBytes published{response, handler_.last_hydrostatics(), handler_.last_loads()};
+  records_.add_response(item.timestamp, published, item.force_torque_channel);
+  if (loads_csv_) loads_records_.add(published.loads);
   if (keep_responses_) {
     responses_.add(response);
-    if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {
-      hydrostatics_.add(hydrostatics);
-    }
+    if (!published.hydrostatics.empty()) hydrostatics_.add(published.hydrostatics);
+    if (!published.loads.empty()) loads_.add(published.loads);
   }
 }
 

@@ -21,7 +21,7 @@ namespace buoyancy::service {
 
 class ReplayBatch {
  public:
-  // scene must outlive the batch. keep_responses: for each_response() and each_hydrostatics().
+  // scene must outlive the batch. keep_responses: for each_response(), each_hydrostatics() and each_loads().
   ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
   // seas: those received before the batch's events.
@@ -44,6 +44,7 @@ class ReplayBatch {
 
   // The results of evaluate().
   OutputRecords& records() { return records_; }
+  LoadsRecords& loads_records() { return loads_records_; }  // empty unless the layout has loads_csv
   const std::vector<std::string>& input_errors() const { return input_errors_; }  // in the recording's order
   // Calls visit(bytes of a body_wrenches_t) for every response in order; only with keep_responses.
   template <typename Visit>
@@ -54,6 +55,11 @@ class ReplayBatch {
   template <typename Visit>
   void each_hydrostatics(Visit&& visit) const {
     hydrostatics_.each(visit);
+  }
+  // The same for the bodies_loads_t.
+  template <typename Visit>
+  void each_loads(Visit&& visit) const {
+    loads_.each(visit);
   }
   // Totals since the construction; clear() keeps them.
   const ServiceCounters& counters() const { return handler_.counters(); }
@@ -105,15 +111,18 @@ class ReplayBatch {
   void report_invalid(const Item& item, const char* expected, DecodeError cause);
 
   RequestHandler handler_;
+  bool loads_csv_;
   bool keep_responses_;
   std::int64_t copied_ = 0;
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
   std::vector<SeaTimeline> seas_;  // the first is that at the start
   OutputRecords records_;
+  LoadsRecords loads_records_;
   std::vector<std::string> input_errors_;
   Messages responses_;
   Messages hydrostatics_;
+  Messages loads_;
 };
 
 }  // namespace buoyancy::service

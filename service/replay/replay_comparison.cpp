@@ -3,34 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "service/replay/field_differences.h"
 
 namespace buoyancy::service {
 namespace {
 
 bool same_id(const RequestId& a, const RequestId& b) {
   return a.utime == b.utime && a.session_id == b.session_id && a.seq == b.seq;
-}
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// The distance to NaN or infinity is infinite.
-double distance(double a, double b) {
-  const double difference = std::abs(a - b);
-  return std::isfinite(difference) ? difference : kInfinity;
-}
-
-double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  const double length = std::hypot(distance(a[0], b[0]), distance(a[1], b[1]), distance(a[2], b[2]));
-  // libstdc++'s hypot() of three numbers is NaN where one of them is infinite.
-  return std::isnan(length) ? kInfinity : length;
-}
-
-// 0 / 0 is 0: both values are exact and equal. The ratio to a bound that is not finite is infinite.
-double in_bounds(double difference, double bounds) {
-  if (!std::isfinite(bounds)) return kInfinity;
-  if (difference == 0.0) return 0.0;
-  return bounds > 0.0 ? difference / bounds : kInfinity;
 }
 
 // [m]. The centre is M/V with |dM| <= lever dV, and no farther from the reference point than the lever, which
@@ -67,59 +47,10 @@ void compare(const BodyWrench& now, const BodyWrench& baseline, std::int64_t uti
   differences.torque_in_bounds = std::max(differences.torque_in_bounds, torque_in_bounds);
 }
 
-constexpr double kRounding = 128.0 * std::numeric_limits<double>::epsilon();  // of two results
-
-// The largest ratio of difference to tolerance over the fields of a body's hydrostatics.
-class FieldDifferences {
- public:
-  // Values are numbers or vectors.
-  template <typename Value>
-  void add(std::string_view field, const Value& now, const Value& baseline, double tolerance) {
-    update(field, distance(now, baseline), tolerance + kRounding * std::max(size(now), size(baseline)));
-  }
-  // NaN in both is no difference: the field is undefined for this pose.
-  template <typename Value>
-  void add_if_defined(std::string_view field, const Value& now, const Value& baseline, double tolerance) {
-    if (!undefined(now) || !undefined(baseline)) add(field, now, baseline, tolerance);
-  }
-  // Axes have no sign: opposite directions are equal.
-  void add_axis(std::string_view field, const std::array<double, 3>& now,
-                const std::array<double, 3>& baseline, double tolerance) {
-    if (undefined(now) && undefined(baseline)) return;
-    const std::array<double, 3> reversed{-baseline[0], -baseline[1], -baseline[2]};
-    update(field, std::min(distance(now, baseline), distance(now, reversed)), tolerance);
-  }
-
-  void add_to(BodyDifferences& differences) const {
-    ++differences.hydrostatics;
-    if (worst_ <= differences.hydrostatics_in_bounds) return;
-    differences.hydrostatics_in_bounds = worst_;
-    differences.worst_field = field_;
-  }
-
- private:
-  static double size(double value) { return std::abs(value); }
-  static double size(const std::array<double, 3>& value) { return std::hypot(value[0], value[1], value[2]); }
-  static bool undefined(double value) { return std::isnan(value); }
-  static bool undefined(const std::array<double, 3>& value) {
-    return std::ranges::all_of(value, [](double number) { return std::isnan(number); });
-  }
-
-  void update(std::string_view field, double difference, double tolerance) {
-    const double relative = in_bounds(difference, tolerance);
-    if (relative <= worst_) return;
-    worst_ = relative;
-    field_ = field;
-  }
-
-  double worst_ = 0.0;
-  std::string_view field_;
-};
-
 // Each result carries the rounding error of sums over the body's surface: proportional to the area, times one
 // length per dimension of the field beyond an area. docs/replay.md lists the tolerances.
 void compare(const BodyHydrostatics& now, const BodyHydrostatics& baseline, const Body& body,
-             const Water& water, BodyDifferences& differences) {
+             const Water& water, MessageDifferences& differences) {
   const HydrostaticMesh& mesh = body.solver.mesh();
   const double length = mesh.diagonal;
   const double area = kRounding * mesh.area;
@@ -172,22 +103,23 @@ void compare(const BodyHydrostatics& now, const BodyHydrostatics& baseline, cons
   fields.add_to(differences);
 }
 
-const Body* body_of(const Scene& scene, std::int32_t id) {
-  const auto found = std::ranges::find(scene.bodies(), id, &Body::id);
-  return found == scene.bodies().end() ? nullptr : &*found;
+bool has_loads(const Scene& scene, std::int32_t id) {
+  const Body* const body = scene.find(id);
+  return body != nullptr && body->loads;
 }
 
 }  // namespace
 
 Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& baseline,
-                                                  const std::string& wrenches_channel,
-                                                  const std::string& hydrostatics_channel,
-                                                  const Scene& scene) {
-  Expected<EventLogReader> responses = EventLogReader::open(baseline, only_channel(wrenches_channel));
+                                                  const OutputLayout& layout, const Scene& scene) {
+  Expected<EventLogReader> responses = EventLogReader::open(baseline, only_channel(layout.wrenches_channel));
   if (!responses) return tl::unexpected(responses.error());
-  Expected<EventLogReader> hydrostatics = EventLogReader::open(baseline, only_channel(hydrostatics_channel));
+  Expected<EventLogReader> hydrostatics =
+      EventLogReader::open(baseline, only_channel(layout.hydrostatics_channel));
   if (!hydrostatics) return tl::unexpected(hydrostatics.error());
-  return ReplayComparison(std::move(*responses), std::move(*hydrostatics), scene);
+  Expected<EventLogReader> loads = EventLogReader::open(baseline, only_channel(layout.loads_channel));
+  if (!loads) return tl::unexpected(loads.error());
+  return ReplayComparison(std::move(*responses), std::move(*hydrostatics), std::move(*loads), scene);
 }
 
 template <typename Message>
@@ -249,20 +181,46 @@ void ReplayComparison::add(Channel<Message>& channel, Bytes bytes, const Compare
 }
 
 void ReplayComparison::add(Bytes response) {
+  std::vector<BodyLimits> limits;
   add(responses_, response,
-      [this](const BodyWrench& now, const BodyWrench& baseline, BodyDifferences& differences) {
+      [this, &limits](const BodyWrench& now, const BodyWrench& baseline, BodyDifferences& differences) {
         compare(now, baseline, responses_.now.id.utime, differences);
+        if (has_loads(*scene_, now.body_id)) limits.push_back({now.body_id, limits_of(now, baseline)});
       });
+  const auto& bodies = responses_.now.bodies;
+  if (std::ranges::any_of(bodies, [this](const auto& body) { return has_loads(*scene_, body.body_id); })) {
+    limits_.push_back(std::move(limits));
+  }
 }
 
 void ReplayComparison::add_hydrostatics(Bytes hydrostatics) {
   add(hydrostatics_, hydrostatics,
       [this](const BodyHydrostatics& now, const BodyHydrostatics& baseline, BodyDifferences& differences) {
-        const Body* const body = body_of(*scene_, now.body_id);
+        const Body* const body = scene_->find(now.body_id);
         if (now.status != baseline.status) {
           ++differences.status_changes;
         } else if (now.status == BodyStatus::kOk && body != nullptr) {
-          compare(now, baseline, *body, scene_->water(), differences);
+          compare(now, baseline, *body, scene_->water(), differences.hydrostatics);
+        }
+      });
+}
+
+void ReplayComparison::add_loads(Bytes loads) {
+  assert(!limits_.empty());  // of the message's response
+  const std::vector<BodyLimits> limits = std::move(limits_.front());
+  limits_.pop_front();
+  auto next = limits.begin();
+  add(loads_, loads,
+      [this, &limits, &next](const BodyLoads& now, const BodyLoads& baseline, BodyDifferences& differences) {
+        const Body* const body = scene_->find(now.body_id);
+        next = std::find_if(next, limits.end(),
+                            [&now](const BodyLimits& one) { return one.body_id == now.body_id; });
+        if (next == limits.end()) return;  // the response has no counterpart, which counts already
+        const WrenchLimits of_both = (next++)->limits;
+        if (now.status != baseline.status) {
+          ++differences.status_changes;
+        } else if (now.status == BodyStatus::kOk && body != nullptr) {
+          compare_loads(now, baseline, of_both, *body, *scene_, differences.loads);
         }
       });
 }
@@ -270,6 +228,7 @@ void ReplayComparison::add_hydrostatics(Bytes hydrostatics) {
 void ReplayComparison::finish() {
   responses_.finish();
   hydrostatics_.finish();
+  loads_.finish();
 }
 
 bool ReplayComparison::agrees() const {

@@ -2,8 +2,8 @@
 //
 // Every response carries an error bound. Two correct results differ by at most the sum of both bounds, so
 // this sum is the limit of a difference and no tolerance has to be chosen. Hydrostatics carry no bounds: they
-// are exact to rounding, and their tolerances are the rounding errors for a body of that size
-// (docs/replay.md).
+// are exact to rounding, and their tolerances are the rounding errors for a body of that size. Loads are the
+// parts of a wrench, within its bounds (docs/replay.md).
 #pragma once
 
 #include <cmath>
@@ -12,14 +12,16 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <string>
-#include <string_view>
+#include <vector>
 
 #include "base/error.h"
 #include "messages/request.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "scene/scene.h"
+#include "service/replay/field_differences.h"
+#include "service/replay/loads_comparison.h"
+#include "service/replay/replay_output.h"
 
 namespace buoyancy::service {
 
@@ -35,43 +37,45 @@ struct BodyDifferences {
   double torque_in_bounds = 0.0;    // the same for the torque
   // The same for the centre, the volume's first moment over the volume. Its bound: 2 torque bound / force.
   double center_in_bounds = 0.0;
-  std::int64_t worst_utime = 0;         // [us], of the response with the largest of these three ratios
-  std::int64_t hydrostatics = 0;        // bodies compared
-  double hydrostatics_in_bounds = 0.0;  // largest difference / tolerance of any field
-  std::string_view worst_field;         // of the hydrostatics; empty: no difference
+  std::int64_t worst_utime = 0;  // [us], of the response with the largest of these three ratios
+  MessageDifferences hydrostatics, loads;
 
   bool within_bounds() const {
     return status_changes == 0 && std::isfinite(volume) && force_in_bounds <= 1.0 &&
-           torque_in_bounds <= 1.0 && center_in_bounds <= 1.0 && hydrostatics_in_bounds <= 1.0;
+           torque_in_bounds <= 1.0 && center_in_bounds <= 1.0 && hydrostatics.in_bounds <= 1.0 &&
+           loads.in_bounds <= 1.0;
   }
 };
 
 class ReplayComparison {
  public:
-  // baseline: an LCM log with body_wrenches_t on wrenches_channel and bodies_hydrostatics_t on
-  // hydrostatics_channel. scene: the scene of the replay; it must outlive the comparison. Errors: not
-  // readable.
-  static Expected<ReplayComparison> open(const std::filesystem::path& baseline,
-                                         const std::string& wrenches_channel,
-                                         const std::string& hydrostatics_channel, const Scene& scene);
+  // baseline: an LCM log with the messages on the channels of layout. scene: the scene of the replay; it must
+  // outlive the comparison. Errors: not readable.
+  static Expected<ReplayComparison> open(const std::filesystem::path& baseline, const OutputLayout& layout,
+                                         const Scene& scene);
 
   // Compares the replay's next response, the bytes of a body_wrenches_t, with its counterpart: the one with
   // the same utime, session_id and seq among the next kMatchWindow responses of the baseline.
   void add(Bytes response);
   // The same for a bodies_hydrostatics_t.
   void add_hydrostatics(Bytes hydrostatics);
+  // The same for a bodies_loads_t, whose response add() has had. Loads come in the order of the responses.
+  void add_loads(Bytes loads);
   // Call this after the last response: counts the rest of the baseline as unmatched.
   void finish();
 
   const std::map<std::int32_t, BodyDifferences>& bodies() const { return bodies_; }  // by id
-  // Responses and hydrostatics without a counterpart.
-  std::int64_t unmatched_new() const { return responses_.unmatched_new + hydrostatics_.unmatched_new; }
+  // Responses, hydrostatics and loads without a counterpart.
+  std::int64_t unmatched_new() const {
+    return responses_.unmatched_new + hydrostatics_.unmatched_new + loads_.unmatched_new;
+  }
   std::int64_t unmatched_baseline() const {
-    return responses_.unmatched_baseline + hydrostatics_.unmatched_baseline;
+    return responses_.unmatched_baseline + hydrostatics_.unmatched_baseline + loads_.unmatched_baseline;
   }
   // Corrupt sections and invalid messages of the baseline.
   std::int64_t decode_errors() const {
-    return responses_.corrupt_sections + responses_.invalid_messages + hydrostatics_.invalid_messages;
+    return responses_.corrupt_sections + responses_.invalid_messages + hydrostatics_.invalid_messages +
+           loads_.invalid_messages;
   }
   // Is every message matched and decoded, and every body within its bounds?
   bool agrees() const;
@@ -97,14 +101,26 @@ class ReplayComparison {
     void finish();
   };
 
-  ReplayComparison(EventLogReader responses, EventLogReader hydrostatics, const Scene& scene)
-      : scene_(&scene), responses_{std::move(responses)}, hydrostatics_{std::move(hydrostatics)} {}
+  struct BodyLimits {
+    std::int32_t body_id = 0;
+    WrenchLimits limits;
+  };
+
+  ReplayComparison(EventLogReader responses, EventLogReader hydrostatics, EventLogReader loads,
+                   const Scene& scene)
+      : scene_(&scene),
+        responses_{std::move(responses)},
+        hydrostatics_{std::move(hydrostatics)},
+        loads_{std::move(loads)} {}
   template <typename Message, typename CompareBody>
   void add(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body);
 
   const Scene* scene_;
   Channel<WrenchResponse> responses_;
   Channel<BodiesHydrostatics> hydrostatics_;
+  Channel<BodiesLoads> loads_;
+  // Of each response whose loads are still to come: its bodies with this output, in their order.
+  std::deque<std::vector<BodyLimits>> limits_;
   std::map<std::int32_t, BodyDifferences> bodies_;
 };
 

@@ -42,6 +42,11 @@ class ReplayInput {
   FileFormat format() const {
     return std::holds_alternative<StateCsvReader>(reader_) ? FileFormat::kCsv : FileFormat::kLcmLog;
   }
+  // Can its requests have velocities? False only for a CSV file without their columns.
+  bool states_velocities() const {
+    const auto* csv = std::get_if<StateCsvReader>(&reader_);
+    return csv == nullptr || csv->states_velocities();
+  }
   // The range of bytes that was read [bytes], from begin() to before position(). The first part begins at 0.
   std::int64_t begin() const { return begin_; }
   std::int64_t position() const {

@@ -82,6 +82,7 @@ class Join {
   std::vector<PartManifest> manifests_;  // of part 1, 2, ...
   std::string wrenches_channel_;
   std::string hydrostatics_channel_;
+  std::string loads_channel_;
   // Totals of the parts before the one that is copied.
   std::int64_t events_ = 0;
   std::map<std::int64_t, std::int64_t> numbered_requests_;  // by session
@@ -229,7 +230,7 @@ void Join::place_event(const EventLayout& layout, std::int64_t number) {
   if (numbered_requests_.empty() || data.size() < kResponseHeaderSize) return;
   const std::string_view channel(reinterpret_cast<const char*>(event_.data() + layout.channel),
                                  layout.data - layout.channel);
-  if (channel != wrenches_channel_ && channel != hydrostatics_channel_) return;
+  if (channel != wrenches_channel_ && channel != hydrostatics_channel_ && channel != loads_channel_) return;
   const RequestId id = response_id(data);
   if (const auto before = numbered_requests_.find(id.session_id); before != numbered_requests_.end()) {
     set_response_seq(before->second + id.seq, data);
@@ -294,6 +295,7 @@ Expected<JoinResult> Join::run() {
   if (const Expected<void> checked = check_ranges(); !checked) return tl::unexpected(checked.error());
   wrenches_channel_ = value_of(manifests_.front().facts, kWrenchesChannelFact);
   hydrostatics_channel_ = value_of(manifests_.front().facts, kHydrostaticsChannelFact);
+  loads_channel_ = value_of(manifests_.front().facts, kLoadsChannelFact);
   total_ = input_.size();
   for (const PartManifest& manifest : manifests_) total_ += manifest.output_bytes;
   if (const Expected<void> checked = check_input(); !checked) return tl::unexpected(checked.error());

@@ -63,6 +63,29 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
   return {};
 }
 
+// The file of the loads must be a file of its own.
+Expected<void> check_loads_file(const ReplayOptions& options) {
+  if (options.loads.empty()) return {};
+  const Expected<FileFormat> format = output_format(options.loads, FileFormat::kCsv);
+  if (!format || *format != FileFormat::kCsv) {
+    return make_error({"--loads", options.loads.string(), "a .csv file",
+                       "an .lcmlog as OUTPUT holds the loads without this option", ""});
+  }
+  if (!options.part.empty()) {
+    return make_error({"--loads", "together with --part", "a replay of the whole log",
+                       "a part has one file, which the join checks and copies",
+                       "Name an .lcmlog as OUTPUT: the parts and the join then hold all loads, as messages"});
+  }
+  std::error_code not_resolved;
+  if (std::filesystem::weakly_canonical(options.loads, not_resolved) ==
+      std::filesystem::weakly_canonical(options.output, not_resolved)) {
+    return make_error({"--loads " + options.loads.string(), "the same file as OUTPUT", "a file of its own",
+                       "each would overwrite the other", ""});
+  }
+  return check_output_not_input(options.loads,
+                                {options.input, options.scene, options.mesh, options.baseline});
+}
+
 // A part must be able to begin anywhere in INPUT, and be renamed when it is complete.
 Expected<void> check_regular_files(const std::string& option, const std::filesystem::path& input,
                                    const std::filesystem::path& output) {
@@ -135,6 +158,7 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_states_channel_option(app, options.states_channel);
   add_wrenches_channel_option(app, options.wrenches_channel);
   add_hydrostatics_channel_option(app, options.hydrostatics_channel);
+  add_loads_channel_option(app, options.loads_channel);
   add_sea_channel_option(app, options.sea_channel);
   add_options(app, options.poses);
   app.add_option(
@@ -144,9 +168,14 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       ->allow_extra_args(false)
       ->option_text("REGEX");
   app.add_option(
+         "--loads", options.loads,
+         "Also write the loads of all bodies whose outputs in the scene include them, as CSV: one row "
+         "per body and request, with buoyancy, drag, added mass and their matrices")
+      ->option_text("CSV");
+  app.add_option(
          "--compare", options.baseline,
          "Compare with an earlier OUTPUT, an LCM log: print the largest differences per body, hydrostatics "
-         "included, and fail if one exceeds the sum of both error bounds")
+         "and loads included, and fail if one exceeds the sum of both error bounds")
       ->option_text("LCMLOG");
   app.add_option("--jobs", options.jobs,
                  "Worker threads (0 = number of hardware threads). OUTPUT does not depend on this setting")
@@ -191,9 +220,12 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
       !checked) {
     return tl::unexpected(checked.error());
   }
+  if (const Expected<void> checked = check_loads_file(options); !checked) {
+    return tl::unexpected(checked.error());
+  }
   if (const Expected<void> checked =
           check_channels_distinct({options.states_channel, options.wrenches_channel,
-                                   options.hydrostatics_channel, options.sea_channel});
+                                   options.hydrostatics_channel, options.loads_channel, options.sea_channel});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -250,17 +282,33 @@ Expected<void> check_sea_input(const ReplayOptions& options, const Scene& scene)
   return {};
 }
 
+Expected<void> check_loads_requested(const ReplayOptions& options, const Scene& scene) {
+  if (options.loads.empty() || scene.bodies_with_loads() > 0) return {};
+  return make_error({"--loads " + options.loads.string(), "no body of " + scene.name() + " has loads",
+                     "a body with outputs = [\"wrench\", \"loads\"]",
+                     options.mesh.empty() ? "" : "--mesh describes a body without drag and added mass",
+                     options.mesh.empty() ? "Add this line to the body in the scene file"
+                                          : "Describe the body in a scene file (--scene)"});
+}
+
 }  // namespace
 
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene) {
   if (const Expected<void> checked = check_sea_input(options, scene); !checked) {
     return tl::unexpected(checked.error());
   }
-  std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel};
-  Expected<PoseChannels> poses = resolve_pose_channels(
-      options.poses, scene,
-      {options.states_channel, options.wrenches_channel, options.hydrostatics_channel, options.sea_channel});
+  if (const Expected<void> checked = check_loads_requested(options, scene); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel,
+                                     options.loads_channel};
+  std::vector<std::string> reserved = responses;
+  reserved.insert(reserved.end(), {options.states_channel, options.sea_channel});
+  Expected<PoseChannels> poses = resolve_pose_channels(options.poses, scene, reserved);
   if (!poses) return tl::unexpected(poses.error());
+  if (const Expected<void> checked = check_velocities_usable(*poses, scene); !checked) {
+    return tl::unexpected(checked.error());
+  }
   // Session ids follow the order of the channels: sorting makes them independent of the order of the options.
   std::ranges::sort(poses->channels, {}, &PoseChannel::channel);
   for (const PoseChannel& pose : poses->channels) {
@@ -271,6 +319,20 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
                            poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
+}
+
+Expected<void> check_velocity_columns(const ReplayInput& input, const ReplayOptions& options,
+                                      const Scene& scene) {
+  if (input.states_velocities()) return {};
+  const auto needs =
+      std::ranges::find_if(scene.bodies(), [](const Body& body) { return body.hydrodynamics != nullptr; });
+  if (needs == scene.bodies().end()) return {};
+  return make_error({options.input.string() + ":1", "a header without velocities",
+                     "the columns vx,vy,vz,wx,wy,wz after the pose, since body '" + needs->name + "' of " +
+                         scene.name() + " has drag or added mass, which depend on its velocities",
+                     "",
+                     "Record the velocities too, or remove [body.drag] and [body.added_mass] to get buoyancy "
+                     "alone"});
 }
 
 }  // namespace buoyancy::service

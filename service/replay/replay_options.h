@@ -30,9 +30,11 @@ struct ReplayOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string hydrostatics_channel{kHydrostaticsChannel};
+  std::string loads_channel{kLoadsChannel};
   std::string sea_channel{kSeaChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions
+  std::filesystem::path loads;      // CSV file for the loads; empty: none
   std::filesystem::path baseline;   // an earlier OUTPUT to compare with; empty: none
   unsigned jobs = 0;                // 0: number of hardware threads
   std::string part;                 // "I/N"; empty: the whole
@@ -52,8 +54,8 @@ struct ReplayPlan {
 };
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
-// carry, one channel for wrenches and hydrostatics, an unknown method, options for logs with a CSV file, a
-// part of what is no regular file.
+// carry, one channel for two types, an unknown method, options for logs with a CSV file, a part of what is no
+// regular file, a file of loads that is another file of the replay or beside a part.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
 
 // Checks the options of --join, which app has parsed. Errors: an option that belongs to a replay, an
@@ -66,8 +68,13 @@ struct ReplayRoutes {
   ReplayChannels channels;
 };
 
-// Errors: see resolve_pose_channels() and ReplayChannels::make(); for a scene that receives its sea: a CSV
-// file as input, and a part, whose sea another part may have received.
+// Errors: see resolve_pose_channels(), check_velocities_usable() and ReplayChannels::make(); for a scene that
+// receives its sea: a CSV file as input, and a part, whose sea another part may have received; a file of
+// loads for a scene in which no body has this output.
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
+
+// Errors: a CSV file without velocities for a scene in which a body has drag or added mass.
+Expected<void> check_velocity_columns(const ReplayInput& input, const ReplayOptions& options,
+                                      const Scene& scene);
 
 }  // namespace buoyancy::service

@@ -5,6 +5,7 @@
 
 #include "engine/pose_request_adapter.h"
 #include "recording/event_log.h"
+#include "service/replay/loads_csv.h"
 #include "service/replay/wrench_csv.h"
 
 namespace buoyancy::service {
@@ -16,14 +17,18 @@ Bytes bytes_of(std::string_view text) {
 
 }  // namespace
 
-void OutputRecords::clear() {
+void Records::clear() {
   bytes_.clear();
   ends_.clear();
 }
 
-void OutputRecords::append(Bytes record) {
+void Records::append(Bytes record) {
   bytes_.insert(bytes_.end(), record.begin(), record.end());
   ends_.push_back(bytes_.size());
+}
+
+void Records::append(std::string_view row) {
+  append(bytes_of(row));
 }
 
 void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
@@ -31,8 +36,9 @@ void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, 
   append(event_);
 }
 
-void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes hydrostatics,
+void OutputRecords::add_response(std::int64_t timestamp, const ResponseBytes& published,
                                  std::string_view force_torque_channel) {
+  const auto& [response, hydrostatics, loads] = published;
   if (layout_.format == FileFormat::kLcmLog) {
     if (force_torque_channel.empty()) {
       add_event(timestamp, layout_.wrenches_channel, response);
@@ -41,13 +47,24 @@ void OutputRecords::add_response(std::int64_t timestamp, Bytes response, Bytes h
       add_event(timestamp, force_torque_channel, message_);
     }
     if (!hydrostatics.empty()) add_event(timestamp, layout_.hydrostatics_channel, hydrostatics);
+    if (!loads.empty()) add_event(timestamp, layout_.loads_channel, loads);
     return;
   }
   [[maybe_unused]] const auto rejected = decode(response, response_);
   assert(!rejected);  // the handler encoded it
   for (const BodyWrench& wrench : response_.bodies) {
     format_wrench_row(response_.id.utime, wrench, row_);
-    append(bytes_of(row_));
+    append(row_);
+  }
+}
+
+void LoadsRecords::add(Bytes loads) {
+  if (loads.empty()) return;
+  [[maybe_unused]] const auto rejected = decode(loads, loads_);
+  assert(!rejected);  // the handler encoded it
+  for (const BodyLoads& body : loads_.bodies) {
+    format_loads_row(loads_.id.utime, body, row_);
+    append(row_);
   }
 }
 
@@ -55,7 +72,7 @@ Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, F
   Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), format, false);
-  if (const Expected<void> written = output.write_csv_header(); !written) {
+  if (const Expected<void> written = output.write_csv_header(kWrenchCsvHeader); !written) {
     return tl::unexpected(written.error());
   }
   return output;
@@ -67,19 +84,29 @@ Expected<ReplayOutput> ReplayOutput::create_part(const std::filesystem::path& pa
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), format, true);
   if (part.number > 1) return output;
-  if (const Expected<void> written = output.write_csv_header(); !written) {
+  if (const Expected<void> written = output.write_csv_header(kWrenchCsvHeader); !written) {
     return tl::unexpected(written.error());
   }
   return output;
 }
 
-Expected<void> ReplayOutput::write_csv_header() {
-  if (format_ != FileFormat::kCsv) return {};
-  if (is_part_) count(bytes_of(kWrenchCsvHeader));
-  return file_.append(bytes_of(kWrenchCsvHeader));
+Expected<ReplayOutput> ReplayOutput::create_loads(const std::filesystem::path& path) {
+  Expected<RecordWriter> file = RecordWriter::create(path);
+  if (!file) return tl::unexpected(file.error());
+  ReplayOutput output(std::move(*file), FileFormat::kCsv, false);
+  if (const Expected<void> written = output.write_csv_header(loads_csv_header()); !written) {
+    return tl::unexpected(written.error());
+  }
+  return output;
 }
 
-Expected<void> ReplayOutput::write(OutputRecords& records) {
+Expected<void> ReplayOutput::write_csv_header(std::string_view header) {
+  if (format_ != FileFormat::kCsv) return {};
+  if (is_part_) count(bytes_of(header));
+  return file_.append(bytes_of(header));
+}
+
+Expected<void> ReplayOutput::write(Records& records) {
   const std::span<std::uint8_t> bytes(records.bytes_);
   std::size_t start = 0;
   for (const std::size_t end : records.ends_) {

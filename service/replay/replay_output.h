@@ -1,6 +1,6 @@
 // The output of a replay: responses, to an LCM log or as CSV. Records are encoded on any thread and written
-// in order. Hydrostatics of the bodies that request them are written to a log only: a row of the CSV is a
-// wrench.
+// in order. Hydrostatics and loads of the bodies that request them are written to a log only: a row of the
+// CSV is a wrench. Loads can be written to a CSV file of their own besides.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/wire.h"
 #include "recording/record_writer.h"
@@ -21,36 +22,59 @@ namespace buoyancy::service {
 
 struct OutputLayout {
   FileFormat format = FileFormat::kCsv;
-  std::string wrenches_channel;  // both channels: logs only
+  std::string wrenches_channel;  // the channels: logs only
   std::string hydrostatics_channel;
+  std::string loads_channel;
+  bool loads_csv = false;  // also write the loads as rows of a CSV file of their own
+};
+
+// What the service would publish for a request. hydrostatics and loads: empty if no body has that output.
+struct ResponseBytes {
+  Bytes response, hydrostatics, loads;
 };
 
 // Encoded events or CSV rows, in order.
-class OutputRecords {
+class Records {
+ public:
+  void clear();
+  void append(Bytes record);
+  void append(std::string_view row);
+
+ private:
+  friend class ReplayOutput;
+
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::size_t> ends_;  // end of each record in bytes_
+};
+
+// The records of OUTPUT.
+class OutputRecords : public Records {
  public:
   explicit OutputRecords(OutputLayout layout) : layout_(std::move(layout)) {}
 
-  void clear();
-  // timestamp: of the log's events [us]. response and hydrostatics: the bytes that the service would publish;
-  // empty hydrostatics are not written. force_torque_channel: the channel of a log to which the response is
+  // timestamp: of the log's events [us]. force_torque_channel: the channel of a log to which the response is
   // written as a six_axis_force_torque_t; empty: it is written as a body_wrenches_t.
-  void add_response(std::int64_t timestamp, Bytes response, Bytes hydrostatics,
+  void add_response(std::int64_t timestamp, const ResponseBytes& published,
                     std::string_view force_torque_channel);
   // Copies an event unchanged; to a log only.
   void add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes);
 
  private:
-  friend class ReplayOutput;
-
-  void append(Bytes record);
-
   OutputLayout layout_;
-  std::vector<std::uint8_t> bytes_;
-  std::vector<std::size_t> ends_;      // end of each record in bytes_
   std::vector<std::uint8_t> event_;    // reused
   std::vector<std::uint8_t> message_;  // reused
   WrenchResponse response_;            // reused
   std::string row_;                    // reused
+};
+
+// The rows of a CSV file of loads.
+class LoadsRecords : public Records {
+ public:
+  void add(Bytes loads);  // a row for each body; none if there are no bytes
+
+ private:
+  BodiesLoads loads_;  // reused
+  std::string row_;    // reused
 };
 
 class ReplayOutput {
@@ -67,12 +91,14 @@ class ReplayOutput {
   // Creates the output of a part (replay_part.h), which keeps account of its contents.
   static Expected<ReplayOutput> create_part(const std::filesystem::path& path, FileFormat format,
                                             const Part& part);
+  // Creates or truncates the CSV file of loads.
+  static Expected<ReplayOutput> create_loads(const std::filesystem::path& path);
 
   // See RecordWriter.
   void give_up_after(int signal) { file_.give_up_after(signal); }
 
   // Sets the event numbers of a log. Errors: disk full, given up.
-  Expected<void> write(OutputRecords& records);
+  Expected<void> write(Records& records);
   Expected<void> flush() { return file_.flush(); }
 
   const Contents& contents() const { return contents_; }  // of a part
@@ -80,7 +106,7 @@ class ReplayOutput {
  private:
   ReplayOutput(RecordWriter file, FileFormat format, bool is_part)
       : file_(std::move(file)), format_(format), is_part_(is_part) {}
-  Expected<void> write_csv_header();
+  Expected<void> write_csv_header(std::string_view header);
   void count(Bytes bytes);
 
   RecordWriter file_;

@@ -8,13 +8,15 @@
 // what came before a batch:
 // - The header line of a CSV file. Only the first part writes it.
 // - The numbers of a log's events. A part counts them from 0.
-// - The seq of requests that the replay itself makes, from poses and from CSV rows; the response and the
-//   hydrostatics carry it. A part counts these from 0 too, per session. No recorded request may use such a
+// - The seq of requests that the replay itself makes, from poses and from CSV rows; the response,
+// hydrostatics
+//   and loads carry it. A part counts these from 0 too, per session. No recorded request may use such a
 //   session: a part that finds one fails, so that the session tells which messages count.
 // - Warnings about channels without events, and which input errors are shown. A part puts both into its
 //   manifest instead.
 // The join adds what the parts before have counted (replay_join.h). Parts as CSV files, whose rows hold no
-// such count, are pieces of the whole as they are.
+// such count, are pieces of the whole as they are. A part has one output: the CSV file of loads is for a
+// replay of the whole.
 #pragma once
 
 #include <cstdint>

@@ -27,11 +27,15 @@ std::string comparison_text(const ReplayComparison& comparison) {
         body.responses, body.force, body.torque, body.volume, body.center, body.force_in_bounds,
         body.torque_in_bounds, body.center_in_bounds, body.status_changes, body.worst_utime);
   }
+  const auto messages = [&text](std::int32_t id, const char* name, const MessageDifferences& differences) {
+    if (differences.compared == 0) return;
+    text += fmt::format("{:>8} {}: {} compared, largest difference over tolerance {:.3g}{}{}\n", id, name,
+                        differences.compared, differences.in_bounds,
+                        differences.worst_field.empty() ? "" : ", ", differences.worst_field);
+  };
   for (const auto& [id, body] : comparison.bodies()) {
-    if (body.hydrostatics == 0) continue;
-    text += fmt::format("{:>8} hydrostatics: {} compared, largest difference over tolerance {:.3g}{}{}\n", id,
-                        body.hydrostatics, body.hydrostatics_in_bounds, body.worst_field.empty() ? "" : ", ",
-                        body.worst_field);
+    messages(id, "hydrostatics", body.hydrostatics);
+    messages(id, "loads", body.loads);
   }
   const auto line = [&text](const char* what, std::int64_t count) {
     if (count > 0) text += fmt::format("{:>12} {}\n", count, what);
@@ -60,9 +64,12 @@ nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
                       {"torque_in_bounds", body.torque_in_bounds},
                       {"center_in_bounds", body.center_in_bounds},
                       {"worst_utime", body.worst_utime},
-                      {"hydrostatics", body.hydrostatics},
-                      {"hydrostatics_in_bounds", body.hydrostatics_in_bounds},
-                      {"hydrostatics_worst_field", body.worst_field}});
+                      {"hydrostatics", body.hydrostatics.compared},
+                      {"hydrostatics_in_bounds", body.hydrostatics.in_bounds},
+                      {"hydrostatics_worst_field", body.hydrostatics.worst_field},
+                      {"loads", body.loads.compared},
+                      {"loads_in_bounds", body.loads.in_bounds},
+                      {"loads_worst_field", body.loads.worst_field}});
   }
   return {{"agrees", comparison.agrees()},
           {"unmatched_new", comparison.unmatched_new()},

@@ -42,6 +42,10 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
                      "the file has no header, or its columns are in another order", ""});
 }
 
+bool StateCsvReader::states_velocities() const {
+  return columns_ != kPoseColumns;
+}
+
 bool StateCsvReader::reached(std::int64_t limit) const {
   if (corrupt_line_) return corrupt_line_->start >= limit;
   return pending_ && last_row_start_ >= limit;

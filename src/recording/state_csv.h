@@ -35,6 +35,9 @@ class StateCsvReader {
   // Errors: not readable, an invalid header. An empty file has no rows and is valid.
   static Expected<StateCsvReader> open(const std::filesystem::path& path);
 
+  // Does the header name velocities? Also true for an empty file, which has no rows without them.
+  bool states_velocities() const;
+
   LogItem next(std::int64_t limit = kNoLimit);
   bool reached(std::int64_t limit) const;
   std::int64_t position() const;
