@@ -8,6 +8,7 @@
 #include <rapidcheck.h>
 
 #include "messages/hydrostatics.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/status.h"
 
@@ -82,6 +83,23 @@ inline BodiesHydrostatics random_hydrostatics() {
     for (auto& row : body.stiffness) randomise(row);
   }
   return hydrostatics;
+}
+
+inline BodiesLoads random_loads() {
+  BodiesLoads loads{.id = random_request_id(), .bodies = {}};
+  loads.bodies.resize(*rc::gen::inRange<std::size_t>(0, 6));
+  for (BodyLoads& body : loads.bodies) {
+    body.body_id = random_integer<std::int32_t>();
+    body.status = static_cast<BodyStatus>(random_integer<std::int32_t>());
+    body.immersion = random_double();
+    for (auto* vector : {&body.buoyancy_force, &body.buoyancy_torque, &body.drag_force, &body.drag_torque,
+                         &body.added_mass_force, &body.added_mass_torque, &body.water_velocity}) {
+      randomise(*vector);
+    }
+    for (auto& row : body.added_mass) randomise(row);
+    for (auto& row : body.damping) randomise(row);
+  }
+  return loads;
 }
 
 }  // namespace buoyancy

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <buoyancy/bodies_hydrostatics_t.hpp>
+#include <buoyancy/bodies_loads_t.hpp>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
 #include <gtest/gtest.h>
@@ -24,6 +25,7 @@ constexpr std::size_t kBodyState = 108;
 constexpr std::size_t kResponseFixed = 36;
 constexpr std::size_t kBodyWrench = 104;
 constexpr std::size_t kBodyHydrostatics = 512;  // after a header like a response's
+constexpr std::size_t kBodyLoads = 760;         // likewise
 
 template <typename Message>
 ByteVector encoded(const Message& message) {
@@ -105,6 +107,30 @@ bodies_hydrostatics_t to_generated(const BodiesHydrostatics& hydrostatics) {
   return message;
 }
 
+bodies_loads_t to_generated(const BodiesLoads& loads) {
+  bodies_loads_t message{};
+  message.utime = loads.id.utime;
+  message.session_id = loads.id.session_id;
+  message.seq = loads.id.seq;
+  message.num_bodies = static_cast<std::int32_t>(loads.bodies.size());
+  for (const BodyLoads& body : loads.bodies) {
+    body_loads_t& to = message.bodies.emplace_back();
+    to.body_id = body.body_id;
+    to.status = static_cast<std::int32_t>(body.status);
+    to.immersion = body.immersion;
+    copy(body.buoyancy_force, to.buoyancy_force);
+    copy(body.buoyancy_torque, to.buoyancy_torque);
+    copy(body.drag_force, to.drag_force);
+    copy(body.drag_torque, to.drag_torque);
+    copy(body.added_mass_force, to.added_mass_force);
+    copy(body.added_mass_torque, to.added_mass_torque);
+    copy(body.added_mass, to.added_mass);
+    copy(body.damping, to.damping);
+    copy(body.water_velocity, to.water_velocity);
+  }
+  return message;
+}
+
 ByteVector request_of(std::size_t bodies) {
   WrenchRequest request{.id = {.utime = 1, .session_id = 2, .seq = 3}, .lead_time = 0.25, .bodies = {}};
   request.bodies.resize(bodies);
@@ -157,6 +183,33 @@ RC_GTEST_PROP(Wire, DecodesHydrostaticsOfGeneratedCode, ()) {
   BodiesHydrostatics hydrostatics = random_hydrostatics();
   RC_ASSERT(!decode(bytes, hydrostatics).has_value());
   RC_ASSERT(encoded_by_lcm(to_generated(hydrostatics)) == bytes);
+}
+
+RC_GTEST_PROP(Wire, EncodesLoadsLikeGeneratedCode, ()) {
+  const BodiesLoads loads = random_loads();
+  RC_ASSERT(encoded(loads) == encoded_by_lcm(to_generated(loads)));
+}
+
+RC_GTEST_PROP(Wire, DecodesLoadsOfGeneratedCode, ()) {
+  const ByteVector bytes = encoded_by_lcm(to_generated(random_loads()));
+  BodiesLoads loads = random_loads();
+  RC_ASSERT(!decode(bytes, loads).has_value());
+  RC_ASSERT(encoded_by_lcm(to_generated(loads)) == bytes);
+}
+
+RC_GTEST_PROP(Wire, DecodesOrRejectsRandomBytesOfLoads, ()) {
+  ByteVector bytes = encoded(random_loads());
+  bytes.resize(*rc::gen::inRange<std::size_t>(0, bytes.size() + 2));
+  for (int flips = *rc::gen::inRange(0, 3); flips > 0 && !bytes.empty(); --flips) {
+    bytes[*rc::gen::inRange<std::size_t>(0, bytes.size())] ^= 1U;
+  }
+  BodiesLoads loads;
+  loads.bodies.resize(2);
+  if (decode(bytes, loads)) {
+    RC_ASSERT(loads.bodies.size() == 2U);  // unchanged
+  } else {
+    RC_ASSERT(encoded(loads) == bytes);
+  }
 }
 
 RC_GTEST_PROP(Wire, PeeksSameRequestIdAsDecode, ()) {
@@ -223,6 +276,9 @@ TEST(Wire, EncodesToSizesOfMessageDefinitions) {
   EXPECT_EQ(encoded(BodiesHydrostatics{}).size(), kResponseFixed);
   EXPECT_EQ(encoded(BodiesHydrostatics{.id = {}, .bodies = {{}, {}}}).size(),
             kResponseFixed + 2 * kBodyHydrostatics);
+  EXPECT_EQ(encoded(BodiesLoads{}).size(), kResponseFixed);
+  EXPECT_EQ(encoded(BodiesLoads{.id = {}, .bodies = {{}, {}}}).size(), kResponseFixed + 2 * kBodyLoads);
+  EXPECT_EQ(loads_size(2), kResponseFixed + 2 * kBodyLoads);
 }
 
 TEST(Wire, RejectsEveryTruncationOfRequest) {
@@ -257,6 +313,16 @@ TEST(Wire, RejectsEveryTruncationOfHydrostatics) {
   }
 }
 
+TEST(Wire, RejectsEveryTruncationOfLoads) {
+  const ByteVector whole = encoded(BodiesLoads{.id = {}, .bodies = {{}, {}}});
+  BodiesLoads loads;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(decode(Bytes(whole).first(size), loads),
+              size < kResponseFixed ? DecodeError::kTruncated : DecodeError::kLength)
+        << size << " bytes";
+  }
+}
+
 TEST(Wire, RejectsEveryFlippedFingerprintBit) {
   const ByteVector whole = request_of(1);
   WrenchRequest request;
@@ -274,6 +340,9 @@ TEST(Wire, RejectsOtherBuoyancyTypes) {
             DecodeError::kFingerprint);
   EXPECT_EQ(decode(request_of(2), response), DecodeError::kFingerprint);
   EXPECT_EQ(decode(encoded(BodiesHydrostatics{}), response), DecodeError::kFingerprint);
+  BodiesLoads loads;
+  EXPECT_EQ(decode(encoded(WrenchResponse{}), loads), DecodeError::kFingerprint);
+  EXPECT_EQ(decode(encoded(BodiesLoads{}), response), DecodeError::kFingerprint);
 }
 
 TEST(Wire, RejectsCountsThatDoNotMatchLength) {
@@ -293,6 +362,12 @@ TEST(Wire, RejectsCountsThatDoNotMatchLength) {
     set_count(response_bytes, kResponseFixed, c.count);
     WrenchResponse response;
     EXPECT_EQ(decode(response_bytes, response), c.expected) << c.count;
+    ByteVector loads_bytes = encoded(BodiesLoads{.id = {}, .bodies = {{}, {}}});
+    set_count(loads_bytes, kResponseFixed, c.count);
+    BodiesLoads loads;
+    const AllocationCount allocations;
+    EXPECT_EQ(decode(loads_bytes, loads), c.expected) << c.count;
+    EXPECT_EQ(allocations.count(), 0) << c.count;
   }
 }
 
@@ -334,8 +409,12 @@ TEST(Wire, ChangesOnlySeqOfEncodedResponses) {
     encode(message, expected);
     EXPECT_EQ(bytes, expected);
   };
+  BodiesLoads loads;
+  loads.id = response.id;
+  loads.bodies.resize(1);
   check(response);
   check(hydrostatics);
+  check(loads);
 }
 
 TEST(Wire, DoesNotAllocateForHugeCount) {
