@@ -3,10 +3,10 @@
 // must encode to the same bytes; the response to a request must have the request's form, be repeated bit for
 // bit for a retry, and be the same as that of a fresh handler.
 //
-//   each packet   1 byte: bits 0-2 a kind of message (0 request, 1 response, 2 hydrostatics, 3 status, else
-//                 none), bit 3 its fingerprint overwrites the packet's first bytes, bit 4 the number of
-//                 bodies that matches the length is written to the packet 2 bytes: the packet's length,
-//                 little-endian; then that many bytes, or all that remain
+//   each packet   1 byte: bits 0-2 a kind of message (0 request, 1 response, 2 hydrostatics, 3 status, 4
+//                 loads, else none), bit 3 its fingerprint overwrites the packet's first bytes, bit 4 the
+//                 number of bodies that matches the length is written to the packet 2 bytes: the packet's
+//                 length, little-endian; then that many bytes, or all that remain
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,6 +51,20 @@ id = 5
 shape = { type = "box" }
 method = "improved"
 outputs = ["wrench", "hydrostatics"]
+[[body]]
+id = 6
+shape = { type = "box" }
+outputs = ["wrench", "loads"]
+reference_point = [0.5, 0.5, -0.5]
+[body.drag]
+linear = [20, 60, 60, 5, 5, 8]
+quadratic = [18, 22, 37, 1.5, 1.5, 1.5]
+[body.added_mass]
+matrix = [5, 126, 126, 0.1, 33, 33]
+[[body]]
+id = 7
+shape = { type = "box" }
+outputs = ["wrench", "hydrostatics", "loads"]
 )";
 
 const Scene& small_scene() {
@@ -77,12 +91,12 @@ Kind kind_of() {
   return kind;
 }
 
-const std::array<Kind, 4>& kinds() {
-  static const std::array<Kind, 4> kKinds = [] {
+const std::array<Kind, 5>& kinds() {
+  static const std::array<Kind, 5> kKinds = [] {
     Kind status{.empty = {}, .body_size = 0};
     encode(ServiceStatus{}, status.empty);
-    return std::array<Kind, 4>{kind_of<WrenchRequest>(), kind_of<WrenchResponse>(),
-                               kind_of<BodiesHydrostatics>(), status};
+    return std::array<Kind, 5>{kind_of<WrenchRequest>(), kind_of<WrenchResponse>(),
+                               kind_of<BodiesHydrostatics>(), status, kind_of<BodiesLoads>()};
   }();
   return kKinds;
 }
@@ -177,6 +191,50 @@ void check_hydrostatics(const WrenchRequest& request, Bytes bytes) {
           "hydrostatics cover the bodies that request them");
 }
 
+void check_loads_of_body(const BodyLoads& loads) {
+  const std::array vectors{loads.buoyancy_force, loads.buoyancy_torque,  loads.drag_force,
+                           loads.drag_torque,    loads.added_mass_force, loads.added_mass_torque,
+                           loads.water_velocity};
+  require(std::ranges::all_of(vectors, [](const auto& vector) { return finite(vector); }) &&
+              std::ranges::all_of(loads.added_mass, [](const auto& row) { return finite(row); }) &&
+              std::ranges::all_of(loads.damping, [](const auto& row) { return finite(row); }),
+          "loads are finite numbers");
+  require(loads.immersion >= 0.0 && loads.immersion <= 1.0, "an immersion is from 0 to 1");
+  if (loads.status == BodyStatus::kOk) return;
+  Packet zeros;
+  Packet bytes;
+  encode(BodiesLoads{.id = {}, .bodies = {{.body_id = loads.body_id, .status = loads.status}}}, zeros);
+  encode(BodiesLoads{.id = {}, .bodies = {loads}}, bytes);
+  require(bytes == zeros, "loads of a body whose status is not OK are zeros");
+}
+
+void check_loads(const WrenchRequest& request, Bytes bytes) {
+  std::vector<std::int32_t> expected_ids;
+  for (const BodyState& state : request.bodies) {
+    const Body* body = small_scene().find(state.body_id);
+    if (body != nullptr && body->loads) expected_ids.push_back(body->id);
+  }
+  require(bytes.empty() == expected_ids.empty(), "loads exist if a body requests them");
+  if (bytes.empty()) return;
+  BodiesLoads loads;
+  require(!decode(bytes, loads), "loads decode");
+  require(same(loads.id, request.id), "loads carry their request's id");
+  require(std::equal(expected_ids.begin(), expected_ids.end(), loads.bodies.begin(), loads.bodies.end(),
+                     [](std::int32_t id, const BodyLoads& body) { return id == body.body_id; }),
+          "loads cover the bodies that request them");
+  for (const BodyLoads& body : loads.bodies) check_loads_of_body(body);
+}
+
+// What a handler publishes for its last request besides the response.
+struct Outputs {
+  Packet hydrostatics, loads;
+
+  bool operator==(const Outputs&) const = default;
+};
+Outputs outputs_of(const RequestHandler& handler) {
+  return {copy_of(handler.last_hydrostatics()), copy_of(handler.last_loads())};
+}
+
 // handler: the one that receives all packets.
 void send_request(const Packet& packet, RequestHandler& handler) {
   const auto id = peek_request_id(packet);
@@ -184,19 +242,20 @@ void send_request(const Packet& packet, RequestHandler& handler) {
   const std::optional<DecodeError> error = decode(packet, request);
   require(id.has_value() == !error, "peek_request_id() and decode() accept the same packets");
   const Packet response = copy_of(handler.handle(packet));
-  const Packet hydrostatics = copy_of(handler.last_hydrostatics());
+  const Outputs outputs = outputs_of(handler);
   if (error) {
     require(id.error() == *error, "peek_request_id() and decode() return the same error");
-    require(response.empty() && hydrostatics.empty(), "an invalid packet gets no response");
+    require(response.empty() && outputs == Outputs{}, "an invalid packet gets no response");
     return;
   }
   require(same(*id, request.id), "peek_request_id() finds the request's id");
   check_response(request, response);
-  check_hydrostatics(request, hydrostatics);
-  require(copy_of(handler.handle(packet)) == response && copy_of(handler.last_hydrostatics()) == hydrostatics,
+  check_hydrostatics(request, outputs.hydrostatics);
+  check_loads(request, outputs.loads);
+  require(copy_of(handler.handle(packet)) == response && outputs_of(handler) == outputs,
           "a retry gets the same bytes");
   RequestHandler fresh(small_scene(), {.max_sessions = 1, .threads = 1});
-  require(copy_of(fresh.handle(packet)) == response && copy_of(fresh.last_hydrostatics()) == hydrostatics,
+  require(copy_of(fresh.handle(packet)) == response && outputs_of(fresh) == outputs,
           "a response does not depend on earlier requests");
 }
 
@@ -239,7 +298,8 @@ void check(FuzzBytes bytes) {
   while (!bytes.empty()) {
     const Packet packet = next_packet(bytes);
     const int read_as = int{decodes<WrenchRequest>(packet)} + int{decodes<WrenchResponse>(packet)} +
-                        int{decodes<BodiesHydrostatics>(packet)} + int{decodes<ServiceStatus>(packet)};
+                        int{decodes<BodiesHydrostatics>(packet)} + int{decodes<BodiesLoads>(packet)} +
+                        int{decodes<ServiceStatus>(packet)};
     require(read_as <= 1, "a packet decodes as at most one kind of message");
     send_request(packet, handler);
     send_pose(packet, poses, handler);

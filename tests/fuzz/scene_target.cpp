@@ -8,6 +8,7 @@
 #include <variant>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "hydrostatics/buoyancy.h"
 #include "scene/scene.h"
@@ -124,6 +125,32 @@ void check_dynamics(const DynamicsSpec& dynamics) {
   }
 }
 
+// Does a motion lose energy by drag, or gain none by added mass? The limits of coefficient_checks.h allow for
+// rounded digits.
+bool is_semidefinite(const Mat6& matrix) {
+  const Mat6 symmetric = 0.5 * matrix + 0.5 * matrix.transpose();
+  const double least = Eigen::SelfAdjointEigenSolver<Mat6>(symmetric / std::max(1.0, symmetric.norm()))
+                           .eigenvalues()
+                           .minCoeff();
+  return least >= -1e-6;
+}
+
+void check_coefficients(const BodyDescription& body) {
+  if (body.drag) {
+    require(body.drag->linear.allFinite() && body.drag->quadratic.allFinite(), "drag is finite");
+    require(is_semidefinite(body.drag->linear) && is_semidefinite(body.drag->quadratic),
+            "drag opposes every motion");
+    require(!body.drag->center_B || body.drag->center_B->allFinite(), "the centre of drag is finite");
+  }
+  if (body.added_mass) {
+    const Mat6& matrix = body.added_mass->matrix;
+    require(matrix.allFinite() && matrix == matrix.transpose(), "added mass is finite and symmetric");
+    require(is_semidefinite(matrix), "added mass has no negative kinetic energy");
+    require(!body.added_mass->center_B || body.added_mass->center_B->allFinite(),
+            "the centre of added mass is finite");
+  }
+}
+
 void check_description(const SceneDescription& scene) {
   check_water(scene.water);
   check_sea(scene.sea);
@@ -142,7 +169,9 @@ void check_description(const SceneDescription& scene) {
       require(check_shape(std::get<Shape>(body.source)).has_value(), "a shape is within its ranges");
     }
     check_dynamics(body.dynamics);
+    check_coefficients(body);
   }
+  require(scene.current_W.allFinite(), "the current is finite");
 }
 
 bool is_small_and_generated(const SceneDescription& scene) {
@@ -163,6 +192,11 @@ void check_prepared(const SceneDescription& description) {
   const Expected<Scene> scene = Scene::prepare(description);
   if (!scene) return check_error(scene.error());
   require(scene->bodies().size() == description.bodies.size(), "every body is prepared");
+  for (std::size_t i = 0; i < scene->bodies().size(); ++i) {
+    const BodyDescription& body = description.bodies[i];
+    require((scene->bodies()[i].hydrodynamics != nullptr) == (body.drag || body.added_mass),
+            "a body has hydrodynamics if it has drag or added mass");
+  }
   require(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"),
           "the reports are not empty");
   for (const Body& body : scene->bodies()) {
