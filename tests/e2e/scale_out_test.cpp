@@ -48,10 +48,11 @@ std::vector<BodyState> states_of(std::initializer_list<int> ids, int step) {
 class Share {
  public:
   Share(const TempDir& directory, const std::string& name, std::initializer_list<int> ids)
-      : service_(service_command(
-            directory.write(name + ".toml", scene_of(ids)),
-            {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
-             "--hydrostatics-channel", name + "_HYDROSTATICS", "--status-channel", name + "_STATUS"})) {
+      : service_(
+            service_command(directory.write(name + ".toml", scene_of(ids)),
+                            {"--states-channel", name + "_STATES", "--wrenches-channel", name + "_WRENCHES",
+                             "--hydrostatics-channel", name + "_HYDROSTATICS", "--loads-channel",
+                             name + "_LOADS", "--status-channel", name + "_STATUS"})) {
     options_.channel.states_channel = name + "_STATES";
     options_.channel.wrenches_channel = name + "_WRENCHES";
     options_.retry_policy.max_retries = 10'000;  // effectively unlimited

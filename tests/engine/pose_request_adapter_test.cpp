@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include <bot_core/rigid_transform_t.hpp>
 #include <gtest/gtest.h>
 
 #include "engine/request_handler.h"
@@ -86,6 +87,25 @@ TEST(PoseRequestAdapter, KeepsVelocitiesOfUnknownFrame) {
   EXPECT_EQ(stamped->utime, 9);
   EXPECT_EQ(stamped->state.body_id, kBox);
   EXPECT_EQ(stamped->state.linear_velocity, (std::array<double, 3>{2.0, 0.0, 0.0}));
+}
+
+TEST(PoseRequestAdapter, MakesNoRequestWithVelocitiesOfUnknownFrame) {
+  bot_core::pose_t pose = upright_pose(0.0, 9);
+  pose.vel[0] = 2.0;
+  PoseRequestAdapter unknown({.channels = {{"HULL", kBox, ""}}}, kFirstSession);
+  const WrenchRequest without = decoded_request(unknown, 0, encoded_by_lcm(pose));
+  for (const double value : without.bodies[0].linear_velocity) EXPECT_TRUE(std::isnan(value));
+  for (const double value : without.bodies[0].angular_velocity) EXPECT_TRUE(std::isnan(value));
+  EXPECT_EQ(unknown.without_velocities(0), 1);
+
+  bot_core::rigid_transform_t transform{};
+  transform.quat[0] = 1.0;
+  PoseRequestAdapter poses = two_channels(VelocityFrame::kWorld);
+  EXPECT_EQ(decoded_request(poses, 0, encoded_by_lcm(pose)).bodies[0].linear_velocity[0], 2.0);
+  const WrenchRequest of_transform = decoded_request(poses, 1, encoded_by_lcm(transform));
+  EXPECT_TRUE(std::isnan(of_transform.bodies[0].angular_velocity[2]));
+  EXPECT_EQ(poses.without_velocities(0), 0);
+  EXPECT_EQ(poses.without_velocities(1), 1);
 }
 
 TEST(PoseRequestAdapter, CountsRequestsOfEachChannel) {

@@ -49,8 +49,9 @@ INSTANTIATE_TEST_SUITE_P(Signals, BuoyancydTermination, testing::Values(SIGINT, 
 TEST(Buoyancyd, LogsItsConfigurationWhenReady) {
   RunningService service({"-l", "udpm://239.255.76.67:7667?ttl=0", "--mode", "latest"});
   const std::string log = service.log();
-  for (const char* text : {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_HYDROSTATICS",
-                           "BUOYANCY_STATUS", "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
+  for (const char* text :
+       {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_HYDROSTATICS", "BUOYANCY_LOADS",
+        "BUOYANCY_STATUS", "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
     EXPECT_NE(log.find(text), std::string::npos) << text << " is missing from " << log;
   }
 }
@@ -71,6 +72,16 @@ TEST(Buoyancyd, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   expect_failure(run({"--scene", scene, "--states-channel", std::string(64, 'a')}), 2, "64 characters");
   expect_failure(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
+  expect_failure(run({"--scene", scene, "--loads-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
+  expect_failure(run({"--scene", scene, "--pose", "BUOYANCY_LOADS=1"}), 2, "used for two purposes");
+}
+
+TEST(Buoyancyd, RefusesPosesThatCannotGiveTheVelocitiesThatDragNeeds) {
+  const TempDir directory;
+  const std::string scene = directory.write("scene.toml", kLoadsBoxScene);
+  expect_failure(run({"--scene", scene, "--pose", "HULL=hull"}), 2,
+                 "--pose HULL=1: no --velocity-frame; expected --velocity-frame world or body, since body "
+                 "'hull' has drag or added mass");
 }
 
 TEST(Buoyancyd, RejectsInvalidScenesAndMeshesWithUsageError) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/service/one_box_scene.h"
+#include "tests/support/scene_of.h"
+
 namespace buoyancy::service {
 namespace {
 
@@ -44,6 +47,25 @@ TEST(CounterWarnings, SayWhatToDoWithoutSea) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].message, "bodies with status NO_SEA");
   EXPECT_THAT(warnings[0].detail, HasSubstr("start what publishes it before the clients"));
+}
+
+TEST(CounterWarnings, SayWhereTwistsAreNeeded) {
+  ServiceCounters now;
+  count(now, BodyStatus::kNonFiniteTwist) = 3;
+  const std::vector<LogEvent> warnings = warnings_since({}, now);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0].detail, HasSubstr("bodies with drag or added mass"));
+}
+
+TEST(CounterWarnings, NamePosesWithoutTheVelocitiesThatDragNeeds) {
+  const PoseChannel pose{"FRAME", 1, ""};
+  const std::optional<LogEvent> warning = missing_velocities(pose, scene_of(kLoadsBoxScene), 7);
+  ASSERT_TRUE(warning);
+  EXPECT_EQ(warning->message, "poses without velocities on FRAME, whose body 'hull' has drag or added mass");
+  EXPECT_EQ(warning->count, 7);
+  EXPECT_THAT(warning->detail, HasSubstr("Send pose_t instead of rigid_transform_t"));
+  EXPECT_FALSE(missing_velocities(pose, scene_of(kOneBoxScene), 7));
+  EXPECT_FALSE(missing_velocities({"FRAME", 2, ""}, scene_of(kLoadsBoxScene), 7)) << "no such body any more";
 }
 
 TEST(CounterWarnings, SayWhatToDoAboutWaves) {

@@ -1,4 +1,7 @@
 // Live bot_core poses over UDP: buoyancyd receives them and publishes wrenches or forces and torques.
+#include <csignal>
+
+#include <bot_core/rigid_transform_t.hpp>
 #include <bot_core/six_axis_force_torque_t.hpp>
 #include <gtest/gtest.h>
 
@@ -74,6 +77,55 @@ TEST_P(LivePoses, CountsInvalidPosesByCause) {
     return counters.requests == 4 && counters.computed == 1 && counters.rejected_truncated == 1 &&
            counters.rejected_length == 1 && counters.rejected_fingerprint == 1;
   }));
+}
+
+TEST_P(LivePoses, GetDragOnlyWithVelocities) {
+  RunningService service(
+      {"--mode", GetParam(), "--pose", "HULL=1", "--pose", "FRAME=1", "--velocity-frame", "body"},
+      kLoadsBoxScene);
+  RawLcmSocket socket;
+  bot_core::pose_t pose = upright_pose(0.5, 3);
+  pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);  // the body's x is the world's y
+  pose.vel[0] = 1.25;
+  socket.send("HULL", encoded_by_lcm(pose));
+  const RawWrench moving = receive(socket).bodies.at(0);
+  EXPECT_EQ(moving.status, 0);
+  const double s = 1.5 / 4.0;
+  EXPECT_NEAR(moving.force[0], s * (60.0 + 22.0 * 0.5) * 0.5, 1e-9) << "the current along the body's -y";
+  EXPECT_NEAR(moving.force[1], -s * (20.0 + 18.0 * 1.0) * 1.0, 1e-9) << "1 m/s faster than the current";
+
+  bot_core::rigid_transform_t transform{};
+  transform.utime = 4;
+  transform.trans[2] = 0.5;
+  transform.quat[0] = 1.0;
+  socket.send("FRAME", encoded_by_lcm(transform));
+  const RawWrench unknown = receive(socket).bodies.at(0);
+  EXPECT_EQ(unknown.status, 4) << "NON_FINITE_TWIST";
+  EXPECT_EQ(unknown.force, (std::array<double, 3>{}));
+  EXPECT_EQ(unknown.submerged_volume, 0.0);
+  const auto loads = socket.receive("BUOYANCY_LOADS", kWaitTimeout);
+  ASSERT_TRUE(loads);
+  EXPECT_EQ(decode_loads(*loads).bodies.at(0).status, 4);
+  EXPECT_TRUE(service.child().wait_for_text(
+      "poses without velocities on FRAME, whose body 'hull' has drag or added mass: 1; such a body needs its "
+      "velocities",
+      kWaitTimeout))
+      << service.log();
+  EXPECT_EQ(service.log().find("on HULL, whose body"), std::string::npos) << service.log();
+}
+
+TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
+  RunningService service({"--mode", GetParam(), "--pose", "HULL=1"}, kBoxScene);
+  RawLcmSocket socket;
+  socket.send("HULL", pose_at(0.5, 1));
+  EXPECT_EQ(receive(socket).bodies.at(0).status, 0);
+  service.write("scene.toml", kLoadsBoxScene);
+  service.child().send_signal(SIGHUP);
+  ASSERT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
+  EXPECT_EQ(service.log().find("poses without velocities"), std::string::npos) << "not needed until then";
+  socket.send("HULL", pose_at(0.5, 2));
+  EXPECT_EQ(receive(socket).bodies.at(0).status, 4) << "their frame is unknown";
+  EXPECT_TRUE(service.child().wait_for_text("--velocity-frame", kWaitTimeout)) << service.log();
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, LivePoses, testing::Values("lockstep", "latest"),

@@ -22,6 +22,7 @@ Scene boxes(int bodies, const std::string& more = "") {
 }
 
 const std::string kHydrostatics = "outputs = [\"wrench\", \"hydrostatics\"]\n";
+const std::string kLoads = "outputs = [\"wrench\", \"loads\"]\n";
 const ReceiveBuffer kAnyBuffer{.max_message = kMaxMessageBytes};
 
 template <typename Message>
@@ -39,10 +40,16 @@ TEST(MessageSizes, AreThoseOfEncodedMessages) {
   EXPECT_EQ(messages.request.packets, 2U);
   EXPECT_EQ(messages.response.bytes, size_of_encoded<WrenchResponse>(1'000));
   EXPECT_FALSE(messages.hydrostatics);
+  EXPECT_FALSE(messages.loads);
   const LargestMessages more = largest_messages(boxes(200, kHydrostatics), {});
   ASSERT_TRUE(more.hydrostatics);
   EXPECT_EQ(more.hydrostatics->bytes, size_of_encoded<BodiesHydrostatics>(200));
   EXPECT_EQ(more.hydrostatics->packets, 2U);
+  const LargestMessages with_loads = largest_messages(boxes(200, kLoads), {});
+  ASSERT_TRUE(with_loads.loads);
+  EXPECT_EQ(with_loads.loads->bytes, size_of_encoded<BodiesLoads>(200));
+  EXPECT_EQ(with_loads.loads->packets, 3U);
+  EXPECT_EQ(with_loads.loads->channel, "BUOYANCY_LOADS");
 }
 
 TEST(MessageSizes, WarnAboutRequestsThatDoNotFitReceiveBuffer) {
@@ -60,13 +67,15 @@ TEST(MessageSizes, WarnAboutMessagesThatNoReceiverAccepts) {
   LargestMessages messages = largest_messages(boxes(3), {});
   messages.request = {.subject = "request for all 160000 bodies", .channel = "A", .bytes = 17'280'044};
   messages.hydrostatics = {.subject = "hydrostatics", .channel = "B", .bytes = 16'900'000};
+  messages.loads = {.subject = "loads", .channel = "C", .bytes = 16'900'000};
   const auto warnings = size_warnings(messages, kAnyBuffer);
-  ASSERT_EQ(warnings.size(), 2U);
+  ASSERT_EQ(warnings.size(), 3U);
   EXPECT_TRUE(
       warnings[0].message().starts_with("request for all 160000 bodies: a message of 17280044 bytes; "
                                         "expected at most 16777216"))
       << warnings[0].message();
   EXPECT_TRUE(warnings[1].message().starts_with("hydrostatics: ")) << warnings[1].message();
+  EXPECT_TRUE(warnings[2].message().starts_with("loads: ")) << warnings[2].message();
 }
 
 TEST(MessageSizes, PredictReceiveBufferFromUrl) {
@@ -98,12 +107,24 @@ TEST(MessageSizes, AppearInCheckReport) {
   const auto json = parse_json(check_report_json(scene, messages, small));
   EXPECT_EQ(json["messages"]["request"]["bytes"], 108'044);
   EXPECT_EQ(json["messages"]["hydrostatics"]["packets"], 8);
+  EXPECT_TRUE(json["messages"]["loads"].is_null());
   EXPECT_EQ(json["receive_buffer"], 100'000);
   EXPECT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["bodies"].size(), 1'000U);
   const auto in_process = parse_json(check_report_json(scene, messages, std::nullopt));
   EXPECT_TRUE(in_process["receive_buffer"].is_null());
   EXPECT_TRUE(in_process["warnings"].empty());
+}
+
+TEST(MessageSizes, OfLoadsAppearInCheckReport) {
+  const Scene scene = boxes(1'000, kLoads);
+  const LargestMessages messages = largest_messages(scene, {});
+  const std::string text = check_report_text(scene, messages, std::nullopt);
+  EXPECT_NE(text.find("loads for all 1000 bodies: 760036 bytes in 12 packets"), std::string::npos);
+  const auto json = parse_json(check_report_json(scene, messages, std::nullopt));
+  EXPECT_EQ(json["messages"]["loads"]["bytes"], 760'036);
+  EXPECT_EQ(json["messages"]["loads"]["packets"], 12);
+  EXPECT_TRUE(json["messages"]["hydrostatics"].is_null());
 }
 
 TEST(CheckReport, WarnsAboutASteepSea) {

@@ -126,6 +126,24 @@ std::int64_t hydrostatics_fingerprint() {
   return response_fingerprint(body);
 }
 
+std::int64_t loads_fingerprint() {
+  const std::int64_t body = Fingerprint()
+                                .field("body_id", "int32_t")
+                                .field("status", "int32_t")
+                                .field("immersion", "double")
+                                .fixed_array("buoyancy_force", "double", "3")
+                                .fixed_array("buoyancy_torque", "double", "3")
+                                .fixed_array("drag_force", "double", "3")
+                                .fixed_array("drag_torque", "double", "3")
+                                .fixed_array("added_mass_force", "double", "3")
+                                .fixed_array("added_mass_torque", "double", "3")
+                                .matrix("added_mass", "double", "6", "6")
+                                .matrix("damping", "double", "6", "6")
+                                .fixed_array("water_velocity", "double", "3")
+                                .value();
+  return response_fingerprint(body);
+}
+
 // Reads the header that all responses share and allocates the bodies.
 template <typename Response>
 Response read_header(RawReader& reader, std::int64_t fingerprint) {
@@ -346,6 +364,25 @@ RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
   }
   if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
   return hydrostatics;
+}
+
+RawLoads decode_loads(const RawBytes& bytes) {
+  RawReader reader(bytes);
+  auto loads = read_header<RawLoads>(reader, loads_fingerprint());
+  for (RawBodyLoads& body : loads.bodies) {
+    body.body_id = reader.int32();
+    body.status = reader.int32();
+    body.immersion = reader.real();
+    for (auto* vector : {&body.buoyancy_force, &body.buoyancy_torque, &body.drag_force, &body.drag_torque,
+                         &body.added_mass_force, &body.added_mass_torque}) {
+      reader.reals(*vector);
+    }
+    reader.reals(body.added_mass);
+    reader.reals(body.damping);
+    reader.reals(body.water_velocity);
+  }
+  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
+  return loads;
 }
 
 }  // namespace buoyancy

@@ -158,4 +158,27 @@ struct RawHydrostatics {
 };
 RawHydrostatics decode_hydrostatics(const RawBytes& bytes);  // throws if bytes are not such a message
 
+// body_loads_t.lcm
+struct RawBodyLoads {
+  std::int32_t body_id = 0;
+  std::int32_t status = 0;
+  double immersion = 0.0;
+  std::array<double, 3> buoyancy_force{};
+  std::array<double, 3> buoyancy_torque{};
+  std::array<double, 3> drag_force{};
+  std::array<double, 3> drag_torque{};
+  std::array<double, 3> added_mass_force{};
+  std::array<double, 3> added_mass_torque{};
+  std::array<std::array<double, 6>, 6> added_mass{};
+  std::array<std::array<double, 6>, 6> damping{};
+  std::array<double, 3> water_velocity{};
+};
+struct RawLoads {
+  std::int64_t utime = 0;
+  std::int64_t session_id = 0;
+  std::int64_t seq = 0;
+  std::vector<RawBodyLoads> bodies;
+};
+RawLoads decode_loads(const RawBytes& bytes);  // throws if bytes are not such a message
+
 }  // namespace buoyancy

@@ -18,13 +18,24 @@ std::vector<RawBytes> events(const std::string& path, const std::string& channel
   return found;
 }
 
+// With a body 3 that has drag and requests its loads.
+const std::string kScene = kHydrostaticBoxScene + R"([[body]]
+id = 3
+shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
+outputs = ["wrench", "loads"]
+[body.drag]
+quadratic = [18, 22, 37, 1.5, 1.5, 1.5]
+[body.added_mass]
+matrix = [5, 126, 126, 0.1, 33, 33]
+)";
+
 TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   const TempDir directory;
   const std::string recorded = directory.path("live.lcmlog");
   const std::string replayed = directory.path("replayed.lcmlog");
-  const std::string scene = directory.write("scene.toml", kHydrostaticBoxScene);
+  const std::string scene = directory.write("scene.toml", kScene);
   RawLcmSocket socket;
-  const RunningService service({}, kHydrostaticBoxScene);
+  const RunningService service({}, kScene);
   ChildProcess logger(command_of({"lcm-logger", "-q", "-f", "--flush-interval=1", recorded}));
   std::error_code not_there_yet;
   while (std::filesystem::file_size(recorded, not_there_yet) + 1 <= 1) {
@@ -79,6 +90,9 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   const std::vector<RawBytes> live_hydrostatics = events(recorded, "BUOYANCY_HYDROSTATICS");
   EXPECT_GT(live_hydrostatics.size(), 50U);
   EXPECT_EQ(events(replayed, "BUOYANCY_HYDROSTATICS"), live_hydrostatics);
+  const std::vector<RawBytes> live_loads = events(recorded, "BUOYANCY_LOADS");
+  EXPECT_GT(live_loads.size(), 50U);
+  EXPECT_EQ(events(replayed, "BUOYANCY_LOADS"), live_loads);
 }
 
 }  // namespace

@@ -200,6 +200,19 @@ TEST_F(ReplayParts, JoinPosesCopiesAndHydrostatics) {
                "lead time");
 }
 
+TEST_F(ReplayParts, JoinLoads) {
+  write("scene.toml", kLoadsBoxScene);
+  const std::string input = write("in.lcmlog", mixed_log(4 * kBlock));
+  const std::vector<std::string> poses{"--pose", "POSE=1", "--pose", "HULL=1", "--velocity-frame", "world"};
+  expect_whole(3, input, ".lcmlog", poses, "poses");
+  std::vector<std::string> named = poses;
+  named.insert(named.end(), {"--loads-channel", "L"});
+  expect_whole(3, input, ".lcmlog", named, "channel");
+  const std::vector<LoggedEvent> loads = events_of(path("joined.lcmlog"), only_channel("L"));
+  EXPECT_GT(loads.size(), 1'000U);
+  EXPECT_EQ(loads.size(), events_of(path("joined.lcmlog"), only_channel("BUOYANCY_WRENCHES")).size());
+}
+
 TEST_F(ReplayParts, MayOutnumberMessages) {
   for (const int requests : {0, 1, 3}) {
     expect_whole(5, write("in.lcmlog", log_of_requests(requests)), ".lcmlog", {}, std::to_string(requests));
@@ -403,6 +416,7 @@ TEST_F(JoinOfParts, RefusesPartsOfOtherOptions) {
                                                   {"--copy", "OTHER"},
                                                   {"--wrenches-channel", "W"},
                                                   {"--hydrostatics-channel", "H"},
+                                                  {"--loads-channel", "L"},
                                                   {"--states-channel", "S"}}) {
     run_again(3, options);
     expect_refused({"part 3 of 4 computed with another " + options.front(), "Run it again (--part 3/4)"});

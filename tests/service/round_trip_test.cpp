@@ -195,6 +195,65 @@ TEST(HydrostaticsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) 
   EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "request 2 gets none";
 }
 
+TEST(LoadsRoundTrip, MatchesClosedFormForMovingBox) {
+  const RunningService service({}, kLoadsBoxScene);
+  RawLcmSocket socket;
+  RawStates states = one_body(9, 3, 0.5);
+  states.utime = 77;
+  states.bodies[0].linear_velocity = {1.0, 0.0, 0.0};
+  states.bodies.resize(2, states.bodies[0]);
+  states.bodies[1].body_id = 5;  // unknown
+  send_request(socket, states);
+  const RawWrenches response = receive(socket);
+  const auto bytes = socket.receive("BUOYANCY_LOADS", kWaitTimeout);
+  ASSERT_TRUE(bytes);
+  const RawLoads message = decode_loads(*bytes);
+  EXPECT_EQ(message.utime, 77);
+  EXPECT_EQ(message.session_id, 9);
+  EXPECT_EQ(message.seq, 3);
+  ASSERT_EQ(message.bodies.size(), 1U);
+  const RawBodyLoads& body = message.bodies[0];
+  EXPECT_EQ(body.body_id, 1);
+  EXPECT_EQ(body.status, 0);
+  const double s = 1.5 / 4.0;
+  const std::array<double, 2> nu{0.5, -0.25};  // relative to the current
+  EXPECT_NEAR(body.immersion, s, 1e-14);
+  EXPECT_NEAR(body.buoyancy_force[2], kDensity * kGravity * 9.0, 1e-7);
+  EXPECT_NEAR(body.drag_force[0], -s * (20.0 + 18.0 * 0.5) * nu[0], 1e-12);
+  EXPECT_NEAR(body.drag_force[1], -s * (60.0 + 22.0 * 0.25) * nu[1], 1e-12);
+  EXPECT_NEAR(body.added_mass_torque[2], -s * (126.0 - 5.0) * nu[0] * nu[1], 1e-12) << "Munk's moment";
+  EXPECT_NEAR(body.added_mass[1][1], s * 126.0, 1e-12);
+  EXPECT_NEAR(body.added_mass[1][5], s * 126.0 * -0.5, 1e-12) << "the centre is beside the reference point";
+  EXPECT_NEAR(body.damping[0][0], s * (20.0 + 2.0 * 18.0 * 0.5), 1e-12);
+  EXPECT_EQ(body.water_velocity, (std::array<double, 3>{0.5, 0.25, 0.0}));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(response.bodies[0].force[axis],
+                body.buoyancy_force[axis] + body.drag_force[axis] + body.added_mass_force[axis], 1e-9);
+    EXPECT_NEAR(response.bodies[0].torque[axis],
+                body.buoyancy_torque[axis] + body.drag_torque[axis] + body.added_mass_torque[axis], 1e-9);
+  }
+}
+
+TEST(LoadsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) {
+  const RunningService service({"--loads-channel", "L"},
+                               kLoadsBoxScene + "[[body]]\nid = 2\nshape = { type = \"box\" }\n");
+  RawLcmSocket socket;
+  RawStates states = one_body(1, 1, 0.3);
+  send_request(socket, states);
+  const auto first = socket.receive("L", kWaitTimeout);
+  ASSERT_TRUE(first);
+  send_request(socket, states);
+  EXPECT_EQ(socket.receive("L", kWaitTimeout), first);
+  RawStates without = one_body(1, 2, 0.3);
+  without.bodies[0].body_id = 2;
+  send_request(socket, without);
+  states.seq = 3;
+  send_request(socket, states);
+  const auto next = socket.receive("L", kWaitTimeout);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(decode_loads(*next).seq, 3) << "request 2 gets none";
+}
+
 TEST(LockstepMode, RepeatsSameBytesForRetryWithoutComputing) {
   const RunningService service;
   RawLcmSocket socket;
