@@ -35,6 +35,10 @@ Expected<const WrenchResponse*> Client::request(std::int64_t utime, std::span<co
   return response;
 }
 
+const BodiesLoads& Client::loads() const {
+  return std::visit([](const auto& client) -> const BodiesLoads& { return client.loads(); }, client_);
+}
+
 ClientStats Client::statistics() const {
   return std::visit([](const auto& client) -> ClientStats { return client.statistics(); }, client_);
 }
@@ -43,6 +47,11 @@ std::int64_t make_session_id() {
   std::random_device device;
   const std::uint64_t bits = (std::uint64_t{device()} << 32U) | device();
   return static_cast<std::int64_t>(bits >> 1U);
+}
+
+const BodyLoads* find_loads(const BodiesLoads& loads, std::int32_t body_id) {
+  const auto found = std::ranges::find(loads.bodies, body_id, &BodyLoads::body_id);
+  return found == loads.bodies.end() ? nullptr : &*found;
 }
 
 const BodyWrench* find_failed_body(const WrenchResponse& response) {

@@ -45,6 +45,10 @@ class Client {
   Expected<const WrenchResponse*> request(std::int64_t utime, std::span<const BodyState> states,
                                           double lead_time = 0.0);
 
+  // The loads that belong to the last response, of its bodies with this output in their order, valid until
+  // the next request. Precondition: ClientOptions::channel.wait_for_loads; there are none otherwise.
+  const BodiesLoads& loads() const;
+
   ClientStats statistics() const;
 
  private:
@@ -57,6 +61,9 @@ class Client {
 
 // A random session_id >= 0. The probability that it equals a given other one is 2^-63.
 std::int64_t make_session_id();
+
+// The loads of a body, or nullptr if it has no such output. Complexity: O(bodies).
+const BodyLoads* find_loads(const BodiesLoads& loads, std::int32_t body_id);
 
 // The first wrench whose status is not kOk, or nullptr. A simulator must not continue without a body's force.
 const BodyWrench* find_failed_body(const WrenchResponse& response);

@@ -24,11 +24,38 @@ timespec to_timespec(Clock::duration duration) {
 
 void LcmRequestChannel::Inbox::receive(Bytes bytes) {
   if (decode(bytes, incoming)) return;
-  if (incoming.id.session_id != session_id || incoming.id.seq > last_sent) return;
-  arrivals.push_back({incoming.id.seq, Clock::now()});
-  if (has_response && incoming.id.seq <= latest.id.seq) return;
-  std::swap(latest, incoming);
+  const RequestId& id = incoming.id;
+  if (id.session_id != session_id || id.seq > last_sent) return;
+  if (!needs_loads || !is_newer(id)) arrivals.push_back({id.seq, Clock::now()});
+  if (!is_newer(id)) return;
+  if (!needs_loads) {
+    std::swap(latest, incoming);
+    has_response = true;
+  } else if (!response_seq || id.seq >= *response_seq) {
+    response_seq = id.seq;
+    std::swap(response, incoming);
+    complete();
+  }
+}
+
+void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
+  if (decode(bytes, incoming_loads)) return;
+  const RequestId& id = incoming_loads.id;
+  if (id.session_id != session_id || id.seq > last_sent || !is_newer(id)) return;
+  if (loads_seq && id.seq < *loads_seq) return;
+  loads_seq = id.seq;
+  std::swap(loads, incoming_loads);
+  complete();
+}
+
+void LcmRequestChannel::Inbox::complete() {
+  if (!response_seq || response_seq != loads_seq) return;
+  arrivals.push_back({*response_seq, Clock::now()});
+  std::swap(latest, response);
+  std::swap(latest_loads, loads);
   has_response = true;
+  response_seq.reset();
+  loads_seq.reset();
 }
 
 LcmRequestChannel::LcmRequestChannel(ChannelOptions options, LcmConnection connection)
@@ -46,6 +73,13 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
       options.wrenches_channel,
       [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) { inbox->receive(bytes); });
   if (!subscribed) return make_error(subscribed.error());
+  if (!options.wait_for_loads) return channel;
+  channel.inbox_->needs_loads = true;
+  const Expected<void> with_loads = channel.connection_.subscribe(
+      options.loads_channel, [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) {
+        inbox->receive_loads(bytes);
+      });
+  if (!with_loads) return make_error(with_loads.error());
   return channel;
 }
 
@@ -58,10 +92,12 @@ Expected<void> LcmRequestChannel::check_size(std::size_t bodies) const {
 Expected<std::optional<Warning>> LcmRequestChannel::reserve(std::size_t bodies) {
   if (const Expected<void> checked = check_size(bodies); !checked) return make_error(checked.error());
   reserved_bodies_ = std::max(reserved_bodies_, bodies);
-  const std::size_t bytes = response_size(bodies);
+  // The loads follow at once, so that both may have to wait in the buffer.
+  const std::size_t bytes = response_size(bodies) + (options_.wait_for_loads ? loads_size(bodies) : 0);
   buffer_warning_.reset();
   if (const std::optional<ReceiveBuffer> buffer = connection_.reserve_receive_buffer(bytes)) {
-    buffer_warning_ = receive_buffer_warning("response for " + std::to_string(bodies) + " bodies", bytes,
+    const char* const messages = options_.wait_for_loads ? "response with loads for " : "response for ";
+    buffer_warning_ = receive_buffer_warning(messages + std::to_string(bodies) + " bodies", bytes,
                                              options_.wrenches_channel, *buffer);
   }
   return buffer_warning_;
@@ -74,6 +110,13 @@ LcmRequestChannel::Explanation LcmRequestChannel::explain_no_response() const {
                 " because this program's receive buffer was full; it is too small for the " +
                 buffer_warning_->subject,
             buffer_warning_->hint};
+  }
+  if (lacks_only_loads()) {
+    return {
+        "the response arrived without loads: no body of the request has them among its outputs, or "
+        "buoyancyd publishes them on another channel",
+        "Set outputs = [\"wrench\", \"loads\"] for a body in buoyancyd's scene, and use the same loads "
+        "channel"};
   }
   Explanation explanation{
       "no buoyancyd is running on this LCM URL and these channels, or it rejects the requests",
@@ -122,7 +165,9 @@ bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
 }
 
 std::string LcmRequestChannel::describe_endpoint() const {
-  return connection_.url() + ", channels " + options_.states_channel + " and " + options_.wrenches_channel;
+  const std::string& wrenches = options_.wrenches_channel;
+  return connection_.url() + ", channels " + options_.states_channel +
+         (options_.wait_for_loads ? ", " + wrenches + " and " + options_.loads_channel : " and " + wrenches);
 }
 
 }  // namespace buoyancy

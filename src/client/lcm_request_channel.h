@@ -1,8 +1,9 @@
 // The client's end of the LCM connection: sends the requests of one session and keeps its newest response.
 //
 // A response belongs to the session if its session_id is the session's and its seq does not exceed that of
-// the last request; the one with the highest seq is kept. Other messages on the channel are ignored. Not
-// thread-safe.
+// the last request; the one with the highest seq is kept. Other messages on the channel are ignored. Where
+// loads are waited for, the same holds for them, and a response counts as arrived once the loads with its seq
+// have arrived too: a lost loads message is then requested again like a lost response. Not thread-safe.
 #pragma once
 
 #include <atomic>
@@ -29,6 +30,10 @@ struct ChannelOptions {
   std::string lcm_url;  // "": LCM's default, see resolve_lcm_url()
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
+  std::string loads_channel{kLoadsChannel};
+  // Receive the loads of every response as well, and wait for them. At least one body of each request must
+  // have the output "loads" in the service's scene: else none are published, and no request succeeds.
+  bool wait_for_loads = false;
   bool spin = true;  // poll briefly before sleeping: lower latency for more processor time
   const std::atomic<bool>* cancelled = nullptr;  // if not null, waiting ends soon after it becomes true
 };
@@ -60,13 +65,18 @@ class LcmRequestChannel {
 
   bool has_response() const { return inbox_->has_response; }
   const WrenchResponse& latest_response() const { return inbox_->latest; }  // requires has_response()
+  // The loads that belong to latest_response(); without bodies unless they are waited for.
+  const BodiesLoads& latest_loads() const { return inbox_->latest_loads; }
+  bool waits_for_loads() const { return options_.wait_for_loads; }
   bool cancelled() const { return cancelled_ != nullptr && cancelled_->load(); }
 
-  // Why the response to the last request may not have arrived, in parts of an Error.
+  // Why the response to the last request may not have arrived, or its loads, in parts of an Error.
   struct Explanation {
     std::string cause, hint;
   };
   Explanation explain_no_response() const;
+  // Has the response to the last request arrived, and only its loads are missing?
+  bool lacks_only_loads() const { return inbox_->response_seq == inbox_->last_sent; }
 
   // "udpm://239.255.76.67:7667?ttl=0, channels BUOYANCY_STATES and BUOYANCY_WRENCHES", for errors.
   std::string describe_endpoint() const;
@@ -74,14 +84,24 @@ class LcmRequestChannel {
  private:
   // Has a fixed address, because the connection's handler writes to it.
   struct Inbox {
+    bool needs_loads = false;
     std::int64_t session_id = 0;
     std::int64_t last_sent = -1;
     bool has_response = false;
     WrenchResponse latest;
-    WrenchResponse incoming;  // reused
+    BodiesLoads latest_loads;
+    WrenchResponse incoming;     // reused
+    BodiesLoads incoming_loads;  // reused
+    // The newest that wait for each other; nullopt: none is newer than the latest.
+    std::optional<std::int64_t> response_seq, loads_seq;
+    WrenchResponse response;
+    BodiesLoads loads;
     std::vector<ResponseArrival> arrivals;
 
     void receive(Bytes bytes);
+    void receive_loads(Bytes bytes);
+    bool is_newer(const RequestId& id) const { return !has_response || id.seq > latest.id.seq; }
+    void complete();
   };
 
   LcmRequestChannel(ChannelOptions options, LcmConnection connection);

@@ -12,6 +12,18 @@ std::string subject(const LcmRequestChannel& channel, std::int64_t seq) {
   return "request " + std::to_string(seq) + " on " + channel.describe_endpoint();
 }
 
+// The first body of the loads that is not among those of the request that follow the one before.
+const BodyLoads* find_other_body(const BorrowedRequest& request, const BodiesLoads& loads) {
+  auto next = request.bodies.begin();
+  for (const BodyLoads& body : loads.bodies) {
+    next = std::find_if(next, request.bodies.end(),
+                        [&](const BodyState& state) { return state.body_id == body.body_id; });
+    if (next == request.bodies.end()) return &body;
+    ++next;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
@@ -51,14 +63,24 @@ Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
                        "one wrench per requested body, in the order of the request",
                        "a program other than buoyancyd publishes on the wrenches channel", ""});
   }
+  if (const auto* stranger = find_other_body(request, channel.latest_loads())) {
+    return make_error({subject(channel, request.id.seq),
+                       "loads of body " + std::to_string(stranger->body_id) + ", which was not requested",
+                       "loads of requested bodies, in the order of the request",
+                       "a program other than buoyancyd publishes on the loads channel", ""});
+  }
   return &response;
 }
 
 tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited) {
   std::array<char, 64> actual{};
-  std::snprintf(actual.data(), actual.size(), "no response for %.3g s", waited);
+  std::snprintf(actual.data(), actual.size(), "no %s for %.3g s",
+                channel.lacks_only_loads() ? "loads" : "response", waited);
   const auto [cause, hint] = channel.explain_no_response();
-  return make_error({subject(channel, seq), actual.data(), "a response from buoyancyd", cause, hint});
+  return make_error(
+      {subject(channel, seq), actual.data(),
+       channel.waits_for_loads() ? "a response and its loads from buoyancyd" : "a response from buoyancyd",
+       cause, hint});
 }
 
 tl::unexpected<Error> cancelled_error(const LcmRequestChannel& channel, std::int64_t seq) {

@@ -38,7 +38,8 @@ T value_or_die(Expected<T> expected) {
   return std::move(*expected);
 }
 
-// Publishes the responder's responses to every request, from its own thread.
+// Publishes the responder's responses to every request, from its own thread: loads on their channel,
+// everything else on that of the wrenches.
 class FakeService {
  public:
   explicit FakeService(Responder responder)
@@ -49,7 +50,9 @@ class FakeService {
           if (decode(bytes, request)) return;
           ++requests_;
           for (const auto& response : responder_(request)) {
-            EXPECT_TRUE(connection_.publish(std::string(kWrenchesChannel), response));
+            BodiesLoads loads;
+            const std::string_view channel = decode(response, loads) ? kWrenchesChannel : kLoadsChannel;
+            EXPECT_TRUE(connection_.publish(std::string(channel), response));
           }
         });
     EXPECT_TRUE(subscribed);
@@ -77,8 +80,8 @@ class FakeService {
   std::thread thread_;
 };
 
-inline LcmRequestChannel open_channel() {
-  return value_or_die(LcmRequestChannel::open({}));
+inline LcmRequestChannel open_channel(const ChannelOptions& options = {}) {
+  return value_or_die(LcmRequestChannel::open(options));
 }
 
 // A request about bodies 5 and 6 in session 77.
@@ -103,9 +106,20 @@ inline WrenchResponse response_to(const WrenchRequest& request, double force) {
   return response;
 }
 
-inline std::vector<std::uint8_t> encoded(const WrenchResponse& response) {
+// The loads of the request's last body alone.
+inline BodiesLoads loads_for(const WrenchRequest& request, double drag) {
+  BodiesLoads loads;
+  loads.id = request.id;
+  BodyLoads& body = loads.bodies.emplace_back();
+  body.body_id = request.bodies.back().body_id;
+  body.drag_force = {0, 0, drag};
+  return loads;
+}
+
+template <typename Message>
+std::vector<std::uint8_t> encoded(const Message& message) {
   std::vector<std::uint8_t> bytes;
-  encode(response, bytes);
+  encode(message, bytes);
   return bytes;
 }
 
