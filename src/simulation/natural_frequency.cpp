@@ -8,14 +8,14 @@
 #include <Eigen/Core>
 
 #include "geometry/rotation_between.h"
+#include "hydrodynamics/symmetric_eigenvalues.h"
 #include "hydrostatics/hydrostatics.h"
+#include "simulation/hydrodynamic_motion.h"
 
 namespace buoyancy {
 namespace {
 
 constexpr int kLevels = 16;
-
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 // Gives access to a mesh that has a tree: the mesh itself, or a copy where its method needs no tree.
 class MeshWithTree {
@@ -37,47 +37,35 @@ class MeshWithTree {
   const HydrostaticMesh* mesh_;
 };
 
-// Largest eigenvalue of a symmetric matrix, by cyclic Jacobi rotations, which converge quadratically.
-// Eigen's fixed-size solver takes seconds to compile.
-double max_eigenvalue(Mat6 matrix) {
-  constexpr int kMaxSweeps = 30;
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    bool diagonal = true;
-    for (int p = 0; p < 5; ++p) {
-      for (int q = p + 1; q < 6; ++q) {
-        const double off = matrix(p, q);
-        const double scale = std::abs(matrix(p, p)) + std::abs(matrix(q, q));
-        if (std::abs(off) <= std::numeric_limits<double>::epsilon() * 0x1p-4 * scale) continue;
-        diagonal = false;
-        const double theta = (matrix(q, q) - matrix(p, p)) / (2.0 * off);
-        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
-        const double c = 1.0 / std::hypot(t, 1.0);
-        const double s = t * c;
-        for (int k = 0; k < 6; ++k) {
-          const double k_p = matrix(k, p);
-          const double k_q = matrix(k, q);
-          matrix(k, p) = c * k_p - s * k_q;
-          matrix(k, q) = s * k_p + c * k_q;
-        }
-        for (int k = 0; k < 6; ++k) {
-          const double p_k = matrix(p, k);
-          const double q_k = matrix(q, k);
-          matrix(p, k) = c * p_k - s * q_k;
-          matrix(q, k) = s * p_k + c * q_k;
-        }
-        matrix(p, q) = matrix(q, p) = 0.0;
-      }
-    }
-    if (diagonal) break;
-  }
-  return matrix.diagonal().maxCoeff();
+// The highest frequency of M^-1/2 K M^-1/2, whose symmetric part is taken.
+double frequency_of(Mat6 scaled) {
+  scaled = (0.5 * (scaled + scaled.transpose())).eval();
+  if (!scaled.allFinite()) return 0.0;
+  return std::sqrt(std::max(symmetric_eigen(scaled).values.maxCoeff(), 0.0));
 }
 
-double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid, const RigidBodyState& state,
+// A body's added mass, if it has one.
+struct AddedMass {
+  AddedMass(const Body& body, const RigidBody& rigid)
+      : modes(rigid, added_mass_at_center(body, rigid)),
+        scaling(body.hydrodynamics->coefficients().added_mass->immersion) {}
+
+  AddedMassModes modes;
+  ImmersionScaling scaling;
+};
+
+double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid,
+                    const std::optional<AddedMass>& added_mass, const RigidBodyState& state,
                     const Water& water) {
   const std::optional<Hydrostatics> result =
       hydrostatics(mesh, pose_of(rigid, state), water, rigid.center_of_mass_B, std::nullopt);
   if (!result) return 0.0;
+  if (added_mass) {
+    const double s =
+        immersion_of(added_mass->scaling, mesh, result->volume, [&] { return result->wetted_area; });
+    const Mat6 K_B = rotated(result->stiffness, state.q_WB.conjugate().toRotationMatrix());
+    return frequency_of(congruent(K_B, added_mass->modes.twist_of_modal(s)));
+  }
   const Mat3 axes_W = state.q_WB.toRotationMatrix() * rigid.principal_axes_B;
   // M^-1/2 K M^-1/2, with M^-1/2 = diag(by_mass, by_inertia): computed block by block, since products of
   // 6 x 6 matrices are expensive to compile.
@@ -90,9 +78,7 @@ double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid, const R
   scaled.topRightCorner<3, 3>() = by_mass * K.topRightCorner<3, 3>() * by_inertia;
   scaled.bottomLeftCorner<3, 3>() = by_mass * by_inertia * K.bottomLeftCorner<3, 3>();
   scaled.bottomRightCorner<3, 3>() = by_inertia * K.bottomRightCorner<3, 3>() * by_inertia;
-  scaled = (0.5 * (scaled + scaled.transpose())).eval();
-  if (!scaled.allFinite()) return 0.0;
-  return std::sqrt(std::max(max_eigenvalue(scaled), 0.0));
+  return frequency_of(scaled);
 }
 
 // Candidate up directions in B: along the principal axes and along the bisectors of each two and three of
@@ -147,12 +133,19 @@ HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidB
   const MeshWithTree with_tree(body.prepared_mesh->mesh);
   const HydrostaticMesh& mesh = with_tree.mesh();
   const Solver solver(mesh, Method::kHierarchical);
-  const std::optional<double> energy = mechanical_energy(rigid, state, solver, water);
+  std::optional<double> energy = mechanical_energy(rigid, state, solver, water);
   if (!energy) return {};
+  std::optional<AddedMass> added_mass;
+  if (body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().added_mass) {
+    added_mass.emplace(body, rigid);
+    *energy += HydrodynamicMotion(body, rigid, water, Vec3::Zero())
+                   .added_kinetic_energy_at_pose(state)
+                   .value_or(0.0);
+  }
 
   HighestNaturalFrequency highest;
   const auto consider = [&](const RigidBodyState& candidate, double draft) {
-    const double frequency = frequency_at(mesh, rigid, candidate, water);
+    const double frequency = frequency_at(mesh, rigid, added_mass, candidate, water);
     if (frequency > highest.frequency) highest = {frequency, draft};
   };
   const double height = water.up_W.dot(state.center_W) - water.level;

@@ -1,7 +1,8 @@
 // The highest natural frequency of a floating body, which the simulator's time step has to resolve.
 //
-// Small motions about a pose obey M x'' = -K x with M = diag(m, I) about the centre of mass and K the
-// hydrostatic stiffness about it (hydrostatics/hydrostatics.h); weight adds nothing to K there. The frequency
+// Small motions about a pose obey M x'' = -K x with M = diag(m, I) about the centre of mass, for a body with
+// added mass M = diag(m, I) + s A with the immersion of that pose, and K the hydrostatic stiffness about it
+// (hydrostatics/hydrostatics.h); weight adds nothing to K there. The frequency
 // of a pose is the square root of the largest eigenvalue of the symmetric part of M^-1/2 K M^-1/2, or 0 where
 // no eigenvalue is positive. The maximum is taken over the present pose and a sweep of others: 16 levels from
 // the lowest to the highest vertex, with up along the body's principal axes, their bisectors and the present

@@ -129,6 +129,7 @@ std::optional<Warning> energy_warning(const Simulation& simulation) {
   double worst_rise = 0.0;  // as a fraction of the largest kinetic energy
   int bodies = 0;
   for (const SimulatedBody& body : simulation.bodies()) {
+    if (simulation.has_current() && body.hydrodynamics) continue;  // likewise
     const EnergyStats& energy = body.energy;
     const double rise = energy.max - energy.initial;
     const double noise =

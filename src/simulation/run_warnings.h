@@ -43,8 +43,8 @@ class LatencyMonitor {
 };
 
 // Warns if the mechanical energy of a body more than doubled: if it rose by more than half the largest
-// kinetic energy, and by more than rounding. Nothing in a scene without waves adds energy to a body; with
-// waves there is no warning.
+// kinetic energy, and by more than rounding. Nothing in a scene without waves and current adds energy to a
+// body; with waves there is no warning, with a current none about bodies that have drag or added mass.
 std::optional<Warning> energy_warning(const Simulation& simulation);
 
 }  // namespace buoyancy

@@ -19,7 +19,14 @@ void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, cons
       wrench_is_current
           ? mechanical_energy(body.rigid, body.state, body.wrench, water)
           : mechanical_energy(body.rigid, body.state, body.body->solver, water).value_or(energy.current);
-  const double kinetic = kinetic_energy(body.rigid, body.state);
+  double kinetic = kinetic_energy(body.rigid, body.state);
+  if (body.hydrodynamics) {
+    const double added = wrench_is_current
+                             ? body.hydrodynamics->added_kinetic_energy(body.state)
+                             : body.hydrodynamics->added_kinetic_energy_at_pose(body.state).value_or(0.0);
+    energy.current += added;
+    kinetic += added;
+  }
   if (first) energy = {energy.current, energy.current, energy.current, energy.current, kinetic};
   energy.min = std::min(energy.min, energy.current);
   energy.max = std::max(energy.max, energy.current);
@@ -71,6 +78,10 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
     simulated.body = &body;
     simulated.rigid = *rigid;
     simulated.state = initial_state(*rigid, body.dynamics);
+    if (body.hydrodynamics != nullptr) {
+      simulated.hydrodynamics.emplace(body, *rigid, scene.water(), scene.current_W());
+    }
+    simulation.has_hydrodynamics_ = simulation.has_hydrodynamics_ || simulated.hydrodynamics;
     simulation.bodies_.push_back(simulated);
   }
   if (simulation.bodies_.empty()) {
@@ -82,7 +93,10 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
 }
 
 Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
-    : water_(scene.water()), has_waves_(scene.sea() != nullptr || scene.receives_sea()), options_(options) {
+    : water_(scene.water()),
+      current_W_(scene.current_W()),
+      has_waves_(scene.sea() != nullptr || scene.receives_sea()),
+      options_(options) {
   if (options.delay_steps > 0) delay_line_.resize(static_cast<std::size_t>(options.delay_steps) + 1);
 }
 
@@ -96,11 +110,10 @@ const WrenchRequest& Simulation::request() {
   request_.bodies.clear();
   for (const SimulatedBody& body : bodies_) {
     RigidBodyState state = body.state;
-    if (in_step_) {
-      finish_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, state);
-    }
+    if (in_step_) finish_step(body, state);
     request_.bodies.push_back(to_body_state(body.body->id, body.rigid, state));
   }
+  if (has_hydrodynamics_) sent_.push_back(request_);
   return request_;
 }
 
@@ -116,21 +129,35 @@ void Simulation::accept(const WrenchResponse& latest) {
   assert(response.bodies.size() == bodies_.size());
   delay_ = static_cast<double>(step_number_ - response.id.seq) * options_.step;
   const bool wrenches_are_current = delay_ == 0.0 && options_.lead_time == 0.0;
+  while (sent_.size() > 1 && sent_.front().id.seq < response.id.seq) sent_.pop_front();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SimulatedBody& body = bodies_[i];
     body.wrench = response.bodies[i];
-    if (in_step_) {
-      finish_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, body.state);
+    if (body.hydrodynamics) {
+      body.hydrodynamics->take(body.wrench, sent_.front().bodies[i], options_.lead_time, body.state);
     }
+    if (in_step_) finish_step(body, body.state);
     record_energy(body, !in_step_, wrenches_are_current, water_);
   }
   in_step_ = false;
 }
 
+void Simulation::finish_step(const SimulatedBody& body, RigidBodyState& state) const {
+  if (body.hydrodynamics) {
+    body.hydrodynamics->finish_step(options_.integrator, options_.step, state);
+  } else {
+    buoyancy::finish_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, state);
+  }
+}
+
 void Simulation::advance() {
   assert(!in_step_);
   for (SimulatedBody& body : bodies_) {
-    begin_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, body.state);
+    if (body.hydrodynamics) {
+      body.hydrodynamics->begin_step(options_.integrator, options_.step, body.state);
+    } else {
+      begin_step(options_.integrator, body.rigid, current_load(body, water_), options_.step, body.state);
+    }
   }
   ++step_number_;
   in_step_ = true;

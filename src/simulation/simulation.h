@@ -8,9 +8,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "simulation/hydrodynamic_motion.h"
 #include "simulation/integrator.h"
 #include "simulation/simulation_client.h"
 
@@ -25,8 +28,9 @@ struct SimulationOptions {
   std::int64_t session_id = 0;
 };
 
-// Mechanical energy [J] over the run (rigid_body.h), computed for the present poses whatever the delay of
-// their wrenches. It is conserved only without damping and with wrenches that are not late.
+// Mechanical energy [J] over the run (rigid_body.h), with the kinetic energy of added mass, computed for the
+// present poses whatever the delay of their wrenches. It is conserved only without damping and drag, in water
+// at rest and with wrenches that are not late.
 struct EnergyStats {
   double initial = 0.0;
   double current = 0.0;
@@ -39,7 +43,8 @@ struct SimulatedBody {
   const Body* body = nullptr;  // in the scene
   RigidBody rigid;
   RigidBodyState state;
-  BodyWrench wrench;  // in use
+  BodyWrench wrench;                                // in use
+  std::optional<HydrodynamicMotion> hydrodynamics;  // of a body with drag or added mass
   EnergyStats energy;
 };
 
@@ -48,8 +53,8 @@ class Simulation {
   // scene must outlive the simulation. Errors: no body with a [body.client]; those of make_rigid_body().
   static Expected<Simulation> make(const Scene& scene, const SimulationOptions& options);
 
-  // Returns the request for the current poses, valid until the next call. The velocities of velocity_verlet
-  // are predicted with the load of the last response.
+  // Returns the request for the current poses, valid until the next call. The velocities of
+  // velocity_verlet are predicted with the load of the last response.
   const WrenchRequest& request();
   // Takes the wrenches and completes the velocities. response: one wrench per body, in order.
   void accept(const WrenchResponse& response);
@@ -71,15 +76,20 @@ class Simulation {
   const Water& water() const { return water_; }
   // Does the scene have waves? They do work on the bodies: the mechanical energy is that in water at rest.
   bool has_waves() const { return has_waves_; }
+  // Does the scene have a current? It does work on the bodies with drag or added mass.
+  bool has_current() const { return current_W_ != Vec3::Zero(); }
   const SimulationOptions& options() const { return options_; }
 
  private:
   Simulation(const Scene& scene, const SimulationOptions& options);
 
   const WrenchResponse& delayed_response(const WrenchResponse& latest);
+  void finish_step(const SimulatedBody& body, RigidBodyState& state) const;
 
   Water water_;
+  Vec3 current_W_;
   bool has_waves_ = false;
+  bool has_hydrodynamics_ = false;  // does a simulated body have drag or added mass?
   SimulationOptions options_;
   std::vector<SimulatedBody> bodies_;
   std::int64_t step_number_ = 0;
@@ -88,6 +98,8 @@ class Simulation {
   double delay_ = 0.0;
   // Ring buffer of the last delay_steps + 1 responses, step n at n modulo its size; empty without a delay.
   std::vector<WrenchResponse> delay_line_;
+  // The requests since that of the response in use, if a body has drag or added mass.
+  std::deque<WrenchRequest> sent_;
 };
 
 enum class RunOutcome { kCompleted, kInterrupted };

@@ -1,0 +1,91 @@
+// Moves a body that has drag or added mass. Bodies without either are moved by integrator.h alone.
+//
+// In B's axes about the centre of mass, nu is the twist relative to the current, M = diag(m, I), and A the
+// added mass. The motion relative to a uniform current is that in water at rest:
+//
+//   (M + s A) nu_dot = f - C(nu) nu - D(nu) nu,   D(nu) = s (D1 + D2 diag(|nu|)) + damping of [body.client]
+//
+// C is the Coriolis matrix of M + s A, which is skew-symmetric. f is what remains of the wrench of a response
+// when its drag and its Coriolis terms at the twist that was sent are subtracted, plus the weight: buoyancy,
+// and what waves add. In a step the maps K, D and X of integrator.h are replaced by
+//
+//   V(t): velocities, pose fixed. In modal velocities u (added_mass_modes.h), with C and D taken at the mean
+//         of the velocities before and after (three passes):  E(t/2) Q(t) E(t/2).
+//         E: du/dt = f - D u by the L-stable approximation 1/(1 + z + z^2/2) of exp(-z), whose fixed point is
+//         that of the equation. Its norm is at most 1 for every matrix z that dissipates, and it has no zeros
+//         or negative values: no drag and no step makes a velocity overshoot, alternate or gain energy.
+//         Q: du/dt = -C u by Cayley's transform, which is a rotation.
+//   X(t): pose, with the twist constant in B's axes: a screw. For a dry body X(t) of integrator.h, which is
+//         exact for v and L constant in W; then C is left out.
+//   S:    the immersion changes with the pose, from s to s': u is kept. The change of added mass does no work
+//         in this way, which in one dimension is Lagrange's equation; otherwise a body could gain energy by
+//         dipping in and out. The pose moved with the twist from before the change: half the difference is
+//         made up for in the next X, which keeps the order 2.
+//
+//   semi_implicit_euler  V(h) X(h), new wrench, S
+//   velocity_verlet      V(h/2) X(h), new wrench, S V(h/2)
+#pragma once
+
+#include <optional>
+
+#include "simulation/added_mass_modes.h"
+#include "simulation/integrator.h"
+
+namespace buoyancy {
+
+class HydrodynamicMotion {
+ public:
+  // body: has a hydrodynamic model; it must outlive this object.
+  HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water, const Vec3& current_W);
+
+  // Takes the wrench of a response to the state that was sent, evaluated lead_time later, and changes the
+  // velocities by S. The first wrench changes none.
+  void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, RigidBodyState& state);
+
+  // As in integrator.h, with the wrench that was taken last. Preconditions: take() was called; finish_step()
+  // belongs to the last begin_step().
+  void begin_step(Integrator integrator, double step, RigidBodyState& state);
+  void finish_step(Integrator integrator, double step, RigidBodyState& state) const;
+
+  // Kinetic energy of the water [J]: 1/2 nu . s A nu, at the immersion of the wrench that was taken last.
+  double added_kinetic_energy(const RigidBodyState& state) const;
+  // The same at the immersion of the state's own pose in water at rest. nullopt: the solver's status is not
+  // kOk at this pose.
+  std::optional<double> added_kinetic_energy_at_pose(const RigidBodyState& state) const;
+
+ private:
+  struct Immersions {
+    double drag = 0.0;
+    double added_mass = 0.0;
+  };
+  Immersions immersions(double volume, const Pose& pose) const;
+  double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
+
+  Vec6 relative_twist(const RigidBodyState& state) const;
+  void set_relative_twist(const Vec6& twist, RigidBodyState& state) const;
+  // N^T D N, with D at this twist; current_B: the current in B's axes.
+  Mat6 modal_damping(const Vec6& twist, const Vec3& current_B, const Mat6& N) const;
+  Mat6 client_damping(const Vec6& twist) const;  // of the absolute twist
+  Mat6 coriolis(const Vec6& twist) const;
+
+  void change_velocities(double time, RigidBodyState& state) const;  // V
+  void move(double time, RigidBodyState& state) const;               // X
+
+  const Body* body_;
+  RigidBody rigid_;
+  Water water_;
+  Vec3 current_W_;
+  Mat6 mass_B_ = Mat6::Zero();        // M
+  Mat6 added_mass_B_ = Mat6::Zero();  // A
+  AddedMassModes modes_;
+  bool quadratic_drag_is_diagonal_ = true;
+  bool has_damping_ = false;  // of [body.client]
+
+  BodyWrench still_;               // the wrench without its drag and Coriolis terms
+  bool taken_ = false;             // take() was called
+  Immersions immersion_;           // of still_
+  bool screw_ = false;             // X of the present step is a screw
+  Vec6 half_jump_ = Vec6::Zero();  // half the change of the twist in the last S, B's axes
+};
+
+}  // namespace buoyancy
