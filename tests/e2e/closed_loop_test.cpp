@@ -186,5 +186,55 @@ TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergyOver100000Steps) {
   });
 }
 
+TEST(ClosedLoop, AddedMassLengthensHeavePeriod) {
+  // m = 200 kg and A33 = 20 m, at the step that the client uses by default.
+  const TempDir directory;
+  const std::string path = directory.write("box.toml", R"(
+[water]
+density = 1000
+[[body]]
+id = 1
+shape = { type = "box", size = [1, 1, 0.4] }
+[body.added_mass]
+matrix = [0, 0, 4000, 0, 0, 0]
+immersion = "none"
+[body.client]
+density = 500
+position = [0, 0, 0.002]
+)");
+  const std::string csv = directory.path("box.csv");
+  const nlohmann::json summary = simulate_with_service(path, {"--duration", "10", "--csv", csv});
+  EXPECT_EQ(summary["step"], 0.001);
+  const double period = 2.0 * std::numbers::pi * std::sqrt((200.0 + 4000.0) / (1000.0 * kGravity));
+  EXPECT_NEAR(mean_period(csv_column(read_file(csv), "pz"), 0.001), period, 1e-3 * period);
+  EXPECT_LT(double{body(summary, 1)["energy_range"]}, 1e-3);
+}
+
+TEST(ClosedLoop, MunkMomentTurnsSlenderBody) {
+  const TempDir directory;
+  const std::string path = directory.write("slender.toml", R"(
+[water]
+density = 1000
+[[body]]
+id = 1
+shape = { type = "box", size = [2, 0.3, 0.3] }
+[body.added_mass]
+matrix = [10, 170, 170, 0, 50, 50]
+[body.client]
+density = 1000
+position = [0, 0, -50]
+linear_velocity = [1, 0.2, 0]
+)");
+  const std::string csv = directory.path("slender.csv");
+  simulate_with_service(path, {"--duration", "0.001", "--step", "0.0001", "--csv", csv});
+  // N = -(A22 - A11) u v, on the inertia of the body and its added mass.
+  const double moment = -(170.0 - 10.0) * 1.0 * 0.2;
+  const double inertia = 1000.0 * 0.18 * (4.0 + 0.09) / 12.0 + 50.0;
+  const std::string rows = read_file(csv);
+  EXPECT_NEAR(csv_column(rows, "tz").at(0), moment, 1e-9 * std::abs(moment));
+  EXPECT_NEAR(csv_column(rows, "wz").at(10), 0.001 * moment / inertia,
+              1e-3 * std::abs(0.001 * moment / inertia));
+}
+
 }  // namespace
 }  // namespace buoyancy

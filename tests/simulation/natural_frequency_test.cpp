@@ -62,6 +62,28 @@ TEST(HighestNaturalFrequency, EqualsRollFrequencyOfBodyWithLowInertia) {
   EXPECT_NEAR(plate.highest().frequency, std::sqrt(stiffness / inertia), 1e-9 * plate.highest().frequency);
 }
 
+TEST(HighestNaturalFrequency, CountsAddedMassAtTheImmersionOfThePose) {
+  const double s = 0.3;
+  const std::string added = "\n[body.added_mass]\nmatrix = [0, 0, 2000, 0, 0, 0]\nimmersion = ";
+  const double mass = kDensity * 0.2 * s;
+  const auto heave_at = [&](double added_mass) {
+    return std::sqrt(kDensity * kStandardGravity / (mass + added_mass));
+  };
+  // Without added mass of its rotations, roll and pitch are then faster than heave.
+  const double roll = std::sqrt(kDensity * kStandardGravity * (1.0 / 12.0 - 0.2 * s * 0.1 * (1.0 - s)) /
+                                (mass * (1.0 + 0.04) / 12.0));
+  const HighestNaturalFrequency none = prepared(kPlate + added + "\"none\"", floating_plate(s)).highest();
+  EXPECT_NEAR(none.frequency, roll, 1e-9 * roll);
+  EXPECT_LT(heave_at(2000.0), roll);
+  EXPECT_LT(roll, prepared(kPlate, floating_plate(s)).highest().frequency);
+
+  // With rotations that are heavier still, heave is the highest, at the draft of the body at rest.
+  const std::string all = "\n[body.added_mass]\nmatrix = [0, 0, 2000, 9e3, 9e3, 9e3]\n";
+  const HighestNaturalFrequency volume = prepared(kPlate + all, floating_plate(s)).highest();
+  EXPECT_NEAR(volume.frequency, heave_at(0.3 * 2000.0), 1e-9 * volume.frequency);
+  EXPECT_NEAR(volume.draft, 0.2 * s, 1e-9);
+}
+
 TEST(HighestNaturalFrequency, CoversWaterBelowDryBody) {
   const PreparedBody plate = prepared(kPlate, floating_plate(0.1, 1.0));
   EXPECT_GE(plate.highest().frequency, std::sqrt(kStandardGravity / 0.02) * (1.0 - 1e-9));

@@ -129,6 +129,22 @@ TEST(StepWarning, IgnoresDamping) {
   }
 }
 
+TEST(StepWarning, CountsAddedMass) {
+  const double density = 0.01;
+  const double step = 0.03;
+  const std::string body = kWater + plate(1, density);
+  EXPECT_GT(frequency_of_plate(density) * step, kStabilityLimit);
+  const SimulationOptions options = options_of(Integrator::kVelocityVerlet, step);
+  EXPECT_TRUE(step_warning(simulation_of(scene_of(body), options)));
+  const Scene heavy =
+      scene_of(body + "[body.added_mass]\nmatrix = [50, 50, 50, 9, 9, 9]\nimmersion = \"none\"\n");
+  Simulation simulation = simulation_of(heavy, options);
+  const std::optional<Warning> warning = step_warning(simulation);
+  EXPECT_FALSE(warning) << warning->message();
+  run_in_process(heavy, simulation, 2000);
+  EXPECT_FALSE(energy_warning(simulation));
+}
+
 TEST(StepWarning, AccountsForExcessLeadTime) {
   // Stability limits: h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
   const double w = frequency_of_plate(0.1);
@@ -205,6 +221,16 @@ TEST(EnergyWarning, IgnoresRoundingOfBodyAtRest) {
     run_in_process(scene, simulation, 20'000);
     EXPECT_FALSE(energy_warning(simulation));
   }
+}
+
+TEST(EnergyWarning, IgnoresWorkOfTheCurrent) {
+  const std::string body = plate(1, 0.5) + "[body.drag]\nlinear = [900, 900, 900, 9, 9, 9]\n";
+  const Scene scene = scene_of(kWater + "[water.current]\nvelocity = [1, 0, 0]\n" + body);
+  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.01));
+  run_in_process(scene, simulation, 2000);
+  const EnergyStats& energy = simulation.bodies().front().energy;
+  EXPECT_GT(energy.max - energy.initial, 0.5 * energy.max_kinetic);
+  EXPECT_FALSE(energy_warning(simulation));
 }
 
 }  // namespace
