@@ -2,7 +2,7 @@
 // code that reads a pose and applies a wrench differs.
 //
 //   buoyancyd --scene scenes/box.toml &
-//   ode_crate [LCM URL [STEP [RETRIES]]]
+//   ode_crate [--loads] [LCM URL [STEP [RETRIES [HEIGHT]]]]
 #include <ode/ode.h>
 
 #include "client/examples/crate.h"
@@ -13,17 +13,15 @@ namespace {
 
 class World {
  public:
-  World() {
+  explicit World(const crate::Start& start) {
     dInitODE();
-    world_ = dWorldCreate();
-    dWorldSetGravity(world_, 0, 0, -crate::kGravity);
+    world_ = dWorldCreate();  // without gravity: the compensated wrench contains the weight
     body_ = dBodyCreate(world_);
     dMass mass;
     dMassSetBoxTotal(&mass, crate::kMass, crate::kSize[0], crate::kSize[1], crate::kSize[2]);
     dBodySetMass(body_, &mass);
-    dBodySetPosition(body_, crate::kInitialPosition[0], crate::kInitialPosition[1],
-                     crate::kInitialPosition[2]);
-    const auto& [w, x, y, z] = crate::kInitialOrientation;
+    dBodySetPosition(body_, start.position[0], start.position[1], start.position[2]);
+    const auto& [w, x, y, z] = start.orientation;
     dQuaternion orientation{w, x, y, z};
     dSafeNormalize4(orientation);
     dBodySetQuaternion(body_, orientation);
@@ -40,22 +38,18 @@ class World {
   buoyancy::BodyState state() const {
     const dReal* p = dBodyGetPosition(body_);
     const dReal* q = dBodyGetQuaternion(body_);
+    const dReal* v = dBodyGetLinearVel(body_);
+    const dReal* w = dBodyGetAngularVel(body_);
     return {.body_id = crate::kBodyId,
             .position = {p[0], p[1], p[2]},
             .quaternion_wxyz = {q[0], q[1], q[2], q[3]},
-            .linear_velocity = {},  // used only with a lead_time
-            .angular_velocity = {}};
+            .linear_velocity = {v[0], v[1], v[2]},
+            .angular_velocity = {w[0], w[1], w[2]}};
   }
 
-  void step_with(const buoyancy::BodyWrench& water, double step) {
-    const dReal* v = dBodyGetLinearVel(body_);
-    const dReal* w = dBodyGetAngularVel(body_);
-    dBodyAddForce(body_, water.force[0] - crate::kLinearDamping * v[0],
-                  water.force[1] - crate::kLinearDamping * v[1],
-                  water.force[2] - crate::kLinearDamping * v[2]);
-    dBodyAddTorque(body_, water.torque[0] - crate::kAngularDamping * w[0],
-                   water.torque[1] - crate::kAngularDamping * w[1],
-                   water.torque[2] - crate::kAngularDamping * w[2]);
+  void step_with(const buoyancy::Vec6& wrench_W, double step) {
+    dBodyAddForce(body_, wrench_W[0], wrench_W[1], wrench_W[2]);
+    dBodyAddTorque(body_, wrench_W[3], wrench_W[4], wrench_W[5]);
     dWorldStep(world_, step);
   }
 
@@ -70,6 +64,7 @@ class World {
 }  // namespace
 
 int main(int argc, char** argv) {
-  World world;
-  return crate::float_crate(world, crate::Arguments(argc, argv));
+  const crate::Arguments arguments(argc, argv);
+  World world(arguments.start());
+  return crate::float_crate(world, arguments);
 }

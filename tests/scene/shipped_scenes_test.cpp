@@ -15,26 +15,37 @@ std::filesystem::path shipped(const std::string& name) {
   return std::filesystem::path(BUOYANCY_SOURCE_DIR) / "scenes" / name;
 }
 
-TEST(ShippedScenes, AreReadable) {
-  std::size_t count = 0;
+// Not the folder of the meshes beside them.
+std::vector<std::filesystem::path> shipped_scenes() {
+  std::vector<std::filesystem::path> scenes;
   for (const auto& entry : std::filesystem::directory_iterator(shipped(""))) {
-    const Expected<SceneDescription> scene = read_scene_file(entry.path());
-    EXPECT_TRUE(scene) << scene.error().message();
-    ++count;
+    if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
   }
-  EXPECT_GE(count, 5U);
+  return scenes;
+}
+
+TEST(ShippedScenes, AreReadable) {
+  const std::vector<std::filesystem::path> scenes = shipped_scenes();
+  for (const std::filesystem::path& path : scenes) {
+    const Expected<SceneDescription> scene = read_scene_file(path);
+    EXPECT_TRUE(scene) << scene.error().message();
+  }
+  EXPECT_GE(scenes.size(), 5U);
 }
 
 TEST(ShippedScenes, HaveFloatingBodies) {
-  for (const auto& entry : std::filesystem::directory_iterator(shipped(""))) {
+  for (const std::filesystem::path& path : shipped_scenes()) {
     // Their mesh is in another package.
-    if (entry.path().filename().string().starts_with("duck")) continue;
-    const Expected<Scene> scene = Scene::load(entry.path());
+    if (path.filename().string().starts_with("duck")) continue;
+    const Expected<Scene> scene = Scene::load(path);
     ASSERT_TRUE(scene) << scene.error().message();
     for (const Body& body : scene->bodies()) {
-      EXPECT_TRUE(body.dynamics.given) << entry.path() << ", body " << body.id;
-      EXPECT_LT(body.dynamics.density.value_or(0.0), scene->water().density)
-          << entry.path() << ", body " << body.id;
+      EXPECT_TRUE(body.dynamics.given) << path << ", body " << body.id;
+      EXPECT_LT(body.dynamics.density.value_or(0.0), scene->water().density) << path << ", body " << body.id;
+      EXPECT_LT(body.dynamics.mass.value_or(0.0),
+                scene->water().density * body.prepared_mesh->mass_properties.volume)
+          << path << ", body " << body.id;
+      EXPECT_EQ(body.loads, body.hydrodynamics != nullptr) << path << ", body " << body.id;
     }
   }
 }
