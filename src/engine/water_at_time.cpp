@@ -28,11 +28,16 @@ WaterAtTime::Change WaterAtTime::move_to(std::int64_t utime, double lead_time) {
   if (scene_->sea() == nullptr && !scene_->receives_sea()) return {{&scene_->water(), nullptr}, false};
   const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);
   if (period == nullptr) return {};
+  return move_to(*period, utime, lead_time);
+}
+
+WaterAtTime::Change WaterAtTime::move_to(const std::shared_ptr<const SeaPeriod>& period, std::int64_t utime,
+                                         double lead_time) {
   if (!std::isfinite(lead_time)) lead_time = 0.0;
-  const bool same_sea = period_ == *period;
-  const bool has_waves = (*period)->sea != nullptr;
+  const bool same_sea = period_ == period;
+  const bool has_waves = period->sea != nullptr;
   if (!same_sea) {
-    period_ = *period;
+    period_ = period;
     waves_.reset();
     if (has_waves) waves_.emplace(*period_->sea);
   }

@@ -35,6 +35,8 @@ class WaterAtTime {
   // result is valid until the next call of a member. No heap allocation for the sea of the last call.
   // Complexity: O(components) where the time changes.
   Change move_to(std::int64_t utime, double lead_time);
+  // The same in this sea, as sea_at() returned it, also if it has been replaced since then.
+  Change move_to(const std::shared_ptr<const SeaPeriod>& period, std::int64_t utime, double lead_time);
 
  private:
   const Scene* scene_;
