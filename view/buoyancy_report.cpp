@@ -16,6 +16,7 @@
 #include "recording/record_writer.h"
 #include "scene/scene.h"
 #include "view/common/page_assets.h"
+#include "view/common/scene_model.h"
 #include "view/report/body_list.h"
 #include "view/report/report_page.h"
 #include "view/report/run_file.h"
@@ -47,6 +48,7 @@ decimated; its extremes are kept.
   app.add_option("--scene", arguments.scene, "Scene file (TOML): water and bodies")->required();
   add_states_channel_option(app, arguments.file.states_channel);
   add_wrenches_channel_option(app, arguments.file.wrenches_channel);
+  add_loads_channel_option(app, arguments.file.loads_channel);
   add_sea_channel_option(app, arguments.file.sea_channel);
   add_status_channel_option(app, arguments.file.status_channel);
   add_viewer_options(app, arguments.poses);
@@ -103,10 +105,10 @@ int report_main(int argc, char** argv) {
   if (!three) return fail(three.error(), kFailure);
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  Expected<PoseChannels> poses =
-      resolve_pose_channels(arguments.poses, *scene,
-                            {arguments.file.states_channel, arguments.file.wrenches_channel,
-                             arguments.file.sea_channel, arguments.file.status_channel});
+  Expected<PoseChannels> poses = resolve_pose_channels(
+      arguments.poses, *scene,
+      {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.loads_channel,
+       arguments.file.sea_channel, arguments.file.status_channel});
   if (!poses) return fail(poses.error(), kUsageError);
   arguments.file.poses = *std::move(poses);
 
@@ -141,7 +143,7 @@ int report_main(int argc, char** argv) {
                                                    {.file = arguments.run.filename().string(),
                                                     .version = BUOYANCY_VERSION,
                                                     .selected = !arguments.file.bodies.empty()}),
-                                       *three);
+                                       *three, std::ranges::any_of(scene->bodies(), has_loads));
   if (const Expected<void> written = write_page(arguments.output, page); !written) {
     return fail(written.error(), kFailure);
   }

@@ -11,6 +11,7 @@
 #include "scene/scene_report.h"
 #include "view/common/base64.h"
 #include "view/common/sea_json.h"
+#include "waves/sea.h"
 
 namespace buoyancy::view {
 namespace {
@@ -83,7 +84,32 @@ Json json_array(const Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
+// Without such bodies nothing is added, so that the page of a run stays as small as it is.
+void add_loads(const Scene& scene, Json& model) {
+  if (std::ranges::none_of(scene.bodies(), has_loads)) return;
+  const HorizontalAxes axes = horizontal_axes(scene.water().up_W);
+  model["loads"] = {{"e1", json_array(axes.e1_W)},
+                    {"e2", json_array(axes.e2_W)},
+                    {"current", json_array(scene.current_W())},
+                    {"waves", scene.sea() != nullptr || scene.receives_sea()}};
+  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
+    const Body& body = scene.bodies()[i];
+    if (!has_loads(body)) continue;
+    const HydrodynamicCoefficients none;
+    const HydrodynamicCoefficients& coefficients =
+        body.hydrodynamics != nullptr ? body.hydrodynamics->coefficients() : none;
+    model["bodies"][i]["loads"] = {
+        {"drag_center", coefficients.drag ? json_array(coefficients.drag->center_B) : Json(nullptr)},
+        {"added_mass", coefficients.added_mass.has_value()},
+        {"published", body.loads}};
+  }
+}
+
 }  // namespace
+
+bool has_loads(const Body& body) {
+  return body.loads || body.hydrodynamics != nullptr;
+}
 
 Json scene_model(const Scene& scene, const SceneModelOptions& options) {
   Json model = Json::parse(scene_report_json(scene));
@@ -97,6 +123,7 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
     const auto& center = scene.bodies()[i].center_of_mass_B;
     model["bodies"][i]["center_of_mass"] = center ? json_array(*center) : Json(nullptr);
   }
+  add_loads(scene, model);
   const std::size_t share = std::max<std::size_t>(4, max_triangles_per_mesh(scene, options.max_triangles));
   for (std::size_t i = 0; i < scene.meshes().size(); ++i) {
     const HydrostaticMesh& mesh = scene.meshes()[i]->mesh;

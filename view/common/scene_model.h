@@ -9,6 +9,9 @@
 
 namespace buoyancy::view {
 
+// Whether a page shows the parts of the wrench on a body: one with drag, added mass or the output "loads".
+bool has_loads(const Body& body);
+
 struct SceneModelOptions {
   // Of all meshes together; meshes that exceed their equal share are reduced to it.
   std::size_t max_triangles = 60'000;
@@ -21,6 +24,13 @@ struct SceneModelOptions {
 //                  "positions": float32, three per vertex [m], relative to center
 //                  "indices": uint32, three per triangle, counter-clockwise seen from outside
 //                  "shown_triangles": the number of triangles in indices
+// and only if a body has_loads()
+//   "loads"        "e1", "e2": [3], W: the horizontal axes, as in sea_json.h
+//                  "current": [3] [m/s], W
+//                  "waves": whether there can be any
+//   of such a body "loads": {"drag_center": [3] [m], B, or null without drag
+//                            "added_mass": whether it has any
+//                            "published": whether its outputs include "loads"}
 // positions and indices are base64 of little-endian numbers. A mesh with more triangles than its share of
 // max_triangles is reduced for drawing only (meshoptimizer).
 nlohmann::ordered_json scene_model(const Scene& scene, const SceneModelOptions& options = {});

@@ -30,22 +30,13 @@ class Plot {
   // parent: the containing element. series: [{name, times, values}], at most four. on_seek(time): called when the user
   // points at a time. missing: text shown if there are no values.
   constructor(parent, { title, unit, series, on_seek, missing = 'not recorded' }) {
-    this.title = title;
-    this.unit = unit;
     this.missing = missing;
-    this.series = series;
     this.figure = document.createElement('figure');
     this.caption = document.createElement('figcaption');
-    const heading = document.createElement('b');
-    heading.textContent = `${title}, ${unit}`;
-    this.caption.append(heading);
-    this.readings = series.map((one, i) => {
-      const reading = document.createElement('span');
-      reading.className = `name ${['', 'dashed', 'dotted', 'dashed'][i]}`;
-      reading.style.setProperty('--line', Plot.colours[i]);
-      this.caption.append(reading);
-      return reading;
-    });
+    this.heading = document.createElement('b');
+    this.caption.append(this.heading);
+    this.readings = [];
+    this.set(series, title, unit);
     this.svg = svg_element('svg', { role: 'img', tabindex: '-1' });
     this.figure.append(this.caption, this.svg);
     parent.append(this.figure);
@@ -56,11 +47,31 @@ class Plot {
   }
 
   static get colours() { return ['var(--first)', 'var(--second)', 'var(--third)', 'var(--fourth)']; }
-  static get height() { return 104; }
+  get height() { return 104; }
 
-  update(series) {
-    this.series = series;
+  // The series, the title and the unit may change, the number of series too.
+  update(series, title = this.title, unit = this.unit) {
+    this.set(series, title, unit);
     this.draw();
+  }
+
+  set(series, title, unit) {
+    this.series = series;
+    this.title = title;
+    this.unit = unit;
+    this.heading.textContent = `${title}, ${unit}`;
+    while (this.readings.length > series.length) this.readings.pop().remove();
+    while (this.readings.length < series.length) {
+      const reading = document.createElement('span');
+      this.caption.append(reading);
+      this.readings.push(reading);
+    }
+    this.readings.forEach((reading, i) => this.style_reading(reading, i));
+  }
+
+  style_reading(reading, i) {
+    reading.className = `name ${['', 'dashed', 'dotted', 'dashed'][i]}`;
+    reading.style.setProperty('--line', Plot.colours[i]);
   }
 
   range() {
@@ -78,7 +89,7 @@ class Plot {
   }
 
   draw() {
-    const width = Math.max(160, this.figure.clientWidth), height = Plot.height;
+    const width = Math.max(160, this.figure.clientWidth), height = this.height;
     const left = 58, right = 16, top = 6, bottom = 20;
     const range = this.range();
     this.svg.replaceChildren();
@@ -99,7 +110,7 @@ class Plot {
     this.x = (time) => left + (time - range.start) / (end - range.start) * (width - left - right);
     this.time = (x) => range.start + (x - left) / (width - left - right) * (end - range.start);
     const y = (value) => top + (high - value) / (high - low) * (height - top - bottom);
-    const rows = round_ticks(low, high, 4);
+    const rows = round_ticks(low, high, Math.round(height / 26));
     for (const tick of rows.ticks) {
       svg_element('line', { class: 'rule', x1: left, x2: width - right, y1: y(tick), y2: y(tick) }, this.svg);
       const label = svg_element('text', { x: left - 5, y: y(tick) + 4, 'text-anchor': 'end' }, this.svg);
@@ -110,6 +121,13 @@ class Plot {
       const label = svg_element('text', { x: this.x(tick), y: height - 5, 'text-anchor': 'middle' }, this.svg);
       label.textContent = `${tick.toFixed(columns.digits)} s`;
     }
+    this.draw_series(y);
+    this.now = svg_element('line', { class: 'now', y1: top, y2: height - bottom, x1: -9, x2: -9 }, this.svg);
+    this.show(this.shown_time);
+  }
+
+  // y: from values to the picture, as this.x from times.
+  draw_series(y) {
     this.series.forEach(({ times, values }, i) => {
       let path = '', dots = '', pen_up = true;
       for (let n = 0; n < values.length; n += 1) {
@@ -123,8 +141,6 @@ class Plot {
                             'stroke-linejoin': 'round', 'stroke-dasharray': ['none', '6 3', '2 2', '9 3 2 3'][i] }, this.svg);
       if (dots) svg_element('path', { class: 'lone', d: dots, style: `stroke:${Plot.colours[i]}` }, this.svg);
     });
-    this.now = svg_element('line', { class: 'now', y1: top, y2: height - bottom, x1: -9, x2: -9 }, this.svg);
-    this.show(this.shown_time);
   }
 
   // Sets the text alternative for screen readers.

@@ -13,7 +13,8 @@
     data.columns.forEach((name, i) => { columns[name] = values.subarray(i * body.rows, (i + 1) * body.rows); });
     const metacentres = body.metacenters === undefined ? null : decode_numbers(body.metacenters, Float32Array);
     const description = descriptions.get(body.id);
-    return { ...body, columns, metacentres, description };
+    const loads = body.loads ? new RecordedLoads(body, columns) : null;
+    return { ...body, columns, metacentres, description, loads };
   });
   const start = Math.min(...bodies.map((body) => body.columns.time[0]));
   const end = Math.max(...bodies.map((body) => body.columns.time[body.rows - 1]));
@@ -43,6 +44,7 @@
     return { id: body.id, status: columns.status[row], p: position_names.map(interpolated),
              q: from.map((value, i) => (1 - fraction) * value + sign * fraction * to[i]),
              f: at(['fx', 'fy', 'fz']), t: at(['tx', 'ty', 'tz']), b: at(['bx', 'by', 'bz']),
+             loads: body.loads && body.loads.at(row),
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
@@ -60,9 +62,9 @@
   const groups = [
     { key: 'heave', title: 'Heave', unit: 'm', columns: { [seas.length > 0 ? 'B\'s origin over the level' : 'B\'s origin over the water']: 'heave' }, is_valid: has_pose },
     { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' }, is_valid: has_pose },
-    { key: 'force', title: 'Buoyant force', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok },
-    { key: 'torque', title: 'Buoyant torque', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, is_valid: is_ok },
-    { key: 'energy', title: 'Mechanical energy', unit: 'J', columns: { energy: 'energy' }, is_valid: is_ok,
+    { key: 'force', title: 'Buoyant force', moving: 'Force of the water', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok },
+    { key: 'torque', title: 'Buoyant torque', moving: 'Torque of the water', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, is_valid: is_ok },
+    { key: 'energy', title: 'Mechanical energy', moving: 'Mechanical energy, not conserved', unit: 'J', columns: { energy: 'energy' }, is_valid: is_ok,
       missing: 'unknown: requires velocities and the mass of the body in the scene' },
     { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'request to response': 'round_trip' }, is_valid: () => true, scale: 1e3,
       missing: 'not recorded: requires an LCM log' },
@@ -72,10 +74,19 @@
       name, times: selected.columns.time,
       values: selected.columns[column].map((value, row) => (group.is_valid(selected, row) ? (group.scale || 1) * value : NaN)) }));
   }
+  // A plot's title for the selected body; `moving`: where drag or added mass contribute.
+  const title_of = (group) => (group.moving && selected.loads && has_hydrodynamics(selected.description) ? group.moving : group.title);
   const plots = {};
   for (const group of groups) {
-    plots[group.key] = new Plot(element('plots'), { title: group.title, unit: group.unit, series: series_of(group), on_seek: seek, missing: group.missing });
+    plots[group.key] = new Plot(element('plots'), { title: title_of(group), unit: group.unit, series: series_of(group), on_seek: seek, missing: group.missing });
   }
+  if (data.model.loads) plots.loads = new LoadPlots(element('plots'), plots.force.figure, data.model, seek);
+  function update_loads() {
+    if (!plots.loads) return;
+    plots.loads.box.hidden = selected.loads === null;
+    if (selected.loads) plots.loads.update(selected.description, selected.columns.time, (row) => selected.loads.at(row), selected.loads.source_text());
+  }
+  update_loads();
 
   function show() {
     if (scene) {
@@ -127,7 +138,8 @@
   function select(id) {
     selected = bodies.find((body) => body.id === id) || selected;
     element('body').value = String(selected.id);
-    for (const group of groups) plots[group.key].update(series_of(group));
+    for (const group of groups) plots[group.key].update(series_of(group), title_of(group));
+    update_loads();
     show();
   }
 
@@ -164,7 +176,8 @@
     if (move || (scene && scene.key(event))) event.preventDefault();
   });
 
-  fill_legend(element('legend'), data.model.bodies.some((body) => body.center_of_mass !== null), bodies.some((body) => body.metacentres));
+  fill_legend(element('legend'), data.model.bodies.some((body) => body.center_of_mass !== null), bodies.some((body) => body.metacentres),
+              bodies.filter((body) => body.loads).map((body) => body.description));
   element('title').textContent = `${data.model.scene}: ${data.file}`;
   document.title = `buoyancy: ${data.file}`;
   element('subtitle').textContent = `${shown_text(data, bodies)}, ${format_number(end - start)} s`;

@@ -112,6 +112,11 @@ function waves_text(seas) {
     `${depth}, ${sea.pressure} pressure. `;
 }
 
+// The current in a sentence; empty where no body has loads.
+function current_text({ loads }) {
+  return loads && loads.current.some((component) => component !== 0) ? `Current: [${loads.current.map(format_number).join(', ')}] m/s. ` : '';
+}
+
 function report_tables(data, bodies, seas) {
   const { water, bodies: described, meshes, simd_target: target } = data.model;
   const section = (title, ...content) => {
@@ -134,7 +139,7 @@ function report_tables(data, bodies, seas) {
       ['latency, median, 99 %, maximum', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
   }
   section('The scene', table_of(
-    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(seas)}` +
+    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(seas)}${current_text(data.model)}` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
     described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));

@@ -6,8 +6,14 @@
 class WaterScene {
   static get colours() {
     return { sky: '#eaf3fa', water: '#56b4e9', dry: '#f0a30a', wet: '#0b4f8a', waterline: '#ffffff', force: '#009e73',
-             weight: '#7a3b00', centre_of_buoyancy: '#009e73', centre_of_mass: '#111111', metacentre: '#cc79a7' };
+             weight: '#7a3b00', centre_of_buoyancy: '#009e73', centre_of_mass: '#111111', metacentre: '#cc79a7',
+             drag: '#d55e00', water_velocity: '#5b2a86' };
   }
+
+  // [s/m], the length of an arrow of the water's velocity, in sizes of the body.
+  static get size_per_speed() { return 0.5; }
+  // Beside buoyancy and weight, drag is small: its arrow is this many times as long.
+  static get drag_enlarged() { return 5; }
 
   constructor(canvas, model) {
     this.canvas = canvas;
@@ -48,7 +54,8 @@ class WaterScene {
     this.waves = sea ? new WaveSurface(this, sea) : null;
   }
 
-  // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null}]; see snapshot_json.h.
+  // bodies: [{id, status: or null, p, q: [w, x, y, z], f, b: or null, m: [point, point] or null, loads: or null or
+  // undefined}]; see snapshot_json.h.
   // sea_time: [s], of the sea in waves.
   show(bodies, sea_time = NaN) {
     this.sea_time = sea_time;
@@ -170,6 +177,7 @@ class WaterScene {
       // A ring, so that both are visible if it coincides with the centre of mass.
       metacentre: this.point('metacentre', new THREE.RingGeometry(5, 8, 28)),
     };
+    if (description.loads) Object.assign(markers, { drag: this.arrow('drag'), water_velocity: this.arrow('water_velocity') });
     return { description, group, drawn, size, markers, displacement_weight: water.density * water.gravity * Math.abs(mesh.volume) };
   }
 
@@ -243,10 +251,12 @@ class WaterScene {
     // A force without a centre of buoyancy is drawn at the body's origin.
     const is_wet = (state.status === 0 || state.status === null) && state.f.some((component) => component !== 0);
     place(body.markers.centre_of_buoyancy, is_wet ? state.b : null);
-    const force = new THREE.Vector3(...state.f);
+    // Where the parts of the force are known, the buoyant one is drawn, and drag by itself.
+    const force = new THREE.Vector3(...(state.loads ? state.loads.buoyancy.slice(0, 3) : state.f));
     const scale = 0.9 * body.size / body.displacement_weight;
     if (is_wet) this.place_arrow(body.markers.force, offset(state.b || [0, 0, 0]), force, scale * force.length(), body.size);
     else body.markers.force.visible = false;
+    if (body.description.loads) this.place_loads(body, state.loads, scale);
     place(body.markers.metacentre, state.m ? state.m[0] : null);
     const centre = body.description.center_of_mass;
     body.markers.centre_of_mass.visible = centre !== null;
@@ -254,6 +264,21 @@ class WaterScene {
     body.markers.centre_of_mass.position.set(...centre).applyQuaternion(body.group.quaternion).add(position);
     const weight = (body.description.mass || 0) * this.model.water.gravity;
     this.place_arrow(body.markers.weight, body.markers.centre_of_mass.position, this.up.clone().negate(), scale * weight, body.size);
+  }
+
+  // loads: or null or undefined. scale: [m/N], of forces.
+  place_loads({ description, group, markers, size }, loads, scale) {
+    const center = description.loads.drag_center;
+    markers.drag.visible = markers.water_velocity.visible = false;
+    if (!loads) return;
+    const drag = new THREE.Vector3(...loads.drag.slice(0, 3));
+    if (center) {
+      const from = new THREE.Vector3(...center).applyQuaternion(group.quaternion).add(group.position);
+      this.place_arrow(markers.drag, from, drag, WaterScene.drag_enlarged * scale * drag.length(), size);
+    }
+    const velocity = new THREE.Vector3(...loads.water_velocity);
+    const above = this.up.clone().multiplyScalar(0.6 * size).add(group.position);
+    this.place_arrow(markers.water_velocity, above, velocity, WaterScene.size_per_speed * size * velocity.length(), size);
   }
 
   // A plane with a grid whose cells are a power of ten of metres; it fades into the sky before its edge.
@@ -354,12 +379,14 @@ function make_water_scene(canvas, model) {
   }
 }
 
-// Adds the meaning of the colours as list items.
-function fill_legend(list, with_mass, with_metacentre) {
+// Adds the meaning of the colours as list items. with_loads: the descriptions of the bodies whose loads can be known.
+function fill_legend(list, with_mass, with_metacentre, with_loads = []) {
   const entries = [['dry', 'dry hull', ''], ['wet', 'wetted hull', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', ''],
                    ['force', 'buoyant force, at the centre of buoyancy', 'round']];
   if (with_mass) entries.push(['weight', 'weight', 'bar'], ['centre_of_mass', 'centre of mass', 'round']);
   if (with_metacentre) entries.push(['metacentre', 'metacentre (of the softer axis)', 'ring']);
+  if (with_loads.some((body) => body.loads.drag_center)) entries.push(['drag', `drag, ${WaterScene.drag_enlarged} times as long as other forces`, 'bar']);
+  if (with_loads.length > 0) entries.push(['water_velocity', 'velocity of the water, half the body\'s diagonal per m/s', 'bar']);
   for (const [colour, text, shape] of entries) {
     const item = document.createElement('li');
     const sample = document.createElement('i');

@@ -13,7 +13,7 @@ constexpr std::size_t kMinRows = 32;
 DecimatedRows::DecimatedRows(std::size_t max_rows)
     : max_rows_(std::max(max_rows, kMinRows)), max_bins_((max_rows_ - 1) / kRowsPerBin / 2 * 2) {}
 
-DecimatedRows::Bin DecimatedRows::make_bin(const NumberedRow& row) {
+DecimatedRows::Bin DecimatedRows::make_bin(const KeptRow& row) {
   Bin bin;
   bin.fill(row);
   return bin;
@@ -22,18 +22,18 @@ DecimatedRows::Bin DecimatedRows::make_bin(const NumberedRow& row) {
 void DecimatedRows::merge(Bin& bin, const Bin& other) {
   for (std::size_t i = 0; i < kExtremaColumns.size(); ++i) {
     const RunColumn column = kExtremaColumns[i];
-    NumberedRow& min = bin[1 + 2 * i];
-    NumberedRow& max = bin[2 + 2 * i];
-    const NumberedRow& other_min = other[1 + 2 * i];
-    const NumberedRow& other_max = other[2 + 2 * i];
+    KeptRow& min = bin[1 + 2 * i];
+    KeptRow& max = bin[2 + 2 * i];
+    const KeptRow& other_min = other[1 + 2 * i];
+    const KeptRow& other_max = other[2 + 2 * i];
     // Any number replaces a NaN, and a NaN replaces nothing but a NaN.
-    if (other_min.row[column] < min.row[column] || std::isnan(min.row[column])) min = other_min;
-    if (other_max.row[column] > max.row[column] || std::isnan(max.row[column])) max = other_max;
+    if (other_min.values[column] < min.values[column] || std::isnan(min.values[column])) min = other_min;
+    if (other_max.values[column] > max.values[column] || std::isnan(max.values[column])) max = other_max;
   }
 }
 
-void DecimatedRows::add(std::int64_t number, const RunRow& row) {
-  last_ = {number, row};
+void DecimatedRows::add(KeptRow row) {
+  last_ = std::move(row);
   ++added_;
   if (!bins_.empty()) {
     add_to_bins(last_);
@@ -43,11 +43,11 @@ void DecimatedRows::add(std::int64_t number, const RunRow& row) {
   if (all_.size() <= max_rows_) return;
   bin_size_ = static_cast<std::int64_t>((all_.size() + max_bins_ - 1) / max_bins_);
   last_bin_size_ = bin_size_;
-  for (const NumberedRow& kept : all_) add_to_bins(kept);
+  for (const KeptRow& kept : all_) add_to_bins(kept);
   all_ = {};
 }
 
-void DecimatedRows::add_to_bins(const NumberedRow& row) {
+void DecimatedRows::add_to_bins(const KeptRow& row) {
   if (last_bin_size_ < bin_size_) {
     merge(bins_.back(), make_bin(row));
     ++last_bin_size_;
@@ -66,17 +66,14 @@ void DecimatedRows::add_to_bins(const NumberedRow& row) {
   last_bin_size_ = 1;
 }
 
-std::vector<RunRow> DecimatedRows::rows() const {
-  std::vector<NumberedRow> kept = all_;
+std::vector<KeptRow> DecimatedRows::rows() const {
+  std::vector<KeptRow> kept = all_;
   for (const Bin& bin : bins_) kept.insert(kept.end(), bin.begin(), bin.end());
   if (!bins_.empty()) kept.push_back(last_);
-  std::ranges::sort(kept, {}, &NumberedRow::number);
-  const auto same_row = [](const NumberedRow& a, const NumberedRow& b) { return a.number == b.number; };
+  std::ranges::sort(kept, {}, &KeptRow::number);
+  const auto same_row = [](const KeptRow& a, const KeptRow& b) { return a.number == b.number; };
   kept.erase(std::unique(kept.begin(), kept.end(), same_row), kept.end());
-  std::vector<RunRow> rows;
-  rows.reserve(kept.size());
-  for (const NumberedRow& numbered : kept) rows.push_back(numbered.row);
-  return rows;
+  return kept;
 }
 
 }  // namespace buoyancy::view

@@ -9,6 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "view/report/run.h"
@@ -17,38 +19,40 @@ namespace buoyancy::view {
 
 inline constexpr std::array kExtremaColumns{kHeave, kRoll, kPitch, kForce, kTorque, kEnergy, kRoundTrip};
 
+struct KeptRow {
+  std::int64_t number = 0;  // the position among all rows
+  RunRow values{};
+  std::shared_ptr<RowLoads> loads;  // nullptr: the body has none
+};
+
 class DecimatedRows {
  public:
   // Keeps at most max(max_rows, 32) rows; uses memory for up to twice as many.
   explicit DecimatedRows(std::size_t max_rows);
 
-  // number: the position among all rows; rows may arrive slightly out of order.
-  void add(std::int64_t number, const RunRow& row);
+  // Rows may arrive slightly out of order of their numbers.
+  void add(KeptRow row);
 
-  std::vector<RunRow> rows() const;  // in order of their numbers
+  std::vector<KeptRow> rows() const;  // in order of their numbers
   std::int64_t added() const { return added_; }
 
  private:
-  struct NumberedRow {
-    std::int64_t number = 0;
-    RunRow row{};
-  };
   // The first row, then the rows with the minimum and the maximum of each column of kExtremaColumns.
   static constexpr std::size_t kRowsPerBin = 1 + 2 * kExtremaColumns.size();
-  using Bin = std::array<NumberedRow, kRowsPerBin>;
+  using Bin = std::array<KeptRow, kRowsPerBin>;
 
-  static Bin make_bin(const NumberedRow& row);
+  static Bin make_bin(const KeptRow& row);
   static void merge(Bin& bin, const Bin& other);
-  void add_to_bins(const NumberedRow& row);
+  void add_to_bins(const KeptRow& row);
 
   std::size_t max_rows_;
-  std::size_t max_bins_;          // even
-  std::vector<NumberedRow> all_;  // all rows, up to max_rows_
-  std::vector<Bin> bins_;         // afterwards
-  std::int64_t bin_size_ = 0;     // rows per bin
+  std::size_t max_bins_;       // even
+  std::vector<KeptRow> all_;   // all rows, up to max_rows_
+  std::vector<Bin> bins_;      // afterwards
+  std::int64_t bin_size_ = 0;  // rows per bin
   std::int64_t last_bin_size_ = 0;
   std::int64_t added_ = 0;
-  NumberedRow last_;
+  KeptRow last_;
 };
 
 }  // namespace buoyancy::view

@@ -103,6 +103,18 @@ std::string encode_metacenters(const Body& body, const BodyRun& run, const Water
   return base64_of<float>(numbers);
 }
 
+Json loads_json(const BodyRun& run) {
+  std::vector<float> numbers;
+  numbers.reserve(run.loads.size() * kLoadColumnCount);
+  for (std::size_t column = 0; column < kLoadColumnCount; ++column) {
+    for (const LoadRow& row : run.loads) numbers.push_back(static_cast<float>(row[column]));
+  }
+  return {{"data", base64_of<float>(numbers)},
+          {"recorded", run.loads_recorded},
+          {"computed", run.loads_computed},
+          {"without_velocities", run.loads_without_velocities}};
+}
+
 Json status_json(const ServiceStatus& status) {
   const ServiceCounters& counters = status.counters;
   return {{"version", status.version},
@@ -158,18 +170,22 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
       described["data"] = encode_rows(body_run.rows, column_count(scene));
       if (!has_waves(scene)) described["evaluations"] = evaluations_json(body, body_run, scene.water());
       if (body.hydrostatics) described["metacenters"] = encode_metacenters(body, body_run, scene.water());
+      if (has_loads(body)) described["loads"] = loads_json(body_run);
     }
     data["bodies"].push_back(std::move(described));
   }
   return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string report_page(const std::string& data, std::string_view three) {
-  constexpr std::string_view kPlaceholder = "<!-- data -->";
+std::string report_page(const std::string& data, std::string_view three, bool loads) {
   std::string page = self_contained_page("report.html", three);
-  const std::size_t position = page.find(kPlaceholder);
-  page.replace(position, kPlaceholder.size(),
-               "<script type=\"application/json\" id=\"data\">" + escaped_for_script(data) + "</script>");
+  const auto fill_in = [&page](std::string_view placeholder, const std::string& text) {
+    page.replace(page.find(placeholder), placeholder.size(), text);
+  };
+  const std::string script(loads ? page_text("loads.js") : std::string_view());
+  fill_in("<!-- loads -->\n", loads ? "<script>\n" + script + "\n</script>\n" : "");
+  fill_in("<!-- data -->",
+          "<script type=\"application/json\" id=\"data\">" + escaped_for_script(data) + "</script>");
   return page;
 }
 

@@ -15,9 +15,12 @@ struct ReportOptions {
 };
 
 // The JSON data that the page's script reads (view/page/report.js). For bodies with the output "hydrostatics"
-// the metacentres of every kept row are computed. O(rows * cost of a query).
+// the metacentres of every kept row are computed. O(rows * cost of a query). Only bodies with loads have
+// "loads": {"data": base64 of float32, the columns of LoadRow one after the other, "recorded", "computed":
+// rows, "without_velocities"}.
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options);
 
-std::string report_page(const std::string& data, std::string_view three);
+// loads: whether a body has loads, so that the page contains the script that plots them.
+std::string report_page(const std::string& data, std::string_view three, bool loads = false);
 
 }  // namespace buoyancy::view

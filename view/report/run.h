@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/sea_timeline.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/status.h"
 #include "scene/scene.h"
@@ -76,6 +77,32 @@ inline bool has_waves(const Scene& scene) {
   return scene.sea() != nullptr || scene.receives_sea();
 }
 
+// The columns of a row's loads, all doubles; NaN: unknown. See body_loads_t.lcm; a wrench is a force [N] and
+// a torque [N m] about the reference point, both in W:
+//   kImmersion      0 to 1
+//   kBuoyancyLoad   six columns, a wrench: the buoyancy, or in waves the load of the waves
+//   kDragLoad       likewise
+//   kAddedMassLoad  likewise
+//   kWaterVelocity  three columns [m/s], W
+enum LoadColumn : std::size_t {
+  kImmersion,
+  kBuoyancyLoad,
+  kDragLoad = kBuoyancyLoad + 6,
+  kAddedMassLoad = kDragLoad + 6,
+  kWaterVelocity = kAddedMassLoad + 6,
+  kLoadColumnCount = kWaterVelocity + 3,
+};
+using LoadRow = std::array<double, kLoadColumnCount>;
+
+// Where the loads of a row come from: the state that they are computed for, or a message of the file.
+struct RowLoads {
+  std::int64_t utime = 0;  // [us], of the request
+  double lead_time = 0.0;  // [s]
+  BodyState state;
+  std::shared_ptr<const SeaPeriod> sea;  // nullptr: unknown, or the scene has no waves
+  std::optional<BodyLoads> recorded;
+};
+
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Rows of a body by how the service evaluates their poses.
@@ -97,6 +124,11 @@ struct BodyRun {
   // Only of bodies that are shown:
   std::vector<RunRow> rows;      // in order of time, after decimation
   EvaluationCounts evaluations;  // in water at rest
+  // Only of bodies that are shown and have loads (view/common/scene_model.h):
+  std::vector<LoadRow> loads;             // one for each of `rows`; unknown where the status is not OK
+  std::int64_t loads_recorded = 0;        // of these, those that a message of the file holds
+  std::int64_t loads_computed = 0;        // of these, those that were computed from the scene
+  bool loads_without_velocities = false;  // were some computed as if the body were at rest?
 };
 
 struct RecordedRun {

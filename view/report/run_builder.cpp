@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "messages/conversions.h"
+#include "view/common/scene_model.h"
 #include "view/common/sea_json.h"
+#include "view/report/row_evaluation.h"
 
 namespace buoyancy::view {
 namespace {
@@ -60,14 +62,6 @@ double energy_of(const RigidBody& rigid, const RecordedState& recorded, const Bo
 template <std::size_t kSize>
 void put(RunRow& row, RunColumn first, const std::array<double, kSize>& values) {
   std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
-}
-
-BodyWrench compute_wrench(const Body& body, const CurrentWater& water, const ValidatedPose& pose) {
-  BodyOutcome outcome;
-  outcome.status = pose.status;
-  if (pose.status == BodyStatus::kOk && water.at_rest == nullptr) outcome.status = BodyStatus::kNoSea;
-  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
-  return to_wrench(body.id, outcome);
 }
 
 void count_row(BodyRun& body, BodyStatus status, double force) {
@@ -175,24 +169,38 @@ void RunBuilder::count_evaluation(ShownBody& shown, const Body& body, const Vali
   }
 }
 
-void RunBuilder::add(const RecordedState& recorded) {
+std::shared_ptr<RowLoads> RunBuilder::make_loads(BodyRun& run, const Body& body,
+                                                 const RecordedState& recorded) const {
+  if (!has_loads(body)) return nullptr;
+  if (!recorded.velocities && body.hydrodynamics != nullptr) run.loads_without_velocities = true;
+  return std::make_shared<RowLoads>(
+      RowLoads{.utime = recorded.utime,
+               .lead_time = recorded.lead_time,
+               .state = recorded.state,
+               .sea = has_waves(scene_) ? water_.sea_at(recorded.utime) : nullptr,
+               .recorded = std::nullopt});
+}
+
+std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   const std::optional<std::size_t> index = scene_.index_of(recorded.state.body_id);
   if (!index) {
     ++run_.unknown_bodies;
-    return;
+    return nullptr;
   }
   const Body& body = scene_.bodies()[*index];
   const ValidatedPose pose = validate_pose(recorded.state, recorded.lead_time);
   ShownBody* const shown = show(*index);
   if (shown == nullptr) {
     summarize(run_.bodies[*index], recorded, pose);
-    return;
+    return nullptr;
   }
   if (!has_waves(scene_)) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
-  BodyWrench wrench =
-      recorded.wrench ? *recorded.wrench
-                      : compute_wrench(body, water_.move_to(recorded.utime, recorded.lead_time).water, pose);
+  BodyWrench wrench = recorded.wrench
+                          ? *recorded.wrench
+                          : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
+                                         scene_.current_W(), recorded.state, pose)
+                                .wrench;
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;
@@ -225,7 +233,9 @@ void RunBuilder::add(const RecordedState& recorded) {
   const std::shared_ptr<const SeaPeriod> sea = has_waves(scene_) ? water_.sea_at(recorded.utime) : nullptr;
   row[kSeaTime] = sea ? sea_time(*sea, recorded.utime, recorded.lead_time) : kUnknown;
   row[kSea] = sea ? place_of(sea) : kUnknown;
-  shown->rows.add(rows_added_++, row);
+  std::shared_ptr<RowLoads> loads = make_loads(run_.bodies[*index], body, recorded);
+  shown->rows.add({.number = rows_added_++, .values = row, .loads = loads});
+  return loads;
 }
 
 double RunBuilder::place_of(const std::shared_ptr<const SeaPeriod>& sea) {
@@ -263,10 +273,12 @@ RecordedRun RunBuilder::finish() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i] == nullptr) continue;
     BodyRun& body = run_.bodies[i];
-    body.rows = bodies_[i]->rows.rows();
+    std::vector<KeptRow> rows = bodies_[i]->rows.rows();
     body.evaluations = bodies_[i]->evaluations;
     // Requests without a response were added late.
-    std::ranges::stable_sort(body.rows, {}, [](const RunRow& row) { return row[kTime]; });
+    std::ranges::stable_sort(rows, {}, [](const KeptRow& row) { return row.values[kTime]; });
+    for (const KeptRow& row : rows) body.rows.push_back(row.values);
+    if (has_loads(scene_.bodies()[i])) add_loads(scene_, scene_.bodies()[i], rows, body);
   }
   run_.sessions = static_cast<std::int64_t>(sessions_.size());
   return std::move(run_);

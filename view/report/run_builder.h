@@ -51,8 +51,9 @@ class RunBuilder {
   // session or within one, its times continue after the body's previous ones; so do those of a clock that
   // differs by more than a day.
   std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
-  // In any order.
-  void add(const RecordedState& recorded);
+  // In any order. Returns nullptr for a body that is not shown or has no loads. Otherwise the row's loads:
+  // set `recorded` in them, before finish(), to what the file holds; others are computed.
+  std::shared_ptr<RowLoads> add(const RecordedState& recorded);
   // A sea_state_t of a scene that receives its sea: wrenches that are computed afterwards are those in it.
   void receive_sea(std::int64_t timestamp, Bytes message);
   void add_warning(std::string warning);
@@ -85,6 +86,7 @@ class RunBuilder {
   ShownBody* show(std::size_t index);
   double place_of(const std::shared_ptr<const SeaPeriod>& sea);  // in run_.seas, see kSea
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
+  std::shared_ptr<RowLoads> make_loads(BodyRun& run, const Body& body, const RecordedState& recorded) const;
 
   const Scene& scene_;
   WaterAtTime water_;

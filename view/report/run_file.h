@@ -6,8 +6,9 @@
 //
 // Log: requests and responses are matched by session_id and seq, poses and their responses by body and utime.
 // A repeated request counts once, and a missing response is computed, as are the missing fields of a response
-// that holds only force and torque. At most 4,096 requests wait for their responses. Corrupt sections are
-// skipped (recording/event_log.h).
+// that holds only force and torque. At most 4,096 requests wait for their responses. Loads are matched with
+// the latest responses in front of them; missing ones are computed. Corrupt sections are skipped
+// (recording/event_log.h).
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,7 @@ namespace buoyancy::view {
 struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
+  std::string loads_channel{kLoadsChannel};
   std::string sea_channel{kSeaChannel};  // of a log, for a scene that receives its sea
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log

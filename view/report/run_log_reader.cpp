@@ -1,9 +1,11 @@
 #include "view/report/run_log_reader.h"
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +20,8 @@ namespace {
 
 constexpr std::size_t kMaxPending = 4'096;
 constexpr std::int64_t kEventsBetweenProgress = 4'096;
+// A service sends the loads of a request right after its response.
+constexpr std::size_t kMaxAwaitingLoads = 64;
 
 constexpr std::int64_t kPoseSession = std::numeric_limits<std::int64_t>::min();
 
@@ -51,6 +55,21 @@ class ResponseMatcher {
     complete(timestamp, request, std::nullopt);
   }
 
+  void on_loads(Bytes bytes) {
+    if (const auto error = decode(bytes, loads_)) return warn_skipped("loads", *error);
+    auto rows = rows_awaiting(key_of(loads_.id));
+    if (rows == awaiting_loads_.end() && loads_.bodies.size() == 1) {
+      const auto id = poses_.request_id_for_pose(loads_.bodies.front().body_id, loads_.id.utime);
+      if (id) rows = rows_awaiting(key_of(*id));
+    }
+    if (rows == awaiting_loads_.end()) return;
+    for (const BodyLoads& loads : loads_.bodies) {
+      for (const std::shared_ptr<RowLoads>& row : rows->second) {
+        if (row->state.body_id == loads.body_id) row->recorded = loads;
+      }
+    }
+  }
+
   void on_force_torque(std::int64_t timestamp, std::size_t index, Bytes bytes) {
     const auto message = decode_six_axis_force_torque(bytes);
     if (!message) return warn_skipped("force and torque", message.error());
@@ -73,6 +92,7 @@ class ResponseMatcher {
     std::vector<std::int64_t> times;  // of its bodies, on the run's time axis
   };
   using PendingRequests = std::map<Key, PendingRequest>;
+  using AwaitingLoads = std::deque<std::pair<Key, std::vector<std::shared_ptr<RowLoads>>>>;
 
   static Key key_of(const RequestId& id) { return {id.session_id, id.seq}; }
 
@@ -93,6 +113,10 @@ class ResponseMatcher {
   PendingRequests::iterator find_pose(std::int32_t body_id, std::int64_t utime) {
     const auto id = poses_.request_id_for_pose(body_id, utime);
     return id ? pending_.find(key_of(*id)) : pending_.end();
+  }
+
+  AwaitingLoads::iterator rows_awaiting(const Key& key) {
+    return std::ranges::find(awaiting_loads_, key, [](const auto& rows) { return rows.first; });
   }
 
   // request: pending_.end() if the log does not contain the request, or for a repeated response.
@@ -119,6 +143,7 @@ class ResponseMatcher {
   void add_rows(const PendingRequest& pending, double round_trip,
                 const std::optional<BotForceTorque>& force_torque) {
     const WrenchRequest& request = pending.request;
+    std::vector<std::shared_ptr<RowLoads>> loads;
     for (std::size_t i = 0; i < request.bodies.size(); ++i) {
       RecordedState row{.time = pending.times[i],
                         .utime = request.id.utime,
@@ -131,9 +156,12 @@ class ResponseMatcher {
                         .round_trip = round_trip};
       if (i < response_.bodies.size() && response_.bodies[i].body_id == row.state.body_id)
         row.wrench = response_.bodies[i];
-      builder_.add(row);
+      if (std::shared_ptr<RowLoads> of_row = builder_.add(row)) loads.push_back(std::move(of_row));
       ++rows_;
     }
+    if (loads.empty()) return;
+    awaiting_loads_.emplace_front(key_of(request.id), std::move(loads));
+    if (awaiting_loads_.size() > kMaxAwaitingLoads) awaiting_loads_.pop_back();
   }
 
   PoseTracker poses_;
@@ -141,7 +169,9 @@ class ResponseMatcher {
   PendingRequests pending_;
   std::deque<Key> order_;
   std::optional<Key> last_completed_;
-  WrenchResponse response_;  // decode buffer, reused
+  AwaitingLoads awaiting_loads_;  // rows of the latest responses, the latest first
+  WrenchResponse response_;       // decode buffers, reused
+  BodiesLoads loads_;
   std::int64_t rows_ = 0;
 };
 
@@ -156,6 +186,7 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
        [&](const RecordedEvent& event) { matcher.on_request(event.timestamp, event.bytes); }},
       {options.wrenches_channel,
        [&](const RecordedEvent& event) { matcher.on_response(event.timestamp, event.bytes); }},
+      {options.loads_channel, [&](const RecordedEvent& event) { matcher.on_loads(event.bytes); }},
       {options.sea_channel,
        [&](const RecordedEvent& event) { builder.receive_sea(event.timestamp, event.bytes); }},
       {options.status_channel, [&](const RecordedEvent& event) {

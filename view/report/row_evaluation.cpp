@@ -1,0 +1,88 @@
+#include "view/report/row_evaluation.h"
+
+#include <algorithm>
+
+#include "engine/load_evaluation.h"
+#include "engine/water_at_time.h"
+#include "view/common/scene_model.h"
+
+namespace buoyancy::view {
+namespace {
+
+LoadRow unknown_loads() {
+  LoadRow row;
+  row.fill(kUnknown);
+  return row;
+}
+
+LoadRow to_row(const BodyLoads& loads) {
+  LoadRow row = unknown_loads();
+  const auto put = [&row](std::size_t first, const std::array<double, 3>& values) {
+    std::ranges::copy(values, row.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  row[kImmersion] = loads.immersion;
+  put(kBuoyancyLoad, loads.buoyancy_force);
+  put(kBuoyancyLoad + 3, loads.buoyancy_torque);
+  put(kDragLoad, loads.drag_force);
+  put(kDragLoad + 3, loads.drag_torque);
+  put(kAddedMassLoad, loads.added_mass_force);
+  put(kAddedMassLoad + 3, loads.added_mass_torque);
+  put(kWaterVelocity, loads.water_velocity);
+  return row;
+}
+
+CurrentWater water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water) {
+  if (!has_waves(scene)) return water.move_to(row.utime, row.lead_time).water;
+  return row.sea ? water.move_to(row.sea, row.utime, row.lead_time).water : CurrentWater{};
+}
+
+}  // namespace
+
+RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
+                           const BodyState& state, const ValidatedPose& pose) {
+  BodyOutcome outcome;
+  outcome.status = pose.status;
+  const BodyTwist twist = twist_of(state);
+  if (outcome.status == BodyStatus::kOk && body.hydrodynamics != nullptr && !twist.is_finite()) {
+    outcome.status = BodyStatus::kNonFiniteTwist;
+  }
+  if (outcome.status == BodyStatus::kOk && water.at_rest == nullptr) outcome.status = BodyStatus::kNoSea;
+  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
+  RowEvaluation evaluation{.wrench = to_wrench(body.id, outcome), .loads = std::nullopt};
+  BodyWrench& wrench = evaluation.wrench;
+  if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
+  if (body.hydrodynamics == nullptr) {
+    evaluation.loads = to_loads(body, wrench, water_motion(water, current_W, pose.pose.p_WB));
+    return evaluation;
+  }
+  const HydrodynamicState moving = hydrodynamic_state(body, water, current_W, pose.pose, twist, outcome);
+  const HydrodynamicLoad load = body.hydrodynamics->load(moving);
+  evaluation.loads = to_loads(body, wrench, moving, load);
+  add_hydrodynamic_load(load, wrench);
+  if (wrench.status != BodyStatus::kOk) evaluation.loads.reset();
+  return evaluation;
+}
+
+void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>& rows, BodyRun& run) {
+  WaterAtTime water(scene);
+  run.loads.reserve(rows.size());
+  for (const KeptRow& row : rows) {
+    run.loads.push_back(unknown_loads());
+    if (row.values[kStatus] != 0.0) continue;
+    const RowLoads& source = *row.loads;
+    if (source.recorded && source.recorded->status == BodyStatus::kOk) {
+      run.loads.back() = to_row(*source.recorded);
+      ++run.loads_recorded;
+      continue;
+    }
+    const std::optional<BodyLoads> computed =
+        evaluate_row(body, water_of(source, scene, water), scene.current_W(), source.state,
+                     validate_pose(source.state, source.lead_time))
+            .loads;
+    if (!computed) continue;
+    run.loads.back() = to_row(*computed);
+    ++run.loads_computed;
+  }
+}
+
+}  // namespace buoyancy::view

@@ -1,0 +1,28 @@
+// Evaluates the rows of a run with the engine's functions, as the service does for its requests.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/body_evaluation.h"
+#include "messages/loads.h"
+#include "scene/scene.h"
+#include "view/report/decimated_rows.h"
+#include "view/report/run.h"
+
+namespace buoyancy::view {
+
+struct RowEvaluation {
+  BodyWrench wrench;
+  std::optional<BodyLoads> loads;  // of a body with loads (view/common/scene_model.h) whose status is kOk
+};
+
+// pose: that of validate_pose(state, lead_time); the lead_time is that of the water too.
+RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
+                           const BodyState& state, const ValidatedPose& pose);
+
+// Fills in the loads of a body's rows, which have loads: the recorded ones, and others computed in the water
+// of their time. O(rows * cost of a query).
+void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>& rows, BodyRun& run);
+
+}  // namespace buoyancy::view
