@@ -54,6 +54,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_states_channel_option(app, arguments.channels.states);
   add_wrenches_channel_option(app, arguments.channels.wrenches);
   add_hydrostatics_channel_option(app, arguments.channels.hydrostatics);
+  add_loads_channel_option(app, arguments.channels.loads);
   add_status_channel_option(app, arguments.channels.status);
   add_sea_channel_option(app, arguments.channels.sea);
   add_viewer_channel_options(app, arguments.poses);
@@ -62,8 +63,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
 // Checks what CLI11 cannot check per option.
 Expected<void> check_arguments(const Arguments& arguments) {
   const ObservedChannels& channels = arguments.channels;
-  if (Expected<void> checked = check_channels_distinct(
-          {channels.states, channels.wrenches, channels.hydrostatics, channels.status, channels.sea});
+  if (Expected<void> checked =
+          check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
+                                   channels.status, channels.sea});
       !checked) {
     return checked;
   }
@@ -83,9 +85,10 @@ int show(const CLI::App& app, const Arguments& arguments) {
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kUsageError);
   ObservedChannels channels = arguments.channels;
-  Expected<PoseChannels> poses = resolve_pose_channels(
-      arguments.poses, *scene,
-      {channels.states, channels.wrenches, channels.hydrostatics, channels.status, channels.sea});
+  Expected<PoseChannels> poses =
+      resolve_pose_channels(arguments.poses, *scene,
+                            {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
+                             channels.status, channels.sea});
   if (!poses) return report(app, poses.error(), kUsageError);
   channels.poses = *std::move(poses);
   Expected<std::vector<StaticResource>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -123,6 +124,91 @@ TEST_F(BusMonitorTest, ShowsKnownMetacentres) {
   encode(BodiesHydrostatics{.id = {}, .bodies = {body}}, bytes);
   monitor_.on_hydrostatics(bytes);
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
+}
+
+class BusMonitorLoads : public BusMonitorTest {
+ protected:
+  void SetUp() override {
+    monitor_.on_request(request_bytes({0, 1, 1}, {upright(kBox, 0.0), upright(kFastBox, 0.0)}), at(0.1));
+    loads_.body_id = kBox;
+    loads_.immersion = 0.5;
+    loads_.buoyancy_force = {0.0, 0.25, 4'000.0};
+    loads_.buoyancy_torque = {1.0, 2.0, 3.0};
+    loads_.drag_force = {-4.0, -5.0, -6.0};
+    loads_.drag_torque = {-7.0, -8.0, -9.0};
+    loads_.added_mass_force = {10.0, 11.0, 12.0};
+    loads_.added_mass_torque = {13.0, 14.0, 15.0};
+    loads_.water_velocity = {0.5, -0.25, 0.125};
+  }
+  static std::vector<std::uint8_t> bytes_of(const BodyLoads& loads) {
+    std::vector<std::uint8_t> bytes;
+    encode(BodiesLoads{.id = {0, 1, 1}, .bodies = {loads}}, bytes);
+    return bytes;
+  }
+  bool shows_loads(double now = 0.1) { return snapshot(now)["bodies"][0].contains("loads"); }
+
+  BodyLoads loads_;
+};
+
+TEST_F(BusMonitorLoads, AreShownForTheirBody) {
+  EXPECT_FALSE(shows_loads());
+  monitor_.on_loads(bytes_of(loads_));
+  const json bodies = snapshot(0.1)["bodies"];
+  EXPECT_EQ(bodies[0]["loads"], json({{"immersion", 0.5},
+                                      {"buoyancy", {0.0, 0.25, 4000.0, 1.0, 2.0, 3.0}},
+                                      {"drag", {-4.0, -5.0, -6.0, -7.0, -8.0, -9.0}},
+                                      {"added_mass", {10.0, 11.0, 12.0, 13.0, 14.0, 15.0}},
+                                      {"water_velocity", {0.5, -0.25, 0.125}}}));
+  EXPECT_FALSE(bodies[1].contains("loads"));
+}
+
+TEST_F(BusMonitorLoads, AreHiddenIfLaterOnesAreNotOkOrFinite) {
+  monitor_.on_loads(bytes_of(loads_));
+  BodyLoads other = loads_;
+  other.status = BodyStatus::kNonFiniteTwist;
+  monitor_.on_loads(bytes_of(other));
+  EXPECT_FALSE(shows_loads());
+  for (auto* numbers :
+       {&loads_.buoyancy_force, &loads_.buoyancy_torque, &loads_.drag_force, &loads_.drag_torque,
+        &loads_.added_mass_force, &loads_.added_mass_torque, &loads_.water_velocity}) {
+    monitor_.on_loads(bytes_of(loads_));
+    ASSERT_TRUE(shows_loads());
+    const double original = std::exchange((*numbers)[1], kNan);
+    monitor_.on_loads(bytes_of(loads_));
+    EXPECT_FALSE(shows_loads());
+    (*numbers)[1] = original;
+  }
+  loads_.immersion = std::numeric_limits<double>::infinity();
+  monitor_.on_loads(bytes_of(loads_));
+  EXPECT_FALSE(shows_loads());
+}
+
+TEST_F(BusMonitorLoads, AreHiddenWhenOverdue) {
+  monitor_.on_response(response_bytes({0, 1, 1}, {vertical_force(kBox, 5.0)}), at(0.1));
+  monitor_.on_loads(bytes_of(loads_));
+  monitor_.on_request(request_bytes({0, 1, 2}, {upright(kBox, 0.0)}), at(1.05));
+  EXPECT_TRUE(shows_loads(1.05));
+  monitor_.on_request(request_bytes({0, 1, 3}, {upright(kBox, 0.0)}), at(1.2));
+  EXPECT_FALSE(shows_loads(1.2));
+}
+
+TEST_F(BusMonitorLoads, AreUnchangedByMalformedMessages) {
+  monitor_.on_loads(bytes_of(loads_));
+  const json before = snapshot(0.1)["bodies"];
+  loads_.immersion = 0.75;
+  const std::vector<std::uint8_t> valid = bytes_of(loads_);
+  for (std::size_t size = 0; size < valid.size(); ++size) monitor_.on_loads(Bytes(valid).first(size));
+  std::vector<std::uint8_t> negative = valid;
+  negative[32] = 0xff;  // the number of bodies
+  monitor_.on_loads(negative);
+  std::vector<std::uint8_t> other_type = valid;
+  other_type[0] ^= 1U;
+  monitor_.on_loads(other_type);
+  loads_.body_id = kNoBody;
+  monitor_.on_loads(bytes_of(loads_));
+  EXPECT_EQ(snapshot(0.1)["bodies"], before);
+  EXPECT_EQ(monitor_.counts().malformed,
+            (std::array<std::int64_t, 4>{36, 1, 1, static_cast<std::int64_t>(valid.size()) - 36}));
 }
 
 TEST_F(BusMonitorTest, KeepsPositionsFarFromOriginExact) {

@@ -14,6 +14,7 @@
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
+#include "tests/view/moving_bodies.h"
 #include "tests/view/running_view.h"
 
 namespace buoyancy::view {
@@ -72,6 +73,29 @@ TEST(ViewProgram, ShowsRunOfRealPrograms) {
   const json& floating = snapshot["bodies"][1];
   EXPECT_EQ(floating["status"], 0);
   EXPECT_TRUE(floating["m"].is_array()) << floating;
+}
+
+TEST(ViewProgram, ShowsLoadsOfRealPrograms) {
+  RunningView view(moving_bodies());
+  EventReader events(view.port());
+  RunningService service({}, moving_bodies());
+  const FinishedProcess run =
+      run_to_end(client(service.path("scene.toml"), {"--duration", "0.05"}), kWaitTimeout);
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  const json snapshot = wait_for_snapshot(events, [](const json& now) {
+    return now["counts"]["responses"].get<int>() > 50 && now["bodies"].size() == 1 &&
+           now["bodies"][0].contains("loads");
+  });
+  const json& body = snapshot["bodies"][0];
+  const json& loads = body["loads"];
+  EXPECT_EQ(loads["water_velocity"], json({0.5, -0.25, 0.125})) << "the current";
+  EXPECT_GT(loads["drag"][2].get<double>(), 100.0) << "it falls into the water at 1 m/s";
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(loads["buoyancy"][i].get<double>() + loads["drag"][i].get<double>() +
+                    loads["added_mass"][i].get<double>(),
+                body["f"][i].get<double>(), 0.01);
+  }
+  EXPECT_NEAR(loads["immersion"].get<double>(), body["volume"].get<double>() / 2.0, 1e-6);
 }
 
 TEST(ViewProgram, ReportsServiceOfflineAndBack) {
@@ -243,6 +267,7 @@ TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
                                                   {"--scene", scene, "--what"},
                                                   {"--scene", scene, "--scheduling", "best"},
                                                   {"--scene", scene, "--states-channel", "BUOYANCY_STATUS"},
+                                                  {"--scene", scene, "--loads-channel", "BUOYANCY_STATUS"},
                                                   {"--scene", scene, "--pose", "HULL=77"},
                                                   {"--scene", scene, "--pose", "BUOYANCY_STATUS=1"},
                                                   {"--scene", directory.path("absent.toml")}}) {

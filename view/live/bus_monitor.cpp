@@ -18,6 +18,14 @@ std::optional<BodyMonitor::Pose> valid_pose(const BodyState& state) {
   return BodyMonitor::Pose{state.position, state.quaternion_wxyz};
 }
 
+bool has_finite_parts(const BodyLoads& loads) {
+  return std::isfinite(loads.immersion) &&
+         std::ranges::all_of(
+             std::array{loads.buoyancy_force, loads.buoyancy_torque, loads.drag_force, loads.drag_torque,
+                        loads.added_mass_force, loads.added_mass_torque, loads.water_velocity},
+             all_finite<3>);
+}
+
 }  // namespace
 
 std::string_view to_string(ServiceState state) {
@@ -132,6 +140,16 @@ void BusMonitor::on_hydrostatics(Bytes bytes) {
     if (observed.status != BodyStatus::kOk || !std::ranges::all_of(observed.metacenters, all_finite<3>))
       continue;
     body->metacenters = BodyMonitor::Metacenters{observed.metacenters, observed.metacentric_heights};
+  }
+}
+
+void BusMonitor::on_loads(Bytes bytes) {
+  if (!decode_or_count(bytes, loads_)) return;
+  for (const BodyLoads& observed : loads_.bodies) {
+    BodyMonitor* const body = find(observed.body_id);
+    if (body == nullptr) continue;
+    body->loads.reset();
+    if (observed.status == BodyStatus::kOk && has_finite_parts(observed)) body->loads = observed;
   }
 }
 

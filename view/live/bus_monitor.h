@@ -17,6 +17,7 @@
 #include "engine/sea_timeline.h"
 #include "messages/hydrostatics.h"
 #include "messages/latency_histogram.h"
+#include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/status.h"
 #include "messages/wire.h"
@@ -56,6 +57,7 @@ struct BodyMonitor {
   std::optional<BodyWrench> wrench;     // the latest, whatever its status
   bool force_torque_only = false;  // wrench came as six_axis_force_torque_t, its other fields are unknown
   std::optional<Metacenters> metacenters;
+  std::optional<BodyLoads> loads;  // the latest, with status kOk; all its numbers but the matrices are finite
 
   // True if the wrench is too old to belong to the displayed pose.
   bool response_overdue(double timeout) const {
@@ -103,6 +105,7 @@ class BusMonitor {
   void on_pose(std::size_t index, Bytes bytes, ArrivalTime arrival);
   void on_force_torque(std::size_t index, Bytes bytes, ArrivalTime arrival);
   void on_hydrostatics(Bytes bytes);
+  void on_loads(Bytes bytes);
   void on_status(Bytes bytes, double now);
   void on_sea(Bytes bytes);                    // of a scene that receives its sea
   void record_drops(const DropCounts& drops);  // totals since the start
@@ -160,6 +163,7 @@ class BusMonitor {
   WrenchRequest request_;  // decode buffers, reused
   WrenchResponse response_;
   BodiesHydrostatics hydrostatics_;
+  BodiesLoads loads_;
   ServiceStatus incoming_status_;
 };
 

@@ -23,7 +23,7 @@ std::string model_json(const Scene& scene, const std::string& version) {
 std::string page_script() {
   std::string script;
   for (const char* name : {"format.js", "sea.js", "water_materials.js", "wave_surface.js", "water_scene.js",
-                           "plots.js", "live.js"}) {
+                           "plots.js", "loads.js", "live.js"}) {
     script += page_text(name);
     script += '\n';
   }

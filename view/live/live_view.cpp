@@ -35,12 +35,15 @@ timespec to_timespec(double seconds) {
   return {whole, static_cast<long>(1e9 * (seconds - static_cast<double>(whole)))};
 }
 
-// Request, response and hydrostatics of all bodies [bytes]. They may all arrive before the first is read.
+// Request, response, hydrostatics and loads of all bodies [bytes]. They may all arrive before the first is
+// read.
 std::size_t largest_step(const Scene& scene) {
   const std::size_t bodies = scene.bodies().size();
   const std::size_t with_hydrostatics = scene.bodies_with_hydrostatics();
+  const std::size_t with_loads = scene.bodies_with_loads();
   return request_size(bodies) + response_size(bodies) +
-         (with_hydrostatics > 0 ? hydrostatics_size(with_hydrostatics) : 0);
+         (with_hydrostatics > 0 ? hydrostatics_size(with_hydrostatics) : 0) +
+         (with_loads > 0 ? loads_size(with_loads) : 0);
 }
 
 std::optional<Warning> step_warning(const Scene& scene, std::size_t bytes, const ReceiveBuffer& buffer) {
@@ -82,6 +85,7 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
       {channels.states, {MessageKind::kRequest}},
       {channels.wrenches, {MessageKind::kResponse}},
       {channels.hydrostatics, {MessageKind::kHydrostatics}},
+      {channels.loads, {MessageKind::kLoads}},
       {channels.status, {MessageKind::kStatus}}};
   if (scene.receives_sea()) subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
   // Several pose channels of one body may share its force-torque channel.
@@ -141,6 +145,8 @@ void LiveView::dispatch(const Route& route, Bytes bytes, ArrivalTime arrival) {
       return monitor_.on_response(bytes, arrival);
     case MessageKind::kHydrostatics:
       return monitor_.on_hydrostatics(bytes);
+    case MessageKind::kLoads:
+      return monitor_.on_loads(bytes);
     case MessageKind::kStatus:
       return monitor_.on_status(bytes, arrival.now);
     case MessageKind::kSea:

@@ -26,6 +26,7 @@ struct ObservedChannels {
   std::string states{kStatesChannel};
   std::string wrenches{kWrenchesChannel};
   std::string hydrostatics{kHydrostaticsChannel};
+  std::string loads{kLoadsChannel};
   std::string status{kStatusChannel};
   std::string sea{kSeaChannel};
   PoseChannels poses;
@@ -51,7 +52,7 @@ class LiveView {
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
  private:
-  enum class MessageKind { kRequest, kResponse, kHydrostatics, kStatus, kSea, kPose, kForceTorque };
+  enum class MessageKind { kRequest, kResponse, kHydrostatics, kLoads, kStatus, kSea, kPose, kForceTorque };
   struct Route {
     MessageKind kind;
     std::size_t index = 0;  // of the pose channel

@@ -52,6 +52,18 @@ class BodyWriter {
   std::string& text_;
 };
 
+void append(BodyWriter& out, const BodyLoads& loads) {
+  const auto wrench = [&out](std::string_view key, const std::array<double, 3>& force,
+                             const std::array<double, 3>& torque) {
+    out.plain(key).numbers(std::array{force[0], force[1], force[2], torque[0], torque[1], torque[2]});
+  };
+  out.plain(R"(,"loads":{"immersion":)").number(loads.immersion);
+  wrench(R"(,"buoyancy":)", loads.buoyancy_force, loads.buoyancy_torque);
+  wrench(R"(,"drag":)", loads.drag_force, loads.drag_torque);
+  wrench(R"(,"added_mass":)", loads.added_mass_force, loads.added_mass_torque);
+  out.plain(R"(,"water_velocity":)").numbers(loads.water_velocity).plain("}");
+}
+
 void append(std::string& text, const BodyMonitor& body, double now) {
   const bool overdue = body.response_overdue(BusMonitor::kResponseTimeout);
   const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
@@ -86,6 +98,7 @@ void append(std::string& text, const BodyMonitor& body, double now) {
   } else {
     out.plain(R"(,"m":null,"gm":null)");
   }
+  if (body.loads && !overdue) append(out, *body.loads);
   out.plain(R"(,"age":)").number(now - *body.last_request).plain("}");
 }
 

@@ -23,6 +23,11 @@ namespace buoyancy::view {
 //                    b            [3], the centre of buoyancy
 //                    m, gm        [[3], [3]], the metacentres, and [2], the metacentric heights
 //                    volume, force_bound, torque_bound
+//                    loads        only where loads were received for the body: "immersion", 0 to 1;
+//                                 "buoyancy", "drag" and "added_mass": [6], a force [N] and a torque [N m];
+//                                 "water_velocity": [3] [m/s]. Absent as long as the latest loads have a
+//                                 status other than OK or numbers that are not finite, or are overdue like a
+//                                 response
 //                    age          [s] since the latest request for the body
 //                  b and m are relative to p in W's axes. From f to torque_bound, null means: no response
 //                  yet, or none since BusMonitor::kResponseTimeout; status, b, volume and the bounds are also

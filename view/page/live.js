@@ -77,15 +77,19 @@
     tracks.times.push(now);
     for (const body of snapshot.bodies) {
       if (!tracks.bodies.has(body.id)) {
-        tracks.bodies.set(body.id, { heave: new Array(tracks.times.length - 1).fill(NaN), force: new Array(tracks.times.length - 1).fill(NaN) });
+        const missed = (value) => new Array(tracks.times.length - 1).fill(value);
+        tracks.bodies.set(body.id, { heave: missed(NaN), force: missed(NaN), loads: missed(null) });
       }
       const body_track = tracks.bodies.get(body.id);
       body_track.heave.push(heave(body.p));
       body_track.force.push(body.f && !body.status ? along_up(body.f) : NaN);  // a status other than OK carries zeros
+      body_track.loads.push(body.loads ? { ...body.loads, q: body.q } : null);
     }
     while (tracks.times.length > 0 && tracks.times[0] < now - history_length) {
       tracks.times.shift();
-      for (const body_track of tracks.bodies.values()) { body_track.heave.shift(); body_track.force.shift(); }
+      for (const body_track of tracks.bodies.values()) {
+        for (const column of Object.values(body_track)) column.shift();
+      }
     }
   }
 
@@ -107,17 +111,32 @@
     { title: 'Messages', unit: '1/s', missing: no_data,
       make: bus_series([['requests', (second) => second.requests], ['responses', (second) => second.responses], ['unanswered', (second) => second.unanswered]]) },
     { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('origin over the level', 'heave') },
-    { title: 'Buoyant force on the body', unit: 'N', missing: no_data, make: body_series('upwards', 'force') },
+    { title: model.loads ? 'Force of the water on the body' : 'Buoyant force on the body', unit: 'N', missing: no_data, make: body_series('upwards', 'force') },
   ];
   for (const plot of plots) {
     plot.plot = new Plot(element('plots'), { title: plot.title, unit: plot.unit, series: plot.make(), missing: plot.missing });
   }
+
+  const described = () => model.bodies.find((body) => body.id === view.selected);
+  const with_loads = model.bodies.filter((body) => body.loads && body.loads.published);
+  const load_plots = with_loads.length > 0 ? new LoadPlots(element('plots'), null, model) : null;
+  view.load_plots = load_plots;
 
   function draw_plots() {
     for (const { plot, make } of plots) {
       plot.update(make());
       plot.show(0);
     }
+    if (load_plots) draw_loads();
+  }
+
+  function draw_loads() {
+    load_plots.box.hidden = !with_loads.includes(described());
+    if (load_plots.box.hidden) return;
+    const newest = tracks.times[tracks.times.length - 1];
+    const body_track = tracks.bodies.get(view.selected);
+    load_plots.update(described(), tracks.times.map((time) => time - newest), (n) => (body_track ? body_track.loads[n] : null));
+    load_plots.show(0);
   }
 
   const age_text = (age) => (age === null ? 'never' : age < 1 ? 'now' : `${seconds_text(age)} ago`);
@@ -192,7 +211,7 @@
 
   function body_table(now) {
     const body = now.bodies.find((one) => one.id === view.selected);
-    const description = model.bodies.find((one) => one.id === view.selected);
+    const description = described();
     if (!body) return table_of(`Body ${description.id} ${description.name}: no request yet`, [], []);
     const vector = (values) => (values ? values.map(format_number).join(', ') : '–');
     const rows = [
@@ -203,6 +222,11 @@
       ['submerged volume, m³', body.volume !== null ? format_number(body.volume) : '–'],
     ];
     if (body.gm) rows.push(['metacentric heights, m', body.gm.map((height) => (height === null ? '–' : format_number(height))).join(', ')]);
+    if (body.loads) {
+      rows.push(['immersion, %', format_number(100 * body.loads.immersion)], ['drag, N', vector(body.loads.drag.slice(0, 3))],
+                ['drag, N m', vector(body.loads.drag.slice(3))], ['added-mass terms, N', vector(body.loads.added_mass.slice(0, 3))],
+                ['added-mass terms, N m', vector(body.loads.added_mass.slice(3))], ['velocity of the water, m/s', vector(body.loads.water_velocity)]);
+    }
     rows.push(['latest request', age_text(body.age)]);
     return table_of(`Body ${description.id} ${description.name}`, ['', ''], rows);
   }
@@ -327,7 +351,7 @@
   element('title').textContent = model.scene;
   document.title = `buoyancy: ${model.scene}, live`;
   element('footer').textContent = `buoyancy-view ${version}. Rendered with three.js. Publishes nothing on the bus.`;
-  fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.outputs.includes('hydrostatics')));
+  fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.outputs.includes('hydrostatics')), with_loads);
 
   function connect() {
     const events = new EventSource('events');

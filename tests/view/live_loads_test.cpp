@@ -1,0 +1,112 @@
+// The plots of loads in the live page, in a real browser, with the real programs over UDP.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "messages/wire.h"
+#include "tests/view/moving_bodies.h"
+#include "tests/view/page_test.h"
+#include "tests/view/running_view.h"
+
+namespace buoyancy::view {
+namespace {
+
+class LivePageOfLoads : public PageTest {
+ protected:
+  void SetUp() override {
+    PageTest::SetUp();
+    service_ = std::make_unique<RunningService>(kChannel, moving_bodies());
+    view_ = std::make_unique<RunningView>(moving_bodies(), kChannel);
+    client_ = std::make_unique<ChildProcess>(
+        command_of({BUOYANCY_CLIENT, "--scene", service_->path("scene.toml"), "--rate", "200", "--duration",
+                    "1000", "--retries", "100000"}));
+    browser().open(view_->url());
+  }
+  void TearDown() override {
+    PageTest::TearDown();
+    client_.reset();
+    view_.reset();
+    service_.reset();
+  }
+
+  const std::vector<std::string> kChannel{"--loads-channel", "LOADS"};
+  std::unique_ptr<RunningService> service_;
+  std::unique_ptr<RunningView> view_;
+  std::unique_ptr<ChildProcess> client_;
+};
+
+TEST_F(LivePageOfLoads, StacksLoadsThatServicePublishes) {
+  browser().wait_until(
+      "window.buoyancyView && buoyancyView.load_plots.stack.series.length === 5 &&"
+      "buoyancyView.load_plots.stack.series[0].values.filter(Number.isFinite).length > 10");
+  // The latest point of the plot and the snapshot that it came from.
+  const nlohmann::json shown = browser().run(R"(
+    buoyancyView.select(1);
+    const { last, load_plots, model } = buoyancyView;
+    const at = load_plots.times.length - 1;
+    return { parts: load_plots.stack.series.map((one) => [one.name, one.values[at]]), point: load_plots.loads(at),
+             immersion: load_plots.immersion.series[0].values[at], mass: model.bodies[0].mass,
+             hidden: load_plots.box.hidden };)");
+  const nlohmann::json& point = shown["point"];
+  const std::vector<std::string> names{"buoyancy", "drag", "added_mass"};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(shown["parts"][i][1], point[names[i]][2]) << names[i];
+    sum += point[names[i]][2].get<double>();
+  }
+  EXPECT_EQ(shown["parts"][3][1], -1200.0 * kGravity) << "weight";
+  EXPECT_NEAR(shown["parts"][4][1].get<double>(), sum - 1200.0 * kGravity, 1e-9);
+  EXPECT_EQ(shown["immersion"].get<double>(), 100.0 * point["immersion"].get<double>());
+  EXPECT_EQ(shown["hidden"], false);
+  EXPECT_EQ(point["water_velocity"], nlohmann::json({0.5, -0.25, 0.125}));
+
+  const nlohmann::json body = browser().run("return buoyancyView.last.bodies.find((one) => one.id === 1);");
+  for (std::size_t i = 0; i < 6; ++i) {
+    double total = 0.0;
+    for (const std::string& name : names) total += body["loads"][name][i].get<double>();
+    EXPECT_NEAR(total, body[i < 3 ? "f" : "t"][i % 3].get<double>(), 0.01) << "the parts of the wrench";
+  }
+  browser().wait_until("document.getElementById('body_facts').textContent.includes('velocity of the water')");
+  browser().wait_until("buoyancyView.scene.bodies.get(1).markers.water_velocity.visible");
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePageOfLoads, ChangesNothingForHostileLoads) {
+  browser().wait_until(
+      "window.buoyancyView && buoyancyView.last && buoyancyView.last.bodies.some((one) => one.loads)");
+  client_.reset();
+  browser().run("window.target = buoyancyView.snapshots + 3;");
+  browser().wait_until("buoyancyView.snapshots >= window.target");
+  const std::string loads = "return buoyancyView.last.bodies.find((one) => one.id === 1).loads;";
+  const nlohmann::json before = browser().run(loads);
+  RawLcmSocket socket;
+  std::vector<std::uint8_t> bytes;
+  encode(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 1, .immersion = 0.5}}}, bytes);
+  bytes.pop_back();
+  socket.send("LOADS", bytes);
+  bytes.assign(bytes.size(), 0xff);
+  socket.send("LOADS", bytes);
+  socket.send("LOADS", {});
+  encode(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 77, .immersion = 0.5}}}, bytes);
+  socket.send("LOADS", bytes);
+  browser().wait_until(
+      "Object.values(buoyancyView.last.counts.malformed).reduce((sum, count) => sum + count) === 3");
+  EXPECT_EQ(browser().run(loads), before);
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
+}
+
+TEST_F(LivePageOfLoads, HidesLoadsOfOtherBodies) {
+  browser().wait_until("window.buoyancyView && buoyancyView.load_plots && buoyancyView.last");
+  for (const auto& [id, hidden] : {std::pair{1, false}, {2, true}, {3, false}, {4, true}}) {
+    EXPECT_EQ(
+        browser().run("buoyancyView.select(arguments[0]); return buoyancyView.load_plots.box.hidden;", id),
+        hidden)
+        << id;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy::view
