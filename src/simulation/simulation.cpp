@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace buoyancy {
 namespace {
@@ -79,10 +80,11 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
     simulated.rigid = *rigid;
     simulated.state = initial_state(*rigid, body.dynamics);
     if (body.hydrodynamics != nullptr) {
-      simulated.hydrodynamics.emplace(body, *rigid, scene.water(), scene.current_W());
+      simulated.hydrodynamics =
+          std::make_unique<HydrodynamicMotion>(body, *rigid, scene.water(), scene.current_W());
+      simulation.has_hydrodynamics_ = true;
     }
-    simulation.has_hydrodynamics_ = simulation.has_hydrodynamics_ || simulated.hydrodynamics;
-    simulation.bodies_.push_back(simulated);
+    simulation.bodies_.push_back(std::move(simulated));
   }
   if (simulation.bodies_.empty()) {
     return make_error({"the scene", "no body with a [body.client]", "at least one body to simulate",

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "simulation/hydrodynamic_motion.h"
@@ -43,8 +43,8 @@ struct SimulatedBody {
   const Body* body = nullptr;  // in the scene
   RigidBody rigid;
   RigidBodyState state;
-  BodyWrench wrench;                                // in use
-  std::optional<HydrodynamicMotion> hydrodynamics;  // of a body with drag or added mass
+  BodyWrench wrench;                                  // in use
+  std::unique_ptr<HydrodynamicMotion> hydrodynamics;  // of a body with drag or added mass
   EnergyStats energy;
 };
 

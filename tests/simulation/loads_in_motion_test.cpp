@@ -29,11 +29,11 @@ const SimulatedBody& only_body(const Simulation& simulation) {
   return simulation.bodies().front();
 }
 
-// Runs a scene for `steps` steps and returns its first body.
-SimulatedBody run(const Scene& scene, const SimulationOptions& options, std::int64_t steps) {
+// Runs a scene for `steps` steps.
+Simulation after(const Scene& scene, const SimulationOptions& options, std::int64_t steps) {
   Simulation simulation = simulation_of(scene, options);
   run_in_process(scene, simulation, steps);
-  return only_body(simulation);
+  return simulation;
 }
 
 TEST(Drag, GivesTerminalVelocityOfReleasedSphere) {
@@ -58,7 +58,8 @@ density = )" + std::to_string(density) +
     for (const Integrator integrator : kBoth) {
       for (const double step : {0.001, 0.1}) {
         const auto steps = static_cast<std::int64_t>(std::lround(20.0 / step));
-        const SimulatedBody body = run(scene, options_of(integrator, step), steps);
+        const Simulation simulation = after(scene, options_of(integrator, step), steps);
+        const SimulatedBody& body = only_body(simulation);
         EXPECT_NEAR(-body.state.velocity_W.z(), std::copysign(terminal, weight), 1e-6 * terminal)
             << density << ", " << step;
       }
@@ -142,7 +143,8 @@ density = 500
 linear_velocity = [2, 0, 0]
 position = [0, 0, )" + std::to_string(height) +
                                  "]\n");
-    const SimulatedBody body = run(scene, options_of(Integrator::kVelocityVerlet, 0.001), 1000);
+    const Simulation simulation = after(scene, options_of(Integrator::kVelocityVerlet, 0.001), 1000);
+    const SimulatedBody& body = only_body(simulation);
     const double expected = height > 0.0 ? 2.0 : 2.0 * std::exp(-0.5 * 400.0 / 200.0);
     EXPECT_NEAR(body.state.velocity_W.x(), expected, 1e-6) << height;
     EXPECT_NEAR(body.wrench.force[0], height > 0.0 ? 0.0 : -200.0 * expected, 1e-3) << height;
@@ -165,7 +167,8 @@ matrix = [17, 17, 17, 0, 0, 0]
 density = 1000
 position = [0, 0, -20]
 )");
-  const SimulatedBody body = run(scene, options_of(Integrator::kVelocityVerlet, 0.01), 3000);
+  const Simulation simulation = after(scene, options_of(Integrator::kVelocityVerlet, 0.01), 3000);
+  const SimulatedBody& body = only_body(simulation);
   EXPECT_LT((body.state.velocity_W - Vec3(0.5, -0.2, 0.0)).norm(), 1e-9);
   const double weight = body.rigid.mass * kStandardGravity;
   EXPECT_LT((to_vec3(body.wrench.force) - Vec3(0, 0, weight)).norm(), 1e-9 * weight);
@@ -190,15 +193,15 @@ TEST(AddedMass, TurnsSlenderBodyBroadsideOn) {
   const Scene scene = scene_of(slender("angular_damping = 20\n"));
   const double step = 1e-4;
   // Munk's moment N = -(A22 - A11) u v, on the inertia of body and water.
-  const SimulatedBody first = run(scene, options_of(Integrator::kVelocityVerlet, step), 1);
+  const Simulation first = after(scene, options_of(Integrator::kVelocityVerlet, step), 1);
   const double moment = -(170.0 - 10.0) * 1.0 * 0.2;
-  EXPECT_NEAR(first.wrench.torque[2], moment, 1e-3 * std::abs(moment));
+  EXPECT_NEAR(only_body(first).wrench.torque[2], moment, 1e-3 * std::abs(moment));
   const double inertia = 1000.0 * 0.18 * (4.0 + 0.09) / 12.0 + 50.0;
-  const double rate = angular_velocity_W(first.rigid, first.state).z() / step;
+  const double rate = angular_velocity_W(only_body(first).rigid, only_body(first).state).z() / step;
   EXPECT_NEAR(rate, moment / inertia, 1e-3 * std::abs(moment / inertia));
 
-  const SimulatedBody last = run(scene, options_of(Integrator::kVelocityVerlet, 0.01), 20'000);
-  const Vec3 velocity_B = last.state.q_WB.conjugate() * last.state.velocity_W;
+  const Simulation last = after(scene, options_of(Integrator::kVelocityVerlet, 0.01), 20'000);
+  const Vec3 velocity_B = only_body(last).state.q_WB.conjugate() * only_body(last).state.velocity_W;
   EXPECT_LT(std::abs(velocity_B.x()), 0.02 * std::abs(velocity_B.y()));
 }
 
