@@ -236,6 +236,26 @@ TEST_F(ReportPageOfLoads, SaysWhatForcesTitlesAndArrowsMean) {
                       "velocity of the water, half the body's diagonal per m/s"}));
 }
 
+TEST_F(ReportPageOfLoads, ComputesEnergyThatClientRecords) {
+  ASSERT_NO_FATAL_FAILURE(open_simulation());
+  const auto energies = [] {
+    return browser()
+        .run("return Array.from(buoyancy_report.plots.energy.series[0].values)")
+        .get<std::vector<double>>();
+  };
+  const std::vector<double> recorded = energies();
+  std::ifstream file(directory_.path("run.csv"));
+  std::string without_energy;
+  for (std::string line; std::getline(file, line);) without_energy += line.substr(0, line.rfind(',')) + '\n';
+  ASSERT_NO_FATAL_FAILURE(
+      open(directory_.path("moving.toml"), directory_.write("without_energy.csv", without_energy)));
+  const std::vector<double> computed = energies();
+  ASSERT_EQ(computed.size(), recorded.size());
+  for (std::size_t i = 0; i < recorded.size(); i += kRowsBetweenChecks) {
+    EXPECT_NEAR(computed[i], recorded[i], 1e-6) << "row " << i;
+  }
+}
+
 TEST_F(ReportPageOfLoads, ShowsLoadsOfSelectedBody) {
   std::string run = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
   for (int i = 0; i < 10; ++i) {

@@ -27,7 +27,7 @@ namespace buoyancy::view {
 //   kFx .. kTz       force [N]; torque about the reference point [N m]
 //   kVolume          submerged volume [m^3]
 //   kBx .. kBz       from B's origin to the centre of buoyancy [m]
-//   kEnergy          mechanical energy [J] (simulation/rigid_body.h)
+//   kEnergy          mechanical energy [J] (simulation/rigid_body.h), with that of added mass
 //   kRoundTrip       time from request to response [s], by the recorder's clock
 //   kHeave           height of B's origin above the level [m]
 //   kRoll, kPitch    angles from upright [degrees] (attitude.h)

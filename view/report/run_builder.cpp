@@ -47,8 +47,9 @@ Pose raw_pose(const BodyState& state) {
   return {to_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
 }
 
-double energy_of(const RigidBody& rigid, const RecordedState& recorded, const BodyWrench& wrench,
-                 const Water& water) {
+// motion: nullopt for a body without drag and added mass.
+double energy_of(const RigidBody& rigid, const std::optional<HydrodynamicMotion>& motion,
+                 const RecordedState& recorded, const BodyWrench& wrench, const Water& water) {
   const Pose pose = raw_pose(recorded.state);
   DynamicsSpec spec;
   spec.position = pose.p_WB;
@@ -56,7 +57,8 @@ double energy_of(const RigidBody& rigid, const RecordedState& recorded, const Bo
   spec.linear_velocity = to_vec3(recorded.state.linear_velocity);
   spec.angular_velocity = to_vec3(recorded.state.angular_velocity);
   const RigidBodyState state = initial_state(rigid, spec);
-  return mechanical_energy(rigid, state, wrench, water);
+  const double added = motion ? motion->added_kinetic_energy_at_pose(state).value_or(kUnknown) : 0.0;
+  return mechanical_energy(rigid, state, wrench, water) + added;
 }
 
 template <std::size_t kSize>
@@ -105,8 +107,12 @@ RunBuilder::ShownBody* RunBuilder::show(std::size_t index) {
   bodies_[index]->mesh_up = mesh_up_of(body);
   run_.bodies[index].shown = true;
   if (body.dynamics.given) {
-    if (Expected<RigidBody> rigid = make_rigid_body(body, scene_.water()))
+    if (Expected<RigidBody> rigid = make_rigid_body(body, scene_.water())) {
       bodies_[index]->rigid = *std::move(rigid);
+      if (body.hydrodynamics != nullptr) {
+        bodies_[index]->motion.emplace(body, *bodies_[index]->rigid, scene_.water(), scene_.current_W());
+      }
+    }
   }
   return bodies_[index].get();
 }
@@ -221,7 +227,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   if (recorded.energy) {
     row[kEnergy] = *recorded.energy;
   } else if (recorded.velocities && shown->rigid && wrench.status == BodyStatus::kOk) {
-    row[kEnergy] = energy_of(*shown->rigid, recorded, wrench, scene_.water());
+    row[kEnergy] = energy_of(*shown->rigid, shown->motion, recorded, wrench, scene_.water());
   }
   row[kRoundTrip] = recorded.round_trip;
   const Attitude body_attitude = attitude(raw_pose(recorded.state), scene_.water(), shown->mesh_up);

@@ -16,6 +16,7 @@
 #include "engine/water_at_time.h"
 #include "messages/bot_core.h"
 #include "scene/scene.h"
+#include "simulation/hydrodynamic_motion.h"
 #include "simulation/rigid_body.h"
 #include "view/report/attitude.h"
 #include "view/report/decimated_rows.h"
@@ -74,6 +75,7 @@ class RunBuilder {
 
     DecimatedRows rows;
     std::optional<RigidBody> rigid;
+    std::optional<HydrodynamicMotion> motion;  // of a rigid body with drag or added mass
     MeshUp mesh_up = MeshUp::kZ;
     EvaluationCounts evaluations;
     std::optional<PoseBits> last_pose;
