@@ -20,10 +20,15 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kReorderingDelay{12};
 
-enum class Destination { kService, kClient };
+enum class Message { kRequest, kResponse, kLoads };
+
+std::string channel_of(Message message) {
+  if (message == Message::kRequest) return std::string(kStatesChannel);
+  return std::string(message == Message::kResponse ? kWrenchesChannel : kLoadsChannel);
+}
 
 struct Delayed {
-  Destination destination;
+  Message message;
   std::vector<std::uint8_t> bytes;
 };
 using DelayedByTime = std::multimap<Clock::time_point, Delayed>;
@@ -49,12 +54,14 @@ struct LossyRelay::Forwarder {
         client_side(open(given.client_url)),
         service_side(open(given.service_url)),
         random(given.seed) {
-    require(client_side.subscribe(std::string(kStatesChannel), [this](Bytes bytes, std::string_view) {
-      forward(Destination::kService, bytes, relay.lost_requests_);
+    require(client_side.subscribe(channel_of(Message::kRequest), [this](Bytes bytes, std::string_view) {
+      forward(Message::kRequest, bytes, relay.lost_requests_);
     }));
-    require(service_side.subscribe(std::string(kWrenchesChannel), [this](Bytes bytes, std::string_view) {
-      forward(Destination::kClient, bytes, relay.lost_responses_);
-    }));
+    for (const Message message : {Message::kResponse, Message::kLoads}) {
+      require(service_side.subscribe(channel_of(message), [this, message](Bytes bytes, std::string_view) {
+        forward(message, bytes, relay.lost_responses_);
+      }));
+    }
   }
 
   void run() {
@@ -66,22 +73,22 @@ struct LossyRelay::Forwarder {
       if (waiting[0].revents != 0) client_side.handle_one();
       if (waiting[1].revents != 0) service_side.handle_one();
       while (!delayed.empty() && delayed.begin()->first <= Clock::now()) {
-        send(delayed.begin()->second.destination, delayed.begin()->second.bytes);
+        send(delayed.begin()->second.message, delayed.begin()->second.bytes);
         delayed.erase(delayed.begin());
       }
     }
   }
 
-  void forward(Destination destination, Bytes bytes, std::atomic<std::int64_t>& lost) {
+  void forward(Message message, Bytes bytes, std::atomic<std::int64_t>& lost) {
     if (happens(options.loss, lost)) return;
     Clock::duration delay{0};
-    if (destination == Destination::kClient) {
+    if (message != Message::kRequest) {
       delay =
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.response_delay));
     }
-    if (happens(options.duplication, relay.duplicated_)) send_after(delay, destination, bytes);
+    if (happens(options.duplication, relay.duplicated_)) send_after(delay, message, bytes);
     if (happens(options.reordering, relay.reordered_)) delay += kReorderingDelay;
-    send_after(delay, destination, bytes);
+    send_after(delay, message, bytes);
   }
 
   bool happens(double probability, std::atomic<std::int64_t>& counter) {
@@ -90,14 +97,14 @@ struct LossyRelay::Forwarder {
     return drawn;
   }
 
-  void send_after(Clock::duration delay, Destination destination, Bytes bytes) {
-    if (delay.count() == 0) return send(destination, bytes);
-    delayed.emplace(Clock::now() + delay, Delayed{destination, {bytes.begin(), bytes.end()}});
+  void send_after(Clock::duration delay, Message message, Bytes bytes) {
+    if (delay.count() == 0) return send(message, bytes);
+    delayed.emplace(Clock::now() + delay, Delayed{message, {bytes.begin(), bytes.end()}});
   }
 
-  void send(Destination destination, Bytes bytes) {
-    require(destination == Destination::kService ? service_side.publish(std::string(kStatesChannel), bytes)
-                                                 : client_side.publish(std::string(kWrenchesChannel), bytes));
+  void send(Message message, Bytes bytes) {
+    LcmConnection& receiver = message == Message::kRequest ? service_side : client_side;
+    require(receiver.publish(channel_of(message), bytes));
   }
 
   RelayOptions options;

@@ -1,6 +1,6 @@
 // Simulates a bad network between client and service: forwards requests from one LCM network to another and
-// the responses back, with loss, duplication, reordering and a delay of the responses. The random generator
-// is seeded: the same messages of a sequence are lost every time.
+// the responses and loads back, with loss, duplication, reordering and a delay of the responses. The random
+// generator is seeded: the same messages of a sequence are lost every time.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,10 @@ namespace buoyancy {
 struct RelayOptions {
   std::string client_url;
   std::string service_url;
-  double loss = 0.0;            // probability, for requests and responses
+  double loss = 0.0;            // probability, for requests, responses and loads
   double response_delay = 0.0;  // [s]
   std::uint64_t seed = 1;
-  double duplication = 0.0;  // probability, for requests and responses
+  double duplication = 0.0;  // probability, likewise
   double reordering =
       0.0;  // probability of an extra delay of some milliseconds, past a retry or the next message
 };
