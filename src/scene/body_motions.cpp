@@ -1,0 +1,352 @@
+#include "scene/body_motions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "hydrodynamics/small_motions.h"
+#include "hydrostatics/displacement_moments.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+constexpr double kNeutral = 1e-9;           // relative difference of mass and displaced mass
+constexpr double kHeaveAmplitude = 0.05;    // over the mesh's diagonal
+constexpr double kRotationAmplitude = 0.1;  // [rad]
+
+// Columns: e1, e2 and up in W.
+Mat3 heave_axes_W(const Mat3& R_WB, const Vec3& up_W) {
+  const Vec3 x_W = R_WB.col(0);
+  const Vec3 forward_W = std::abs(up_W.dot(x_W)) > 0.9 ? Vec3(R_WB.col(1)) : x_W;
+  Mat3 axes;
+  axes.col(0) = (forward_W - up_W.dot(forward_W) * up_W).normalized();
+  axes.col(1) = up_W.cross(axes.col(0));
+  axes.col(2) = up_W;
+  return axes;
+}
+
+// The body in one state of immersion.
+struct State {
+  double volume_fraction = 1.0;
+  double area_fraction = 1.0;
+  Mat6 stiffness_W = Mat6::Zero();  // about C
+};
+
+double factor(ImmersionScaling scaling, const State& state) {
+  switch (scaling) {
+    case ImmersionScaling::kVolume:
+      return state.volume_fraction;
+    case ImmersionScaling::kWettedArea:
+      return state.area_fraction;
+    case ImmersionScaling::kNone:
+      break;
+  }
+  return 1.0;
+}
+
+// Matrices in E about C.
+class MotionMatrices {
+ public:
+  MotionMatrices(const Body& body, const BodyMass& rigid, const Water& water, const Vec3& current_W)
+      : coefficients_(body.hydrodynamics == nullptr ? HydrodynamicCoefficients{}
+                                                    : body.hydrodynamics->coefficients()),
+        center_of_mass_B_(rigid.center_of_mass_B),
+        R_WB_(body.dynamics.orientation.normalized().toRotationMatrix()),
+        axes_W_(heave_axes_W(R_WB_, water.up_W)),
+        R_EB_(axes_W_.transpose() * R_WB_) {
+    rigid_.topLeftCorner<3, 3>() = rigid.mass * Mat3::Identity();
+    rigid_.bottomRightCorner<3, 3>() = R_EB_ * rigid.inertia_B * R_EB_.transpose();
+    if (coefficients_.drag) {
+      given_twist_B_ =
+          relative_twist_B({R_WB_, body.dynamics.linear_velocity, body.dynamics.angular_velocity},
+                           coefficients_.drag->center_B, current_W);
+    }
+  }
+
+  const Mat3& R_WB() const { return R_WB_; }
+  const Mat6& rigid_mass() const { return rigid_; }
+  // nu of [body.client] at the drag's centre.
+  const Vec6& given_twist_B() const { return given_twist_B_; }
+
+  Mat6 added_mass(const State& state) const {
+    if (!coefficients_.added_mass) return Mat6::Zero();
+    const AddedMassCoefficients& added = *coefficients_.added_mass;
+    return in_axes(factor(added.immersion, state) * added.matrix, added.center_B);
+  }
+  Mat6 mass(const State& state) const { return rigid_ + added_mass(state); }
+  Mat6 damping(const State& state, const Vec6& twist_B) const {
+    if (!coefficients_.drag) return Mat6::Zero();
+    const DragCoefficients& drag = *coefficients_.drag;
+    const Mat6 jacobian = drag.linear + drag.quadratic * (2.0 * twist_B.cwiseAbs()).asDiagonal();
+    return in_axes(factor(drag.immersion, state) * jacobian, drag.center_B);
+  }
+  Mat6 stiffness(const State& state) const { return rotated(state.stiffness_W, axes_W_.transpose()); }
+
+  // The damping ratio of quadratic drag for a motion of this shape.
+  double quadratic_ratio(const State& state, const MotionMode& mode, double amplitude) const {
+    if (!coefficients_.drag) return 0.0;
+    const DragCoefficients& drag = *coefficients_.drag;
+    Vec6 shape_B;
+    shape_B.head<3>() = R_EB_.transpose() * mode.shape.head<3>();
+    shape_B.tail<3>() = R_EB_.transpose() * mode.shape.tail<3>();
+    return factor(drag.immersion, state) *
+           quadratic_damping_ratio(twist_at(shape_B, drag.center_B - center_of_mass_B_), drag.quadratic,
+                                   amplitude);
+  }
+
+ private:
+  Mat6 in_axes(const Mat6& matrix_B, const Vec3& center_B) const {
+    return rotated(matrix_at(matrix_B, center_of_mass_B_ - center_B), R_EB_);
+  }
+
+  HydrodynamicCoefficients coefficients_;
+  Vec3 center_of_mass_B_;
+  Mat3 R_WB_;
+  Mat3 axes_W_;
+  Mat3 R_EB_;
+  Mat6 rigid_ = Mat6::Zero();
+  Vec6 given_twist_B_ = Vec6::Zero();
+};
+
+// [N/m], rounding error of the stiffness of heave; times a lever or its square, of the others.
+double stiffness_error(const HydrostaticMesh& mesh, const Water& water) {
+  return 64.0 * kEpsilon * water.density * water.gravity * mesh.area;
+}
+
+State floating_state(const HydrostaticMesh& mesh, const Hydrostatics& hydrostatics) {
+  return {.volume_fraction = mesh.is_open() ? 1.0 : std::min(1.0, hydrostatics.volume / mesh.volume),
+          .area_fraction = std::min(1.0, hydrostatics.wetted_area / mesh.area),
+          .stiffness_W = hydrostatics.stiffness};
+}
+
+State submerged_state(const HydrostaticMesh& mesh, const Vec3& centroid_from_mass_W, const Water& water) {
+  DisplacementMoments<double> moments;
+  moments.volume = mesh.volume;
+  moments.moment = mesh.volume * centroid_from_mass_W;
+  State state{.stiffness_W = water.density * water.gravity * stiffness(moments, water.up_W)};
+  const double rounding = stiffness_error(mesh, water) * mesh.diagonal * mesh.diagonal;
+  if (state.stiffness_W.cwiseAbs().maxCoeff() <= rounding) state.stiffness_W.setZero();
+  return state;
+}
+
+// coordinate: of x that gives the motion its name. Stiffness within its rounding error counts as none.
+NaturalMotion natural_motion(const MotionMatrices& matrices, const State& state, const MotionMode& mode,
+                             Eigen::Index coordinate, double amplitude, double lever, double error) {
+  const double size = mode.shape.head<3>().norm() + lever * mode.shape.tail<3>().norm();
+  if (!(mode.stiffness > error * size * size)) return {};
+  NaturalMotion motion;
+  motion.frequency = std::sqrt(mode.stiffness);
+  motion.amplitude = amplitude;
+  motion.damping_ratio = damping_ratio(mode, matrices.damping(state, Vec6::Zero()));
+  motion.damping_ratio_at_amplitude =
+      motion.damping_ratio +
+      matrices.quadratic_ratio(state, mode, amplitude / std::abs(mode.shape[coordinate]));
+  return motion;
+}
+
+std::optional<NaturalMotions> natural_motions(const MotionMatrices& matrices, const State& state,
+                                              const HydrostaticMesh& mesh, const Vec3& center_of_mass_B,
+                                              const Water& water) {
+  const std::optional<HeaveRollPitch> modes =
+      heave_roll_pitch(matrices.mass(state), matrices.stiffness(state));
+  if (!modes) return std::nullopt;
+  const double lever = mesh.max_lever_arm(center_of_mass_B);
+  const double error = stiffness_error(mesh, water);
+  const auto motion = [&](const MotionMode& mode, Eigen::Index coordinate, double amplitude) {
+    return natural_motion(matrices, state, mode, coordinate, amplitude, lever, error);
+  };
+  return NaturalMotions{.heave = motion(modes->heave, 2, kHeaveAmplitude * mesh.diagonal),
+                        .roll = motion(modes->roll, 3, kRotationAmplitude),
+                        .pitch = motion(modes->pitch, 4, kRotationAmplitude)};
+}
+
+// Along up, fully submerged. force: [N], buoyancy less weight.
+std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
+  if (force == 0.0) return 0.0;
+  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;
+  const DragCoefficients& drag = *body.hydrodynamics->coefficients().drag;
+  const double linear = up_B.dot(drag.linear.topLeftCorner<3, 3>() * up_B);
+  const double quadratic =
+      up_B.dot(drag.quadratic.topLeftCorner<3, 3>() * up_B.cwiseAbs().cwiseProduct(up_B));
+  // linear v + quadratic v^2 = |force|, in the form that does not cancel.
+  const double denominator = linear + std::sqrt(linear * linear + 4.0 * quadratic * std::abs(force));
+  const double speed = 2.0 * std::abs(force) / denominator;
+  if (!std::isfinite(speed)) return std::nullopt;
+  return std::copysign(speed, force);
+}
+
+// Lowers the step of `motions` to that of a state. Returns false where it is beyond double's range.
+bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& twist_B, StepLimit limit,
+                BodyMotions& motions) {
+  const std::optional<double> step =
+      max_explicit_step(matrices.mass(state), matrices.damping(state, twist_B), matrices.stiffness(state));
+  if (!step) return false;
+  if (*step < motions.max_explicit_step) {
+    motions.max_explicit_step = *step;
+    motions.step_limit = limit;
+  }
+  return true;
+}
+
+// Everything that the motions of a body depend on, beside the scene's water and current.
+using BodyKey = std::vector<double>;
+
+template <typename Derived>
+void append(const Eigen::MatrixBase<Derived>& matrix, BodyKey& key) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) key.push_back(matrix(i, j));
+  }
+}
+
+BodyKey key_of(const Body& body, std::size_t mesh_index, const BodyMass& rigid) {
+  BodyKey key{static_cast<double>(mesh_index), rigid.mass};
+  append(rigid.center_of_mass_B, key);
+  append(rigid.inertia_B, key);
+  append(body.dynamics.orientation.coeffs(), key);
+  append(body.dynamics.linear_velocity, key);
+  append(body.dynamics.angular_velocity, key);
+  if (body.hydrodynamics == nullptr) return key;
+  const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
+  key.push_back(coefficients.drag ? 1.0 : 0.0);
+  if (coefficients.drag) {
+    append(coefficients.drag->linear, key);
+    append(coefficients.drag->quadratic, key);
+    append(coefficients.drag->center_B, key);
+    key.push_back(static_cast<double>(coefficients.drag->immersion));
+  }
+  if (coefficients.added_mass) {
+    append(coefficients.added_mass->matrix, key);
+    append(coefficients.added_mass->center_B, key);
+    key.push_back(static_cast<double>(coefficients.added_mass->immersion));
+  }
+  return key;
+}
+
+// Gives access to meshes with trees: those of the scene, or copies where their methods need no trees.
+class MeshesWithTrees {
+ public:
+  const HydrostaticMesh& of(const PreparedMesh& prepared) {
+    if (prepared.mesh.tree) return prepared.mesh;
+    const auto [copy, is_new] = copies_.try_emplace(&prepared);
+    if (is_new) {
+      copy->second = prepared.mesh;
+      copy->second.tree = build_moment_tree(copy->second);
+    }
+    return copy->second;
+  }
+
+ private:
+  std::map<const PreparedMesh*, HydrostaticMesh> copies_;
+};
+
+}  // namespace
+
+double NaturalMotion::period() const {
+  return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
+}
+
+std::optional<BodyMass> mass_of_body(const Body& body, const Water& water) {
+  const DynamicsSpec& spec = body.dynamics;
+  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
+  if (body.prepared_mesh->mesh.is_open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {
+    return std::nullopt;
+  }
+  BodyMass result;
+  result.mass = spec.mass.value_or(spec.density.value_or(0.5 * water.density) * enclosed.volume);
+  result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
+  result.inertia_B =
+      spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (result.mass / enclosed.volume));
+  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite())
+    return std::nullopt;
+  return result;
+}
+
+std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
+                                        const Vec3& current_W) {
+  const std::optional<BodyMass> rigid = mass_of_body(body, water);
+  if (!rigid) return std::nullopt;
+  const MotionMatrices matrices(body, *rigid, water, current_W);
+  const Vec3 up_B = matrices.R_WB().transpose() * water.up_W;
+
+  BodyMotions motions;
+  motions.max_explicit_step = kInfinity;
+  const std::optional<double> ratio = max_mass_ratio(matrices.rigid_mass(), matrices.added_mass({}));
+  if (!ratio) return std::nullopt;
+  motions.added_mass_ratio = *ratio;
+
+  const double displaced = water.density * mesh.volume;  // [kg], of a closed mesh
+  const bool neutral = !mesh.is_open() && std::abs(displaced - rigid->mass) <= kNeutral * rigid->mass;
+  if (!neutral) {
+    const std::optional<FloatingPose> floating =
+        find_floating_pose(mesh, body.dynamics.orientation.normalized(), rigid->mass / water.density, water,
+                           rigid->center_of_mass_B);
+    if (floating) {
+      motions.balance = VerticalBalance::kFloats;
+      motions.draft = floating->draft;
+      const Vec3 lever_W =
+          floating->hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid->center_of_mass_B;
+      motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
+      const State state = floating_state(mesh, floating->hydrostatics);
+      motions.natural = natural_motions(matrices, state, mesh, rigid->center_of_mass_B, water);
+      if (!limit_step(matrices, state, matrices.given_twist_B(), StepLimit::kFloating, motions)) {
+        return std::nullopt;
+      }
+    }
+  }
+  if (mesh.is_open()) return motions;
+
+  if (!motions.draft) motions.balance = neutral ? VerticalBalance::kNeutral : VerticalBalance::kSinks;
+  const Vec3 centroid_B = mesh.center_B - rigid->center_of_mass_B + mesh.centroid;
+  const State state = submerged_state(mesh, matrices.R_WB() * centroid_B, water);
+  if (!motions.draft) {
+    motions.natural = natural_motions(matrices, state, mesh, rigid->center_of_mass_B, water);
+    const Vec3 lever_W = matrices.R_WB() * centroid_B;
+    motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
+  }
+  const double force = neutral ? 0.0 : (displaced - rigid->mass) * water.gravity;
+  motions.terminal_velocity = terminal_velocity_of(body, up_B, force);
+  bool finite = limit_step(matrices, state, matrices.given_twist_B(), StepLimit::kSubmerged, motions);
+  if (motions.terminal_velocity) {
+    Vec6 twist_B = Vec6::Zero();
+    twist_B.head<3>() = *motions.terminal_velocity * up_B;
+    finite = finite && limit_step(matrices, state, twist_B, StepLimit::kTerminalVelocity, motions);
+  }
+  if (!finite) return std::nullopt;
+  return motions;
+}
+
+std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_vertices) {
+  std::map<const PreparedMesh*, std::size_t> mesh_index;
+  for (const auto& mesh : scene.meshes()) mesh_index.emplace(mesh.get(), mesh_index.size());
+  std::vector<MotionsOfBody> bodies;
+  MeshesWithTrees meshes;
+  std::map<BodyKey, std::shared_ptr<const BodyMotions>> known;
+  std::size_t vertices = 0;
+  for (const Body& body : scene.bodies()) {
+    MotionsOfBody& entry = bodies.emplace_back();
+    const std::optional<BodyMass> rigid = mass_of_body(body, scene.water());
+    if (!body.dynamics.given || !rigid) continue;
+    BodyKey key = key_of(body, mesh_index.at(body.prepared_mesh), *rigid);
+    auto found = known.find(key);
+    if (found == known.end()) {
+      vertices += body.prepared_mesh->mesh.surface.x.size();
+      entry.left_out = vertices > max_vertices;
+      if (entry.left_out) continue;
+      const std::optional<BodyMotions> motions =
+          body_motions(body, meshes.of(*body.prepared_mesh), scene.water(), scene.current_W());
+      found = known.emplace(std::move(key), motions ? std::make_shared<const BodyMotions>(*motions) : nullptr)
+                  .first;
+    }
+    entry.motions = found->second;
+  }
+  return bodies;
+}
+
+}  // namespace buoyancy

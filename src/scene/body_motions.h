@@ -1,0 +1,97 @@
+// How a body moves in water at rest: where it floats, how fast it sinks or rises, its natural periods, and
+// the largest step of an explicit integrator.
+//
+// All of it is for the attitude of [body.client] orientation. The axes are E = (e1, e2, up), with e1 the
+// body's x axis projected on the horizontal plane (its y axis where |up . x| > 0.9) and e2 = up x e1: heave
+// is along up, roll about e1, pitch about e2, about the centre of mass C. M is the mass and the inertia about
+// C, s A the added mass about C with s of the present immersion, D = s (D1 + 2 D2 diag(|nu|)) the damping, K
+// the hydrostatic stiffness about C (hydrostatics/hydrostatics.h), to which weight adds nothing.
+//
+// The drag is that of [body.drag] alone: the damping keys of [body.client] are not the water's. Formulas:
+// hydrodynamics/small_motions.h and docs/mathematics.md, "Small motions".
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/floating_pose.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+// The mass of a body as the simulator uses it.
+struct BodyMass {
+  double mass = 0.0;                     // [kg], > 0
+  Vec3 center_of_mass_B = Vec3::Zero();  // [m], C
+  Mat3 inertia_B = Mat3::Zero();         // [kg m^2], about C
+};
+
+// What [body.client] gives, the rest derived from the mesh as it says. nullopt where an open mesh leaves
+// something unknown, and where a value is not above 0 or not finite.
+std::optional<BodyMass> mass_of_body(const Body& body, const Water& water);
+
+// Heave, roll or pitch.
+struct NaturalMotion {
+  double frequency = 0.0;      // [rad/s], with added mass; 0: nothing restores the motion, and no ratios
+  double damping_ratio = 0.0;  // of the linear drag
+  double amplitude = 0.0;      // [m] or [rad]: L / 20 for heave, with L the mesh's diagonal; 0.1 rad
+  double damping_ratio_at_amplitude = 0.0;  // of linear and quadratic drag
+
+  double period() const;  // [s]; infinity where nothing restores the motion
+};
+
+struct NaturalMotions {
+  NaturalMotion heave, roll, pitch;
+};
+
+enum class VerticalBalance {
+  kFloats,   // lighter than the water that it can displace
+  kSinks,    // heavier
+  kNeutral,  // equal within 1e-9
+  kUnknown,  // an open mesh whose volume is unknown, and that takes in water before it floats
+};
+
+// A state that limits the step of an explicit integrator.
+enum class StepLimit { kNone, kFloating, kSubmerged, kTerminalVelocity };
+
+struct BodyMotions {
+  VerticalBalance balance = VerticalBalance::kUnknown;
+  std::optional<double> draft;  // [m], where the body floats
+  // [m], horizontal distance of the centre of buoyancy from C there: above 0, the body turns.
+  double turning_lever = 0.0;
+  // Where it floats; of a body that does not, fully submerged. Unset: neither is known.
+  std::optional<NaturalMotions> natural;
+
+  // Fully submerged, along up: above 0 rising, below 0 sinking. Moving along up without turning, drag and
+  // weight less buoyancy in balance; to rounding. 0: neutrally buoyant. Unset: without drag along up, or of
+  // an open mesh.
+  std::optional<double> terminal_velocity;  // [m/s]
+
+  // [s], see max_explicit_step(): the smallest of the body afloat and fully submerged, each at the velocity
+  // of [body.client] relative to the current, and fully submerged at its terminal velocity. Infinity: none.
+  double max_explicit_step = 0.0;
+  StepLimit step_limit = StepLimit::kNone;
+
+  // max_mass_ratio() of the whole A; 0 without one.
+  double added_mass_ratio = 0.0;
+};
+
+// mesh: the body's, with its tree. Returns nullopt without a mass, and where a number is beyond double's
+// range. Complexity: O(vertices).
+std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
+                                        const Vec3& current_W);
+
+// The motions of a body of a scene.
+struct MotionsOfBody {
+  std::shared_ptr<const BodyMotions> motions;  // null: body_motions() has none, or [body.client] is absent
+  bool left_out = false;                       // not computed, because of max_vertices; null then, too
+};
+
+// One element per body of the scene, in its order. Equal bodies share their motions. Those that differ are
+// computed as long as their meshes have at most max_vertices together, each counted as often as it is used.
+std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_vertices = 100'000'000);
+
+}  // namespace buoyancy
