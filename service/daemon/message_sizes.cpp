@@ -98,7 +98,7 @@ std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& mess
 
 std::string check_report_text(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer) {
-  std::string text = scene_report_text(scene) + "\nmessages\n";
+  std::string text = scene_report_text(scene, {.motions = true}) + "\nmessages\n";
   text += to_text(messages.request) + to_text(messages.response);
   if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
   if (messages.loads) text += to_text(*messages.loads);
@@ -114,7 +114,7 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
 
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer) {
-  Json report = Json::parse(scene_report_json(scene));
+  Json report = Json::parse(scene_report_json(scene, {.motions = true}));
   report["messages"] = {{"request", to_json(messages.request)},
                         {"response", to_json(messages.response)},
                         {"hydrostatics", to_json(messages.hydrostatics)},

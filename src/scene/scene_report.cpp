@@ -12,6 +12,9 @@
 
 #include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
+#include "scene/body_motions.h"
+#include "scene/coefficient_warnings.h"
+#include "scene/motion_report.h"
 
 namespace buoyancy {
 namespace {
@@ -52,13 +55,22 @@ std::string bracketed(const Vec3& vector) {
   return text + "]";
 }
 
+std::vector<std::string> outputs_of(const Body& body) {
+  std::vector<std::string> outputs{"wrench"};
+  if (body.hydrostatics) outputs.emplace_back("hydrostatics");
+  if (body.loads) outputs.emplace_back("loads");
+  return outputs;
+}
+
 std::string body_text(const Body& body, const Scene& scene) {
   std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
   text += "  mesh          " + body.prepared_mesh->report.name + "\n";
   text += "  method        " + std::string(to_string(body.solver.method())) + ", tolerance " +
           format_number(body.solver.tolerance()) + "\n";
   text += "  torque about  " + bracketed(body.reference_B) + " m\n";
-  text += "  outputs       wrench" + std::string(body.hydrostatics ? ", hydrostatics" : "") + "\n";
+  text += "  outputs       ";
+  for (const std::string& output : outputs_of(body)) text += (text.back() == ' ' ? "" : ", ") + output;
+  text += "\n";
   const std::optional<double> mass = mass_of(body, scene.water());
   const std::optional<double> density = density_of(body, scene.water());
   if (mass) {
@@ -67,7 +79,7 @@ std::string body_text(const Body& body, const Scene& scene) {
   } else {
     text += "  mass          unknown: the mesh is open\n";
   }
-  return text;
+  return text + coefficients_text(body);
 }
 
 double shortest_wavelength(const Sea& sea) {
@@ -221,15 +233,20 @@ Json to_json(const MeshReport& report) {
 }
 
 Json to_json(const Body& body, const Scene& scene) {
-  return {{"id", body.id},
-          {"name", body.name},
-          {"mesh", index_of(*body.prepared_mesh, scene)},
-          {"method", to_string(body.solver.method())},
-          {"tolerance", body.solver.tolerance()},
-          {"reference_point", to_json(body.reference_B)},
-          {"outputs", body.hydrostatics ? Json{"wrench", "hydrostatics"} : Json{"wrench"}},
-          {"mass", to_json(mass_of(body, scene.water()))},
-          {"density", to_json(density_of(body, scene.water()))}};
+  Json json{{"id", body.id},
+            {"name", body.name},
+            {"mesh", index_of(*body.prepared_mesh, scene)},
+            {"method", to_string(body.solver.method())},
+            {"tolerance", body.solver.tolerance()},
+            {"reference_point", to_json(body.reference_B)},
+            {"outputs", outputs_of(body)},
+            {"mass", to_json(mass_of(body, scene.water()))},
+            {"density", to_json(density_of(body, scene.water()))}};
+  if (body.hydrodynamics == nullptr) return json;
+  const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
+  if (coefficients.drag) json["drag"] = to_json(*coefficients.drag);
+  if (coefficients.added_mass) json["added_mass"] = to_json(*coefficients.added_mass);
+  return json;
 }
 
 Json sea_json(const Scene& scene) {
@@ -239,21 +256,28 @@ Json sea_json(const Scene& scene) {
 
 }  // namespace
 
-std::string scene_report_text(const Scene& scene) {
+std::string scene_report_text(const Scene& scene, const SceneReportOptions& options) {
   const Water& water = scene.water();
   std::string text = scene.name() + "\n";
   text += "  water         up . x < " + format_number(water.level) + " m, up " + bracketed(water.up_W) +
           ", " + format_number(water.density) + " kg/m^3, gravity " + format_number(water.gravity) +
           " m/s^2\n";
+  if (scene.current_W() != Vec3::Zero()) {
+    text += "  current       " + bracketed(scene.current_W()) + " m/s\n";
+  }
   text += "  instructions  " + simd_target() + "\n";
   if (scene.receives_sea()) text += "\nsea  received in messages\n";
   if (scene.sea() != nullptr) {
     text += '\n';
     text += sea_text(*scene.sea(), scene.wave_systems());
   }
-  for (const Body& body : scene.bodies()) {
+  const std::vector<MotionsOfBody> motions =
+      options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
+  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
+    const Body& body = scene.bodies()[i];
     text += '\n';
     text += body_text(body, scene);
+    if (options.motions) text += motions_text(motions[i], body, scene.water());
   }
   for (const auto& mesh : scene.meshes()) {
     text += "\nmesh " + to_text(mesh->report) + "\n  used by       ";
@@ -266,9 +290,16 @@ std::string scene_report_text(const Scene& scene) {
   return text;
 }
 
-std::string scene_report_json(const Scene& scene) {
+std::string scene_report_json(const Scene& scene, const SceneReportOptions& options) {
   Json bodies = Json::array();
-  for (const Body& body : scene.bodies()) bodies.push_back(to_json(body, scene));
+  const std::vector<MotionsOfBody> motions =
+      options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
+  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
+    const Body& body = scene.bodies()[i];
+    bodies.push_back(to_json(body, scene));
+    if (!options.motions || !body.dynamics.given) continue;
+    bodies.back()["motions"] = motions[i].motions ? to_json(*motions[i].motions) : Json(nullptr);
+  }
   Json meshes = Json::array();
   for (const auto& mesh : scene.meshes()) {
     Json report = to_json(mesh->report);
@@ -276,7 +307,9 @@ std::string scene_report_json(const Scene& scene) {
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
     meshes.push_back(std::move(report));
   }
-  const Json report{{"scene", scene.name()},       {"water", to_json(scene.water())},
+  Json water = to_json(scene.water());
+  if (scene.current_W() != Vec3::Zero()) water["current"] = to_json(scene.current_W());
+  const Json report{{"scene", scene.name()},       {"water", std::move(water)},
                     {"sea", sea_json(scene)},      {"simd_target", simd_target()},
                     {"bodies", std::move(bodies)}, {"meshes", std::move(meshes)}};
   // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
@@ -284,16 +317,19 @@ std::string scene_report_json(const Scene& scene) {
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {
+  std::vector<Warning> warnings = coefficient_warnings(scene);
   const Sea* sea = scene.sea();
-  if (sea == nullptr || !sea->is_too_steep()) return {};
-  return {
+  if (sea == nullptr || !sea->is_too_steep()) return warnings;
+  warnings.insert(
+      warnings.begin(),
       {scene.name() + ": the sea",
        "a steepness of " + format_rounded(sea->extreme_steepness()) +
            " (4 sqrt(sum (a k)^2 / 2), or sum a k where that is less)",
        "less than 1: under the steepest crests the modelled pressure falls downwards, since linear theory "
        "does not hold there",
        "waves too high for their length, or the short waves of a spectrum with a high cutoff",
-       "Use lower or longer waves, or a lower cutoff"}};
+       "Use lower or longer waves, or a lower cutoff"});
+  return warnings;
 }
 
 }  // namespace buoyancy

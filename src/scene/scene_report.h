@@ -10,8 +10,14 @@
 
 namespace buoyancy {
 
+struct SceneReportOptions {
+  // How the bodies with [body.client] move, see body_motions.h. Takes seconds for 10,000 large bodies that
+  // all differ.
+  bool motions = false;
+};
+
 // Returns lines for a terminal, with a final newline.
-std::string scene_report_text(const Scene& scene);
+std::string scene_report_text(const Scene& scene, const SceneReportOptions& options = {});
 
 // Returns one JSON object, with a final newline: "scene", "water", "sea", "bodies" (in the order of the file;
 // "mesh" is an index into "meshes"; mass and density are those that the simulator uses, null if an open mesh
@@ -24,9 +30,18 @@ std::string scene_report_text(const Scene& scene);
 // fields of WaveSystemReport by name, those of its peak as "peak_period", "peak_wavelength" and "steepness");
 // and "components", all systems' one after the other, with the keys of the scene file. Every number parses to
 // the double that is used.
-std::string scene_report_json(const Scene& scene);
+//
+// Only where the scene has them: "current" of "water" [m/s]; "drag" and "added_mass" of a body, with the keys
+// of the scene file; and with options.motions "motions" of a body
+// with [body.client]. "motions" is null where it is unknown. Else it holds the fields of BodyMotions by name,
+// with "heave", "roll" and "pitch" as objects, null where nothing restores the motion: "period" and, by name,
+// the other fields of NaturalMotion. Infinite numbers are null.
+std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
-// Warnings about a scene that can be used: a sea that is too steep for linear theory.
+// Warnings about a scene that can be used: a sea that is too steep for linear theory; a full quadratic drag
+// matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
+// or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the
+// mesh's diagonal; coefficients that are too large for the mesh. A warning about equal bodies appears once.
 std::vector<Warning> scene_warnings(const Scene& scene);
 
 }  // namespace buoyancy

@@ -197,7 +197,9 @@ void check_prepared(const SceneDescription& description) {
     require((scene->bodies()[i].hydrodynamics != nullptr) == (body.drag || body.added_mass),
             "a body has hydrodynamics if it has drag or added mass");
   }
-  require(!scene_report_text(*scene).empty() && scene_report_json(*scene).ends_with("\n"),
+  const SceneReportOptions with_motions{.motions = true};
+  require(!scene_report_text(*scene, with_motions).empty() &&
+              scene_report_json(*scene, with_motions).ends_with("\n"),
           "the reports are not empty");
   for (const Body& body : scene->bodies()) {
     const Pose pose{.p_WB = body.dynamics.position, .q_WB = body.dynamics.orientation};
