@@ -295,12 +295,15 @@ bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyanc
     }
     return buoyancy.unchanged;
   }
-  const Pose pose = to_pose(last_[pending.body].pose);
   const BodyTwist twist = twist_of(request.body(pending.state));
-  const HydrodynamicState state = hydrodynamic_state(body, water_, current_W, pose, twist, buoyancy);
-  const HydrodynamicLoad load = body.hydrodynamics->load(state);
-  if (body.loads) loads_[pending.state] = to_loads(body, wrench, state, load);
-  add_hydrodynamic_load(load, wrench);
+  // A dry body has neither drag nor added mass.
+  if (buoyancy.result.immersion != Immersion::kDry || body.loads) {
+    const Pose pose = to_pose(last_[pending.body].pose);
+    const HydrodynamicState state = hydrodynamic_state(body, water_, current_W, pose, twist, buoyancy);
+    const HydrodynamicLoad load = body.hydrodynamics->load(state);
+    if (body.loads) loads_[pending.state] = to_loads(body, wrench, state, load);
+    add_hydrodynamic_load(load, wrench);
+  }
   BodyTwist& last = last_twists_[pending.body];
   const bool unchanged = buoyancy.unchanged && last.velocity_W == twist.velocity_W &&
                          last.angular_velocity_W == twist.angular_velocity_W;

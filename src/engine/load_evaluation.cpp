@@ -122,22 +122,22 @@ HydrodynamicState hydrodynamic_state(const Body& body, const CurrentWater& water
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome) {
   HydrodynamicState state;
   state.motion = {pose.q_WB.normalized().toRotationMatrix(), twist.velocity_W, twist.angular_velocity_W};
-  const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
+  const auto* const drag = body.hydrodynamics->drag_placement();
+  const auto* const added = body.hydrodynamics->added_mass_placement();
   const auto water_at = [&](const Vec3& center_B) {
     return water_motion(water, current_W, pose.p_WB + state.motion.R_WB * center_B);
   };
-  if (coefficients.drag) {
-    state.at_drag.water = water_at(coefficients.drag->center_B);
-    state.at_drag.immersion = immersion_factor(coefficients.drag->immersion, body, water, pose, outcome);
+  if (drag != nullptr) {
+    state.at_drag.water = water_at(drag->center_B);
+    state.at_drag.immersion = immersion_factor(drag->immersion, body, water, pose, outcome);
   }
-  if (coefficients.added_mass) {
-    const AddedMassCoefficients& added = *coefficients.added_mass;
-    const bool same_place = coefficients.drag && coefficients.drag->center_B == added.center_B;
-    const bool same_immersion = coefficients.drag && coefficients.drag->immersion == added.immersion;
-    state.at_added_mass.water = same_place ? state.at_drag.water : water_at(added.center_B);
+  if (added != nullptr) {
+    const bool same_place = drag != nullptr && drag->center_B == added->center_B;
+    const bool same_immersion = drag != nullptr && drag->immersion == added->immersion;
+    state.at_added_mass.water = same_place ? state.at_drag.water : water_at(added->center_B);
     state.at_added_mass.immersion = same_immersion
                                         ? state.at_drag.immersion
-                                        : immersion_factor(added.immersion, body, water, pose, outcome);
+                                        : immersion_factor(added->immersion, body, water, pose, outcome);
   }
   return state;
 }

@@ -23,12 +23,16 @@ struct DragCoefficients {
   Mat6 quadratic = Mat6::Zero();  // D2 [N/(m/s)^2, N m/(rad/s)^2 and mixed]; likewise
   Vec3 center_B = Vec3::Zero();   // [m]
   ImmersionScaling immersion = ImmersionScaling::kVolume;
+
+  bool operator==(const DragCoefficients&) const = default;
 };
 
 struct AddedMassCoefficients {
   Mat6 matrix = Mat6::Zero();    // A [kg, kg m, kg m^2]; symmetric, positive semidefinite
   Vec3 center_B = Vec3::Zero();  // [m]
   ImmersionScaling immersion = ImmersionScaling::kVolume;
+
+  bool operator==(const AddedMassCoefficients&) const = default;
 };
 
 struct HydrodynamicCoefficients {
@@ -36,6 +40,7 @@ struct HydrodynamicCoefficients {
   std::optional<AddedMassCoefficients> added_mass;
 
   bool any() const { return drag || added_mass; }
+  bool operator==(const HydrodynamicCoefficients&) const = default;
 };
 
 }  // namespace buoyancy

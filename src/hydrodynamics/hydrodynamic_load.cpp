@@ -16,10 +16,11 @@ struct Magnitudes {
   double v_error = 0.0;  // [m/s], of the relative velocity
 };
 
-Magnitudes magnitudes_of(const BodyMotion& motion, const Vec3& center_B, const WaterMotion& water) {
+// center_distance: [m], from B's origin.
+Magnitudes magnitudes_of(const BodyMotion& motion, double center_distance, const WaterMotion& water) {
   Magnitudes m;
   m.w = motion.angular_velocity_W.norm();
-  m.v = motion.velocity_W.norm() + m.w * center_B.norm() + water.velocity_W.norm();
+  m.v = motion.velocity_W.norm() + m.w * center_distance + water.velocity_W.norm();
   m.v_error = water.velocity_error + 16.0 * kEpsilon * m.v;
   return m;
 }
@@ -54,20 +55,29 @@ Mat6 drag_matrix(const DragCoefficients& drag, const Vec6& twist, double quadrat
 
 }  // namespace
 
-HydrodynamicModel::BlockNorms HydrodynamicModel::block_norms(const Mat6& matrix) {
-  return {.force_v = matrix.topLeftCorner<3, 3>().norm(),
-          .force_w = matrix.topRightCorner<3, 3>().norm(),
-          .torque_v = matrix.bottomLeftCorner<3, 3>().norm(),
-          .torque_w = matrix.bottomRightCorner<3, 3>().norm()};
-}
+HydrodynamicModel::MatrixTerms::MatrixTerms(const Mat6& matrix)
+    : diagonal(matrix.diagonal()),
+      force_v(matrix.topLeftCorner<3, 3>().norm()),
+      force_w(matrix.topRightCorner<3, 3>().norm()),
+      torque_v(matrix.bottomLeftCorner<3, 3>().norm()),
+      torque_w(matrix.bottomRightCorner<3, 3>().norm()),
+      is_diagonal(matrix == Mat6(diagonal.asDiagonal())) {}
 
 HydrodynamicModel::HydrodynamicModel(const HydrodynamicCoefficients& coefficients, const Vec3& reference_B)
-    : coefficients_(coefficients), reference_B_(reference_B) {
+    : reference_B_(reference_B), coefficients_(coefficients) {
+  const auto placement = [&](const Vec3& center_B, ImmersionScaling immersion) {
+    const Vec3 to_reference_B = reference_B - center_B;
+    return Placement{center_B, to_reference_B, center_B.norm(), to_reference_B.norm(), immersion};
+  };
   if (coefficients_.drag) {
-    linear_ = block_norms(coefficients_.drag->linear);
-    quadratic_ = block_norms(coefficients_.drag->quadratic);
+    const DragCoefficients& drag = *coefficients_.drag;
+    drag_ = {&drag, placement(drag.center_B, drag.immersion), MatrixTerms(drag.linear),
+             MatrixTerms(drag.quadratic)};
   }
-  if (coefficients_.added_mass) added_mass_ = block_norms(coefficients_.added_mass->matrix);
+  if (coefficients_.added_mass) {
+    const AddedMassCoefficients& added = *coefficients_.added_mass;
+    added_mass_ = {&added, placement(added.center_B, added.immersion), MatrixTerms(added.matrix)};
+  }
 }
 
 Vec6 relative_twist_B(const BodyMotion& motion, const Vec3& center_B, const Vec3& water_velocity_W) {
@@ -81,48 +91,58 @@ Vec6 relative_twist_B(const BodyMotion& motion, const Vec3& center_B, const Vec3
 HydrodynamicLoad HydrodynamicModel::load(const HydrodynamicState& state) const {
   HydrodynamicLoad load;
   const auto may_be_wet = [](const ImmersionFactor& s) { return s.value > 0.0 || s.error > 0.0; };
-  if (coefficients_.drag && may_be_wet(state.at_drag.immersion)) add_drag(state, load);
-  if (coefficients_.added_mass && may_be_wet(state.at_added_mass.immersion)) add_added_mass(state, load);
+  if (drag_.matrices != nullptr && may_be_wet(state.at_drag.immersion)) add_drag(state, load);
+  if (added_mass_.matrices != nullptr && may_be_wet(state.at_added_mass.immersion))
+    add_added_mass(state, load);
   return load;
 }
 
 void HydrodynamicModel::add_drag(const HydrodynamicState& state, HydrodynamicLoad& load) const {
-  const DragCoefficients& drag = *coefficients_.drag;
+  const auto& [matrices, placement, linear, quadratic] = drag_;
   const auto& [water, s] = state.at_drag;
-  const Vec6 nu = relative_twist_B(state.motion, drag.center_B, water.velocity_W);
-  const Vec6 drag_B = -s.value * (drag.linear * nu + drag.quadratic * nu.cwiseAbs().cwiseProduct(nu));
-  const Vec3 lever_B = reference_B_ - drag.center_B;
-  load.drag_W = to_reference_W(drag_B, lever_B, state.motion.R_WB);
+  const Vec6 nu = relative_twist_B(state.motion, placement.center_B, water.velocity_W);
+  const Vec6 squares = nu.cwiseAbs().cwiseProduct(nu);
+  const Vec6 linear_B =
+      linear.is_diagonal ? Vec6(linear.diagonal.cwiseProduct(nu)) : Vec6(matrices->linear * nu);
+  const Vec6 quadratic_B = quadratic.is_diagonal ? Vec6(quadratic.diagonal.cwiseProduct(squares))
+                                                 : Vec6(matrices->quadratic * squares);
+  load.drag_W =
+      to_reference_W(-s.value * (linear_B + quadratic_B), placement.to_reference_B, state.motion.R_WB);
 
-  const Magnitudes m = magnitudes_of(state.motion, drag.center_B, water);
+  const Magnitudes m = magnitudes_of(state.motion, placement.center_distance, water);
   PartBound bound;
   bound.force =
-      (linear_.force_v + quadratic_.force_v * m.v) * m.v + (linear_.force_w + quadratic_.force_w * m.w) * m.w;
-  bound.torque = (linear_.torque_v + quadratic_.torque_v * m.v) * m.v +
-                 (linear_.torque_w + quadratic_.torque_w * m.w) * m.w;
-  bound.force_error = (linear_.force_v + 2.0 * quadratic_.force_v * (m.v + m.v_error)) * m.v_error;
-  bound.torque_error = (linear_.torque_v + 2.0 * quadratic_.torque_v * (m.v + m.v_error)) * m.v_error;
-  add_error(bound, s, lever_B.norm(), load);
+      (linear.force_v + quadratic.force_v * m.v) * m.v + (linear.force_w + quadratic.force_w * m.w) * m.w;
+  bound.torque =
+      (linear.torque_v + quadratic.torque_v * m.v) * m.v + (linear.torque_w + quadratic.torque_w * m.w) * m.w;
+  bound.force_error = (linear.force_v + 2.0 * quadratic.force_v * (m.v + m.v_error)) * m.v_error;
+  bound.torque_error = (linear.torque_v + 2.0 * quadratic.torque_v * (m.v + m.v_error)) * m.v_error;
+  add_error(bound, s, placement.lever, load);
 }
 
 void HydrodynamicModel::add_added_mass(const HydrodynamicState& state, HydrodynamicLoad& load) const {
-  const AddedMassCoefficients& added = *coefficients_.added_mass;
+  const auto& [matrices, placement, A] = added_mass_;
   const auto& [water, s] = state.at_added_mass;
-  const Vec6 nu = relative_twist_B(state.motion, added.center_B, water.velocity_W);
-  const Vec6 momentum = added.matrix * nu;
+  const Vec6 nu = relative_twist_B(state.motion, placement.center_B, water.velocity_W);
   const Vec3 v = nu.head<3>();
   const Vec3 w = nu.tail<3>();
   const Vec3 water_v = state.motion.R_WB.transpose() * water.velocity_W;
   const Vec3 water_a = state.motion.R_WB.transpose() * water.acceleration_W - w.cross(water_v);
-  Vec6 load_B = added.matrix.leftCols<3>() * water_a;
+  Vec6 momentum;
+  Vec6 load_B = Vec6::Zero();
+  if (A.is_diagonal) {
+    momentum = A.diagonal.cwiseProduct(nu);
+    load_B.head<3>() = A.diagonal.head<3>().cwiseProduct(water_a);
+  } else {
+    momentum = matrices->matrix * nu;
+    load_B = matrices->matrix.leftCols<3>() * water_a;
+  }
   load_B.head<3>() -= w.cross(momentum.head<3>());
   load_B.tail<3>() -= v.cross(momentum.head<3>()) + w.cross(momentum.tail<3>());
   load_B *= s.value;
-  const Vec3 lever_B = reference_B_ - added.center_B;
-  load.added_mass_W = to_reference_W(load_B, lever_B, state.motion.R_WB);
+  load.added_mass_W = to_reference_W(load_B, placement.to_reference_B, state.motion.R_WB);
 
-  const Magnitudes m = magnitudes_of(state.motion, added.center_B, water);
-  const BlockNorms& A = added_mass_;
+  const Magnitudes m = magnitudes_of(state.motion, placement.center_distance, water);
   const double p = A.force_v * m.v + A.force_w * m.w;
   const double l = A.torque_v * m.v + A.torque_w * m.w;
   const double a = water.acceleration_W.norm() + m.w * water.velocity_W.norm();
@@ -134,7 +154,7 @@ void HydrodynamicModel::add_added_mass(const HydrodynamicState& state, Hydrodyna
   bound.force_error = m.w * p_error + A.force_v * a_error;
   bound.torque_error =
       m.v_error * (p + p_error) + m.v * p_error + m.w * A.torque_v * m.v_error + A.torque_v * a_error;
-  add_error(bound, s, lever_B.norm(), load);
+  add_error(bound, s, placement.lever, load);
 }
 
 HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state) const {

@@ -72,6 +72,9 @@ class HydrodynamicModel {
  public:
   // The coefficients have passed coefficient_checks.h. reference_B: [m], the point that torques are about.
   HydrodynamicModel(const HydrodynamicCoefficients& coefficients, const Vec3& reference_B);
+  HydrodynamicModel(const HydrodynamicModel&) = delete;
+  HydrodynamicModel& operator=(const HydrodynamicModel&) = delete;
+  ~HydrodynamicModel() = default;
 
   HydrodynamicLoad load(const HydrodynamicState& state) const;
   HydrodynamicMatrices matrices(const HydrodynamicState& state) const;
@@ -79,19 +82,51 @@ class HydrodynamicModel {
   const HydrodynamicCoefficients& coefficients() const { return coefficients_; }
   const Vec3& reference_B() const { return reference_B_; }
 
- private:
-  // Frobenius norms of a matrix's blocks, from which rounding errors are bounded.
-  struct BlockNorms {
-    double force_v = 0.0, force_w = 0.0, torque_v = 0.0, torque_w = 0.0;
+  // The point that a matrix belongs to, and what scales it.
+  struct Placement {
+    Vec3 center_B = Vec3::Zero();        // [m]
+    Vec3 to_reference_B = Vec3::Zero();  // [m], from the centre to the reference point
+    double center_distance = 0.0;        // [m], |center_B|
+    double lever = 0.0;                  // [m], |to_reference_B|
+    ImmersionScaling immersion = ImmersionScaling::kVolume;
   };
-  static BlockNorms block_norms(const Mat6& matrix);
+  // nullptr: the body has none.
+  const Placement* drag_placement() const { return drag_.matrices == nullptr ? nullptr : &drag_.placement; }
+  const Placement* added_mass_placement() const {
+    return added_mass_.matrices == nullptr ? nullptr : &added_mass_.placement;
+  }
+
+ private:
+  // A matrix as a load needs it: its diagonal and whether it has nothing else, as most have, and the
+  // Frobenius norms of its blocks, from which rounding errors are bounded.
+  struct MatrixTerms {
+    explicit MatrixTerms(const Mat6& matrix);
+    MatrixTerms() = default;
+
+    Vec6 diagonal = Vec6::Zero();
+    double force_v = 0.0, force_w = 0.0, torque_v = 0.0, torque_w = 0.0;
+    bool is_diagonal = true;
+  };
+  // What every pose reads is together, apart from the whole matrices: a request for many bodies spends much
+  // of its time waiting for memory.
+  struct DragTerms {
+    const DragCoefficients* matrices = nullptr;
+    Placement placement;
+    MatrixTerms linear, quadratic;
+  };
+  struct AddedMassTerms {
+    const AddedMassCoefficients* matrices = nullptr;
+    Placement placement;
+    MatrixTerms matrix;
+  };
 
   void add_drag(const HydrodynamicState& state, HydrodynamicLoad& load) const;
   void add_added_mass(const HydrodynamicState& state, HydrodynamicLoad& load) const;
 
-  HydrodynamicCoefficients coefficients_;
+  DragTerms drag_;
+  AddedMassTerms added_mass_;
   Vec3 reference_B_;
-  BlockNorms linear_, quadratic_, added_mass_;
+  HydrodynamicCoefficients coefficients_;
 };
 
 // nu of a centre: the twist relative to the water, in B's axes.

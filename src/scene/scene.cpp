@@ -169,6 +169,20 @@ Expected<HydrodynamicCoefficients> make_coefficients(const BodyDescription& body
   return coefficients;
 }
 
+// Returns the model of an equal body among the last few, or adds one: equal bodies then read the same memory,
+// and usually follow one another.
+const HydrodynamicModel* find_or_add_model(const HydrodynamicCoefficients& coefficients,
+                                           const Vec3& reference_B,
+                                           std::vector<std::unique_ptr<HydrodynamicModel>>& models) {
+  constexpr std::size_t kCompared = 8;
+  const std::size_t first = models.size() - std::min(models.size(), kCompared);
+  for (std::size_t i = models.size(); i-- > first;) {
+    const HydrodynamicModel& model = *models[i];
+    if (model.reference_B() == reference_B && model.coefficients() == coefficients) return &model;
+  }
+  return models.emplace_back(std::make_unique<HydrodynamicModel>(coefficients, reference_B)).get();
+}
+
 bool scales_with_wetted_area(const HydrodynamicCoefficients& coefficients) {
   return (coefficients.drag && coefficients.drag->immersion == ImmersionScaling::kWettedArea) ||
          (coefficients.added_mass && coefficients.added_mass->immersion == ImmersionScaling::kWettedArea);
@@ -236,9 +250,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     const HydrodynamicModel* hydrodynamics = nullptr;
     if (coefficients->any()) {
       ++scene.bodies_with_hydrodynamics_;
-      hydrodynamics = scene.hydrodynamic_models_
-                          .emplace_back(std::make_unique<HydrodynamicModel>(*coefficients, body.reference_B))
-                          .get();
+      hydrodynamics = find_or_add_model(*coefficients, body.reference_B, scene.hydrodynamic_models_);
     }
     scene.bodies_.push_back({body.id, body.name, &prepared,
                              Solver(prepared.mesh, body.method, body.tolerance.value_or(default_tolerance)),

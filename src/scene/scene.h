@@ -42,8 +42,8 @@ struct Body {
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested; the mesh then has a moment tree
   bool loads = false;               // requested
-  // Of a body with drag or added mass, else nullptr; owned by the scene. A body whose coefficients scale with
-  // the wetted area has a mesh with a moment tree.
+  // Of a body with drag or added mass, else nullptr; owned by the scene, and shared by equal bodies. A body
+  // whose coefficients scale with the wetted area has a mesh with a moment tree.
   const HydrodynamicModel* hydrodynamics = nullptr;
   // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
   std::optional<Vec3> center_of_mass_B;
