@@ -138,7 +138,7 @@ void replay_log(const Scene& scene, const std::string& input, const std::string&
                        .poses = poses,
                        .output = writer,
                        .layout = {service::FileFormat::kLcmLog, std::string(kWrenchesChannel),
-                                  std::string(kHydrostaticsChannel)},
+                                  std::string(kHydrostaticsChannel), std::string(kLoadsChannel)},
                        .jobs = jobs},
                       signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
   if (!summary.complete()) fail("the replay was not complete");
