@@ -20,7 +20,7 @@ struct Energies {
   double kinetic_growth = 0.0;   // largest growth in a step, relative to the kinetic energy before
   bool finite = true;
 
-  double rise() const { return largest_kinetic > 0.0 ? (highest - start) / largest_kinetic : 0.0; }
+  double rise() const { return highest - start; }  // [J]
 };
 
 double kinetic_energy_of(const SimulatedBody& body) {
@@ -78,8 +78,10 @@ void run_case(std::uint64_t seed, std::int64_t at, MotionSearchStats& stats) {
   figures.steps += motion.steps;
   std::string violation;
   if (!damped.finite || !undamped.finite) violation = "a number that is not finite";
-  const double rise = piercing ? damped.rise() : damped.kinetic_growth;
-  const double own = piercing ? undamped.rise() : undamped.kinetic_growth;
+  // One scale for both runs: the body without drag is usually the faster.
+  const double scale = std::max({damped.largest_kinetic, undamped.largest_kinetic, 1e-300});
+  const double rise = piercing ? damped.rise() / scale : damped.kinetic_growth;
+  const double own = piercing ? undamped.rise() / scale : undamped.kinetic_growth;
   figures.rise.add(rise, at);
   figures.rise_undamped.add(own, at);
   if (rise > own) ++figures.above_own;

@@ -4,8 +4,8 @@
 // A submerged, neutrally buoyant body never gains kinetic energy, that of the added mass included, from one
 // step to the next: beyond rounding. The mechanical energy of a body that pierces the surface never exceeds
 // its start by more than that of the same body without drag does, or by more than the documented oscillation
-// of the integrator within the step limit, as a fraction of the largest kinetic energy. Nothing becomes
-// non-finite.
+// of the integrator within the step limit, as a fraction of the largest kinetic energy of both. Nothing
+// becomes non-finite.
 #pragma once
 
 #include <array>
