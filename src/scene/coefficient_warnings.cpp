@@ -101,11 +101,14 @@ void warn_of_size(const Body& body, const std::string& name, const Mat6& matrix,
                   WarningList& list) {
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!(matrix(i, i) > limit[i])) continue;
-    const std::string text = i < 3 ? std::string(unit) : std::string(rotation_unit);
-    list.add(body, {"",
-                    name + ' ' + std::string(kAxes[static_cast<std::size_t>(i)]) + " = " +
-                        format_number(matrix(i, i)) + " " + text,
-                    std::string(expected) + ": " + format_rounded(limit[i]) + " " + text + " for this mesh",
+    std::string suffix{' '};
+    suffix += i < 3 ? unit : rotation_unit;
+    std::string actual = name + ' ';
+    actual += kAxes[static_cast<std::size_t>(i)];
+    actual += " = ";
+    actual += format_number(matrix(i, i)) + suffix;
+    list.add(body, {"", std::move(actual),
+                    std::string(expected) + ": " + format_rounded(limit[i]) + suffix + " for this mesh",
                     "coefficients of a vehicle of another size, or a mesh in another unit",
                     "Check both; set scale for a mesh in millimetres"});
     return;
