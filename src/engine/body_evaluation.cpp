@@ -96,33 +96,44 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
               BodyOutcome& outcome) {
   const WaveBuoyancyResult computed = buoyancy_of(body, water, validated.pose);
   outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, details_of(computed), outcome);
+  complete_outcome(validated.quaternion_normalised, outcome);
+  outcome.in_waves = details_of(computed);
+}
+
+// Apart from try_evaluate_from_bounds(), which is the whole cost of most bodies of a large scene at rest.
+[[gnu::noinline]] static bool try_evaluate_from_bounds_in_waves(const Body& body,
+                                                                const FullySubmerged& submerged,
+                                                                const SeaAtTime& waves,
+                                                                const ValidatedPose& validated,
+                                                                BodyOutcome& outcome) {
+  WaveBuoyancyResult computed;
+  if (!try_buoyancy_in_waves_from_bounds(body.solver, submerged, waves, validated.pose, body.reference_B,
+                                         computed)) {
+    return false;
+  }
+  outcome.result = computed.result;
+  complete_outcome(validated.quaternion_normalised, outcome);
+  outcome.in_waves = details_of(computed);
+  return true;
 }
 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
-  if (water.waves == nullptr) {
-    if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)) {
-      return false;
-    }
-    complete_outcome(validated.quaternion_normalised, {}, outcome);
-    return true;
+  if (water.waves != nullptr) {
+    return try_evaluate_from_bounds_in_waves(body, submerged, *water.waves, validated, outcome);
   }
-  WaveBuoyancyResult computed;
-  if (!try_buoyancy_in_waves_from_bounds(body.solver, submerged, *water.waves, validated.pose,
-                                         body.reference_B, computed)) {
+  if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)) {
     return false;
   }
-  outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, details_of(computed), outcome);
+  complete_outcome(validated.quaternion_normalised, outcome);
   return true;
 }
 
-void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome) {
+void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
   outcome.status = to_body_status(outcome.result.status);
   outcome.quaternion_normalised = quaternion_normalised;
   outcome.unchanged = false;
-  outcome.in_waves = in_waves;
+  outcome.in_waves = {};
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {

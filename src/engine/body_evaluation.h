@@ -74,8 +74,9 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
 // Preconditions: validated.status is kOk, and the water is known. No heap allocation.
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
-// Sets the fields of outcome that accompany its result, which was computed at a valid pose.
-void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome);
+// Sets the fields of outcome that accompany its result, which was computed at a valid pose; in_waves to those
+// of water at rest.
+void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 

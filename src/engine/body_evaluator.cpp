@@ -182,10 +182,12 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
     return Progress::kDone;
   }
   if (!mark_first(last_[*body].request, request_number_)) return Progress::kRepeated;
+  const bool done = evaluate_cheaply(validated, *body, outcome);
+  if (done && !has_loads_) return Progress::kDone;
   pending = {.state = static_cast<std::uint32_t>(i),
              .body = static_cast<std::uint32_t>(*body),
              .quaternion_normalised = validated.quaternion_normalised};
-  return evaluate_cheaply(validated, *body, outcome) ? Progress::kDone : Progress::kPending;
+  return done ? Progress::kDone : Progress::kPending;
 }
 
 bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome) {
@@ -264,7 +266,8 @@ void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& res
                                ResponseWriter& response, ServiceCounters& counters) {
   BodyOutcome& outcome = results_[pending.body];
   outcome.result = result;
-  complete_outcome(pending.quaternion_normalised, in_waves, outcome);
+  complete_outcome(pending.quaternion_normalised, outcome);
+  outcome.in_waves = in_waves;
   if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
   respond(pending, outcome, request, response, counters);
 }

@@ -101,7 +101,8 @@ class BodyEvaluator {
   // Evaluates the states of a chunk as far as cached results and bounds go; adds the others to pending_ and
   // repeated_.
   void evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk);
-  // state: the i-th of the request. Sets outcome if done, and pending unless the status says why not.
+  // state: the i-th of the request. Sets outcome if done; pending if that is the result,
+  // and if done with kOk in a scene that has loads.
   Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
                             BodyOutcome& outcome);
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
