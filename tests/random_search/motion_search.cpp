@@ -44,11 +44,12 @@ Energies simulate(const SceneDescription& description, const SimulationOptions& 
     if (!energies.finite) return energies;
     const double kinetic = kinetic_energy_of(body);
     if (simulation.step_number() > 0) {
-      // The rounding of weight and buoyancy, which cancel, moves a body at rest.
-      const double noise = 1e-12 * body.rigid.mass * simulation.water().gravity * options.step;
-      const double floor = noise * noise / body.rigid.mass;
-      energies.kinetic_growth =
-          std::max(energies.kinetic_growth, (kinetic - before - floor) / (before + floor));
+      // The rounding of weight and buoyancy, which cancel, changes the speed by `noise` [m/s], also of a body
+      // that has nearly come to rest.
+      const double noise = 1e-12 * simulation.water().gravity * options.step;
+      const double speed = std::sqrt(before) + noise * std::sqrt(0.5 * body.rigid.mass);
+      const double allowed = speed * speed;
+      energies.kinetic_growth = std::max(energies.kinetic_growth, (kinetic - allowed) / allowed);
     }
     before = kinetic;
     if (simulation.step_number() >= steps) break;
