@@ -101,6 +101,15 @@ bool works_in_waves(Method method) {
   return method == Method::kHierarchical || method == Method::kFastSurface || method == Method::kExactSurface;
 }
 
+// Of a body's description, or of the coefficients made from it.
+template <typename DragAndAddedMass>
+bool scales_with_wetted_area(const DragAndAddedMass& given) {
+  const auto by_area = [](const auto& table) {
+    return table && table->immersion == ImmersionScaling::kWettedArea;
+  };
+  return by_area(given.drag) || by_area(given.added_mass);
+}
+
 // What of a body's description needs water at rest.
 std::optional<Error> error_in_waves(const BodyDescription& body) {
   const std::string subject =
@@ -123,9 +132,7 @@ std::optional<Error> error_in_waves(const BodyDescription& body) {
                  "waterplane, metacentres and stiffness belong to a plane water surface",
                  "Remove \"hydrostatics\", or compute it in a scene without waves"};
   }
-  const bool by_area = (body.drag && body.drag->immersion == ImmersionScaling::kWettedArea) ||
-                       (body.added_mass && body.added_mass->immersion == ImmersionScaling::kWettedArea);
-  if (by_area) {
+  if (scales_with_wetted_area(body)) {
     return Error{subject, "immersion = \"wetted_area\"", "\"volume\" or \"none\" in waves",
                  "the wetted area is computed under a plane water surface, which waves are not",
                  "Use immersion = \"volume\""};
@@ -181,11 +188,6 @@ const HydrodynamicModel* find_or_add_model(const HydrodynamicCoefficients& coeff
     if (model.reference_B() == reference_B && model.coefficients() == coefficients) return &model;
   }
   return models.emplace_back(std::make_unique<HydrodynamicModel>(coefficients, reference_B)).get();
-}
-
-bool scales_with_wetted_area(const HydrodynamicCoefficients& coefficients) {
-  return (coefficients.drag && coefficients.drag->immersion == ImmersionScaling::kWettedArea) ||
-         (coefficients.added_mass && coefficients.added_mass->immersion == ImmersionScaling::kWettedArea);
 }
 
 // Loads in waves are computed with float32 numbers whose range is finite.
