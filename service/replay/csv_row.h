@@ -4,9 +4,21 @@
 
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <string>
 
+#include "messages/request.h"
+
 namespace buoyancy::service {
+
+// Replaces row by the columns that rows of a body begin with: utime [us], body_id and status.
+inline void begin_row(std::int64_t utime, std::int32_t body_id, BodyStatus status, std::string& row) {
+  row = std::to_string(utime);
+  row += ',';
+  row += std::to_string(body_id);
+  row += ',';
+  row += std::to_string(static_cast<std::int32_t>(status));
+}
 
 inline void append_field(double value, std::string& row) {
   constexpr int kSignificantDigits = 17;

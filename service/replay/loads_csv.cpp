@@ -31,11 +31,7 @@ const std::string& loads_csv_header() {
 }
 
 void format_loads_row(std::int64_t utime, const BodyLoads& loads, std::string& row) {
-  row = std::to_string(utime);
-  row += ',';
-  row += std::to_string(loads.body_id);
-  row += ',';
-  row += std::to_string(static_cast<std::int32_t>(loads.status));
+  begin_row(utime, loads.body_id, loads.status, row);
   append_field(loads.immersion, row);
   append_field(loads.buoyancy_force, row);
   append_field(loads.buoyancy_torque, row);

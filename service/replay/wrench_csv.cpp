@@ -5,11 +5,7 @@
 namespace buoyancy::service {
 
 void format_wrench_row(std::int64_t utime, const BodyWrench& wrench, std::string& row) {
-  row = std::to_string(utime);
-  row += ',';
-  row += std::to_string(wrench.body_id);
-  row += ',';
-  row += std::to_string(static_cast<std::int32_t>(wrench.status));
+  begin_row(utime, wrench.body_id, wrench.status, row);
   append_field(wrench.force, row);
   append_field(wrench.torque, row);
   append_field(wrench.submerged_volume, row);
