@@ -1,7 +1,6 @@
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 #include "base/format.h"
@@ -51,28 +50,15 @@ Expected<ImportedMesh> read_source(const BodyDescription& body, const ImportLimi
   return generated;
 }
 
-void apply_scale(TriangleMesh& mesh, double scale) {
-  if (scale == 1.0) return;
-  for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
-    for (double& coordinate : *coordinates) coordinate *= scale;
-  }
-}
-
-Expected<std::unique_ptr<PreparedMesh>> prepare_mesh(const BodyDescription& body, const ImportLimits& limits,
-                                                     const PrepareOptions& options) {
+Expected<std::unique_ptr<PreparedMesh>> prepare_body_mesh(const BodyDescription& body,
+                                                          const ImportLimits& limits,
+                                                          const PrepareOptions& options) {
   Expected<ImportedMesh> imported = read_source(body, limits);
   if (!imported) return make_error(with_body(body, std::move(imported.error())));
-  apply_scale(imported->mesh, body.scale);
-
-  MeshValidation validation =
-      validate_mesh(*imported, source_name(body), {body.open, options.count_intersecting_pairs});
-  if (!validation.mesh) {
-    assert(validation.refusal);
-    return make_error(with_body(body, *std::move(validation.refusal)));
-  }
-  return std::make_unique<PreparedMesh>(PreparedMesh{
-      std::move(validation.report), make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, body.scale),
-      mass_properties(validation.mesh->mesh), std::nullopt});
+  Expected<PreparedMesh> prepared = prepare_mesh(*std::move(imported), source_name(body), body.scale,
+                                                 {body.open, options.count_intersecting_pairs});
+  if (!prepared) return make_error(with_body(body, std::move(prepared.error())));
+  return std::make_unique<PreparedMesh>(*std::move(prepared));
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
@@ -96,11 +82,6 @@ Expected<std::shared_ptr<const PreparedSea>> make_sea(const SceneDescription& sc
   return std::make_shared<const PreparedSea>(*std::move(sea));
 }
 
-// The others sum volumes under a plane water surface.
-bool works_in_waves(Method method) {
-  return method == Method::kHierarchical || method == Method::kFastSurface || method == Method::kExactSurface;
-}
-
 // Of a body's description, or of the coefficients made from it.
 template <typename DragAndAddedMass>
 bool scales_with_wetted_area(const DragAndAddedMass& given) {
@@ -114,18 +95,10 @@ bool scales_with_wetted_area(const DragAndAddedMass& given) {
 std::optional<Error> error_in_waves(const BodyDescription& body) {
   const std::string subject =
       (body.source_location.empty() ? "" : body.source_location + ": ") + "body " + std::to_string(body.id);
-  if (!works_in_waves(body.method)) {
-    return Error{
-        subject, "method = \"" + std::string(to_string(body.method)) + "\"",
-        "hierarchical, fast_surface or exact_surface in waves",
-        "the methods fast, improved and exact sum volumes under a plane water surface, which waves are "
-        "not",
-        "Use hierarchical; fast_surface and exact_surface are baselines without an error bound"};
-  }
-  if (body.method == Method::kHierarchical && body.tolerance == 0.0) {
-    return Error{subject, "tolerance = 0", "a number above 0, at most 1, in waves",
-                 "the load of waves has no exact sum, only one within a bound",
-                 "Leave the tolerance out: it is then " + format_shortest(kDefaultWaveTolerance)};
+  // A tolerance that is left out becomes kDefaultWaveTolerance.
+  if (std::optional<Error> error =
+          method_error_in_waves(subject, body.method, body.tolerance.value_or(kDefaultWaveTolerance))) {
+    return error;
   }
   if (body.hydrostatics) {
     return Error{subject, "outputs = [\"wrench\", \"hydrostatics\"]", "[\"wrench\"] in waves",
@@ -190,16 +163,6 @@ const HydrodynamicModel* find_or_add_model(const HydrodynamicCoefficients& coeff
   return models.emplace_back(std::make_unique<HydrodynamicModel>(coefficients, reference_B)).get();
 }
 
-// Loads in waves are computed with float32 numbers whose range is finite.
-std::optional<Error> size_error_in_waves(const BodyDescription& body, const HydrostaticMesh& mesh) {
-  constexpr double kSmallest = 1e-5;  // [m]
-  constexpr double kLargest = 1e6;    // [m]
-  if (mesh.diagonal >= kSmallest && mesh.diagonal <= kLargest) return std::nullopt;
-  return with_body(body, {source_name(body), "a size of " + format_shortest(mesh.diagonal) + " m",
-                          "1e-5 to 1e6 m in waves (the diagonal of the bounding box)",
-                          "the mesh is in another unit", "Set scale, for example 0.001 for millimetres"});
-}
-
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
@@ -225,7 +188,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     const auto known = std::find(keys.begin(), keys.end(), key);
     const auto index = static_cast<std::size_t>(known - keys.begin());
     if (known == keys.end()) {
-      Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_mesh(body, description.limits, options);
+      Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_body_mesh(body, description.limits, options);
       if (!prepared) return make_error(std::move(prepared.error()));
       scene.meshes_.push_back(*std::move(prepared));
       keys.push_back(std::move(key));
@@ -242,8 +205,8 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
     }
     if (has_waves && !prepared.wave_mesh) {
-      if (std::optional<Error> error = size_error_in_waves(body, prepared.mesh)) {
-        return make_error(*std::move(error));
+      if (std::optional<Error> error = size_error_in_waves(source_name(body), prepared.mesh)) {
+        return make_error(with_body(body, *std::move(error)));
       }
       prepared.wave_mesh = make_wave_mesh(prepared.mesh);
     }

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "base/error.h"
-#include "geometry/mass_properties.h"
-#include "geometry/mesh_report.h"
 #include "hydrodynamics/hydrodynamic_load.h"
 #include "hydrostatics/solver.h"
 #include "scene/id_index.h"
+#include "scene/prepared_mesh.h"
 #include "scene/scene_file.h"
 #include "wave_loads/prepared_sea.h"
-#include "wave_loads/wave_buoyancy.h"
 #include "waves/sea_report.h"
 
 namespace buoyancy {
@@ -24,14 +22,6 @@ namespace buoyancy {
 struct PrepareOptions {
   bool count_intersecting_pairs =
       false;  // for the report; takes several times as long as the rest of the validation
-};
-
-// A mesh that several bodies may share: one per source (file or shape), scale and open policy.
-struct PreparedMesh {
-  MeshReport report;
-  HydrostaticMesh mesh;
-  MassProperties mass_properties;     // density 1 kg/m^3; for an open mesh, the integrals over its faces
-  std::optional<WaveMesh> wave_mesh;  // in scenes with waves
 };
 
 struct Body {

@@ -257,13 +257,9 @@ void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem:
   }
 }
 
-}  // namespace
-
-Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
-                                       const std::filesystem::path& directory) {
-  toml::table root;
+Expected<toml::table> parse_toml(std::string_view text, const std::string& name) {
   try {
-    root = toml::parse(text, name);
+    return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     const toml::source_position& position = error.source().begin;
     return make_error({name + ":" + std::to_string(position.line) + ":" + std::to_string(position.column),
@@ -272,18 +268,45 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
                        {},
                        {}});
   }
+}
 
+// The sections that describe the water, of scenes with and without bodies.
+void read_world_and_water(TomlTable& top, SceneDescription& scene, const std::filesystem::path& directory,
+                          SceneParseContext& context) {
+  if (const toml::table* world = top.table("world")) read_world({*world, "[world]", context}, scene.water);
+  if (const toml::table* water = top.table("water")) read_water(*water, scene, directory, context);
+}
+
+}  // namespace
+
+Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
+                                       const std::filesystem::path& directory) {
+  const Expected<toml::table> root = parse_toml(text, name);
+  if (!root) return make_error(root.error());
   SceneParseContext context{name, std::nullopt};
   SceneDescription scene;
   scene.name = name;
-  TomlTable top(root, "the scene", context);
-  if (const toml::table* world = top.table("world")) read_world({*world, "[world]", context}, scene.water);
-  if (const toml::table* water = top.table("water")) read_water(*water, scene, directory, context);
+  TomlTable top(*root, "the scene", context);
+  read_world_and_water(top, scene, directory, context);
   if (const toml::table* limits = top.table("limits"))
     read_limits({*limits, "[limits]", context}, scene.limits);
   read_bodies(top, scene, directory, context);
   top.finish();
   if (scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
+  if (context.error) return make_error(*std::move(context.error));
+  return scene;
+}
+
+Expected<SceneDescription> parse_water(std::string_view text, const std::string& name,
+                                       const std::filesystem::path& directory) {
+  const Expected<toml::table> root = parse_toml(text, name);
+  if (!root) return make_error(root.error());
+  SceneParseContext context{name, std::nullopt};
+  SceneDescription scene;
+  scene.name = name;
+  TomlTable top(*root, "the water", context);
+  read_world_and_water(top, scene, directory, context);
+  top.finish();
   if (context.error) return make_error(*std::move(context.error));
   return scene;
 }

@@ -86,8 +86,6 @@ inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPol
     std::pair{std::string_view("refuse"), OpenPolicy::kRefuse},
     std::pair{std::string_view("dry_boundary"), OpenPolicy::kDryBoundary}};
 
-inline constexpr double kDefaultWaveTolerance = 1e-3;
-
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
@@ -105,6 +103,11 @@ Expected<SceneDescription> read_scene_file(const std::filesystem::path& path);
 
 // Parses a scene from text. name: identifies the text in errors; directory: resolves relative paths.
 Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
+                                       const std::filesystem::path& directory);
+
+// Parses the sections [world] and [water] of a scene, the only ones that the text may have: a description
+// without bodies.
+Expected<SceneDescription> parse_water(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 
 // Returns the scene of `buoyancy-replay --mesh`: one body with id 1, scale 1 and the mesh's origin as

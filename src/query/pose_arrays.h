@@ -1,0 +1,38 @@
+// Many poses of one body, and their wrenches, as arrays that the caller owns: for learning, sweeps and the
+// bindings to other languages.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace buoyancy {
+
+// n poses. Arrays are contiguous, in the order of the poses.
+struct PoseArrays {
+  std::span<const double> positions;           // [m], W frame, of B's origin; 3 n
+  std::span<const double> quaternions_wxyz;    // q_WB; 4 n
+  std::span<const double> linear_velocities;   // [m/s], W frame, of B's origin; 3 n, or empty: at rest
+  std::span<const double> angular_velocities;  // [rad/s], W frame; 3 n, or empty: at rest
+  std::span<const std::int64_t> utimes;        // [us]; n, or 1 for all poses, or empty: 0
+
+  std::size_t size() const { return positions.size() / 3; }
+  std::int64_t utime(std::size_t i) const {
+    if (utimes.empty()) return 0;
+    return utimes.size() == 1 ? utimes.front() : utimes[i];
+  }
+};
+
+// What the wrench of a message holds of each pose (messages/request.h), with the same units and frames. A
+// pose whose status is not 0 has zeros.
+struct WrenchArrays {
+  std::span<std::int32_t> statuses;       // values of BodyStatus; n
+  std::span<double> forces;               // [N], W frame; 3 n
+  std::span<double> torques;              // [N m], W frame, about the body's reference point; 3 n
+  std::span<double> volumes;              // [m^3], submerged; n
+  std::span<double> centers_of_buoyancy;  // [m], W axes, relative to the position; 3 n
+  std::span<double> force_error_bounds;   // [N]; n
+  std::span<double> torque_error_bounds;  // [N m]; n
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,59 @@
+// The water and the waves of queries in the caller's process, and the motion of the water at many points.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "wave_loads/prepared_sea.h"
+#include "waves/sea_description.h"
+
+namespace buoyancy {
+
+// Immutable, and cheap to copy: copies share the sea.
+class QuerySea {
+ public:
+  // Errors: those of Sea::make().
+  static Expected<QuerySea> make(const SeaDescription& description, const Water& water);
+  // text: the sections [world] and [water] of a scene file (docs/scene_file.md); directory: resolves the
+  // relative paths of files of wave components. name: identifies the text in errors. Errors: those of
+  // parse_water() and Sea::make(), a current, and waves = "received".
+  static Expected<QuerySea> parse(std::string_view text, const std::string& name,
+                                  const std::filesystem::path& directory);
+
+  const Water& water() const { return water_; }
+  // nullptr: the water is at rest, since no amplitude is above 0.
+  const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
+  HorizontalAxes axes() const { return horizontal_axes(water_.up_W); }
+
+ private:
+  QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves)
+      : water_(water), waves_(std::move(waves)) {}
+
+  Water water_;
+  std::shared_ptr<const PreparedSea> waves_;
+};
+
+// Sets out[i] to the elevation of the surface over the level [m] at (x1[i], x2[i]) [m] along the horizontal
+// axes (axes()) from the world's origin, at utimes[i] [us]. utimes: as many, or one for all points, which is
+// quicker by far. All other spans have the same size. threads: see evaluate_poses(). Complexity:
+// O(components) per point.
+void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<const double> x2,
+                    std::span<const std::int64_t> utimes, std::span<double> out, unsigned threads = 1);
+
+// Likewise the water at points in the world. points: [m], 3 n. Pressures over that of the air, of the waves
+// and of the water at rest together [Pa]; 0 above the surface.
+struct WaterMotionArrays {
+  std::span<double> pressures;      // [Pa]; n, or empty: not wanted
+  std::span<double> velocities;     // [m/s], W frame; 3 n, or empty
+  std::span<double> accelerations;  // [m/s^2], W frame; 3 n, or empty
+};
+void water_at_points(const QuerySea& sea, std::span<const double> points,
+                     std::span<const std::int64_t> utimes, const WaterMotionArrays& out,
+                     unsigned threads = 1);
+
+}  // namespace buoyancy

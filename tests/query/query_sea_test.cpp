@@ -1,0 +1,91 @@
+#include "query/query_sea.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace buoyancy {
+namespace {
+
+constexpr std::int64_t kNow = 1'790'000'000'000'000;  // [us], of 2026
+
+QuerySea sea_of(const std::string& text) {
+  return QuerySea::parse(text, "sea", {}).value();
+}
+
+std::string error_of(const std::string& text) {
+  const auto sea = QuerySea::parse(text, "sea", {});
+  return sea ? "" : sea.error().message();
+}
+
+const std::string kWaves =
+    "[world]\nup = [0, 1, 0]\n[water]\nlevel = 2.0\ndepth = 30\nramp = 10\ntime_origin = 1790000000000000\n"
+    "waves = { type = \"jonswap\", significant_wave_height = 1.5, peak_period = 5.0, seed = 3 }\n";
+
+TEST(QuerySea, ReadsTheKeysOfASceneFile) {
+  const QuerySea sea = sea_of(kWaves);
+  EXPECT_EQ(sea.water().level, 2.0);
+  EXPECT_EQ(sea.water().up_W, Vec3::UnitY());
+  ASSERT_NE(sea.waves(), nullptr);
+  EXPECT_EQ(sea.waves()->sea().depth(), 30.0);
+  EXPECT_EQ(sea_of("").waves(), nullptr);
+  EXPECT_EQ(sea_of("[water]\nwaves = { type = \"regular\", height = 0.0, period = 3 }").waves(), nullptr);
+}
+
+TEST(QuerySea, SaysWhatIsWrongWithItsKeys) {
+  EXPECT_NE(error_of("[water]\nlevl = 1").find("level"), std::string::npos);
+  EXPECT_NE(error_of("[water]\nwaves = \"received\"").find("received"), std::string::npos);
+  EXPECT_NE(error_of("[water.current]\nvelocity = [1, 0, 0]").find("current"), std::string::npos);
+  EXPECT_NE(error_of("[[body]]\nid = 1").find("body"), std::string::npos);
+  EXPECT_NE(error_of("water = ").find("TOML"), std::string::npos);
+  EXPECT_NE(error_of("[water]\ndepth = 1\nwaves = { type = \"regular\", height = 9, period = 3 }")
+                .find("sea: [water]"),
+            std::string::npos);
+}
+
+TEST(QuerySea, HasTheWaterOfASnapshotAtEveryPoint) {
+  const QuerySea sea = sea_of(kWaves);
+  constexpr std::size_t kPoints = 3000;
+  std::vector<double> x1(kPoints), x2(kPoints), points(3 * kPoints);
+  std::vector<std::int64_t> utimes(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const auto n = static_cast<double>(i);
+    x1[i] = 0.37 * n - 400.0;
+    x2[i] = 300.0 - 0.11 * n;
+    points[3 * i] = x1[i];
+    points[3 * i + 1] = 3.0 - 0.01 * n;
+    points[3 * i + 2] = x2[i];
+    utimes[i] = kNow + static_cast<std::int64_t>(i / 100) * 700'001;
+  }
+  for (const unsigned threads : {1U, 0U}) {
+    std::vector<double> elevations(kPoints), pressures(kPoints), velocities(3 * kPoints),
+        accelerations(3 * kPoints);
+    sea_elevations(sea, x1, x2, utimes, elevations, threads);
+    water_at_points(sea, points, utimes, {pressures, velocities, accelerations}, threads);
+    SeaSnapshot snapshot(sea.waves()->sea());
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      snapshot.set_time(utimes[i]);
+      EXPECT_EQ(elevations[i], snapshot.amplitude_factor() > 0.0 ? snapshot.elevation(x1[i], x2[i]) : 0.0);
+      const WaterAtPoint expected = snapshot.at({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
+      EXPECT_EQ(pressures[i], expected.pressure);
+      EXPECT_EQ(velocities[3 * i + 2], expected.velocity_W.z());
+      EXPECT_EQ(accelerations[3 * i + 1], expected.acceleration_W.y());
+    }
+  }
+}
+
+TEST(QuerySea, IsFlatWithoutWaves) {
+  const QuerySea sea = sea_of("[water]\nlevel = 1.0\ndensity = 1000\n");
+  const std::vector<double> x{0.0, 5.0};
+  std::vector<double> elevations(2, 9.0), pressures(2), velocities(6, 9.0);
+  const std::vector<std::int64_t> now{kNow};
+  sea_elevations(sea, x, x, now, elevations);
+  EXPECT_EQ(elevations, std::vector({0.0, 0.0}));
+  water_at_points(sea, std::vector<double>{0, 0, -1, 0, 0, 2}, now, {pressures, velocities, {}});
+  EXPECT_EQ(pressures, std::vector({2.0 * 1000.0 * kStandardGravity, 0.0}));
+  EXPECT_EQ(velocities, std::vector<double>(6, 0.0));
+}
+
+}  // namespace
+}  // namespace buoyancy
