@@ -14,21 +14,24 @@ namespace buoyancy {
 class MovingSea {
  public:
   // sea: nullptr for water at rest; must outlive this object.
-  explicit MovingSea(const PreparedSea* sea) {
-    if (sea != nullptr) sea_.emplace(*sea);
-  }
+  explicit MovingSea(const PreparedSea* sea) : sea_(sea) {}
 
   // The waves at this time [us]; nullptr: the water is at rest, or still before its ramp.
   const SeaAtTime* at(std::int64_t utime) {
-    if (!sea_) return nullptr;
-    if (utime != utime_) sea_->set_time(utime, 0.0);
+    if (sea_ == nullptr) return nullptr;
+    if (!now_) {
+      now_.emplace(*sea_, utime);
+    } else if (utime != utime_) {
+      now_->set_time(utime, 0.0);
+    }
     utime_ = utime;
-    return sea_->snapshot().amplitude_factor() > 0.0 ? &*sea_ : nullptr;
+    return now_->snapshot().amplitude_factor() > 0.0 ? &*now_ : nullptr;
   }
 
  private:
-  std::optional<SeaAtTime> sea_;
-  std::optional<std::int64_t> utime_;
+  const PreparedSea* sea_;
+  std::optional<SeaAtTime> now_;
+  std::int64_t utime_ = 0;
 };
 
 // Calls task(begin, end) for ranges that partition [0, count), on several threads if that pays.

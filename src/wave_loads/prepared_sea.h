@@ -36,6 +36,8 @@ class SeaAtTime {
  public:
   // sea must outlive this object.
   explicit SeaAtTime(const PreparedSea& sea) : sea_(&sea), snapshot_(sea.sea()) {}
+  SeaAtTime(const PreparedSea& sea, std::int64_t utime, double lead_time = 0.0)
+      : sea_(&sea), snapshot_(sea.sea(), utime, lead_time) {}
 
   // See SeaSnapshot::set_time().
   void set_time(std::int64_t utime, double lead_time) { snapshot_.set_time(utime, lead_time); }

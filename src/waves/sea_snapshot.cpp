@@ -27,8 +27,11 @@ DoubleDouble exactly(std::int64_t whole) {
 
 }  // namespace
 
-SeaSnapshot::SeaSnapshot(const Sea& sea) : sea_(&sea), phases_(sea.prepared().size()) {
-  set_time(sea.time_origin());
+SeaSnapshot::SeaSnapshot(const Sea& sea) : SeaSnapshot(sea, sea.time_origin()) {}
+
+SeaSnapshot::SeaSnapshot(const Sea& sea, std::int64_t utime, double lead_time)
+    : sea_(&sea), phases_(sea.prepared().size()) {
+  set_time(utime, lead_time);
 }
 
 void SeaSnapshot::set_time(std::int64_t utime, double lead_time) {

@@ -25,6 +25,7 @@ class SeaSnapshot {
  public:
   // sea: must outlive this object. At t = 0 until set_time() is called.
   explicit SeaSnapshot(const Sea& sea);
+  SeaSnapshot(const Sea& sea, std::int64_t utime, double lead_time = 0.0);  // at this time, see set_time()
 
   // utime: [us]; t = (utime - time_origin) / 1e6 + lead_time. lead_time: [s], finite. Phases are exact to
   // 1e-15 of a turn for every utime.
