@@ -12,10 +12,10 @@
 #include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "recording/record_writer.h"
+#include "recording/staged_file.h"
 #include "service/replay/content_hash.h"
 #include "service/replay/range_hash.h"
 #include "service/replay/replay_summary.h"
-#include "service/replay/staged_file.h"
 
 namespace buoyancy::service {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "recording/staged_file.h"
 #include "service/replay/part_manifest.h"
 #include "service/replay/replay.h"
-#include "service/replay/staged_file.h"
 
 namespace buoyancy::service {
 

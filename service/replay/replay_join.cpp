@@ -11,10 +11,10 @@
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "recording/record_writer.h"
+#include "recording/staged_file.h"
 #include "service/replay/content_hash.h"
 #include "service/replay/part_manifest.h"
 #include "service/replay/range_hash.h"
-#include "service/replay/staged_file.h"
 
 namespace buoyancy::service {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/unique_fd.h"
 
-namespace buoyancy::service {
+namespace buoyancy {
 
 class StagedFile {
  public:
@@ -36,4 +36,4 @@ class StagedFile {
   UniqueFd file_;  // holds the lock; not valid once committed or moved from
 };
 
-}  // namespace buoyancy::service
+}  // namespace buoyancy

@@ -1,4 +1,4 @@
-#include "service/replay/staged_file.h"
+#include "recording/staged_file.h"
 
 #include <cerrno>
 #include <string>
@@ -8,7 +8,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-namespace buoyancy::service {
+namespace buoyancy {
 namespace {
 
 constexpr unsigned kPermissions = 0666;  // before the umask
@@ -61,4 +61,4 @@ Expected<void> StagedFile::commit() {
   return {};
 }
 
-}  // namespace buoyancy::service
+}  // namespace buoyancy
