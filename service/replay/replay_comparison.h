@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "engine/loads_comparison.h"
+#include "engine/result_comparison.h"
 #include "messages/request.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "scene/scene.h"
-#include "service/replay/field_differences.h"
-#include "service/replay/loads_comparison.h"
 #include "service/replay/replay_output.h"
 
 namespace buoyancy::service {
@@ -29,21 +29,13 @@ namespace buoyancy::service {
 struct BodyDifferences {
   std::int64_t responses = 0;       // compared
   std::int64_t status_changes = 0;  // of them, with different statuses
-  double force = 0.0;               // [N]
-  double torque = 0.0;              // [N m]
-  double volume = 0.0;              // [m^3]
-  double center = 0.0;              // [m], centre of buoyancy
-  double force_in_bounds = 0.0;     // difference / sum of both bounds: <= 1 if both results are correct
-  double torque_in_bounds = 0.0;    // the same for the torque
-  // The same for the centre, the volume's first moment over the volume. Its bound: 2 torque bound / force.
-  double center_in_bounds = 0.0;
-  std::int64_t worst_utime = 0;  // [us], of the response with the largest of these three ratios
+  WrenchDifferences largest;
+  std::int64_t worst_utime = 0;  // [us], of the response with the largest ratio to its bounds
   MessageDifferences hydrostatics, loads;
 
   bool within_bounds() const {
-    return status_changes == 0 && std::isfinite(volume) && force_in_bounds <= 1.0 &&
-           torque_in_bounds <= 1.0 && center_in_bounds <= 1.0 && hydrostatics.in_bounds <= 1.0 &&
-           loads.in_bounds <= 1.0;
+    return status_changes == 0 && std::isfinite(largest.volume) && largest.in_bounds() <= 1.0 &&
+           hydrostatics.in_bounds <= 1.0 && loads.in_bounds <= 1.0;
   }
 };
 

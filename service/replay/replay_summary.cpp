@@ -24,8 +24,9 @@ std::string comparison_text(const ReplayComparison& comparison) {
   for (const auto& [id, body] : comparison.bodies()) {
     text += fmt::format(
         "{:>8}{:>12}{:>14.3g}{:>14.3g}{:>14.3g}{:>14.3g}{:>18.3g}{:>18.3g}{:>18.3g}{:>16}{:>18}\n", id,
-        body.responses, body.force, body.torque, body.volume, body.center, body.force_in_bounds,
-        body.torque_in_bounds, body.center_in_bounds, body.status_changes, body.worst_utime);
+        body.responses, body.largest.force, body.largest.torque, body.largest.volume, body.largest.center,
+        body.largest.force_in_bounds, body.largest.torque_in_bounds, body.largest.center_in_bounds,
+        body.status_changes, body.worst_utime);
   }
   const auto messages = [&text](std::int32_t id, const char* name, const MessageDifferences& differences) {
     if (differences.compared == 0) return;
@@ -56,13 +57,13 @@ nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
     bodies.push_back({{"body_id", id},
                       {"responses", body.responses},
                       {"status_changes", body.status_changes},
-                      {"force", body.force},
-                      {"torque", body.torque},
-                      {"volume", body.volume},
-                      {"center", body.center},
-                      {"force_in_bounds", body.force_in_bounds},
-                      {"torque_in_bounds", body.torque_in_bounds},
-                      {"center_in_bounds", body.center_in_bounds},
+                      {"force", body.largest.force},
+                      {"torque", body.largest.torque},
+                      {"volume", body.largest.volume},
+                      {"center", body.largest.center},
+                      {"force_in_bounds", body.largest.force_in_bounds},
+                      {"torque_in_bounds", body.largest.torque_in_bounds},
+                      {"center_in_bounds", body.largest.center_in_bounds},
                       {"worst_utime", body.worst_utime},
                       {"hydrostatics", body.hydrostatics.compared},
                       {"hydrostatics_in_bounds", body.hydrostatics.in_bounds},

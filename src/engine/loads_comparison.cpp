@@ -1,9 +1,9 @@
-#include "service/replay/loads_comparison.h"
+#include "engine/loads_comparison.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace buoyancy::service {
+namespace buoyancy {
 namespace {
 
 using Matrix = std::array<std::array<double, 6>, 6>;
@@ -102,4 +102,4 @@ void compare_loads(const BodyLoads& now, const BodyLoads& baseline, const Wrench
   fields.add_to(differences);
 }
 
-}  // namespace buoyancy::service
+}  // namespace buoyancy

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-namespace buoyancy::service {
+namespace buoyancy {
 
 inline constexpr double kRounding = 128.0 * std::numeric_limits<double>::epsilon();  // of two results
 
@@ -92,4 +92,4 @@ class FieldDifferences {
   std::string_view field_;
 };
 
-}  // namespace buoyancy::service
+}  // namespace buoyancy

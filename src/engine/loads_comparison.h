@@ -5,12 +5,12 @@
 // volume scales the coefficients. docs/replay.md lists the tolerances.
 #pragma once
 
+#include "engine/field_differences.h"
 #include "messages/loads.h"
 #include "messages/request.h"
 #include "scene/scene.h"
-#include "service/replay/field_differences.h"
 
-namespace buoyancy::service {
+namespace buoyancy {
 
 // What two wrenches of a body bound about its loads.
 struct WrenchLimits {
@@ -24,4 +24,4 @@ WrenchLimits limits_of(const BodyWrench& now, const BodyWrench& baseline);
 void compare_loads(const BodyLoads& now, const BodyLoads& baseline, const WrenchLimits& limits,
                    const Body& body, const Scene& scene, MessageDifferences& differences);
 
-}  // namespace buoyancy::service
+}  // namespace buoyancy
