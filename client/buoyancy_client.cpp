@@ -2,9 +2,7 @@
 // buoyancy service or from the same request handler in this process. Exit codes: 0 the run is complete, 1 it
 // failed or was interrupted, 2 invalid arguments, scene or mesh.
 
-#include <array>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -57,21 +55,6 @@ struct Arguments {
   bool json = false;
 };
 
-// Accepts numbers above `low` and at most `high`; unlike CLI::Range it rejects NaN.
-CLI::Validator number_in(double low, double high, const std::string& unit) {
-  const auto check = [low, high](const std::string& text) -> std::string {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number = error == std::errc{} && end == text.data() + text.size();
-    if (is_number && value > low && value <= high) return "";
-    std::array<char, 128> message{};
-    std::snprintf(message.data(), message.size(), "%.40s is not a number above %g and at most %g",
-                  text.c_str(), low, high);
-    return message.data();
-  };
-  return {check, unit};
-}
-
 void add_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", "buoyancy-client " BUOYANCY_VERSION);
   app.add_option("--scene", arguments.scene, "Scene file (TOML): water and bodies")->required();
@@ -108,13 +91,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(delay_range)
       ->excludes(rate)
       ->capture_default_str();
-  app.add_option("--timeout", arguments.retry_policy.timeout, "Response timeout in seconds before resending")
-      ->check(number_in(0.0, 1e6, "S"))
-      ->capture_default_str();
-  app.add_option("--retries", arguments.retry_policy.max_retries,
-                 "Maximum number of resends of a request before the run fails")
-      ->check(CLI::Range(std::int64_t{0}, kMaxCount, "N"))
-      ->capture_default_str();
+  add_timeout_option(app, arguments.retry_policy.timeout);
+  add_retries_option(app, arguments.retry_policy.max_retries, "the run fails");
   add_states_channel_option(app, arguments.channel.states_channel);
   add_wrenches_channel_option(app, arguments.channel.wrenches_channel);
   app.add_flag("--no-spin", arguments.no_spin,

@@ -1,5 +1,9 @@
 #include "cli/channel_options.h"
 
+#include <array>
+#include <charconv>
+#include <cstdio>
+
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
@@ -55,6 +59,33 @@ CLI::Option* add_lead_time_option(CLI::App& app, double& seconds, const std::str
           "--lead-time", seconds,
           "Evaluate wrenches at " + poses + " extrapolated by this many seconds using their velocities")
       ->capture_default_str();
+}
+
+CLI::Option* add_timeout_option(CLI::App& app, double& seconds) {
+  return app.add_option("--timeout", seconds, "Response timeout in seconds before resending")
+      ->check(number_in(0.0, 1e6, "S"))
+      ->capture_default_str();
+}
+
+CLI::Option* add_retries_option(CLI::App& app, std::int64_t& retries, const std::string& otherwise) {
+  constexpr std::int64_t kMaxRetries = std::int64_t{1} << 40U;
+  return app.add_option("--retries", retries, "Maximum number of resends of a request before " + otherwise)
+      ->check(CLI::Range(std::int64_t{0}, kMaxRetries, "N"))
+      ->capture_default_str();
+}
+
+CLI::Validator number_in(double low, double high, const std::string& unit) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_number = error == std::errc{} && end == text.data() + text.size();
+    if (is_number && value > low && value <= high) return "";
+    std::array<char, 128> message{};
+    std::snprintf(message.data(), message.size(), "%.40s is not a number above %g and at most %g",
+                  text.c_str(), low, high);
+    return message.data();
+  };
+  return {check, unit};
 }
 
 }  // namespace buoyancy

@@ -1,7 +1,8 @@
-// The options that several programs share, each declared and described once: the LCM URL, the channels and
-// the lead time.
+// The options that several programs share, each declared and described once: the LCM URL, the channels, the
+// lead time, and how long clients wait for a response.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -19,5 +20,11 @@ CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel);
 // poses: the poses that the option applies to, in words.
 CLI::Option* add_lead_time_option(CLI::App& app, double& seconds, const std::string& poses);
+CLI::Option* add_timeout_option(CLI::App& app, double& seconds);
+// otherwise: what happens to a request after the last retry, in words.
+CLI::Option* add_retries_option(CLI::App& app, std::int64_t& retries, const std::string& otherwise);
+
+// Accepts numbers above `low` and at most `high`; unlike CLI::Range it rejects NaN. unit: as --help shows it.
+CLI::Validator number_in(double low, double high, const std::string& unit);
 
 }  // namespace buoyancy
