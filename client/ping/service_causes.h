@@ -1,0 +1,19 @@
+// Infers from what the service says about itself, or does not say, why it differs or does not respond.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client/ping/service_link.h"
+#include "scene/scene.h"
+
+namespace buoyancy::ping {
+
+// How the service's own description of itself differs from the scene here: number of bodies, version, sea,
+// several services on one channel.
+std::vector<std::string> causes_from_service(const Scene& scene, const ServiceInfo& service);
+
+// Why there was no response at all.
+std::string cause_of_silence(const LinkOptions& options, const std::string& url, const ServiceInfo& service);
+
+}  // namespace buoyancy::ping
