@@ -48,6 +48,16 @@ struct ServiceCounters {
   ServiceCounters& operator+=(const ServiceCounters& other);
 };
 
+// Faults that the service injected on purpose, by kind; the fields faults_* of service_status_t.lcm.
+struct FaultCounters {
+  std::int64_t dropped = 0;
+  std::int64_t delayed = 0;
+  std::int64_t duplicated = 0;
+  std::int64_t reordered = 0;
+  std::int64_t corrupted = 0;
+  std::int64_t stalls = 0;
+};
+
 struct LatencyPercentiles {  // [s]
   double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
 };
@@ -75,6 +85,7 @@ struct ServiceStatus {
   std::int64_t instance_id = 0;
   std::string version;
   std::string scene;
+  std::string injected_faults;
   double uptime = 0.0;  // [s]
   ServiceMode mode = ServiceMode::kLockstep;
   SimdTarget simd_target = SimdTarget::kOther;
@@ -85,6 +96,7 @@ struct ServiceStatus {
   std::int64_t send_failures = 0;
   std::int64_t packets_dropped = 0;
   std::int64_t fragments_dropped = 0;
+  FaultCounters faults;
   ServiceCounters counters;
   LatencyPercentiles latency;
   double queue_wait = 0.0;  // [s]

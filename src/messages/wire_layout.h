@@ -103,6 +103,7 @@ template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_strings(Status& status, Visitor&& visitor) {
   visitor(status.version);
   visitor(status.scene);
+  visitor(status.injected_faults);
 }
 
 // Visits each counter; with several ServiceCounters, the same counter of all of them in one call.
@@ -141,6 +142,8 @@ void visit_trailer(Status& status, Visitor& visitor) {
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
   visitor(status.reloads, status.reloads_failed, status.send_failures);
   visitor(status.packets_dropped, status.fragments_dropped);
+  visitor(status.faults.dropped, status.faults.delayed, status.faults.duplicated);
+  visitor(status.faults.reordered, status.faults.corrupted, status.faults.stalls);
   visit_counters(visitor, status.counters);
   visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
   visitor(status.queue_wait);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 14 + 9 + 1 + 8 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 14 + 9 + 1 + 8 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -29,6 +29,7 @@ ServiceStatus random_status() {
   status.instance_id = random_integer<std::int64_t>();
   status.version = random_text();
   status.scene = random_text();
+  status.injected_faults = random_text();
   status.mode = static_cast<ServiceMode>(random_integer<std::int32_t>());
   status.simd_target = static_cast<SimdTarget>(random_integer<std::int32_t>());
   status.threads = random_integer<std::int32_t>();
@@ -61,7 +62,13 @@ ServiceStatus random_status() {
                                 &status.reloads_failed,
                                 &status.send_failures,
                                 &status.packets_dropped,
-                                &status.fragments_dropped}) {
+                                &status.fragments_dropped,
+                                &status.faults.dropped,
+                                &status.faults.delayed,
+                                &status.faults.duplicated,
+                                &status.faults.reordered,
+                                &status.faults.corrupted,
+                                &status.faults.stalls}) {
     *counter = random_integer<std::int64_t>();
   }
   for (std::int64_t& counter : c.bodies) counter = random_integer<std::int64_t>();
@@ -84,6 +91,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.instance_id = status.instance_id;
   message.version = status.version;
   message.scene = status.scene;
+  message.injected_faults = status.injected_faults;
   message.uptime = status.uptime;
   message.mode = static_cast<std::int32_t>(status.mode);
   message.simd_target = static_cast<std::int32_t>(status.simd_target);
@@ -94,6 +102,12 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.send_failures = status.send_failures;
   message.packets_dropped = status.packets_dropped;
   message.fragments_dropped = status.fragments_dropped;
+  message.faults_dropped = status.faults.dropped;
+  message.faults_delayed = status.faults.delayed;
+  message.faults_duplicated = status.faults.duplicated;
+  message.faults_reordered = status.faults.reordered;
+  message.faults_corrupted = status.faults.corrupted;
+  message.faults_stalls = status.faults.stalls;
   message.requests = c.requests;
   message.computed = c.computed;
   message.retries = c.retries;
@@ -142,10 +156,12 @@ ByteVector encoded(const ServiceStatus& status) {
   return bytes;
 }
 
-ByteVector with_version(const std::string& version, const std::string& scene = "") {
+ByteVector with_version(const std::string& version, const std::string& scene = "",
+                        const std::string& injected_faults = "") {
   ServiceStatus status;
   status.version = version;
   status.scene = scene;
+  status.injected_faults = injected_faults;
   return encoded(status);
 }
 
@@ -185,7 +201,7 @@ TEST(ServiceStatus, MapsModesToWireConstants) {
 
 TEST(ServiceStatus, RejectsEveryTruncation) {
   const ByteVector whole = with_version("1.2.3");
-  const std::size_t shortest = kVersionLength + 2 * kEmptyString + kTrailer;
+  const std::size_t shortest = kVersionLength + 3 * kEmptyString + kTrailer;
   ServiceStatus status;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_EQ(decode(Bytes(whole).first(size), status),
@@ -200,12 +216,13 @@ TEST(ServiceStatus, RejectsInvalidStringLengths) {
     DecodeError expected;
   };
   constexpr std::size_t kSceneLength = kVersionLength + 4 + 6;
-  for (const std::size_t offset : {kVersionLength, kSceneLength}) {
+  constexpr std::size_t kFaultsLength = kSceneLength + 4 + 6;
+  for (const std::size_t offset : {kVersionLength, kSceneLength, kFaultsLength}) {
     for (const Case& c :
          {Case{0, DecodeError::kCount}, Case{-1, DecodeError::kCount}, Case{INT_MIN, DecodeError::kCount},
           Case{1, DecodeError::kLength}, Case{5, DecodeError::kLength}, Case{7, DecodeError::kLength},
           Case{INT_MAX, DecodeError::kLength}}) {
-      ByteVector bytes = with_version("1.2.3", "scene");
+      ByteVector bytes = with_version("1.2.3", "scene", "seeds");
       set_length(bytes, offset, c.length);
       ServiceStatus status;
       EXPECT_EQ(decode(bytes, status), c.expected) << c.length;
@@ -246,7 +263,8 @@ TEST(ServiceStatus, StaysUnchangedOnDecodeError) {
 
 TEST(ServiceStatus, DoesNotAllocateAfterWarmUp) {
   const ByteVector whole = with_version("a version that is too long for the small-string optimisation",
-                                        "a scene that is too long for the small-string optimisation");
+                                        "a scene that is too long for the small-string optimisation",
+                                        "faults that are too long for the small-string optimisation");
   ServiceStatus status;
   ByteVector bytes;
   ASSERT_FALSE(decode(whole, status).has_value());

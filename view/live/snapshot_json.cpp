@@ -124,6 +124,7 @@ json status_json(const ServiceStatus& status) {
   return {{"instance_id", std::to_string(status.instance_id)},
           {"version", status.version},
           {"scene", status.scene},
+          {"injected_faults", status.injected_faults},
           {"uptime", status.uptime},
           {"mode", status.mode == ServiceMode::kLockstep ? "lockstep" : "latest"},
           {"threads", status.threads},

@@ -194,6 +194,7 @@
     // The status holds a path on the service's machine; only the file name is comparable.
     const scene_of_service = now.status ? now.status.scene.split('/').pop() : model.scene;
     if (scene_of_service !== model.scene) found.push(`The service's scene is ${scene_of_service}, the scene shown here is ${model.scene}.`);
+    if (now.status && now.status.injected_faults) found.push(`The service injects faults on purpose: ${now.status.injected_faults}.`);
     return found;
   }
 
