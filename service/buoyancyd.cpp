@@ -30,6 +30,7 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseCh
   }
   Daemon daemon(std::make_unique<const Scene>(std::move(scene)), std::move(*connection), options.mode,
                 options.channels, std::move(poses), options.threads);
+  if (options.inject) daemon.inject_faults(parse_faults(*options.inject).value());  // as check_options() did
   ExitCode exit_code = kSuccess;
   if (const Expected<void> ended = daemon.run(termination, reload); !ended) {
     print_error(app, ended.error());

@@ -4,6 +4,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/format.h"
+
 namespace buoyancy::service {
 
 namespace {
@@ -109,6 +111,13 @@ std::string describe_totals(const ServiceCounters& counters, const LatencyPercen
       counters.requests, counters.computed, counters.retries, counters.stale, counters.superseded,
       counters.rejected(), bodies, ok, latency.p50 * kMicrosecondsPerSecond,
       latency.p99 * kMicrosecondsPerSecond, latency.max * kMicrosecondsPerSecond);
+}
+
+std::string describe_faults(const FaultCounters& faults) {
+  return fmt::format("{}, {} delayed, {} duplicated, {} reordered, {} corrupted; {}",
+                     pluralize(faults.dropped, "response dropped", "responses dropped"), faults.delayed,
+                     faults.duplicated, faults.reordered, faults.corrupted,
+                     pluralize(faults.stalls, "stall", "stalls"));
 }
 
 }  // namespace buoyancy::service

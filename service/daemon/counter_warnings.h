@@ -27,4 +27,7 @@ std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene&
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".
 std::string describe_totals(const ServiceCounters& counters, const LatencyPercentiles& latency);
 
+// One line of the faults that were injected: "12 responses dropped, 80 delayed, ...".
+std::string describe_faults(const FaultCounters& faults);
+
 }  // namespace buoyancy::service

@@ -4,6 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -24,6 +26,9 @@ namespace buoyancy::service {
 namespace {
 
 constexpr int kMaxDrained = 4096;  // mode latest: bounds the time that a flood delays the responses
+constexpr int kIgnored = -1;       // a descriptor that poll() skips
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kMaxWait = 3600.0;  // [s]
 constexpr std::size_t kMaxSessions = RequestHandlerOptions{}.max_sessions;
 
 double seconds_now() {
@@ -54,6 +59,14 @@ bool consume_expiration(const UniqueFd& timer) {
   return ::read(timer.value(), &expirations, sizeof expirations) > 0;
 }
 
+// Rounds up, so that a wait of this length does not end early. seconds: less than a day.
+timespec to_timespec(double seconds) {
+  constexpr double kNanosecondsPerSecond = 1e9;
+  const double whole = std::floor(seconds);
+  return {static_cast<time_t>(whole),
+          std::min(static_cast<long>(std::ceil((seconds - whole) * kNanosecondsPerSecond)), 999'999'999L)};
+}
+
 }  // namespace
 
 std::string_view to_string(ServiceMode mode) {
@@ -74,6 +87,18 @@ Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Ser
       instance_id_(random_id()),
       instances_(instance_id_),
       reported_without_velocities_(poses_.channels().size()) {}
+
+void Daemon::inject_faults(const FaultOptions& options) {
+  faults_.emplace(options, seconds_now(), [this](const Reply& reply) { publish_reply(reply); });
+  spdlog::warn(
+      "injecting faults on purpose: {}; responses are lost, late or corrupted. This is for tests of clients: "
+      "never use it in production, and start the service without --inject to stop it",
+      to_string(options));
+}
+
+bool Daemon::is_stalled() const {
+  return faults_ && faults_->is_stalled(seconds_now());
+}
 
 Expected<void> Daemon::subscribe() {
   Expected<void> subscribed =
@@ -134,10 +159,15 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   systemd_.ready();
 
   while (true) {
+    const bool stalled = is_stalled();
+    if (faults_) descriptors.back().fd = stalled ? kIgnored : connection_.fileno();
     bool handled = false;
-    if (latest_.empty()) handled = connection_.handle_one_spinning();
-    const int timeout_ms = handled || !latest_.empty() ? 0 : -1;
-    if (::poll(descriptors.data(), descriptors.size(), timeout_ms) < 0) {
+    if (latest_.empty() && !stalled) handled = connection_.handle_one_spinning();
+    double max_wait = faults_ ? faults_->wait(seconds_now()) : kForever;
+    if (handled || (!latest_.empty() && !stalled)) max_wait = 0.0;
+    const timespec limit = to_timespec(std::min(max_wait, kMaxWait));
+    if (::ppoll(descriptors.data(), descriptors.size(), max_wait == kForever ? nullptr : &limit, nullptr) <
+        0) {
       if (errno == EINTR) continue;  // interrupted, e.g. by SIGSTOP/SIGCONT or a debugger
       return make_error(
           {"waiting for messages", std::generic_category().message(errno), "poll() to succeed", "", ""});
@@ -147,13 +177,20 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (loaded.revents != 0) end_reload();
     if (status_due.revents != 0 && consume_expiration(status_timer)) publish_status();
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
+    if (faults_) faults_->send_due(seconds_now());
+    if (is_stalled()) continue;
     if (messages.revents != 0) receive();
     handle_next();
   }
   systemd_.stopping();
+  if (faults_) faults_->send_all();
   publish_status();
   spdlog::info("received {}, exiting; {}", termination.consume(),
                describe_totals(handler_.counters(), latency_.percentiles()));
+  if (faults_) {
+    spdlog::warn("injected faults ({}): {}", to_string(faults_->options()),
+                 describe_faults(faults_->counters(seconds_now())));
+  }
   return {};
 }
 
@@ -221,18 +258,40 @@ void Daemon::handle(Bytes request, double arrival) {
     const RequestId id = peek_request_id(request).value();
     spdlog::debug("session {} starts with seq {}", id.session_id, id.seq);
   }
-  if (publish_response(bytes)) latency_.add(seconds_now() - arrival);
+  if (faults_) return faults_->push(copy_reply(bytes, arrival), seconds_now());
+  const AddressedResponse response = address(bytes);
+  if (publish(response.channel, response.bytes)) latency_.add(seconds_now() - arrival);
   if (const Bytes hydrostatics = handler_.last_hydrostatics(); !hydrostatics.empty()) {
     publish(channels_.hydrostatics, hydrostatics);
   }
   if (const Bytes loads = handler_.last_loads(); !loads.empty()) publish(channels_.loads, loads);
 }
 
-bool Daemon::publish_response(Bytes response) {
+Daemon::AddressedResponse Daemon::address(Bytes response) {
   const PoseChannel* const pose = poses_.channel_of_session(handler_.last_session_id());
-  if (pose == nullptr || pose->force_torque_channel.empty()) return publish(channels_.wrenches, response);
+  if (pose == nullptr || pose->force_torque_channel.empty()) return {channels_.wrenches, response};
   encode_force_torque(response, response_, force_torque_bytes_);
-  return publish(pose->force_torque_channel, force_torque_bytes_);
+  return {pose->force_torque_channel, force_torque_bytes_};
+}
+
+Reply Daemon::copy_reply(Bytes response, double arrival) {
+  Reply reply;
+  reply.arrival = arrival;
+  const auto add = [&reply](const std::string& channel, Bytes bytes) {
+    if (!bytes.empty()) reply.messages.push_back({channel, {bytes.begin(), bytes.end()}});
+  };
+  const AddressedResponse addressed = address(response);
+  add(addressed.channel, addressed.bytes);
+  add(channels_.hydrostatics, handler_.last_hydrostatics());
+  add(channels_.loads, handler_.last_loads());
+  return reply;
+}
+
+void Daemon::publish_reply(const Reply& reply) {
+  for (const Reply::Message& message : reply.messages) {
+    const bool published = publish(message.channel, message.bytes);
+    if (published && &message == reply.messages.data()) latency_.add(seconds_now() - reply.arrival);
+  }
 }
 
 bool Daemon::publish(const std::string& channel, Bytes bytes) {
@@ -293,7 +352,7 @@ void Daemon::publish_status() {
                        .instance_id = instance_id_,
                        .version = BUOYANCY_VERSION,
                        .scene = scene_->name(),
-                       .injected_faults = {},
+                       .injected_faults = faults_ ? to_string(faults_->options()) : std::string(),
                        .uptime = now - start_,
                        .mode = mode_,
                        .simd_target = simd_target_from_name(simd_target()),
@@ -304,16 +363,17 @@ void Daemon::publish_status() {
                        .send_failures = send_failures_,
                        .packets_dropped = drops.packets,
                        .fragments_dropped = drops.fragments,
-                       .faults = {},
+                       .faults = faults_ ? faults_->counters(now) : FaultCounters{},
                        .counters = counters,
                        .latency = latency_.percentiles(),
                        .queue_wait = std::exchange(queue_delay_, 0.0)},
          status_bytes_);
   publish(channels_.status, status_bytes_);
   publish_sea();
-  systemd_.status(fmt::format("{}, {} answered{}", format_body_count(scene_->bodies()),
+  systemd_.status(fmt::format("{}, {} answered{}{}", format_body_count(scene_->bodies()),
                               pluralize(counters.computed + counters.retries, "request", "requests"),
-                              last_reload_failed_ ? "; the last reload failed, see the log" : ""));
+                              last_reload_failed_ ? "; the last reload failed, see the log" : "",
+                              faults_ ? "; injects faults on purpose (--inject)" : ""));
   for (const LogEvent& warning : warnings_since(reported_, counters)) warnings_.add(warning, now);
   for (const LogEvent& warning : warnings_since(reported_drops_, drops, receive_buffer_limit_)) {
     warnings_.add(warning, now);

@@ -14,10 +14,14 @@
 // Mode lockstep: every request is handled, in order of arrival. Mode latest: all messages that have arrived
 // are read, then the newest request of the session that has waited longest is handled (LatestRequestQueue),
 // and so on: a request that arrives meanwhile still supersedes a pending one of its session.
+//
+// With inject_faults(), a FaultySender sends the responses. While it is stalled, no message is read and no
+// request handled; signals, reloads, the watchdog and the status go on.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +33,8 @@
 #include "engine/request_handler.h"
 #include "messages/latency_histogram.h"
 #include "scene/scene.h"
+#include "service/daemon/fault_injection.h"
+#include "service/daemon/faulty_sender.h"
 #include "service/daemon/instance_monitor.h"
 #include "service/daemon/latest_request_queue.h"
 #include "service/daemon/rate_limited_log.h"
@@ -58,6 +64,9 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
+  // Makes the service misbehave on purpose, and logs a warning that says so. Call it before run().
+  void inject_faults(const FaultOptions& options);
+
   // Handles requests until a termination signal arrives; call it once. reload: SIGHUP.
   // Errors: too few file descriptors for timers and signals, a failed subscription, or a failed poll(). A
   // message that cannot be sent is no error: it is counted and logged.
@@ -77,13 +86,21 @@ class Daemon {
   void enqueue(Bytes request, double arrival);
   void handle_next();  // the request at the front of latest_, if there is one
   void handle(Bytes request, double arrival);
-  bool publish_response(Bytes response);                  // response: the last one from handler_
+  // Where the last response from handler_ goes, and the bytes that go there.
+  struct AddressedResponse {
+    const std::string& channel;
+    Bytes bytes;
+  };
+  AddressedResponse address(Bytes response);
+  Reply copy_reply(Bytes response, double arrival);
+  void publish_reply(const Reply& reply);
   bool publish(const std::string& channel, Bytes bytes);  // false: not sent, and added to warnings_
   void begin_reload();
   void end_reload();
   void publish_status();  // and the sea, and logs the warnings that are due
   void publish_sea();
   void warn_of_missing_velocities(double now);
+  bool is_stalled() const;
 
   std::unique_ptr<const Scene> scene_;  // used by handler_
   SceneLoader loader_;
@@ -104,6 +121,7 @@ class Daemon {
   InstanceMonitor instances_;
   RateLimitedLog warnings_;
   SystemdNotifier systemd_;
+  std::optional<FaultySender> faults_;  // nullopt: the service behaves
   ServiceCounters reported_;
   DropCounts reported_drops_;
   std::vector<std::int64_t> reported_without_velocities_;  // by pose channel

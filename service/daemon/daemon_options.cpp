@@ -50,6 +50,13 @@ void add_options(CLI::App& app, DaemonOptions& options) {
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}))
       ->type_name("LEVEL")
       ->capture_default_str();
+  app.add_option(
+         "--inject", options.inject,
+         "Misbehave on purpose, to test clients: drop, duplicate, reorder and corrupt are "
+         "probabilities, delay and jitter times, stall a time in every period, such as "
+         "drop=0.1,delay=5ms,jitter=2ms,duplicate=0.05,reorder=0.05,corrupt=0.01,stall=2s/60s,seed=7; "
+         "the same seed injects the same faults")
+      ->type_name("FAULTS");
   app.add_flag("--check", options.check, "Print the report of the scene and its meshes, then exit");
   app.add_flag("--json", options.json, "Print the report as JSON")->needs("--check");
 }
@@ -61,6 +68,9 @@ Expected<void> check_options(const DaemonOptions& options) {
                                    channels.sea, channels.status});
       !checked) {
     return checked;
+  }
+  if (options.inject) {
+    if (const auto faults = parse_faults(*options.inject); !faults) return make_error(faults.error());
   }
   return check_lcm_url(options.lcm_url);
 }

@@ -74,6 +74,11 @@ TEST(Buoyancyd, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--loads-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--pose", "BUOYANCY_LOADS=1"}), 2, "used for two purposes");
+  expect_failure(run({"--scene", scene, "--inject", ""}), 2, "no fault");
+  expect_failure(run({"--scene", scene, "--inject", "drop=2"}), 2, "a probability from 0 to 1");
+  expect_failure(run({"--scene", scene, "--inject", "dorp=0.1"}), 2, "The nearest is 'drop'");
+  expect_failure(run({"--scene", scene, "--inject", "drop=0.1,drop=0.1"}), 2, "for the second time");
+  expect_failure(run({"--scene", scene, "--inject", "stall=60s/2s"}), 2, "shorter than its period");
 }
 
 TEST(Buoyancyd, RefusesPosesThatCannotGiveTheVelocitiesThatDragNeeds) {

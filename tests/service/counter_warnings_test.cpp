@@ -87,5 +87,11 @@ TEST(CounterWarnings, SayWhatToDoAboutWaves) {
   EXPECT_TRUE(warnings_since(now, now).empty());
 }
 
+TEST(CounterWarnings, DescribeInjectedFaultsByKind) {
+  EXPECT_EQ(describe_faults(
+                {.dropped = 1, .delayed = 2, .duplicated = 3, .reordered = 4, .corrupted = 5, .stalls = 6}),
+            "1 response dropped, 2 delayed, 3 duplicated, 4 reordered, 5 corrupted; 6 stalls");
+}
+
 }  // namespace
 }  // namespace buoyancy::service
