@@ -14,6 +14,9 @@ struct ClientStats {
   std::int64_t unanswered = 0;  // requests that never got their response
   std::int64_t late = 0;        // requests for which only the response to an earlier request was available
   std::int64_t max_lag = 0;     // largest number of requests by which a response was late
+  // Messages on the channels of the responses and loads that were ignored because they are not valid: cut
+  // short, or of another type or version. They may have been for other clients.
+  std::int64_t malformed = 0;
 };
 
 }  // namespace buoyancy

@@ -59,6 +59,7 @@ bool FreeRunningClient::wait_for(std::int64_t seq, Clock::time_point deadline) {
 ClientStats FreeRunningClient::statistics() const {
   ClientStats statistics = statistics_;
   statistics.unanswered += static_cast<std::int64_t>(unanswered_.size());
+  statistics.malformed = channel_.malformed();
   return statistics;
 }
 

@@ -23,7 +23,10 @@ timespec to_timespec(Clock::duration duration) {
 }  // namespace
 
 void LcmRequestChannel::Inbox::receive(Bytes bytes) {
-  if (decode(bytes, incoming)) return;
+  if (decode(bytes, incoming)) {
+    ++malformed;
+    return;
+  }
   const RequestId& id = incoming.id;
   if (id.session_id != session_id || id.seq > last_sent) return;
   if (!needs_loads || !is_newer(id)) arrivals.push_back({id.seq, Clock::now()});
@@ -39,7 +42,10 @@ void LcmRequestChannel::Inbox::receive(Bytes bytes) {
 }
 
 void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
-  if (decode(bytes, incoming_loads)) return;
+  if (decode(bytes, incoming_loads)) {
+    ++malformed;
+    return;
+  }
   const RequestId& id = incoming_loads.id;
   if (id.session_id != session_id || id.seq > last_sent || !is_newer(id)) return;
   if (loads_seq && id.seq < *loads_seq) return;

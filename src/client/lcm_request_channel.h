@@ -68,6 +68,8 @@ class LcmRequestChannel {
   // The loads that belong to latest_response(); without bodies unless they are waited for.
   const BodiesLoads& latest_loads() const { return inbox_->latest_loads; }
   bool waits_for_loads() const { return options_.wait_for_loads; }
+  // Messages that were ignored because they are not valid, see ClientStats::malformed.
+  std::int64_t malformed() const { return inbox_->malformed; }
   bool cancelled() const { return cancelled_ != nullptr && cancelled_->load(); }
 
   // Why the response to the last request may not have arrived, or its loads, in parts of an Error.
@@ -97,6 +99,7 @@ class LcmRequestChannel {
     WrenchResponse response;
     BodiesLoads loads;
     std::vector<ResponseArrival> arrivals;
+    std::int64_t malformed = 0;
 
     void receive(Bytes bytes);
     void receive_loads(Bytes bytes);

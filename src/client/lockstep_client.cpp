@@ -10,7 +10,10 @@ LockstepClient::LockstepClient(LcmRequestChannel channel, RetryPolicy retry_poli
     : channel_(std::move(channel)), retry_policy_(retry_policy) {}
 
 Expected<const WrenchResponse*> LockstepClient::request(const BorrowedRequest& request) {
-  return request_with_retries(channel_, request, retry_policy_, statistics_);
+  Expected<const WrenchResponse*> response =
+      request_with_retries(channel_, request, retry_policy_, statistics_);
+  statistics_.malformed = channel_.malformed();
+  return response;
 }
 
 }  // namespace buoyancy

@@ -69,10 +69,11 @@ std::string to_text(const RunSummary& summary) {
               summary.interrupted ? ", interrupted" : "");
   append_line(text, "round trip  p50 %.1f us, p99 %.1f us, p99.9 %.1f us, max %.1f us", 1e6 * round_trip.p50,
               1e6 * round_trip.p99, 1e6 * round_trip.p999, 1e6 * round_trip.max);
-  append_line(text, "requests    %lld, retries %lld, unanswered %lld, late %lld (by at most %lld)",
-              static_cast<long long>(summary.client.requests), static_cast<long long>(summary.client.retries),
-              static_cast<long long>(summary.client.unanswered), static_cast<long long>(summary.client.late),
-              static_cast<long long>(summary.client.max_lag));
+  append_line(
+      text, "requests    %lld, retries %lld, unanswered %lld, late %lld (by at most %lld), malformed %lld",
+      static_cast<long long>(summary.client.requests), static_cast<long long>(summary.client.retries),
+      static_cast<long long>(summary.client.unanswered), static_cast<long long>(summary.client.late),
+      static_cast<long long>(summary.client.max_lag), static_cast<long long>(summary.client.malformed));
   for (const Warning& warning : summary.warnings) text += "warning     " + warning.message() + "\n";
   return text;
 }
@@ -114,6 +115,7 @@ std::string to_json(const RunSummary& summary) {
                                        {"unanswered", summary.client.unanswered},
                                        {"late", summary.client.late},
                                        {"max_lag", summary.client.max_lag},
+                                       {"malformed", summary.client.malformed},
                                        {"warnings", warnings}};
   // dump() must not throw for a body name that is not valid UTF-8.
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -15,7 +15,7 @@ TEST(FreeRunningClient, ReturnsNewestResponseAndCountsItsLag) {
   const FakeService service([](const WrenchRequest& request) {
     WrenchRequest earlier = request;
     if (request.id.seq != 0) earlier.id.seq -= 3;
-    return Responses{encoded(response_to(earlier, static_cast<double>(earlier.id.seq)))};
+    return Responses{{1, 2, 3}, encoded(response_to(earlier, static_cast<double>(earlier.id.seq)))};
   });
   FreeRunningClient client(open_channel(), kTestRetryPolicy, 0.05);
   for (std::int64_t seq = 0; seq <= 10; ++seq) {
@@ -28,6 +28,7 @@ TEST(FreeRunningClient, ReturnsNewestResponseAndCountsItsLag) {
   EXPECT_EQ(statistics.late, 10);
   EXPECT_GE(statistics.max_lag, 3);
   EXPECT_GE(statistics.unanswered, 3);
+  EXPECT_GE(statistics.malformed, 1);
 }
 
 }  // namespace

@@ -21,7 +21,13 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
     later.id.seq += 1;
     std::vector<std::uint8_t> cut = encoded(response_to(request, 4.0));
     cut.pop_back();
-    return Responses{encoded(other_session), encoded(earlier), encoded(later), cut,
+    std::vector<std::uint8_t> foreign = encoded(response_to(request, 5.0));
+    foreign[0] ^= 0xFFU;
+    return Responses{encoded(other_session),
+                     encoded(earlier),
+                     encoded(later),
+                     cut,
+                     foreign,
                      encoded(response_to(request, 9.0))};
   });
   LockstepClient client(open_channel(), kTestRetryPolicy);
@@ -33,6 +39,7 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
   }
   EXPECT_EQ(client.statistics().requests, 20);
   EXPECT_EQ(client.statistics().round_trip.count(), 20);
+  EXPECT_GE(client.statistics().malformed, 40);  // more if the machine is so slow that it retries
 }
 
 TEST(LockstepClient, ResendsRequestUntilResponseArrives) {
