@@ -178,7 +178,6 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (status_due.revents != 0 && consume_expiration(status_timer)) publish_status();
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (faults_) faults_->send_due(seconds_now());
-    if (is_stalled()) continue;
     if (messages.revents != 0) receive();
     handle_next();
   }

@@ -15,8 +15,8 @@
 // are read, then the newest request of the session that has waited longest is handled (LatestRequestQueue),
 // and so on: a request that arrives meanwhile still supersedes a pending one of its session.
 //
-// With inject_faults(), a FaultySender sends the responses. While it is stalled, no message is read and no
-// request handled; signals, reloads, the watchdog and the status go on.
+// With inject_faults(), a FaultySender sends the responses. While it is stalled, messages wait to be read;
+// signals, reloads, the watchdog and the status go on.
 #pragma once
 
 #include <cstdint>

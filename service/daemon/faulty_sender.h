@@ -6,7 +6,7 @@
 //
 // - A reply that is reordered is held back until after the next reply that is sent, of any session, and is
 //   not held back itself; after kMaxHold without one it is sent all the same.
-// - During a stall nothing is sent, and the caller must read no requests: they wait in the receive buffer, as
+// - During a stall nothing is sent, and the caller reads no requests: they wait in the receive buffer, as
 //   they would for a process that hangs, and are answered after it.
 // - At most kMaxWaiting replies with kMaxWaitingBytes wait. What exceeds that is sent before its time, the
 //   earliest first: only what the options say is ever lost.
