@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -59,12 +60,18 @@ bool consume_expiration(const UniqueFd& timer) {
   return ::read(timer.value(), &expirations, sizeof expirations) > 0;
 }
 
-// Rounds up, so that a wait of this length does not end early. seconds: less than a day.
-timespec to_timespec(double seconds) {
+// poll(2) with a limit in seconds, of which infinity is none.
+int poll_for(std::span<pollfd> descriptors, double seconds) {
+  constexpr int kNoLimit = -1;
+  if (seconds == 0.0) return ::poll(descriptors.data(), descriptors.size(), 0);
+  if (seconds == kForever) return ::poll(descriptors.data(), descriptors.size(), kNoLimit);
   constexpr double kNanosecondsPerSecond = 1e9;
-  const double whole = std::floor(seconds);
-  return {static_cast<time_t>(whole),
-          std::min(static_cast<long>(std::ceil((seconds - whole) * kNanosecondsPerSecond)), 999'999'999L)};
+  const double whole = std::floor(std::min(seconds, kMaxWait));
+  const double fraction = std::min(seconds, kMaxWait) - whole;
+  // Rounded up: a wait that ends early would be followed by another one.
+  const timespec limit{static_cast<time_t>(whole),
+                       std::min(std::lround(std::ceil(fraction * kNanosecondsPerSecond)), 999'999'999L)};
+  return ::ppoll(descriptors.data(), descriptors.size(), &limit, nullptr);
 }
 
 }  // namespace
@@ -165,9 +172,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (latest_.empty() && !stalled) handled = connection_.handle_one_spinning();
     double max_wait = faults_ ? faults_->wait(seconds_now()) : kForever;
     if (handled || (!latest_.empty() && !stalled)) max_wait = 0.0;
-    const timespec limit = to_timespec(std::min(max_wait, kMaxWait));
-    if (::ppoll(descriptors.data(), descriptors.size(), max_wait == kForever ? nullptr : &limit, nullptr) <
-        0) {
+    if (poll_for(descriptors, max_wait) < 0) {
       if (errno == EINTR) continue;  // interrupted, e.g. by SIGSTOP/SIGCONT or a debugger
       return make_error(
           {"waiting for messages", std::generic_category().message(errno), "poll() to succeed", "", ""});
