@@ -8,6 +8,8 @@ file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
 # These headers are included several times in one source, each time for another processor or number type, which the
 # source selects first.
 list(FILTER headers EXCLUDE REGEX "-inl\\.h$")
+# These need Python's own, which are searched for only where the module is built.
+list(FILTER headers EXCLUDE REGEX "^src/python/")
 # The benchmarks' libraries are searched for only with that option.
 if(NOT BUOYANCY_BUILD_BENCH)
   list(FILTER headers EXCLUDE REGEX "^bench/")

@@ -1,0 +1,72 @@
+#include "python/exceptions.h"
+
+namespace buoyancy::python {
+namespace {
+
+// Never destroyed: exceptions may be raised while the interpreter shuts down.
+PyObject* error_type = nullptr;
+PyObject* input_error_type = nullptr;
+PyObject* service_error_type = nullptr;
+PyObject* status_error_type = nullptr;
+
+PyObject* define(py::module_& module, const char* name, const char* doc, const py::tuple& bases) {
+  const std::string full_name = std::string("buoyancy.") + name;
+  PyObject* const type = PyErr_NewExceptionWithDoc(full_name.c_str(), doc, bases.ptr(), nullptr);
+  if (type == nullptr) throw py::error_already_set();
+  module.attr(name) = py::handle(type);
+  return type;
+}
+
+void translate(std::exception_ptr pointer) {
+  try {
+    if (pointer) std::rethrow_exception(std::move(pointer));
+  } catch (const InputException& exception) {
+    PyErr_SetString(input_error_type, exception.what());
+  } catch (const ServiceException& exception) {
+    PyErr_SetString(service_error_type, exception.what());
+  } catch (const StatusException& exception) {
+    PyErr_SetString(status_error_type, exception.what());
+  }
+}
+
+}  // namespace
+
+void define_exceptions(py::module_& module) {
+  const auto with_base = [](PyObject* base) {
+    return py::make_tuple(py::handle(error_type), py::handle(base));
+  };
+  error_type = define(module, "Error", "Base class of the exceptions of this module.",
+                      py::make_tuple(py::handle(PyExc_Exception)));
+  input_error_type =
+      define(module, "InputError",
+             "A mesh, a scene, a sea, a file or a number that cannot be used. The text says what "
+             "was found, what is expected, the likely cause and what to do.",
+             with_base(PyExc_ValueError));
+  service_error_type = define(module, "ServiceError",
+                              "No response from buoyancyd, a failure of the network, or a closed client.",
+                              with_base(PyExc_RuntimeError));
+  status_error_type =
+      define(module, "StatusError", "A pose that could not be evaluated. Raised by raise_for_status() only.",
+             with_base(PyExc_ValueError));
+  py::register_exception_translator(&translate);
+}
+
+void set_python_error() noexcept {
+  try {
+    throw;
+  } catch (py::error_already_set& error) {
+    error.restore();
+  } catch (const py::builtin_exception& exception) {
+    exception.set_error();
+  } catch (const InputException& exception) {
+    PyErr_SetString(input_error_type, exception.what());
+  } catch (const ServiceException& exception) {
+    PyErr_SetString(service_error_type, exception.what());
+  } catch (const std::bad_alloc&) {
+    PyErr_NoMemory();
+  } catch (const std::exception& exception) {
+    PyErr_SetString(PyExc_RuntimeError, exception.what());
+  }
+}
+
+}  // namespace buoyancy::python

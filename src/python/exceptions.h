@@ -1,0 +1,84 @@
+// Errors of the libraries as Python exceptions: buoyancy.Error and its subclasses (docs/python.md).
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <pybind11/pybind11.h>
+
+#include "base/error.h"
+
+namespace buoyancy::python {
+
+namespace py = pybind11;
+
+// Thrown by bindings; becomes buoyancy.InputError, which is a ValueError too.
+class InputException : public std::runtime_error {
+ public:
+  explicit InputException(const Error& error) : std::runtime_error(error.message()) {}
+};
+
+// Becomes buoyancy.ServiceError, which is a RuntimeError too.
+class ServiceException : public std::runtime_error {
+ public:
+  explicit ServiceException(const Error& error) : std::runtime_error(error.message()) {}
+};
+
+// Becomes buoyancy.StatusError, which is a ValueError too.
+class StatusException : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+template <typename Exception = InputException, typename T>
+T value_or_throw(Expected<T> expected) {
+  if (!expected) throw Exception(expected.error());
+  return *std::move(expected);
+}
+
+// Adds the exceptions to the module, and has pybind11 translate those above into them.
+void define_exceptions(py::module_& module);
+
+// Sets Python's error indicator from the exception that is being handled. For functions that Python calls
+// without pybind11 in between.
+void set_python_error() noexcept;
+
+// The name of a class without its module, for errors.
+inline const char* short_name(const PyTypeObject* type) {
+  const char* const dot = std::strrchr(type->tp_name, '.');
+  return dot == nullptr ? type->tp_name : dot + 1;
+}
+
+// An object of a class of the module. Throws a TypeError for another object, and for one that was created
+// without a call of __init__.
+template <typename T>
+T& instance_of(py::handle object) {
+  static const py::detail::type_info* const info = py::detail::get_type_info(typeid(T));
+  if (PyObject_TypeCheck(object.ptr(), info->type) == 0) {
+    throw py::type_error(std::string("expected a ") + short_name(info->type) + ", got a " +
+                         short_name(Py_TYPE(object.ptr())));
+  }
+  py::detail::value_and_holder holder =
+      reinterpret_cast<py::detail::instance*>(object.ptr())->get_value_and_holder(info);
+  if (!holder.holder_constructed()) {
+    throw py::type_error(std::string("this ") + short_name(Py_TYPE(object.ptr())) +
+                         " was never initialised: call its class, not __new__()");
+  }
+  return *static_cast<T*>(holder.value_ptr());
+}
+
+// Releases Python's global interpreter lock for the life of this object.
+class WithoutGil {
+ public:
+  WithoutGil() : state_(PyEval_SaveThread()) {}
+  ~WithoutGil() { PyEval_RestoreThread(state_); }
+  WithoutGil(const WithoutGil&) = delete;
+  WithoutGil& operator=(const WithoutGil&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+}  // namespace buoyancy::python

@@ -1,0 +1,266 @@
+// buoyancy.Mesh: a mesh, and queries of it.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+#include "base/format.h"
+#include "python/call_arguments.h"
+#include "python/module.h"
+#include "python/number_array.h"
+#include "python/pose_input.h"
+#include "python/query_water.h"
+#include "python/result_array.h"
+#include "python/wrenches.h"
+#include "query/query_mesh.h"
+
+namespace buoyancy::python {
+namespace {
+
+// A mesh as Python holds it.
+struct MeshObject {
+  std::shared_ptr<const QueryMesh> mesh;
+};
+
+OpenPolicy to_open_policy(const std::string& name) {
+  for (const auto& [known, policy] : kOpenPolicyNames) {
+    if (name == known) return policy;
+  }
+  throw py::value_error("open = \"" + name + "\"; expected \"refuse\" or \"dry_boundary\"");
+}
+
+Method to_method(PyObject* object) {
+  if (object == nullptr) return Method::kHierarchical;
+  if (!PyUnicode_Check(object)) {
+    throw py::type_error(std::string("method is a ") + Py_TYPE(object)->tp_name +
+                         "; expected text, such as \"exact\"");
+  }
+  const auto name = py::reinterpret_borrow<py::object>(object).cast<std::string>();
+  if (const std::optional<Method> method = method_from_name(name)) return *method;
+  std::string names;
+  for (const Method method : kAllMethods) {
+    if (!names.empty()) names += ", ";
+    names += to_string(method);
+  }
+  throw py::value_error("method = \"" + name + "\"; expected one of " + names);
+}
+
+std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object& faces, double scale,
+                                      const std::string& open, bool count_intersections) {
+  QueryMeshOptions options;
+  options.scale = scale;
+  options.open = to_open_policy(open);
+  options.count_intersecting_pairs = count_intersections;
+  if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__")) {
+    if (!faces.is_none()) {
+      throw py::type_error("Mesh() got a path and faces; expected a path, or vertices and faces");
+    }
+    const std::string path = to_path(source);
+    const WithoutGil released;
+    return std::make_unique<MeshObject>(MeshObject{value_or_throw(QueryMesh::load(path, options))});
+  }
+  if (faces.is_none()) {
+    throw py::type_error(std::string("Mesh() got a ") + Py_TYPE(source.ptr())->tp_name +
+                         " and no faces; expected a path, or vertices (N, 3) and faces (M, 3)");
+  }
+  const NumberArray<double> vertices(source.ptr(), "vertices");
+  const NumberArray<std::int64_t> triangles(faces.ptr(), "faces");
+  const auto check = [](const auto& array, const char* name, const char* rows) {
+    if (array.dimensions() == 2 && array.extent(1) == 3) return;
+    throw py::value_error(std::string(name) + " has shape " + shape_text(array.shape()) + "; expected (" +
+                          rows + ", 3)");
+  };
+  check(vertices, "vertices", "N");
+  check(triangles, "faces", "M");
+  // Other threads may change the caller's arrays, but faces are checked and then used.
+  const std::vector<double> vertex_copy(vertices.values().begin(), vertices.values().end());
+  const std::vector<std::int64_t> face_copy(triangles.values().begin(), triangles.values().end());
+  const WithoutGil released;
+  return std::make_unique<MeshObject>(
+      MeshObject{value_or_throw(QueryMesh::make(vertex_copy, face_copy, "Mesh(vertices, faces)", options))});
+}
+
+std::shared_ptr<const Body> body_of(const QueryMesh& mesh, Method method, double tolerance, bool in_waves) {
+  const WithoutGil released;  // the first query by a method prepares it
+  return value_or_throw(mesh.body(method, tolerance, in_waves));
+}
+
+PyObject* query(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
+  static const Signature<12> signature("query", 2, 2,
+                                       {"position", "quaternion", "level", "density", "gravity", "up",
+                                        "method", "tolerance", "sea", "time", "threads", "out"});
+  return guarded([&]() -> py::object {
+    const auto [position, quaternion, level, density, gravity, up, method, tolerance, sea, time, threads,
+                out] = signature.parse(arguments, count, keywords);
+    const std::shared_ptr<const QueryMesh> mesh = instance_of<MeshObject>(self).mesh;
+    const QueryWater water = to_query_water({level, density, gravity, up}, sea);
+    const PoseInput poses({.position = position, .quaternion = quaternion, .time = time});
+    const double bound = tolerance == nullptr ? 0.0 : to_double(tolerance, "tolerance");
+    const std::shared_ptr<const Body> body = body_of(*mesh, to_method(method), bound, water.waves != nullptr);
+    return evaluate(*body, water, poses, false, to_threads(threads), out);
+  });
+}
+
+PyObject* hydrostatics(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
+  static const Signature<8> signature(
+      "hydrostatics", 2, 2,
+      {"position", "quaternion", "level", "density", "gravity", "up", "center_of_mass", "threads"});
+  return guarded([&]() -> py::object {
+    const auto [position, quaternion, level, density, gravity, up, center_of_mass, threads] =
+        signature.parse(arguments, count, keywords);
+    const std::shared_ptr<const QueryMesh> mesh = instance_of<MeshObject>(self).mesh;
+    const Water water = to_water({level, density, gravity, up});
+    const PoseInput poses({.position = position, .quaternion = quaternion});
+    const std::shared_ptr<const Body> shared = body_of(*mesh, Method::kHierarchical, 0.0, false);
+    if (!is_given(center_of_mass)) return evaluate_hydrostatics(*shared, water, poses, to_threads(threads));
+    const NumberArray<double> center(center_of_mass, "center_of_mass");
+    if (!center.has_shape({3})) {
+      throw py::value_error("center_of_mass has shape " + shape_text(center.shape()) + "; expected (3,)");
+    }
+    Body body = *shared;
+    body.center_of_mass_B = Vec3(center.values()[0], center.values()[1], center.values()[2]);
+    if (!body.center_of_mass_B->allFinite()) {
+      throw InputException(
+          {"center_of_mass", format_vector(*body.center_of_mass_B), "three finite numbers (m)", "", ""});
+    }
+    return evaluate_hydrostatics(body, water, poses, to_threads(threads));
+  });
+}
+
+constexpr const char* kQueryDoc =
+    "query($self, position, quaternion, *, level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1),\n"
+    "      method='hierarchical', tolerance=0.0, sea=None, time=0.0, threads=0, out=None)\n--\n\n"
+    "The wrench of the water on the mesh, at one pose or at K poses: a Wrenches.\n\n"
+    "position: (3,) or (K, 3), metres, of the mesh's origin in the world. quaternion: (4,) or (K, 4), (w, x, "
+    "y, z),\n"
+    "rotates the mesh's axes to the world's; normalised if its norm is within 1e-3 of 1. One row is repeated "
+    "for\n"
+    "K rows of the other. float64 in C order is read in place, other numbers are converted.\n\n"
+    "level: m, the surface is where up . x = level. density: kg/m^3. gravity: m/s^2. up: (3,), any length.\n"
+    "method: 'hierarchical', 'exact', 'exact_surface', 'fast', 'fast_surface' or 'improved'. tolerance: 0 to "
+    "1, relative\n"
+    "to the weight of the full displacement; 'hierarchical' only. sea: a Sea, whose water is used; level, "
+    "density,\n"
+    "gravity and up are then left out. time: seconds, a number or (K,), for waves. threads: 0 for one per "
+    "processor; a\n"
+    "single pose stays on the caller's. out: the result of an earlier call with the same shapes, filled in "
+    "place.\n\n"
+    "A pose that is not finite, or a quaternion that is not unit, raises nothing: its status says so, and "
+    "its\n"
+    "numbers are 0. See Wrenches.ok and Wrenches.raise_for_status().\n\n"
+    "Raises TypeError or ValueError for arguments of other types or shapes, and InputError (a ValueError "
+    "too) for\n"
+    "numbers out of range, and for methods and tolerances that waves exclude.";
+
+constexpr const char* kHydrostaticsDoc =
+    "hydrostatics($self, position, quaternion, *, level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1),\n"
+    "             center_of_mass=None, threads=0)\n--\n\n"
+    "Waterplane, metacentres and stiffness at one pose or at K poses, in water at rest: a Hydrostatics.\n\n"
+    "center_of_mass: (3,), metres, in the mesh's frame; metacentric_heights are NaN without it. Other "
+    "arguments: see\n"
+    "query().";
+
+PyMethodDef query_method{"query", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&query)),
+                         METH_FASTCALL | METH_KEYWORDS, kQueryDoc};
+PyMethodDef hydrostatics_method{"hydrostatics",
+                                reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&hydrostatics)),
+                                METH_FASTCALL | METH_KEYWORDS, kHydrostaticsDoc};
+
+constexpr const char* kMeshDoc =
+    "A triangle mesh, validated and prepared for queries.\n\n"
+    "Mesh(path, *, scale=1.0, open='refuse') reads a file: OBJ, STL, PLY, OFF, DAE, glTF/GLB, FBX, 3DS.\n"
+    "Mesh(vertices, faces, *, scale=1.0, open='refuse') takes arrays: vertices (N, 3) in metres, and faces "
+    "(M, 3), integers\n"
+    "that count vertices from 0, anticlockwise seen from outside.\n\n"
+    "scale: factor on the coordinates, above 0. open: 'dry_boundary' accepts an open mesh; poses that put "
+    "its boundary\n"
+    "under water get the status OPEN_EDGE_WET. count_intersections: see intersecting_pairs; takes time.\n\n"
+    "The attributes are the report of the validation; report is its text. One mesh may be queried by "
+    "several\n"
+    "threads at once.\n\n"
+    "Raises InputError if the file or the mesh cannot be used, for example an open one, TypeError and "
+    "ValueError for\n"
+    "arguments of other types or shapes.";
+
+const MeshReport& report_of(py::handle self) {
+  return instance_of<MeshObject>(self).mesh->report();
+}
+
+template <typename Value>
+void add_report(py::class_<MeshObject>& type, const char* name, Value MeshReport::*member, const char* doc) {
+  type.def_property_readonly(
+      name, [member](py::handle self) { return report_of(self).*member; }, doc);
+}
+
+py::object vector(const Vec3& value) {
+  return make_owned_array({3}, {value.x(), value.y(), value.z()});
+}
+
+}  // namespace
+
+void define_mesh(py::module_& module) {
+  py::class_<MeshObject> type(module, "Mesh", kMeshDoc);
+  type.def(py::init(&make_mesh), py::arg("source"), py::arg("faces") = py::none(), py::kw_only(),
+           py::arg("scale") = 1.0, py::arg("open") = "refuse", py::arg("count_intersections") = false);
+  add_method(type, query_method);
+  add_method(type, hydrostatics_method);
+  add_report(type, "name", &MeshReport::name, "str: the file, or 'Mesh(vertices, faces)'.");
+  add_report(type, "volume", &MeshReport::volume, "float, m^3: enclosed; of no meaning for an open mesh.");
+  add_report(type, "area", &MeshReport::area, "float, m^2.");
+  add_report(type, "triangles", &MeshReport::triangles, "int.");
+  add_report(type, "boundary_edges", &MeshReport::boundary_edges,
+             "int: edges of one face; 0 for a closed mesh.");
+  add_report(type, "non_manifold_edges", &MeshReport::non_manifold_edges,
+             "int: edges of three or more faces.");
+  add_report(type, "misoriented_edges", &MeshReport::misoriented_edges,
+             "int: edges between faces of opposite winding.");
+  add_report(type, "degenerate_faces", &MeshReport::degenerate_faces, "int: faces without area, kept.");
+  add_report(type, "dropped_faces", &MeshReport::dropped_faces, "int: faces that use a vertex twice.");
+  add_report(type, "duplicate_faces", &MeshReport::duplicate_faces, "int.");
+  add_report(type, "intersecting_pairs", &MeshReport::intersecting_pairs,
+             "int, or None without count_intersections=True: pairs of faces that intersect.");
+  add_report(type, "flipped", &MeshReport::flipped, "bool: was the mesh inside out, and turned?");
+  type.def_property_readonly(
+      "vertices", [](py::handle self) { return report_of(self).vertices_welded; }, "int: after welding.");
+  type.def_property_readonly(
+      "closed", [](py::handle self) { return report_of(self).closed(); }, "bool: has the mesh no boundary?");
+  type.def_property_readonly(
+      "components", [](py::handle self) { return report_of(self).components.size(); },
+      "int: connected parts.");
+  type.def_property_readonly(
+      "format", [](py::handle self) { return report_of(self).source.format; }, "str: of the file.");
+  type.def_property_readonly(
+      "report", [](py::handle self) { return to_text(report_of(self)); },
+      "str: the whole report, several lines.");
+  type.def_property_readonly(
+      "bounding_box",
+      [](py::handle self) {
+        const BoundingBox& box = report_of(self).box;
+        return py::make_tuple(vector(box.min_B), vector(box.max_B));
+      },
+      "Two (3,), m: the least and the greatest coordinates, in the mesh's frame.");
+  type.def_property_readonly(
+      "center_of_mass",
+      [](py::handle self) {
+        return vector(instance_of<MeshObject>(self).mesh->mass_properties().centroid_B);
+      },
+      "(3,), m, in the mesh's frame: of a solid of uniform density.");
+  type.def_property_readonly(
+      "inertia",
+      [](py::handle self) {
+        const Mat3& inertia = instance_of<MeshObject>(self).mesh->mass_properties().inertia_B;
+        return make_owned_array({3, 3}, std::vector<double>(inertia.data(), inertia.data() + 9));
+      },
+      "(3, 3), m^5, about center_of_mass, in the mesh's axes: times the density of a solid it is kg m^2.");
+  type.def("__repr__", [](py::handle self) {
+    const MeshReport& report = report_of(self);
+    return "<buoyancy.Mesh " + report.name + ": " + pluralize(report.triangles, "triangle", "triangles") +
+           ", " + format_number(report.volume, 6) + " m^3>";
+  });
+}
+
+}  // namespace buoyancy::python

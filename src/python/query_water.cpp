@@ -1,0 +1,70 @@
+#include "python/query_water.h"
+
+#include "base/format.h"
+#include "base/number_range.h"
+#include "python/call_arguments.h"
+#include "python/number_array.h"
+
+namespace buoyancy::python {
+namespace {
+
+double in_range(PyObject* object, const char* name, const NumberRange& range, double default_value) {
+  if (object == nullptr) return default_value;
+  const double value = to_double(object, name);
+  if (range.contains(value)) return value;
+  throw InputException({"the water", name + (" = " + format_shortest(value)), range.describe(), "", ""});
+}
+
+Vec3 to_up(PyObject* object) {
+  const NumberArray<double> up(object, "up");
+  if (!up.has_shape({3})) {
+    throw py::value_error("up has shape " + shape_text(up.shape()) + "; expected (3,), a direction");
+  }
+  const Vec3 up_W(up.values()[0], up.values()[1], up.values()[2]);
+  const double largest = up_W.cwiseAbs().maxCoeff();
+  if (!up_W.allFinite() || largest == 0.0) {
+    throw InputException({"the water", "up = " + format_vector(up_W),
+                          "a direction: three finite numbers, not all zero", "", ""});
+  }
+  return (up_W / largest).normalized();  // as a scene file's
+}
+
+}  // namespace
+
+Water to_water(const WaterObjects& objects) {
+  Water water;
+  water.level = in_range(objects.level, "level", NumberRange::any("m"), water.level);
+  water.density = in_range(objects.density, "density", NumberRange::from_zero("kg/m^3"), water.density);
+  water.gravity = in_range(objects.gravity, "gravity", NumberRange::from_zero("m/s^2"), water.gravity);
+  if (objects.up != nullptr) water.up_W = to_up(objects.up);
+  return water;
+}
+
+QueryWater to_query_water(const WaterObjects& objects, PyObject* sea) {
+  const Water water = to_water(objects);
+  if (!is_given(sea)) {
+    QueryWater at_rest;
+    at_rest.at_rest = water;
+    return at_rest;
+  }
+  const QuerySea& of_sea = instance_of<SeaObject>(sea).sea;
+  const Water defaults;
+  const auto check = [](const char* name, double given, double of_water, double default_value) {
+    if (given == of_water || given == default_value) return;
+    throw py::value_error(std::string(name) + " = " + format_shortest(given) + " but the sea's is " +
+                          format_shortest(of_water) + "; expected one of them: leave " + name +
+                          " out, or give it to the Sea");
+  };
+  check("level", water.level, of_sea.water().level, defaults.level);
+  check("density", water.density, of_sea.water().density, defaults.density);
+  check("gravity", water.gravity, of_sea.water().gravity, defaults.gravity);
+  if (water.up_W != of_sea.water().up_W && water.up_W != defaults.up_W) {
+    throw py::value_error("up = " + format_vector(water.up_W) + " but the sea's is " +
+                          format_vector(of_sea.water().up_W) +
+                          "; expected one of them: leave up out, or give it to "
+                          "the Sea");
+  }
+  return water_of(of_sea);
+}
+
+}  // namespace buoyancy::python

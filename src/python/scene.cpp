@@ -1,0 +1,260 @@
+// buoyancy.Scene: the bodies of a scene file, and queries of them.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+#include "base/format.h"
+#include "python/call_arguments.h"
+#include "python/module.h"
+#include "python/number_array.h"
+#include "python/pose_input.h"
+#include "python/query_water.h"
+#include "python/result_array.h"
+#include "python/scene_object.h"
+#include "python/wrenches.h"
+
+namespace buoyancy::python {
+namespace {
+
+// A body of a scene, which this object keeps alive.
+struct BodyObject {
+  std::shared_ptr<const Scene> scene;
+  const Body* body;
+};
+
+std::unique_ptr<SceneObject> prepare(const Expected<SceneDescription>& description) {
+  if (!description) throw InputException(description.error());
+  return std::make_unique<SceneObject>(
+      SceneObject{std::make_shared<const Scene>(value_or_throw(Scene::prepare(*description)))});
+}
+
+std::unique_ptr<SceneObject> load(const py::object& file) {
+  const std::string path = to_path(file);
+  const WithoutGil released;
+  return prepare(read_scene_file(path));
+}
+
+std::unique_ptr<SceneObject> parse(const std::string& text, const py::object& directory) {
+  const std::string folder = directory.is_none() ? std::string() : to_path(directory);
+  const WithoutGil released;
+  return prepare(parse_scene(text, "Scene.from_text()", folder));
+}
+
+PyObject* query(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
+  static const Signature<9> signature("query", 3, 3,
+                                      {"body_id", "position", "quaternion", "linear_velocity",
+                                       "angular_velocity", "time", "threads", "out", "sea"});
+  return guarded([&]() -> py::object {
+    const auto [body_id, position, quaternion, linear, angular, time, threads, out, sea] =
+        signature.parse(arguments, count, keywords);
+    const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
+    const Body& body = find_body(*scene, body_id);
+    QueryWater water = water_of(*scene);
+    if (is_given(sea)) {
+      water = water_of(instance_of<SeaObject>(sea).sea);
+      water.current_W = scene->current_W();
+      if (water.waves != nullptr && !body.prepared_mesh->wave_mesh) {
+        throw InputException({"sea", "waves, with a scene in water at rest",
+                              "a scene that is prepared for waves", "",
+                              "Write waves = \"received\" below [water] of the scene"});
+      }
+    }
+    const PoseInput poses({position, quaternion, linear, angular, time});
+    return evaluate(body, water, poses, body.loads, to_threads(threads), out);
+  });
+}
+
+PyObject* hydrostatics(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
+  static const Signature<4> signature("hydrostatics", 3, 3, {"body_id", "position", "quaternion", "threads"});
+  return guarded([&]() -> py::object {
+    const auto [body_id, position, quaternion, threads] = signature.parse(arguments, count, keywords);
+    const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
+    const Body& body = find_body(*scene, body_id);
+    if (!body.solver.mesh().tree) {
+      throw InputException({"body " + std::to_string(body.id), "no hydrostatics",
+                            "a body that is prepared for them", "its method needs no tree of moments",
+                            "Add \"hydrostatics\" to its outputs in the scene"});
+    }
+    const PoseInput poses({.position = position, .quaternion = quaternion});
+    return evaluate_hydrostatics(body, scene->water(), poses, to_threads(threads));
+  });
+}
+
+constexpr const char* kQueryDoc =
+    "query($self, body_id, position, quaternion, *, linear_velocity=None, angular_velocity=None, time=0.0,\n"
+    "      threads=0, out=None, sea=None)\n--\n\n"
+    "The wrench on a body of the scene, at one pose or at K poses, in the scene's water: a Wrenches.\n\n"
+    "body_id: int, or the body's name. position, quaternion, time, threads, out: see Mesh.query().\n"
+    "linear_velocity, angular_velocity: (3,) or (K, 3), m/s of the body's origin and rad/s, world frame; "
+    "None: at rest.\n"
+    "Only bodies with drag or added mass depend on them. sea: a Sea instead of the scene's water; a scene "
+    "with\n"
+    "waves = \"received\" needs it, since all poses have the status NO_SEA otherwise.\n\n"
+    "The wrench has the bits of the service's response to the same pose, with method, tolerance and "
+    "reference point\n"
+    "of the scene. result.loads holds drag and added mass apart, if \"loads\" is among the body's "
+    "outputs.\n\n"
+    "Raises KeyError for a body that the scene does not have, else as Mesh.query().";
+
+constexpr const char* kHydrostaticsDoc =
+    "hydrostatics($self, body_id, position, quaternion, *, threads=0)\n--\n\n"
+    "Waterplane, metacentres and stiffness of a body, in the scene's water at rest: a Hydrostatics.\n\n"
+    "Metacentric heights belong to the centre of mass of [body.client]. Arguments: see query().";
+
+PyMethodDef query_method{"query", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&query)),
+                         METH_FASTCALL | METH_KEYWORDS, kQueryDoc};
+PyMethodDef hydrostatics_method{"hydrostatics",
+                                reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&hydrostatics)),
+                                METH_FASTCALL | METH_KEYWORDS, kHydrostaticsDoc};
+
+constexpr const char* kSceneDoc =
+    "The water and the bodies of a scene file, prepared for queries (docs/scene_file.md).\n\n"
+    "Scene(path) reads a file; Scene.from_text(text, directory=None) takes its text. One scene may be "
+    "queried by several\n"
+    "threads at once.\n\nRaises InputError with the file, the line and the key at fault.";
+
+const Body& body_of(py::handle self) {
+  return *instance_of<BodyObject>(self).body;
+}
+
+py::object vector(const Vec3& value) {
+  return make_owned_array({3}, {value.x(), value.y(), value.z()});
+}
+
+void define_body(py::module_& module) {
+  py::class_<BodyObject> type(module, "Body", "A body of a scene.");
+  const auto add = [&type](const char* name, auto value, const char* doc) {
+    type.def_property_readonly(
+        name, [value](py::handle self) { return value(body_of(self)); }, doc);
+  };
+  add(
+      "id", [](const Body& body) { return body.id; }, "int.");
+  add(
+      "name", [](const Body& body) { return body.name; }, "str.");
+  add(
+      "method", [](const Body& body) { return std::string(to_string(body.solver.method())); }, "str.");
+  add(
+      "tolerance", [](const Body& body) { return body.solver.tolerance(); }, "float.");
+  add(
+      "volume", [](const Body& body) { return body.prepared_mesh->report.volume; }, "float, m^3: enclosed.");
+  add(
+      "triangles", [](const Body& body) { return body.prepared_mesh->report.triangles; }, "int.");
+  add(
+      "report", [](const Body& body) { return to_text(body.prepared_mesh->report); },
+      "str: the report of its mesh.");
+  add(
+      "reference_point", [](const Body& body) { return vector(body.reference_B); },
+      "(3,), m, body frame: torques are about it.");
+  add(
+      "center_of_mass",
+      [](const Body& body) -> py::object {
+        if (!body.center_of_mass_B) return py::none();
+        return vector(*body.center_of_mass_B);
+      },
+      "(3,), m, body frame, from [body.client], else None.");
+  add(
+      "outputs",
+      [](const Body& body) {
+        std::vector<std::string> outputs{"wrench"};
+        if (body.hydrostatics) outputs.emplace_back("hydrostatics");
+        if (body.loads) outputs.emplace_back("loads");
+        return py::tuple(py::cast(outputs));
+      },
+      "tuple of str, as in the scene file.");
+  add(
+      "position", [](const Body& body) { return vector(body.dynamics.position); },
+      "(3,), m: where [body.client] places it.");
+  add(
+      "quaternion",
+      [](const Body& body) {
+        const Eigen::Quaterniond& q = body.dynamics.orientation;
+        return make_owned_array({4}, {q.w(), q.x(), q.y(), q.z()});
+      },
+      "(4,), (w, x, y, z): the orientation of [body.client].");
+  type.def("__repr__", [](py::handle self) {
+    const Body& body = body_of(self);
+    return "<buoyancy.Body " + std::to_string(body.id) + " \"" + body.name + "\">";
+  });
+}
+
+}  // namespace
+
+const Body& find_body(const Scene& scene, py::handle id) {
+  std::string ids;
+  if (PyUnicode_Check(id.ptr())) {
+    const auto name = id.cast<std::string>();
+    for (const Body& body : scene.bodies()) {
+      if (body.name == name) return body;
+    }
+  } else {
+    const NumberArray<std::int64_t> number(id.ptr(), "body_id");
+    if (number.dimensions() != 0) {
+      throw py::type_error("body_id has shape " + shape_text(number.shape()) + "; expected one id or name");
+    }
+    const std::int64_t value = number.values()[0];
+    const Body* const body =
+        value == static_cast<std::int32_t>(value) ? scene.find(static_cast<std::int32_t>(value)) : nullptr;
+    if (body != nullptr) return *body;
+  }
+  constexpr std::size_t kMaxListed = 20;
+  for (std::size_t i = 0; i < scene.bodies().size() && i < kMaxListed; ++i) {
+    const Body& body = scene.bodies()[i];
+    ids += (i == 0 ? "" : ", ") + std::to_string(body.id);
+    ids += " (" + body.name + ")";
+  }
+  if (scene.bodies().size() > kMaxListed) ids += ", ...";
+  throw py::key_error("the scene has no body " + std::string(py::repr(id)) + "; it has " + ids);
+}
+
+void define_scene(py::module_& module) {
+  define_body(module);
+  py::class_<SceneObject> type(module, "Scene", kSceneDoc);
+  type.def(py::init(&load), py::arg("path"));
+  type.def_static(
+      "from_text", &parse, py::arg("text"), py::arg("directory") = py::none(),
+      "from_text(text, directory=None)\n--\n\nA scene from the text of a scene file. directory: where its "
+      "relative paths begin.");
+  add_method(type, query_method);
+  add_method(type, hydrostatics_method);
+  type.def_property_readonly(
+      "bodies",
+      [](py::handle self) {
+        const std::shared_ptr<const Scene>& scene = instance_of<SceneObject>(self).scene;
+        py::tuple bodies(scene->bodies().size());
+        for (std::size_t i = 0; i < scene->bodies().size(); ++i) {
+          bodies[i] = py::cast(std::make_unique<BodyObject>(BodyObject{scene, &scene->bodies()[i]}));
+        }
+        return bodies;
+      },
+      "tuple of Body, in the order of the file.");
+  type.def_property_readonly(
+      "name", [](py::handle self) { return instance_of<SceneObject>(self).scene->name(); }, "str: the file.");
+  type.def_property_readonly(
+      "has_waves",
+      [](py::handle self) {
+        const Scene& scene = *instance_of<SceneObject>(self).scene;
+        return scene.sea() != nullptr || scene.receives_sea();
+      },
+      "bool: are there waves, here or in messages?");
+  const auto water_number = [&type](const char* name, double Water::*member, const char* doc) {
+    type.def_property_readonly(
+        name, [member](py::handle self) { return instance_of<SceneObject>(self).scene->water().*member; },
+        doc);
+  };
+  water_number("level", &Water::level, "float, m.");
+  water_number("density", &Water::density, "float, kg/m^3.");
+  water_number("gravity", &Water::gravity, "float, m/s^2.");
+  type.def_property_readonly(
+      "up", [](py::handle self) { return vector(instance_of<SceneObject>(self).scene->water().up_W); },
+      "(3,): unit vector, world frame.");
+  type.def("__repr__", [](py::handle self) {
+    const Scene& scene = *instance_of<SceneObject>(self).scene;
+    return "<buoyancy.Scene " + scene.name() + ": " +
+           pluralize(static_cast<std::int64_t>(scene.bodies().size()), "body", "bodies") + ">";
+  });
+}
+
+}  // namespace buoyancy::python

@@ -1,0 +1,331 @@
+#include "python/wrenches.h"
+
+#include <algorithm>
+#include <map>
+
+#include <pybind11/stl.h>
+
+#include "python/call_arguments.h"
+
+namespace buoyancy::python {
+namespace {
+
+constexpr std::size_t kDoublesPerPose = 12;
+
+// Arrays of the loads of a result, which this object keeps alive.
+struct LoadsView {
+  py::object result;
+  std::span<BodyLoads> loads;
+  bool single;
+};
+
+struct HydrostaticsTable {
+  std::vector<BodyHydrostatics> rows;
+  bool single;
+};
+
+std::size_t wrenches_failed(Wrenches& wrenches) {
+  const std::span statuses(wrenches.statuses(), wrenches.size());
+  return static_cast<std::size_t>(
+      std::ranges::count_if(statuses, [](std::int32_t status) { return status != 0; }));
+}
+
+py::object vectors(py::handle self, double* (Wrenches::*part)()) {
+  auto& wrenches = instance_of<Wrenches>(self);
+  std::vector<Py_ssize_t> shape;
+  if (!wrenches.single()) shape.push_back(static_cast<Py_ssize_t>(wrenches.size()));
+  shape.push_back(3);
+  return make_array(std::move(shape), (wrenches.*part)(), self);
+}
+
+py::object scalars(py::handle self, double* (Wrenches::*part)()) {
+  auto& wrenches = instance_of<Wrenches>(self);
+  if (wrenches.single()) return py::float_(*(wrenches.*part)());
+  return make_array({static_cast<Py_ssize_t>(wrenches.size())}, (wrenches.*part)(), self);
+}
+
+py::object statuses(py::handle self) {
+  auto& wrenches = instance_of<Wrenches>(self);
+  if (wrenches.single()) return status_object(static_cast<BodyStatus>(*wrenches.statuses()));
+  return make_array({static_cast<Py_ssize_t>(wrenches.size())}, wrenches.statuses(), self);
+}
+
+// "pose 3: BAD_QUATERNION: the norm ..."
+std::string failure_text(Wrenches& wrenches, std::size_t i) {
+  const auto status = static_cast<BodyStatus>(wrenches.statuses()[i]);
+  std::string text = wrenches.body_ids.empty()
+                         ? (wrenches.single() ? "the pose" : "pose " + std::to_string(i))
+                         : "body " + std::to_string(wrenches.body_ids[i]);
+  text += ": ";
+  text += to_string(status);
+  text += ": ";
+  text += explain(status);
+  return text;
+}
+
+void raise_for_status(py::handle self) {
+  auto& wrenches = instance_of<Wrenches>(self);
+  const std::span known(wrenches.statuses(), wrenches.size());
+  const auto failed = std::ranges::find_if(known, [](std::int32_t status) { return status != 0; });
+  if (failed == known.end()) return;
+  std::string text = failure_text(wrenches, static_cast<std::size_t>(failed - known.begin()));
+  const std::size_t others = wrenches_failed(wrenches) - 1;
+  if (others > 0)
+    text += " (and " + std::to_string(others) + " more of " + std::to_string(known.size()) + ")";
+  throw StatusException(text);
+}
+
+std::string describe(py::handle self) {
+  auto& wrenches = instance_of<Wrenches>(self);
+  std::map<std::int32_t, std::size_t> counts;
+  for (std::size_t i = 0; i < wrenches.size(); ++i) ++counts[wrenches.statuses()[i]];
+  std::string text = "<buoyancy.Wrenches of " + std::to_string(wrenches.size()) +
+                     (wrenches.size() == 1 ? " pose" : " poses");
+  const char* separator = ": ";
+  for (const auto& [status, count] : counts) {
+    text += separator;
+    text += std::to_string(count) + " " + to_string(static_cast<BodyStatus>(status));
+    separator = ", ";
+  }
+  return text + ">";
+}
+
+template <typename MemberOf>
+void add_load(py::class_<LoadsView>& type, const char* name, MemberOf member, const char* doc) {
+  type.def_property_readonly(
+      name,
+      [member](py::handle self) {
+        auto& view = instance_of<LoadsView>(self);
+        return record_field(view.loads, view.single, view.result, member);
+      },
+      doc);
+}
+
+template <typename MemberOf>
+void add_hydrostatic(py::class_<HydrostaticsTable>& type, const char* name, MemberOf member,
+                     const char* doc) {
+  type.def_property_readonly(
+      name,
+      [member](py::handle self) {
+        auto& table = instance_of<HydrostaticsTable>(self);
+        return record_field(std::span(table.rows), table.single, self, member);
+      },
+      doc);
+}
+
+void define_loads(py::module_& module) {
+  using Loads = BodyLoads&;
+  py::class_<LoadsView> type(
+      module, "Loads",
+      "Buoyancy, drag and added mass apart: result.loads of a body with outputs = [\"wrench\", "
+      "\"loads\"].\n\nArrays are views of the result, (K, ...), or (...) of one pose. Torques are "
+      "about the body's reference\npoint, all in the world frame. The fields are those of "
+      "body_loads_t (docs/messages.md).");
+  add_load(
+      type, "immersion", [](Loads l) -> auto& { return l.immersion; }, "(K,): 0 to 1.");
+  add_load(
+      type, "buoyancy_force", [](Loads l) -> auto& { return l.buoyancy_force; }, "(K, 3), N.");
+  add_load(
+      type, "buoyancy_torque", [](Loads l) -> auto& { return l.buoyancy_torque; }, "(K, 3), N m.");
+  add_load(
+      type, "drag_force", [](Loads l) -> auto& { return l.drag_force; }, "(K, 3), N.");
+  add_load(
+      type, "drag_torque", [](Loads l) -> auto& { return l.drag_torque; }, "(K, 3), N m.");
+  add_load(
+      type, "added_mass_force", [](Loads l) -> auto& { return l.added_mass_force; }, "(K, 3), N.");
+  add_load(
+      type, "added_mass_torque", [](Loads l) -> auto& { return l.added_mass_torque; }, "(K, 3), N m.");
+  add_load(
+      type, "added_mass", [](Loads l) -> auto& { return l.added_mass; },
+      "(K, 6, 6): kg, kg m and kg m^2, for the mass matrix of a simulator.");
+  add_load(
+      type, "damping", [](Loads l) -> auto& { return l.damping; },
+      "(K, 6, 6): rows N and N m, columns m/s and rad/s.");
+  add_load(
+      type, "water_velocity", [](Loads l) -> auto& { return l.water_velocity; }, "(K, 3), m/s.");
+}
+
+void define_hydrostatics(py::module_& module) {
+  using Row = BodyHydrostatics&;
+  py::class_<HydrostaticsTable> type(
+      module, "Hydrostatics",
+      "Waterplane, metacentres and stiffness of each pose, in water at rest.\n\nArrays have the shape (K, "
+      "...), or (...) "
+      "of one pose. Points are relative to the position, in world axes.\nA value that does not exist is NaN, "
+      "such as the "
+      "metacentre of a dry body. The fields are those of\nbody_hydrostatics_t (docs/messages.md).");
+  type.def_property_readonly(
+      "status",
+      [](py::handle self) -> py::object {
+        auto& table = instance_of<HydrostaticsTable>(self);
+        if (table.single) return status_object(table.rows.front().status);
+        return record_field(
+            std::span(table.rows), false, self, [](Row r) -> auto& { return r.status; });
+      },
+      "(K,) int32: see Status; rows that are not OK hold zeros.");
+  type.def("__len__", [](py::handle self) { return instance_of<HydrostaticsTable>(self).rows.size(); });
+  add_hydrostatic(
+      type, "volume", [](Row r) -> auto& { return r.submerged_volume; }, "(K,), m^3: displaced.");
+  add_hydrostatic(
+      type, "center_of_buoyancy", [](Row r) -> auto& { return r.center_of_buoyancy; }, "(K, 3), m.");
+  add_hydrostatic(
+      type, "wetted_area", [](Row r) -> auto& { return r.wetted_area; }, "(K,), m^2.");
+  add_hydrostatic(
+      type, "waterplane_area", [](Row r) -> auto& { return r.waterplane_area; }, "(K,), m^2.");
+  add_hydrostatic(
+      type, "waterplane_centroid", [](Row r) -> auto& { return r.waterplane_centroid; }, "(K, 3), m.");
+  add_hydrostatic(
+      type, "waterplane_second_moments", [](Row r) -> auto& { return r.waterplane_second_moments; },
+      "(K, 2), m^4: about the principal axes through the centroid, the smaller first.");
+  add_hydrostatic(
+      type, "waterplane_axes", [](Row r) -> auto& { return r.waterplane_axes; },
+      "(K, 2, 3): those axes, unit vectors.");
+  add_hydrostatic(
+      type, "metacentric_radii", [](Row r) -> auto& { return r.metacentric_radii; },
+      "(K, 2), m: BM of a heel about those axes.");
+  add_hydrostatic(
+      type, "metacenters", [](Row r) -> auto& { return r.metacenters; }, "(K, 2, 3), m.");
+  add_hydrostatic(
+      type, "metacentric_heights", [](Row r) -> auto& { return r.metacentric_heights; },
+      "(K, 2), m: GM; NaN without a centre of mass.");
+  add_hydrostatic(
+      type, "stiffness", [](Row r) -> auto& { return r.stiffness; },
+      "(K, 6, 6): rows N and N m, columns m and rad.");
+}
+
+}  // namespace
+
+Wrenches::Wrenches(std::size_t poses, bool single)
+    : size_(poses),
+      single_(single),
+      memory_(std::make_unique_for_overwrite<std::byte[]>(
+          poses * (kDoublesPerPose * sizeof(double) + sizeof(std::int32_t)) + 1)) {}
+
+WrenchArrays Wrenches::arrays() {
+  return {{statuses(), size_},
+          {forces(), 3 * size_},
+          {torques(), 3 * size_},
+          {volumes(), size_},
+          {centers_of_buoyancy(), 3 * size_},
+          {force_error_bounds(), size_},
+          {torque_error_bounds(), size_}};
+}
+
+void Wrenches::set(std::size_t i, const BodyWrench& wrench) {
+  statuses()[i] = static_cast<std::int32_t>(wrench.status);
+  std::ranges::copy(wrench.force, forces() + 3 * i);
+  std::ranges::copy(wrench.torque, torques() + 3 * i);
+  std::ranges::copy(wrench.center_of_buoyancy, centers_of_buoyancy() + 3 * i);
+  volumes()[i] = wrench.submerged_volume;
+  force_error_bounds()[i] = wrench.force_error_bound;
+  torque_error_bounds()[i] = wrench.torque_error_bound;
+}
+
+py::object wrenches_for(PyObject* out, std::size_t poses, bool single) {
+  if (!is_given(out)) return py::cast(std::make_unique<Wrenches>(poses, single));
+  const auto& given = instance_of<Wrenches>(out);
+  if (given.size() != poses || given.single() != single) {
+    const auto describe_shape = [](std::size_t count, bool one) {
+      return one ? std::string("one pose, (3,)") : "(" + std::to_string(count) + ", 3)";
+    };
+    throw py::value_error("out is a result for " + describe_shape(given.size(), given.single()) +
+                          ", but the poses are " + describe_shape(poses, single) +
+                          "; expected a result of a call with the same shapes");
+  }
+  return py::reinterpret_borrow<py::object>(out);
+}
+
+unsigned to_threads(PyObject* threads) {
+  if (threads == nullptr) return 0;
+  const long count = PyLong_Check(threads) && !PyBool_Check(threads) ? PyLong_AsLong(threads) : -1;
+  constexpr long kMaxThreads = 1024;
+  if (count >= 0 && count <= kMaxThreads) return static_cast<unsigned>(count);
+  PyErr_Clear();
+  throw py::value_error("threads is " + std::string(py::repr(threads)) +
+                        "; expected a whole number from 0 (one per processor) to 1024");
+}
+
+py::object evaluate(const Body& body, const QueryWater& water, const PoseInput& poses, bool with_loads,
+                    unsigned threads, PyObject* out) {
+  py::object result = wrenches_for(out, poses.size(), poses.single());
+  auto& wrenches = instance_of<Wrenches>(result);
+  wrenches.has_loads = with_loads;
+  // Of poses that cannot be evaluated the loads are zeros.
+  if (with_loads || !wrenches.loads.empty())
+    wrenches.loads.assign(with_loads ? poses.size() : 0, BodyLoads{});
+  const WrenchArrays arrays = wrenches.arrays();
+  const WithoutGil released;
+  evaluate_poses(body, water, poses.arrays(), arrays, wrenches.loads, threads);
+  return result;
+}
+
+py::object evaluate_hydrostatics(const Body& body, const Water& water, const PoseInput& poses,
+                                 unsigned threads) {
+  auto table = std::make_unique<HydrostaticsTable>();
+  table->rows.resize(poses.size());
+  table->single = poses.single();
+  {
+    const WithoutGil released;
+    buoyancy::evaluate_hydrostatics(body, water, poses.arrays(), table->rows, threads);
+  }
+  return py::cast(std::move(table));
+}
+
+void define_wrenches(py::module_& module) {
+  py::class_<Wrenches> type(module, "Wrenches",
+                            "The force and torque on a body, of each pose of a query.\n\nArrays are views of "
+                            "this object's memory: of K poses "
+                            "(K, ...), of one pose (3,) and numbers. They keep it\nalive, and change when it "
+                            "is passed as out= again. Poses "
+                            "with a status other than OK have zeros.");
+  type.def_property_readonly(
+      "force", [](py::handle self) { return vectors(self, &Wrenches::forces); }, "(K, 3), N, world frame.");
+  type.def_property_readonly(
+      "torque", [](py::handle self) { return vectors(self, &Wrenches::torques); },
+      "(K, 3), N m, world frame, about the body's reference point (a mesh: its origin).");
+  type.def_property_readonly(
+      "volume", [](py::handle self) { return scalars(self, &Wrenches::volumes); },
+      "(K,), m^3: the displaced water.");
+  type.def_property_readonly(
+      "center_of_buoyancy", [](py::handle self) { return vectors(self, &Wrenches::centers_of_buoyancy); },
+      "(K, 3), m, world axes, relative to the position.");
+  type.def_property_readonly(
+      "force_error_bound", [](py::handle self) { return scalars(self, &Wrenches::force_error_bounds); },
+      "(K,), N: the error of the force is no larger.");
+  type.def_property_readonly(
+      "torque_error_bound", [](py::handle self) { return scalars(self, &Wrenches::torque_error_bounds); },
+      "(K,), N m: the error of the torque is no larger.");
+  type.def_property_readonly("status", &statuses, "(K,) int32: 0 for OK, see Status; of one pose a Status.");
+  type.def_property_readonly(
+      "ok", [](py::handle self) { return wrenches_failed(instance_of<Wrenches>(self)) == 0; },
+      "bool: is every status OK?");
+  type.def_property_readonly(
+      "loads",
+      [](const py::object& self) -> py::object {
+        auto& wrenches = instance_of<Wrenches>(self);
+        if (!wrenches.has_loads) return py::none();
+        return py::cast(std::make_unique<LoadsView>(LoadsView{self, wrenches.loads, wrenches.single()}));
+      },
+      "Loads of a body with this output, else None.");
+  type.def_property_readonly(
+      "body_ids",
+      [](py::handle self) -> py::object {
+        auto& wrenches = instance_of<Wrenches>(self);
+        if (!wrenches.utime) return py::none();
+        return make_array({static_cast<Py_ssize_t>(wrenches.body_ids.size())}, wrenches.body_ids.data(),
+                          self);
+      },
+      "(K,) int32 of a response from the service, else None.");
+  type.def_property_readonly(
+      "utime", [](py::handle self) { return instance_of<Wrenches>(self).utime; },
+      "int, microseconds, of the request that a response from the service belongs to, else None.");
+  type.def("raise_for_status", &raise_for_status,
+           "raise_for_status($self)\n--\n\nRaise a StatusError that names the first pose that is not OK, and "
+           "why.");
+  type.def("__len__", [](py::handle self) { return instance_of<Wrenches>(self).size(); });
+  type.def("__repr__", &describe);
+  define_loads(module);
+  define_hydrostatics(module);
+}
+
+}  // namespace buoyancy::python

@@ -1,0 +1,69 @@
+// The result of a query: a wrench per pose, as arrays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages/loads.h"
+#include "python/pose_input.h"
+#include "python/result_array.h"
+#include "query/pose_evaluation.h"
+
+namespace buoyancy::python {
+
+// All arrays lie in one allocation. The views that Python gets are made when they are asked for, since one
+// takes longer than some queries.
+class Wrenches {
+ public:
+  // single: Python sees (3,) rather than (1, 3). Values are not initialised.
+  Wrenches(std::size_t poses, bool single);
+
+  std::size_t size() const { return size_; }
+  bool single() const { return single_; }
+  // The parts of the allocation, K the number of poses.
+  double* forces() { return numbers(); }
+  double* torques() { return numbers() + 3 * size_; }
+  double* centers_of_buoyancy() { return numbers() + 6 * size_; }
+  double* volumes() { return numbers() + 9 * size_; }
+  double* force_error_bounds() { return numbers() + 10 * size_; }
+  double* torque_error_bounds() { return numbers() + 11 * size_; }
+  std::int32_t* statuses() { return reinterpret_cast<std::int32_t*>(numbers() + 12 * size_); }
+  WrenchArrays arrays();
+  void set(std::size_t i, const BodyWrench& wrench);
+
+  // Of a body with loads, one per pose, else empty. has_loads is part of it where there are no poses.
+  std::vector<BodyLoads> loads;
+  bool has_loads = false;
+  // Of a response from the service, one per body.
+  std::vector<std::int32_t> body_ids;
+  std::optional<std::int64_t> utime;
+
+ private:
+  double* numbers() { return reinterpret_cast<double*>(memory_.get()); }
+
+  std::size_t size_;
+  bool single_;
+  std::unique_ptr<std::byte[]> memory_;
+};
+
+// The Wrenches to fill: `out`, or a new one for nullptr and None. Throws where `out` has another shape.
+py::object wrenches_for(PyObject* out, std::size_t poses, bool single);
+
+// Evaluates the poses without the global interpreter lock. with_loads: sets the loads as well.
+py::object evaluate(const Body& body, const QueryWater& water, const PoseInput& poses, bool with_loads,
+                    unsigned threads, PyObject* out);
+
+// An array per field of BodyHydrostatics.
+py::object evaluate_hydrostatics(const Body& body, const Water& water, const PoseInput& poses,
+                                 unsigned threads);
+
+// A number of threads that a caller passes; 0 if it was left out.
+unsigned to_threads(PyObject* threads);
+
+void define_wrenches(py::module_& module);
+
+}  // namespace buoyancy::python

@@ -1,0 +1,196 @@
+"""Bad input raises an exception that says what is wrong, and never ends the process."""
+import copy
+import pickle
+import unittest
+
+import numpy as np
+
+import buoyancy
+from support import SANITIZED, TestCase, box
+
+
+class RefusesBadInput(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.vertices, cls.faces = box()
+        cls.mesh = buoyancy.Mesh(cls.vertices, cls.faces)
+        cls.scene = buoyancy.Scene.from_text('[[body]]\nid = 4\nname = "buoy"\nshape = { type = "box" }\n')
+        cls.position, cls.quaternion = np.zeros((5, 3)), np.tile([1.0, 0, 0, 0], (5, 1))
+
+    def refused(self, error, reason, function, *arguments, **keywords):
+        with self.subTest(reason=reason), self.assertRaisesRegex(error, reason):
+            function(*arguments, **keywords)
+
+    def test_shapes(self):
+        query, p, q = self.mesh.query, self.position, self.quaternion
+        self.refused(ValueError, r"position has shape \(5, 4\); expected \(3,\)", query, q, q)
+        self.refused(ValueError, r"quaternion has shape \(5, 3\)", query, p, p)
+        self.refused(ValueError, r"position has shape \(\)", query, 1.0, q)
+        self.refused(ValueError, r"position has shape \(1, 5, 3\)", query, p[None], q)
+        self.refused(ValueError, "quaternion is for 4 poses, but position for 5", query, p, q[:4])
+        self.refused(ValueError, "quaternion is for 1 poses", query, p, q[:1])
+        self.refused(ValueError, "rows of different lengths", query, [[0, 0, 0], [0, 0]], q[:2])
+        self.refused(ValueError, r"position has shape \(0,\)", query, [], q)
+        self.refused(ValueError, "time is for 3 poses", query, p, q, time=np.zeros(3))
+        self.refused(ValueError, "linear_velocity has shape", self.scene.query, 4, p, q, linear_velocity=np.zeros((5, 2)))
+        self.refused(ValueError, "dimensions", query, np.zeros([1] * 9), q)
+        itself = []
+        itself.append(itself)
+        self.refused(ValueError, "sequences within sequences", query, itself, q)
+
+    def test_types(self):
+        query, p, q = self.mesh.query, self.position, self.quaternion
+        for bad in (None, "text", b"bytes", object(), {}, p.astype(complex), p.astype(bool), p.astype(object),
+                    p.astype(str), p.astype(">f8"), p.astype("M8[s]"), np.zeros(5, "f8,f8,f8"), [[True, 0, 0]] * 5,
+                    [["0", 0, 0]] * 5, [[None, 0, 0]] * 5, p.astype(np.longdouble), [[1j, 0, 0]] * 5, {1, 2, 3}):
+            self.refused(TypeError, "position is .*; expected numbers", query, bad, q)
+        self.refused(TypeError, "unexpected keyword argument 'levle'", query, p, q, levle=1)
+        self.refused(TypeError, "missing the argument 'quaternion'", query, p)
+        self.refused(TypeError, "at most 2 positional", query, p, q, 0.0)
+        self.refused(TypeError, "multiple values for argument 'position'", query, p, q, position=p)
+        self.refused(TypeError, "level is", query, p, q, level="0")
+        self.refused(TypeError, "density is", query, p, q, density=True)
+        self.refused(TypeError, "gravity is", query, p, q, gravity=None)
+        self.refused(TypeError, "method is", query, p, q, method=3)
+        self.refused(TypeError, "expected a Sea", query, p, q, sea=3)
+        self.refused(ValueError, "threads is -1", query, p, q, threads=-1)
+        self.refused(ValueError, "threads is 1.5", query, p, q, threads=1.5)
+        self.refused(OverflowError, "too large", query, [[10**400, 0, 0]] * 5, q)
+
+    def test_numbers(self):
+        query, p, q = self.mesh.query, self.position, self.quaternion
+        self.refused(buoyancy.InputError, "density = -1; expected", query, p, q, density=-1)
+        self.refused(buoyancy.InputError, "level = nan", query, p, q, level=np.nan)
+        self.refused(buoyancy.InputError, "up = 0, 0, 0", query, p, q, up=(0, 0, 0))
+        self.refused(ValueError, "up has shape", query, p, q, up=(0, 1))
+        self.refused(buoyancy.InputError, "tolerance = 2", query, p, q, tolerance=2)
+        self.refused(ValueError, 'method = "exct"; expected one of fast', query, p, q, method="exct")
+        self.refused(ValueError, "time is nan", query, p, q, time=np.nan)
+        self.refused(ValueError, "time is", query, p, q, time=[1e300] * 5)
+        self.refused(buoyancy.InputError, "center_of_mass", self.mesh.hydrostatics, p, q, center_of_mass=(0, 0, np.inf))
+        sea = buoyancy.Sea(level=2.0, waves=dict(type="regular", height=0.1, period=3))
+        self.refused(ValueError, "level = 1 but the sea's is 2", query, p, q, level=1, sea=sea)
+        self.refused(ValueError, "up = .* but the sea's is", query, p, q, up=(0, 1, 0), sea=sea)
+        self.refused(buoyancy.InputError, "exact", query, p, q, method="exact", sea=sea)
+        query(p, q, level=2.0, sea=sea)
+
+    def test_poses_that_are_wrong_have_a_status(self):
+        position, quaternion = self.position.copy(), self.quaternion.copy()
+        position[1, 2], quaternion[2], quaternion[3, 1] = np.nan, 0, np.inf
+        result = self.mesh.query(position, quaternion)
+        self.assertEqual([buoyancy.Status(status).name for status in result.status],
+                         ["OK", "NON_FINITE_POSE", "BAD_QUATERNION", "NON_FINITE_POSE", "OK"])
+        self.assertFalse(result.ok)
+        self.assertEqual(result.force[1:4].tolist(), [[0, 0, 0]] * 3)
+        self.refused(buoyancy.StatusError, "pose 1: NON_FINITE_POSE: .*2 more of 5", result.raise_for_status)
+
+    def test_meshes(self):
+        v, f = self.vertices, self.faces
+        self.refused(buoyancy.InputError, "boundary edges", buoyancy.Mesh, v, f[:-1])
+        self.refused(buoyancy.InputError, "vertex index 8; .*count from 1", buoyancy.Mesh, v, f + 1)
+        self.refused(buoyancy.InputError, "vertex index -1", buoyancy.Mesh, v, f - 1)
+        self.refused(buoyancy.InputError, "vertex index 18446744073709551615|vertex index -1", buoyancy.Mesh, v,
+                     (f - 1).astype(np.uint64))
+        self.refused(buoyancy.InputError, "no face", buoyancy.Mesh, v, np.empty((0, 3), int))
+        self.refused(buoyancy.InputError, "not finite|finite", buoyancy.Mesh, np.where(v == 0.5, np.nan, v), f)
+        self.refused(TypeError, "faces is an array of float64; expected integers", buoyancy.Mesh, v, f.astype(float))
+        self.refused(ValueError, r"faces has shape \(12, 2\)", buoyancy.Mesh, v, f[:, :2])
+        self.refused(ValueError, r"vertices has shape \(24,\)", buoyancy.Mesh, v.ravel(), f)
+        self.refused(TypeError, "no faces", buoyancy.Mesh, v)
+        self.refused(TypeError, "no faces", buoyancy.Mesh, None)
+        self.refused(TypeError, "a path and faces", buoyancy.Mesh, "hull.stl", f)
+        self.refused(buoyancy.InputError, "no such file", buoyancy.Mesh, "/nowhere/hull.stl")
+        self.refused(ValueError, "null byte", buoyancy.Mesh, "hull\0.stl")
+        self.refused(buoyancy.InputError, "scale = 0", buoyancy.Mesh, v, f, scale=0)
+        self.refused(ValueError, 'open = "yes"', buoyancy.Mesh, v, f, open="yes")
+        self.refused(buoyancy.Error, "no such file", buoyancy.Scene, "/nowhere/scene.toml")
+
+    def test_bodies_of_a_scene(self):
+        query, p, q = self.scene.query, self.position, self.quaternion
+        self.refused(KeyError, r"no body 7; it has 4 \(buoy\)", query, 7, p, q)
+        self.refused(KeyError, "no body 'crate'", query, "crate", p, q)
+        self.refused(KeyError, "no body 4294967300", query, 2**32 + 4, p, q)
+        self.refused(TypeError, "body_id is None", query, None, p, q)
+        self.refused(TypeError, "body_id", query, 4.0, p, q)
+        sea = buoyancy.Sea(waves=dict(type="regular", height=0.1, period=3))
+        self.refused(buoyancy.InputError, 'waves = "received"', query, 4, p, q, sea=sea)
+        self.refused(buoyancy.InputError, r"Scene.from_text\(\):2", buoyancy.Scene.from_text, "[[body]]\nidd = 1\n")
+
+    def test_objects_that_were_never_initialised(self):
+        for type_ in (buoyancy.Mesh, buoyancy.Scene, buoyancy.Sea, buoyancy.Wrenches, buoyancy.Body, buoyancy.Loads,
+                      buoyancy.Hydrostatics):
+            empty = type_.__new__(type_)
+            for name in dir(empty):
+                if name.startswith("_"):
+                    continue
+                self.refused(TypeError, "never initialised|arguments|missing",
+                             lambda name=name, empty=empty: (lambda value: value() if callable(value) else value)(
+                                 getattr(empty, name)))
+            self.refused(TypeError, "never initialised", repr, empty) if "__repr__" in vars(type_) else None
+        for value in (self.mesh, self.scene, self.mesh.query((0, 0, 0), (1, 0, 0, 0))):
+            self.refused(TypeError, "pickle", pickle.dumps, value)
+            self.refused(TypeError, "pickle", copy.copy, value)
+        self.refused(TypeError, "constructor", buoyancy.Wrenches)
+
+
+class SurvivesRandomArrays(TestCase):
+    def test_exceptions_only(self):
+        random = np.random.default_rng(20)
+        vertices, faces = box()
+        mesh = buoyancy.Mesh(vertices, faces)
+        scene = buoyancy.Scene.from_text('[[body]]\nid = 1\nshape = { type = "box" }\n')
+        sea = buoyancy.Sea(waves=dict(type="regular", height=0.1, period=3))
+        reused = mesh.query(np.zeros((3, 3)), (1, 0, 0, 0))
+        dtypes = ["f8", "f4", "f2", ">f8", "i8", "i4", "u1", "u8", "c16", "?", "O", "S3", "U2", "M8[s]", "f8,i4", "g"]
+        special = [0.0, 1.0, -1.0, np.nan, np.inf, -np.inf, 1e308, -1e308, 5e-324, 1e-3]
+
+        def any_array():
+            kind = random.integers(6)
+            shape = tuple(random.integers(0, 5, random.integers(0, 4))) if kind else (random.integers(0, 4), 3)
+            values = random.choice(special, shape) if random.integers(2) else random.normal(size=shape)
+            with np.errstate(all="ignore"):
+                try:
+                    value = np.asarray(values).astype(dtypes[random.integers(len(dtypes)) if kind > 2 else 0])
+                except (TypeError, ValueError):
+                    return values
+            if value.ndim and random.integers(3) == 0:
+                value = value[::-1] if random.integers(2) else np.asfortranarray(value)
+            choice = random.integers(12)
+            if choice == 0:
+                return value.tolist()
+            if choice == 1 and value.dtype != object:
+                return value.tobytes()
+            if choice == 2:
+                return [None, "x", [], [[]], {}, (1, [2]), float("nan"), 10**30, memoryview(b"abc"), value.T][
+                    random.integers(10)]
+            return value
+
+        def good_or_any(good):
+            return good if random.integers(3) else any_array()
+
+        calls = [
+            lambda: mesh.query(good_or_any(np.zeros((3, 3))), good_or_any(np.tile([1.0, 0, 0, 0], (3, 1))),
+                               out=reused if random.integers(2) else None, time=good_or_any(0.0)),
+            lambda: mesh.query(good_or_any((0, 0, 0)), good_or_any((1, 0, 0, 0)), up=good_or_any((0, 0, 1)),
+                               level=good_or_any(0.0), density=good_or_any(1.0), sea=None if random.integers(2) else sea),
+            lambda: scene.query(good_or_any(1), good_or_any((0, 0, 0)), good_or_any((1, 0, 0, 0)),
+                                linear_velocity=any_array(), angular_velocity=any_array(), time=any_array()),
+            lambda: mesh.hydrostatics(good_or_any((0, 0, 0)), good_or_any((1, 0, 0, 0)), center_of_mass=any_array()),
+            lambda: buoyancy.Mesh(good_or_any(vertices), good_or_any(faces), scale=1.0),
+            lambda: sea.elevation(any_array(), good_or_any(0.0), good_or_any(0.0)),
+            lambda: sea.velocity(any_array(), any_array(), good_or_any(-1.0), good_or_any(0.0)),
+            lambda: buoyancy.Sea(level=any_array(), waves=any_array()),
+        ]
+        refused = 0
+        count = 3_000 if SANITIZED else 10_000
+        for _ in range(count):
+            try:
+                calls[random.integers(len(calls))]()
+            except (TypeError, ValueError, KeyError, OverflowError):
+                refused += 1
+        self.assertGreater(refused, count // 4)
+        self.assertLess(refused, count)
+
+
+if __name__ == "__main__":
+    unittest.main()

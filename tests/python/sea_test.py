@@ -1,0 +1,72 @@
+"""A Sea takes the keys of the scene file and gives the motion of its water."""
+import unittest
+
+import numpy as np
+
+import buoyancy
+from support import SOURCE, TestCase
+
+
+class DescribesWaterInMotion(TestCase):
+    def test_regular_wave(self):
+        sea = buoyancy.Sea(waves=dict(type="regular", height=0.5, period=4.0, phase=30))
+        omega = 2 * np.pi / 4
+        x, t = np.linspace(-20, 20, 41)[:, None], np.linspace(0, 4, 9)
+        expected = 0.25 * np.cos(omega**2 / 9.80665 * x - omega * t + np.radians(30))
+        np.testing.assert_allclose(sea.elevation(x, 3.0, t), expected, atol=1e-12)
+        point = sea.velocity(1.0, 2.0, -1.0, 0.5)
+        self.assertEqual(point.shape, (3,))
+        h = 1e-3
+        later, earlier = (np.asarray(sea.velocity(1.0, 2.0, -1.0, 0.5 + d)) for d in (h, -h))
+        np.testing.assert_allclose(sea.acceleration(1.0, 2.0, -1.0, 0.5), (later - earlier) / (2 * h), atol=1e-3)
+
+    def test_shapes(self):
+        sea = buoyancy.Sea(waves=[dict(type="jonswap", significant_wave_height=1, peak_period=5, spreading=10)])
+        self.assertIsInstance(sea.elevation(0, 0, 0), float)
+        self.assertIsInstance(sea.pressure(0, 0, -1, 0), float)
+        self.assertEqual(sea.elevation(np.zeros((2, 1)), np.zeros(3), 0).shape, (2, 3))
+        self.assertEqual(sea.velocity(np.zeros((2, 1)), 0, np.zeros(3), np.zeros((4, 1, 1))).shape, (4, 2, 3, 3))
+        self.assertEqual(sea.elevation([], 0, 0).shape, (0,))
+        one_by_one = [[sea.elevation(x, y, t) for y in (1, 2)] for x, t in ((0, 0.5), (3, 1.5))]
+        self.assert_same_bits(sea.elevation([[0.0], [3.0]], [1, 2], [[0.5], [1.5]]), np.array(one_by_one))
+        with self.assertRaisesRegex(ValueError, r"y has shape \(2,\), which does not fit \(3,\)"):
+            sea.elevation([1, 2, 3], [1, 2], 0)
+
+    def test_water_at_rest(self):
+        sea = buoyancy.Sea(level=1.5, density=1000, gravity=10)
+        self.assertFalse(sea.has_waves)
+        self.assertEqual((sea.level, sea.density, sea.gravity), (1.5, 1000.0, 10.0))
+        self.assertEqual(sea.pressure([0, 0], 0, [0.5, 2], 0).tolist(), [1e4, 0.0])
+        self.assertEqual(sea.elevation(0, 0, 0), 0.0)
+
+    def test_keys_are_those_of_the_scene_file(self):
+        with self.assertRaisesRegex(buoyancy.InputError, "unknown key 'levle'.*nearest known key is 'level'"):
+            buoyancy.Sea(levle=1)
+        with self.assertRaisesRegex(buoyancy.InputError, "peak_period = -1; expected a number from"):
+            buoyancy.Sea(waves=dict(type="jonswap", peak_period=-1, significant_wave_height=1))
+        with self.assertRaisesRegex(buoyancy.InputError, "received"):
+            buoyancy.Sea(waves="received")
+        with self.assertRaisesRegex(TypeError, "level is None"):
+            buoyancy.Sea(level=None)
+        for level in (1e300, 123456789012345680000.0, -0.1, 5e-324, 1 / 3):
+            self.assertEqual(buoyancy.Sea(level=level).level, level)
+        self.assertEqual(buoyancy.Sea(level=np.float32(0.5), up=np.array([0, 2.0, 0])).up.tolist(), [0, 1, 0])
+        components = [dict(amplitude=0.5, angular_frequency=0.8), dict(amplitude=np.float64(0.2), angular_frequency=1)]
+        self.assertTrue(buoyancy.Sea(waves={"type": "components", "components": components}).has_waves)
+
+    def test_text_is_escaped(self):
+        for text in ('"', "\\", "\n", "]]", "\x00", "\x7f", "é", '"\n[world]\ngravity = 0\n#'):
+            with self.assertRaises(buoyancy.InputError):
+                buoyancy.Sea(wave_pressure=text)
+            with self.assertRaises(buoyancy.InputError):
+                buoyancy.Sea(**{text: 1})
+
+    def test_of_a_scene_file(self):
+        sea = buoyancy.Sea(SOURCE / "scenes" / "hull_in_waves.toml")
+        self.assertTrue(sea.has_waves)
+        with self.assertRaisesRegex(TypeError, "a scene file and keys"):
+            buoyancy.Sea(SOURCE / "scenes" / "hull_in_waves.toml", level=1)
+
+
+if __name__ == "__main__":
+    unittest.main()
