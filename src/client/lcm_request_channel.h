@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ struct ChannelOptions {
   bool wait_for_loads = false;
   bool spin = true;  // poll briefly before sleeping: lower latency for more processor time
   const std::atomic<bool>* cancelled = nullptr;  // if not null, waiting ends soon after it becomes true
+  // If set, called by the waiting thread at least every 0.1 s; waiting ends once it returns true. For callers
+  // that must look for signals meanwhile, such as an interpreter's.
+  std::function<bool()> is_interrupted;
 };
 
 class LcmRequestChannel {
@@ -70,7 +74,10 @@ class LcmRequestChannel {
   bool waits_for_loads() const { return options_.wait_for_loads; }
   // Messages that were ignored because they are not valid, see ClientStats::malformed.
   std::int64_t malformed() const { return inbox_->malformed; }
-  bool cancelled() const { return cancelled_ != nullptr && cancelled_->load(); }
+  bool cancelled() const {
+    return (cancelled_ != nullptr && cancelled_->load()) ||
+           (options_.is_interrupted && options_.is_interrupted());
+  }
 
   // Why the response to the last request may not have arrived, or its loads, in parts of an Error.
   struct Explanation {

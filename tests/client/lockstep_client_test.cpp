@@ -56,6 +56,19 @@ TEST(LockstepClient, ResendsRequestUntilResponseArrives) {
   EXPECT_EQ(client.statistics().unanswered, 0);
 }
 
+TEST(LockstepClient, StopsWaitingWhenInterrupted) {
+  const FakeService service([](const WrenchRequest&) { return Responses{}; });
+  ChannelOptions options;
+  int calls = 0;
+  options.is_interrupted = [&calls] { return ++calls > 2; };
+  // Without the interruption this would take a day.
+  LockstepClient client(open_channel(options), {0.1, 1'000'000});
+  const Expected<const WrenchResponse*> response = client.request(make_request(0));
+  ASSERT_FALSE(response);
+  EXPECT_NE(response.error().message().find("cancelled"), std::string::npos);
+  EXPECT_EQ(client.statistics().unanswered, 0);
+}
+
 TEST(LockstepClient, FailsAfterMaxRetries) {
   const FakeService service([](const WrenchRequest&) { return Responses{}; });
   LockstepClient client(open_channel(), {0.05, 3});
