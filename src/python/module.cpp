@@ -30,4 +30,6 @@ PYBIND11_MODULE(_core, module) {
   define_sea(module);
   define_mesh(module);
   define_scene(module);
+  define_client(module);
+  define_log(module);
 }

@@ -13,32 +13,42 @@ Arrays are numpy arrays of float64, or memoryviews where numpy is not installed.
 """
 from ._core import (
     Body,
+    Client,
     Error,
     Hydrostatics,
     InputError,
     Loads,
+    Log,
     Mesh,
+    RecordedStates,
+    RecordedWrenches,
     Scene,
     Sea,
     ServiceError,
     Status,
     StatusError,
     Wrenches,
+    read_log,
 )
 
 __all__ = [
     "Body",
+    "Client",
     "Error",
     "Hydrostatics",
     "InputError",
     "Loads",
+    "Log",
     "Mesh",
+    "RecordedStates",
+    "RecordedWrenches",
     "Scene",
     "Sea",
     "ServiceError",
     "Status",
     "StatusError",
     "Wrenches",
+    "read_log",
 ]
 
 # What users see in help() and in tracebacks is buoyancy.Mesh.

@@ -1,0 +1,345 @@
+// buoyancy.Client: requests to buoyancyd over LCM.
+
+#include "client/client.h"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+#include "base/format.h"
+#include "python/call_arguments.h"
+#include "python/module.h"
+#include "python/number_array.h"
+#include "python/pose_input.h"
+#include "python/result_array.h"
+#include "python/scene_object.h"
+#include "python/wrenches.h"
+
+namespace buoyancy::python {
+namespace {
+
+// Has Python look for signals while a request waits, so that Ctrl-C ends it. Called without the interpreter's
+// lock; taking it costs more than a round trip, so that it is rarely done.
+class SignalCheck {
+ public:
+  void start() {
+    raised_ = false;
+    checked_ = Clock::now();
+  }
+  bool operator()() {
+    if (raised_) return true;
+    const Clock::time_point now = Clock::now();
+    if (now - checked_ < kInterval) return false;
+    checked_ = now;
+    const py::gil_scoped_acquire acquired;
+    raised_ = PyErr_CheckSignals() != 0;  // the exception stays set for the thread
+    return raised_;
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kInterval{20};
+  Clock::time_point checked_;
+  bool raised_ = false;
+};
+
+// A client as Python holds it. One thread at a time may use it, which is_busy guards under the interpreter's
+// lock.
+struct ClientObject {
+  std::optional<Client> client;        // nullopt once it is closed
+  std::shared_ptr<const Scene> scene;  // may be nullptr
+  std::atomic<bool> closing{false};    // ends the waiting of another thread
+  SignalCheck signals;
+  bool has_loads = false;
+  bool is_busy = false;
+  std::vector<BodyState> states;  // reused
+};
+
+[[noreturn]] void fail(const std::string& actual, const std::string& expected, const std::string& hint) {
+  throw ServiceException({"Client", actual, expected, "", hint});
+}
+
+// For the time of a call that uses the client without the interpreter's lock.
+class BusyClient {
+ public:
+  explicit BusyClient(ClientObject& object) : object_(object) {
+    if (!object.client) fail("is closed", "an open client", "Open another one");
+    if (object.is_busy)
+      fail("is in use by another thread", "one thread at a time", "Open one client per thread");
+    object.is_busy = true;
+  }
+  ~BusyClient() {
+    object_.is_busy = false;
+    if (object_.closing) object_.client.reset();
+  }
+  BusyClient(const BusyClient&) = delete;
+  BusyClient& operator=(const BusyClient&) = delete;
+
+ private:
+  ClientObject& object_;
+};
+
+std::shared_ptr<const Scene> to_scene(const py::object& scene) {
+  if (scene.is_none()) return nullptr;
+  if (py::isinstance<SceneObject>(scene)) return instance_of<SceneObject>(scene).scene;
+  const std::string path = to_path(scene);
+  const WithoutGil released;
+  return std::make_shared<const Scene>(value_or_throw(Scene::load(path)));
+}
+
+std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, const py::object& scene,
+                                   double timeout, std::int64_t max_retries, std::optional<double> interval,
+                                   bool loads, const std::string& states_channel,
+                                   const std::string& wrenches_channel, const std::string& loads_channel) {
+  if (!(std::isfinite(timeout) && timeout > 0.0))
+    throw py::value_error("timeout = " + format_shortest(timeout) + "; expected seconds above 0");
+  if (max_retries < 0)
+    throw py::value_error("max_retries = " + std::to_string(max_retries) + "; expected 0 or more");
+  if (interval && !(std::isfinite(*interval) && *interval > 0.0)) {
+    throw py::value_error("interval = " + format_shortest(*interval) + "; expected seconds above 0, or None");
+  }
+  auto object = std::make_unique<ClientObject>();
+  object->scene = to_scene(scene);
+  object->has_loads = loads;
+  ClientOptions options;
+  options.channel.lcm_url = lcm_url.value_or("");
+  options.channel.states_channel = states_channel;
+  options.channel.wrenches_channel = wrenches_channel;
+  options.channel.loads_channel = loads_channel;
+  options.channel.wait_for_loads = loads;
+  options.channel.cancelled = &object->closing;
+  options.channel.is_interrupted = [signals = &object->signals] { return (*signals)(); };
+  options.retry_policy = {timeout, max_retries};
+  options.interval = interval;
+  const WithoutGil released;
+  object->client.emplace(value_or_throw<ServiceException>(Client::open(options)));
+  return object;
+}
+
+std::int32_t to_body_id(const ClientObject& object, py::handle id) {
+  if (object.scene != nullptr) return find_body(*object.scene, id).id;
+  if (PyUnicode_Check(id.ptr())) {
+    throw py::type_error("body_ids has the name " + std::string(py::repr(id)) +
+                         "; expected an int: names need Client(scene=...)");
+  }
+  const NumberArray<std::int64_t> number(id.ptr(), "body_ids");
+  if (number.dimensions() != 0) throw py::type_error("body_ids has a nested array; expected ints");
+  const std::int64_t value = number.values()[0];
+  if (value != static_cast<std::int32_t>(value)) {
+    throw py::value_error("body_ids has " + std::to_string(value) + "; expected a number of 32 bits");
+  }
+  return static_cast<std::int32_t>(value);
+}
+
+struct BodyIds {
+  std::vector<std::int32_t> ids;
+  bool single = false;
+};
+
+BodyIds to_body_ids(const ClientObject& object, PyObject* given) {
+  BodyIds bodies;
+  if (!is_given(given)) {
+    if (object.scene == nullptr) {
+      throw py::type_error("body_ids is None; expected ids: only Client(scene=...) knows all bodies");
+    }
+    for (const Body& body : object.scene->bodies()) bodies.ids.push_back(body.id);
+    return bodies;
+  }
+  if (PyLong_Check(given) || PyUnicode_Check(given)) {
+    bodies.single = true;
+    bodies.ids.push_back(to_body_id(object, given));
+    return bodies;
+  }
+  // Lists, tuples and arrays alike. An iterable without end is refused before it is read.
+  if (PySequence_Check(given) == 0) {
+    throw py::type_error(std::string("body_ids is a ") + Py_TYPE(given)->tp_name +
+                         "; expected an id, or a list of ids");
+  }
+  for (const py::handle id : py::reinterpret_borrow<py::object>(given))
+    bodies.ids.push_back(to_body_id(object, id));
+  return bodies;
+}
+
+std::int64_t to_utime(PyObject* time, PyObject* utime) {
+  if (is_given(time) && is_given(utime))
+    throw py::type_error("request() got time and utime; expected one of them");
+  if (is_given(utime)) {
+    const NumberArray<std::int64_t> number(utime, "utime");
+    if (number.dimensions() != 0) throw py::type_error("utime is an array; expected one int of microseconds");
+    return number.values()[0];
+  }
+  bool many = false;
+  const std::vector<std::int64_t> utimes = to_utimes(time, many);
+  if (many) throw py::value_error("time is an array; expected one number: a request has one time");
+  return utimes.empty() ? 0 : utimes.front();
+}
+
+void fill_states(const PoseArrays& poses, const std::vector<std::int32_t>& ids,
+                 std::vector<BodyState>& states) {
+  const auto copy = [](std::span<const double> from, std::size_t i, auto& to) {
+    if (from.empty()) return to.fill(0.0);
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(i * to.size()), to.size(), to.begin());
+  };
+  states.resize(poses.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    states[i].body_id = ids.size() == 1 ? ids.front() : ids[i];
+    copy(poses.positions, i, states[i].position);
+    copy(poses.quaternions_wxyz, i, states[i].quaternion_wxyz);
+    copy(poses.linear_velocities, i, states[i].linear_velocity);
+    copy(poses.angular_velocities, i, states[i].angular_velocity);
+  }
+}
+
+void store(const WrenchResponse& response, const BodiesLoads& loads, bool with_loads, Wrenches& wrenches) {
+  wrenches.utime = response.id.utime;
+  wrenches.body_ids.resize(response.bodies.size());
+  wrenches.has_loads = with_loads;
+  if (with_loads) wrenches.loads.assign(response.bodies.size(), BodyLoads{});
+  // The loads are those of the bodies with this output, in the order of the response.
+  auto next = loads.bodies.begin();
+  for (std::size_t i = 0; i < response.bodies.size(); ++i) {
+    const BodyWrench& wrench = response.bodies[i];
+    wrenches.set(i, wrench);
+    wrenches.body_ids[i] = wrench.body_id;
+    if (with_loads && next != loads.bodies.end() && next->body_id == wrench.body_id)
+      wrenches.loads[i] = *next++;
+  }
+}
+
+PyObject* request(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
+  static const Signature<9> signature("request", 3, 3,
+                                      {"body_ids", "position", "quaternion", "linear_velocity",
+                                       "angular_velocity", "time", "utime", "lead_time", "out"});
+  return guarded([&]() -> py::object {
+    const auto [body_ids, position, quaternion, linear, angular, time, utime, lead_time, out] =
+        signature.parse(arguments, count, keywords);
+    auto& object = instance_of<ClientObject>(self);
+    const BodyIds bodies = to_body_ids(object, body_ids);
+    const PoseInput poses({position, quaternion, linear, angular, nullptr});
+    const bool single = bodies.single && poses.single();
+    if (bodies.ids.size() != poses.size() && !bodies.single) {
+      throw py::value_error(
+          "body_ids names " + pluralize(static_cast<std::int64_t>(bodies.ids.size()), "body", "bodies") +
+          ", but the poses are " + std::to_string(poses.size()) + "; expected one pose per body");
+    }
+    const std::int64_t at = to_utime(time, utime);
+    const double lead = lead_time == nullptr ? 0.0 : to_double(lead_time, "lead_time");
+    py::object result = wrenches_for(out, poses.size(), single);
+    const BusyClient busy(object);
+    fill_states(poses.arrays(), bodies.ids, object.states);
+    object.signals.start();
+    const auto response = [&] {
+      const WithoutGil released;
+      return object.client->request(at, object.states, lead);
+    }();
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
+    if (!response) {
+      if (object.closing) fail("was closed while it waited", "an open client", "");
+      throw ServiceException(response.error());
+    }
+    static const BodiesLoads no_loads;
+    store(**response, object.has_loads ? object.client->loads() : no_loads, object.has_loads,
+          instance_of<Wrenches>(result));
+    return result;
+  });
+}
+
+void close(py::handle self) {
+  auto& object = instance_of<ClientObject>(self);
+  object.closing = true;
+  if (!object.is_busy) object.client.reset();
+}
+
+std::optional<std::string> reserve(py::handle self, std::size_t bodies) {
+  auto& object = instance_of<ClientObject>(self);
+  const BusyClient busy(object);
+  const auto warning = value_or_throw<ServiceException>(object.client->reserve(bodies));
+  if (!warning) return std::nullopt;
+  return warning->message();
+}
+
+py::dict statistics(py::handle self) {
+  auto& object = instance_of<ClientObject>(self);
+  const BusyClient busy(object);
+  const ClientStats stats = object.client->statistics();
+  const LatencyPercentiles round_trip = stats.round_trip.percentiles();
+  py::dict values;
+  values["requests"] = stats.requests;
+  values["retries"] = stats.retries;
+  values["unanswered"] = stats.unanswered;
+  values["late"] = stats.late;
+  values["max_lag"] = stats.max_lag;
+  values["round_trip_p50"] = round_trip.p50;
+  values["round_trip_p99"] = round_trip.p99;
+  values["round_trip_max"] = round_trip.max;
+  return values;
+}
+
+constexpr const char* kClientDoc =
+    "Sends poses to buoyancyd over LCM and receives the wrenches.\n\n"
+    "Client(lcm_url=None, scene=None, *, timeout=0.1, max_retries=50, interval=None, loads=False,\n"
+    "       states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES', "
+    "loads_channel='BUOYANCY_LOADS')\n\n"
+    "lcm_url: None for LCM_DEFAULT_URL or LCM's default. scene: a Scene or the path of the service's scene "
+    "file; bodies\n"
+    "can then be named, and unknown ones are refused before they are sent. timeout, max_retries: a request "
+    "is sent\n"
+    "again after each timeout (s), at most max_retries times. interval: None to wait for the response to "
+    "each\n"
+    "request; else seconds between requests, each of which returns the newest response there is. loads: "
+    "receive\n"
+    "drag and added mass too; at least one body of each request must have the output \"loads\".\n\n"
+    "Use it in one thread at a time, and close it: `with buoyancy.Client() as client:`.\n\n"
+    "Raises ServiceError if LCM cannot be opened; the text says what to do.";
+
+constexpr const char* kRequestDoc =
+    "request($self, body_ids, position, quaternion, *, linear_velocity=None, angular_velocity=None,\n"
+    "        time=0.0, utime=None, lead_time=0.0, out=None)\n--\n\n"
+    "The wrenches on bodies in these states, one per body in their order: a Wrenches.\n\n"
+    "body_ids: one id or name for one pose or for K poses of that body, K of them for K poses, or None for "
+    "all\n"
+    "bodies of the scene. position, quaternion, linear_velocity, angular_velocity, out: as Scene.query(). "
+    "time: seconds;\n"
+    "utime: microseconds, instead of it. lead_time: s, evaluates at the poses extrapolated by this much.\n\n"
+    "Waits without the interpreter's lock; Ctrl-C ends the wait. Raises ServiceError when no response has "
+    "arrived\n"
+    "after all retries, for a closed client, and for one that another thread uses.";
+
+PyMethodDef request_method{"request", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&request)),
+                           METH_FASTCALL | METH_KEYWORDS, kRequestDoc};
+
+}  // namespace
+
+void define_client(py::module_& module) {
+  py::class_<ClientObject> type(module, "Client", kClientDoc);
+  type.def(py::init(&open), py::arg("lcm_url") = py::none(), py::arg("scene") = py::none(), py::kw_only(),
+           py::arg("timeout") = RetryPolicy{}.timeout, py::arg("max_retries") = RetryPolicy{}.max_retries,
+           py::arg("interval") = py::none(), py::arg("loads") = false,
+           py::arg("states_channel") = std::string(kStatesChannel),
+           py::arg("wrenches_channel") = std::string(kWrenchesChannel),
+           py::arg("loads_channel") = std::string(kLoadsChannel));
+  add_method(type, request_method);
+  type.def(
+      "close", &close,
+      "close($self)\n--\n\nEnd the connection. Every later request raises a ServiceError; a second call does "
+      "nothing.");
+  type.def_property_readonly(
+      "closed", [](py::handle self) { return !instance_of<ClientObject>(self).client.has_value(); }, "bool.");
+  type.def(
+      "reserve", &reserve, py::arg("bodies"),
+      "reserve($self, bodies)\n--\n\nPrepare for requests about this many bodies. Returns a warning if the "
+      "kernel's buffer is too small for\ntheir responses, else None.");
+  type.def_property_readonly(
+      "statistics", &statistics,
+      "dict: requests, retries, unanswered, late, max_lag, and round_trip_p50, _p99, _max in s.");
+  type.def("__enter__", [](py::object self) { return self; });
+  type.def("__exit__", [](py::handle self, const py::args&) { close(self); });
+}
+
+}  // namespace buoyancy::python

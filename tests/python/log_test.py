@@ -1,0 +1,104 @@
+"""read_log gives the arrays of logs and CSV files, also of damaged ones."""
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import buoyancy
+from support import BIN, SOURCE, TestCase, without_preload
+
+HEADER = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
+SCENE = SOURCE / "scenes" / "box.toml"
+
+
+class ReadsRecordings(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls._folder.name)
+        cls.rows = np.random.default_rng(4).uniform(-0.2, 0.2, (50, 13))
+        cls.rows[:, 3:7] = (1, 0, 0, 0)
+        text = HEADER + "".join(f"{1000 * i},1,{','.join(map(repr, map(float, row)))}\n" for i, row in enumerate(cls.rows))
+        (cls.folder / "poses.csv").write_text(text)
+        for output in ("out.csv", "out.lcmlog"):
+            subprocess.run([BIN / "buoyancy-replay", "--scene", SCENE, "poses.csv", output], cwd=cls.folder, check=True,
+                           env=without_preload(), capture_output=True)
+
+    def read(self, name, **keywords):
+        return buoyancy.read_log(self.folder / name, **keywords)
+
+    def test_poses_from_csv(self):
+        log = self.read("poses.csv")
+        states = log.states
+        self.assertEqual((len(states), len(log.wrenches), log.corrupt_sections, log.rejected), (50, 0, (), 0))
+        self.assert_same_bits(states.position, self.rows[:, :3])
+        self.assert_same_bits(states.linear_velocity, self.rows[:, 7:10])
+        self.assertEqual(states.utime.tolist(), list(range(0, 50_000, 1000)))
+        self.assertEqual(set(states.body_id), {1})
+        self.assertEqual(self.read("out.csv").states.position.shape, (0, 3))
+
+    def test_wrenches_of_a_replay_equal_queries(self):
+        states = self.read("poses.csv").states
+        expected = buoyancy.Scene(SCENE).query(1, states.position, states.quaternion)
+        for name in ("out.csv", "out.lcmlog"):
+            log = self.read(name)
+            wrenches = log.wrenches
+            for column in ("status", "force", "torque", "volume", "center_of_buoyancy", "force_error_bound",
+                           "torque_error_bound"):
+                with self.subTest(name=name, column=column):
+                    self.assert_same_bits(getattr(wrenches, column), getattr(expected, column))
+            self.assertEqual(wrenches.utime.tolist(), states.utime.tolist())
+        self.assertEqual(len(self.read("out.lcmlog", wrenches_channel="OTHER").wrenches), 0)
+
+    def test_corrupt_parts_are_skipped_and_reported(self):
+        lines = (self.folder / "out.csv").read_text().splitlines(keepends=True)
+        for damage in ("x" + lines[7], lines[7][:-30] + "\n", lines[7].replace("\n", ",1\n"), "\n", "1,2\n"):
+            (self.folder / "damaged.csv").write_text("".join(lines[:7]) + damage + "".join(lines[8:]))
+            log = self.read("damaged.csv")
+            self.assertEqual(len(log.wrenches), 49)
+            self.assertEqual(len(log.corrupt_sections), 0 if damage == "\n" else 1)
+        (self.folder / "damaged.csv").write_text(HEADER + "1,1,0,0,0,1,0,0,0,0,0,0,0,0,zero\n2,1,0,0,0,1,0,0,0,0,0,0,0,0,0\n")
+        self.assertEqual((len(self.read("damaged.csv").states), len(self.read("damaged.csv").corrupt_sections)), (1, 1))
+        whole = bytearray((self.folder / "out.lcmlog").read_bytes())
+        second = whole.index(struct.pack(">I", 0xEDA1DA01), 1)
+        whole[second:second + 4] = b"\0\0\0\0"
+        (self.folder / "damaged.lcmlog").write_bytes(whole)
+        log = self.read("damaged.lcmlog")
+        self.assertGreater(len(log.corrupt_sections), 0)
+        self.assertLess(len(log.wrenches), 50)
+        self.assertGreater(len(log.wrenches), 0)
+        # Messages of another type on the channel.
+        self.assertEqual(self.read("out.lcmlog", states_channel="BUOYANCY_WRENCHES", wrenches_channel="X").rejected, 50)
+
+    def test_random_damage_never_crashes(self):
+        random = np.random.default_rng(5)
+        for name in ("out.lcmlog", "out.csv", "poses.csv"):
+            whole = np.frombuffer((self.folder / name).read_bytes(), np.uint8)
+            for _ in range(100):
+                damaged = whole.copy()
+                damaged[random.integers(0, damaged.size, 20)] = random.integers(0, 256, 20)
+                path = self.folder / ("random" + Path(name).suffix)
+                path.write_bytes(damaged[:random.integers(damaged.size)].tobytes())
+                try:
+                    buoyancy.read_log(path)
+                except buoyancy.InputError:
+                    self.assertEqual(path.suffix, ".csv")  # the header was hit
+
+    def test_files_that_cannot_be_read(self):
+        for name, reason in (("none.lcmlog", "No such file"), ("none.csv", "No such file"), ("a.txt", "ends in .lcmlog or .csv")):
+            with self.assertRaisesRegex(buoyancy.InputError, reason):
+                self.read(name)
+        (self.folder / "other.csv").write_text("a,b,c\n1,2,3\n")
+        with self.assertRaisesRegex(buoyancy.InputError, "header"):
+            self.read("other.csv")
+        with self.assertRaises(TypeError):
+            buoyancy.read_log(3.5)
+        (self.folder / "empty.csv").write_text("")
+        self.assertEqual(len(self.read("empty.csv").states), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
