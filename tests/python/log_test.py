@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import buoyancy
-from support import BIN, SOURCE, TestCase, without_preload
+from support import BIN, SOURCE, WATERS, Reference, TestCase, without_preload
 
 HEADER = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
 SCENE = SOURCE / "scenes" / "box.toml"
@@ -52,6 +52,20 @@ class ReadsRecordings(TestCase):
                     self.assert_same_bits(getattr(wrenches, column), getattr(expected, column))
             self.assertEqual(wrenches.utime.tolist(), states.utime.tolist())
         self.assertEqual(len(self.read("out.lcmlog", wrenches_channel="OTHER").wrenches), 0)
+
+    def test_poses_and_wrenches_of_a_log(self):
+        reference = Reference()
+        for water in WATERS:
+            log = buoyancy.read_log(reference.folder / f"{water}.lcmlog")
+            self.assertEqual((len(log.states), len(log.wrenches), log.rejected), (6000, 6000, 0))
+            for body_id in range(1, 7):
+                rows = np.flatnonzero(log.states.body_id == body_id)
+                self.assert_same_bits(log.states.position[rows], reference.position)
+                self.assert_same_bits(log.states.quaternion[rows], reference.quaternion)
+                self.assert_same_bits(log.states.angular_velocity[rows], reference.angular_velocity)
+                self.assert_same_bits(log.states.utime[rows] / 1e6, reference.time)
+                rows = np.flatnonzero(log.wrenches.body_id == body_id)
+                self.assert_same_bits(log.wrenches.force[rows], reference.rows(water, body_id)[:, 1:4])
 
     def test_corrupt_parts_are_skipped_and_reported(self):
         lines = (self.folder / "out.csv").read_text().splitlines(keepends=True)

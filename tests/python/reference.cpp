@@ -8,6 +8,7 @@
 // NAME.vertices.f64, NAME.faces.i64
 // WATER.toml     a scene with the bodies 1 to 5, one per mesh, and 6 with drag, added mass and loads
 // WATER.ID.f64   per pose: status, force, torque, volume, centre of buoyancy, both error bounds
+// WATER.lcmlog   the requests and responses about them, as lcm-logger records them
 // WATER.6.loads.f64   per pose: drag force (3), added mass (36)
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +20,7 @@
 
 #include "engine/request_handler.h"
 #include "geometry/shapes.h"
+#include "recording/event_log.h"
 #include "tests/query/pose_table.h"
 #include "tests/support/scene_of.h"
 
@@ -89,9 +91,16 @@ void append(const BodyWrench& wrench, std::vector<double>& rows) {
   rows.push_back(wrench.torque_error_bound);
 }
 
-// Requests the poses of each time together.
+void append_event(std::string_view channel, Bytes message, std::int64_t timestamp,
+                  std::vector<std::uint8_t>& log) {
+  std::vector<std::uint8_t> event;
+  encode_event(0, timestamp, channel, message, event);
+  log.insert(log.end(), event.begin(), event.end());
+}
+
+// Requests the poses of each time together, and appends the messages to a log.
 void write_wrenches(const std::filesystem::path& directory, const std::string& water, const Scene& scene,
-                    const PoseTable& poses, std::int32_t body_id) {
+                    const PoseTable& poses, std::int32_t body_id, std::vector<std::uint8_t>& log) {
   RequestHandler handler(scene);
   std::vector<double> rows;
   std::vector<double> loads_rows;
@@ -102,7 +111,10 @@ void write_wrenches(const std::filesystem::path& directory, const std::string& w
     std::vector<std::uint8_t> bytes;
     encode(request, bytes);
     WrenchResponse response;
-    if (decode(handler.handle(bytes), response)) throw std::runtime_error("the handler rejects a request");
+    const Bytes responded = handler.handle(bytes);
+    append_event(kStatesChannel, bytes, request.id.utime, log);
+    append_event(kWrenchesChannel, responded, request.id.utime, log);
+    if (decode(responded, response)) throw std::runtime_error("the handler rejects a request");
     for (const BodyWrench& wrench : response.bodies) append(wrench, rows);
     BodiesLoads loads;
     if (handler.last_loads().empty() || decode(handler.last_loads(), loads)) continue;
@@ -146,7 +158,9 @@ void write_all(const std::filesystem::path& directory) {
     const std::string text = scene_text(toml);
     std::ofstream(directory / (name + ".toml")) << text;
     const Scene scene = scene_of(text);
-    for (const Body& body : scene.bodies()) write_wrenches(directory, name, scene, poses, body.id);
+    std::vector<std::uint8_t> log;
+    for (const Body& body : scene.bodies()) write_wrenches(directory, name, scene, poses, body.id, log);
+    write(directory / (name + ".lcmlog"), log);
   }
 }
 
