@@ -88,8 +88,8 @@ Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coord
     arrays.push_back(std::make_unique<NumberArray<double>>(object.ptr(), name));
     broadcast.add(*arrays.back(), name);
   }
-  const NumberArray<double> times(time.ptr(), "time");
-  broadcast.add(times, "time");
+  const NumberArray<double> times(time.ptr(), "t");
+  broadcast.add(times, "t");
   Points points;
   for (const auto& array : arrays) points.columns.push_back(broadcast.expand(*array));
   bool many = false;
@@ -184,31 +184,31 @@ void define_sea(py::module_& module) {
   py::class_<SeaObject> type(module, "Sea", kSeaDoc);
   type.def(py::init(&make_sea), py::arg("path") = py::none());
   const auto add_method = [&type](const char* name, auto function, const char* doc) {
-    type.def(name, function, py::arg("x"), py::arg("y"), py::arg("z"), py::arg("time"), py::kw_only(),
+    type.def(name, function, py::arg("x"), py::arg("y"), py::arg("z"), py::arg("t"), py::kw_only(),
              py::arg("threads") = 0, doc);
   };
-  type.def("elevation", &elevation, py::arg("x"), py::arg("y"), py::arg("time"), py::kw_only(),
+  type.def("elevation", &elevation, py::arg("x"), py::arg("y"), py::arg("t"), py::kw_only(),
            py::arg("threads") = 0,
-           "elevation($self, x, y, time, *, threads=0)\n--\n\nHeight of the surface over the level in "
+           "elevation($self, x, y, t, *, threads=0)\n--\n\nHeight of the surface over the level in "
            "metres.\n\nx, y: "
            "metres from the world's origin along the horizontal axes (see axes; with up = z the world's x "
-           "and y).\ntime: "
+           "and y).\nt: "
            "seconds. All are numbers or arrays, which are broadcast as numpy does.");
   add_method(
       "velocity",
       [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
         return motion(self, x, y, z, time, threads, &WaterMotionArrays::velocities, 3);
       },
-      "velocity($self, x, y, z, time, *, threads=0)\n--\n\nVelocity of the water at points in the world, in "
+      "velocity($self, x, y, z, t, *, threads=0)\n--\n\nVelocity of the water at points in the world, in "
       "m/s: "
-      "the shape of the arguments, and 3.\n\nx, y, z: metres, world frame; time: seconds; broadcast as numpy "
+      "the shape of the arguments, and 3.\n\nx, y, z: metres, world frame; t: seconds; broadcast as numpy "
       "does.");
   add_method(
       "acceleration",
       [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
         return motion(self, x, y, z, time, threads, &WaterMotionArrays::accelerations, 3);
       },
-      "acceleration($self, x, y, z, time, *, threads=0)\n--\n\nAcceleration of the water at points in the "
+      "acceleration($self, x, y, z, t, *, threads=0)\n--\n\nAcceleration of the water at points in the "
       "world, in "
       "m/s^2: see velocity().");
   add_method(
@@ -216,7 +216,7 @@ void define_sea(py::module_& module) {
       [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
         return motion(self, x, y, z, time, threads, &WaterMotionArrays::pressures, 1);
       },
-      "pressure($self, x, y, z, time, *, threads=0)\n--\n\nPressure over that of the air in Pa at points in "
+      "pressure($self, x, y, z, t, *, threads=0)\n--\n\nPressure over that of the air in Pa at points in "
       "the "
       "world, of water at rest and waves together; 0 above the\nsurface. Arguments: see velocity().");
   const auto water_number = [&type](const char* name, double Water::*member, const char* doc) {
