@@ -189,6 +189,9 @@ class ReusesResults(TestCase):
         result = scene.query(1, self.position, self.quaternion, linear_velocity=(1, 0, 0))
         drag = result.loads.drag_force
         self.assertEqual(drag[0].tolist(), [-0.5, 0, 0])
+        self.quaternion[5] = 0
+        scene.query(1, self.position, self.quaternion, linear_velocity=(1, 0, 0), out=result)
+        self.assertEqual(drag[5].tolist(), [0, 0, 0])
         scene.query(2, self.position, self.quaternion, out=result)
         self.assertIsNone(result.loads)
         self.quaternion[4] = 0
