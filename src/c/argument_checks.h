@@ -1,0 +1,98 @@
+// Checks the arguments of a call of the C interface and converts them. The first failure is kept: a call
+// makes all of its checks, and then returns if one of them failed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "c/failure.h"
+#include "c/handles.h"
+
+namespace buoyancy {
+
+class ArgumentChecks {
+ public:
+  explicit ArgumentChecks(const char* function) : function_(function) {}
+
+  bool failed() const { return failure_.has_value(); }
+  const CallResult& failure() const { return failure_; }
+
+  // name: of the argument, for errors; also in the functions below.
+  void fail(const char* name, std::string actual, std::string expected, std::string cause = "",
+            std::string hint = "");
+  void not_null(const char* name, const void* pointer);
+  void number(const char* name, double value, bool valid, const char* expected);
+  void count(const char* name, std::int64_t value, std::int64_t max);
+  unsigned threads(std::int32_t value);
+  Method method(buoyancy_method value);
+  // text: UTF-8 with a final zero byte.
+  std::string_view text(const char* name, const char* text);
+
+  // nullptr if there is no handle of this kind.
+  template <typename Handle>
+  const Handle* handle(const char* name, const Handle* handle) {
+    return has_handle(name, handle, kKindOf<Handle>) ? handle : nullptr;
+  }
+  // Frees a handle; NULL is allowed.
+  template <typename Handle>
+  void free(const char* name, Handle* handle) {
+    if (handle == nullptr) return;
+    if (remove_handle(handle, kKindOf<Handle>)) {
+      delete handle;
+    } else {
+      has_handle(name, handle, kKindOf<Handle>);
+    }
+  }
+  // The place of a new handle, which is NULL until the call succeeds.
+  template <typename Handle>
+  void out_handle(const char* name, Handle** out) {
+    not_null(name, static_cast<const void*>(out));
+    if (out != nullptr) *out = nullptr;
+  }
+
+  // A struct that the caller passes. nullptr if it is NULL or its size is none that it has had.
+  template <typename Struct>
+  const Struct* given(const char* name, const Struct* value) {
+    not_null(name, value);
+    if (value == nullptr) return nullptr;
+    return has_size(name, value->size, sizeof(Struct)) ? value : nullptr;
+  }
+  template <typename Struct>
+  Struct* output(const char* name, Struct* value) {
+    return given(name, static_cast<const Struct*>(value)) == nullptr ? nullptr : value;
+  }
+  bool has_size(const char* name, std::size_t size, std::size_t expected);
+
+  // n elements of a given array; they may be NULL if n is 0.
+  template <typename Number>
+  std::span<Number> array(const char* name, Number* elements, std::int64_t n) {
+    if (n <= 0 || failed()) return {};
+    not_null(name, elements);
+    aligned(name, elements, alignof(Number));
+    if (failed()) return {};
+    return {elements, static_cast<std::size_t>(n)};
+  }
+  // n elements, or none if the array is NULL.
+  template <typename Number>
+  std::span<Number> optional_array(const char* name, Number* elements, std::int64_t n) {
+    return elements == nullptr ? std::span<Number>() : array(name, elements, n);
+  }
+  // The times of n poses or points. at_least: how many there must be where n is above 0.
+  std::span<const std::int64_t> utimes(const std::int64_t* utimes, std::int64_t utime_count, std::int64_t n,
+                                       std::int64_t at_least);
+
+ private:
+  bool has_handle(const char* name, const void* handle, HandleKind kind);
+  void aligned(const char* name, const void* pointer, std::size_t alignment);
+
+  const char* function_;
+  CallResult failure_;
+};
+
+// The largest number of poses and points in a call: no machine has memory for more.
+inline constexpr std::int64_t kMaxCount = std::int64_t{1} << 40;
+
+}  // namespace buoyancy
