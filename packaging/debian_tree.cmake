@@ -57,6 +57,23 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   if(modules)
     run(strip --strip-unneeded --remove-section=.comment --remove-section=.note ${modules})
   endif()
+  # The link to a library, which the development package has, is left alone.
+  file(GLOB_RECURSE libraries "${root}/usr/lib/*.so.*")
+  if(libraries)
+    run(strip --strip-unneeded --remove-section=.comment --remove-section=.note ${libraries})
+  endif()
+  if(component STREQUAL "c_library")
+    # dpkg-shlibdeps reads a control file and prints "shlibs:Depends=...".
+    set(work "${CPACK_TEMPORARY_DIRECTORY}/shlibdeps")
+    file(WRITE "${work}/debian/control" "Source: buoyancy\n\nPackage: ${package}\nArchitecture: any\n")
+    execute_process(COMMAND dpkg-shlibdeps -O ${libraries} WORKING_DIRECTORY "${work}" OUTPUT_VARIABLE depends
+                    ERROR_VARIABLE error RESULT_VARIABLE result OUTPUT_STRIP_TRAILING_WHITESPACE)
+    if(result)
+      message(FATAL_ERROR "dpkg-shlibdeps: ${error}")
+    endif()
+    string(REGEX REPLACE "^shlibs:Depends=" "" CPACK_DEBIAN_C_LIBRARY_PACKAGE_DEPENDS "${depends}")
+    file(REMOVE_RECURSE "${work}")
+  endif()
   file(GLOB_RECURSE archives "${root}/usr/lib/*.a")
   if(archives)
     run(strip --strip-debug --remove-section=.comment --remove-section=.note --enable-deterministic-archives
