@@ -66,19 +66,20 @@ class ArgumentChecks {
   }
   bool has_size(const char* name, std::size_t size, std::size_t expected);
 
-  // n elements of a given array; they may be NULL if n is 0.
+  // n items of `per_item` elements each; the array may be NULL if n is 0. Empty if a check has failed.
   template <typename Number>
-  std::span<Number> array(const char* name, Number* elements, std::int64_t n) {
+  std::span<Number> array(const char* name, Number* elements, std::int64_t n, std::size_t per_item = 1) {
     if (n <= 0 || failed()) return {};
     not_null(name, elements);
     aligned(name, elements, alignof(Number));
     if (failed()) return {};
-    return {elements, static_cast<std::size_t>(n)};
+    return {elements, per_item * static_cast<std::size_t>(n)};
   }
-  // n elements, or none if the array is NULL.
+  // The same, or none if the array is NULL.
   template <typename Number>
-  std::span<Number> optional_array(const char* name, Number* elements, std::int64_t n) {
-    return elements == nullptr ? std::span<Number>() : array(name, elements, n);
+  std::span<Number> optional_array(const char* name, Number* elements, std::int64_t n,
+                                   std::size_t per_item = 1) {
+    return elements == nullptr ? std::span<Number>() : array(name, elements, n, per_item);
   }
   // The times of n poses or points. at_least: how many there must be where n is above 0.
   std::span<const std::int64_t> utimes(const std::int64_t* utimes, std::int64_t utime_count, std::int64_t n,

@@ -55,9 +55,8 @@ buoyancy_error create_mesh(const char* function, const double* vertices, std::in
     checks.out_handle("mesh", mesh);
     checks.count("vertex_count", vertex_count, kMaxMeshCount);
     checks.count("face_count", face_count, kMaxMeshCount);
-    const std::span coordinates =
-        checks.array("vertices", vertices, 3 * std::max<std::int64_t>(vertex_count, 0));
-    const std::span indices = checks.array("faces", faces, 3 * std::max<std::int64_t>(face_count, 0));
+    const std::span coordinates = checks.array("vertices", vertices, vertex_count, 3);
+    const std::span indices = checks.array("faces", faces, face_count, 3);
     const QueryMeshOptions given = check_options(checks, options);
     if (checks.failed()) return checks.failure();
     if constexpr (std::same_as<Index, std::int64_t>) {

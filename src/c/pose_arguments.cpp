@@ -85,11 +85,11 @@ PoseArrays check_poses(ArgumentChecks& checks, const buoyancy_poses* given) {
   checks.count("poses->count", n, kMaxCount);
   if (checks.failed()) return {};
   return {
-      .positions = checks.array("poses->positions", given->positions, 3 * n),
-      .quaternions_wxyz = checks.array("poses->quaternions", given->quaternions, 4 * n),
-      .linear_velocities = checks.optional_array("poses->linear_velocities", given->linear_velocities, 3 * n),
+      .positions = checks.array("poses->positions", given->positions, n, 3),
+      .quaternions_wxyz = checks.array("poses->quaternions", given->quaternions, n, 4),
+      .linear_velocities = checks.optional_array("poses->linear_velocities", given->linear_velocities, n, 3),
       .angular_velocities =
-          checks.optional_array("poses->angular_velocities", given->angular_velocities, 3 * n),
+          checks.optional_array("poses->angular_velocities", given->angular_velocities, n, 3),
       .utimes = checks.utimes(given->utimes, given->utime_count, n, 0)};
 }
 

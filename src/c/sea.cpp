@@ -99,11 +99,11 @@ buoyancy_error buoyancy_sea_water_at(const buoyancy_sea* sea, int64_t count, con
     const buoyancy_sea* const of = checks.handle("sea", sea);
     checks.count("count", count, buoyancy::kMaxCount);
     if (checks.failed()) return checks.failure();
-    const std::span points = checks.array("positions", positions, 3 * count);
+    const std::span points = checks.array("positions", positions, count, 3);
     const std::span times = checks.utimes(utimes, utime_count, count, 1);
     const buoyancy::WaterMotionArrays out{checks.optional_array("pressures", pressures, count),
-                                          checks.optional_array("velocities", velocities, 3 * count),
-                                          checks.optional_array("accelerations", accelerations, 3 * count)};
+                                          checks.optional_array("velocities", velocities, count, 3),
+                                          checks.optional_array("accelerations", accelerations, count, 3)};
     const unsigned on = checks.threads(threads);
     if (checks.failed()) return checks.failure();
     water_at_points(of->sea, points, times, out, on);

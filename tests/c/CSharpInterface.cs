@@ -149,6 +149,17 @@ internal static class CSharpInterface
         Expect(Math.Abs(mesh.Centroid[2] - 0.25) < 1e-15, "the centroid");
         Poses poses = new Poses(3);
         Thrown<ArgumentException>(() => mesh.Query(poses, new Wrenches(2)));
+        // The library trusts the lengths of arrays, so the classes check every one.
+        Wrenches[] tooShort = {
+            new Wrenches(3) { Statuses = new int[2] }, new Wrenches(3) { Forces = new double[8] },
+            new Wrenches(3) { Torques = new double[8] }, new Wrenches(3) { Volumes = new double[2] },
+            new Wrenches(3) { CentersOfBuoyancy = new double[8] }, new Wrenches(3) { ForceErrorBounds = new double[2] },
+            new Wrenches(3) { TorqueErrorBounds = new double[2] } };
+        foreach (Wrenches given in tooShort) Thrown<ArgumentException>(() => mesh.Query(poses, given));
+        Thrown<ArgumentException>(() => mesh.Query(new Poses(3) { Quaternions = new double[11] }, new Wrenches(3)));
+        Thrown<ArgumentException>(() => mesh.Query(new Poses(3) { LinearVelocities = new double[8] }, new Wrenches(3)));
+        Thrown<ArgumentException>(() => mesh.Query(new Poses(3) { AngularVelocities = new double[8] }, new Wrenches(3)));
+        Thrown<BuoyancyException>(() => mesh.Query(new Poses(3) { Utimes = new long[2] }, new Wrenches(3)));
         Thrown<ArgumentNullException>(() => mesh.Query(poses, null));
         Thrown<BuoyancyException>(() => mesh.Query(poses, new Wrenches(3), null, (BuoyancyMethod)17));
         Thrown<BuoyancyException>(() => mesh.Query(poses, new Wrenches(3), new Water { Density = double.NaN }));
