@@ -52,7 +52,7 @@ void copy_elements(const char* source, const Py_buffer& buffer, int dimension, N
   if (dimension == buffer.ndim) {
     Source value;
     std::memcpy(&value, source, sizeof(value));
-    *out++ = static_cast<Number>(value);
+    *out++ = static_cast<Number>(value);  // NOLINT(bugprone-signed-char-misuse): a number of one byte
     return;
   }
   for (Py_ssize_t i = 0; i < buffer.shape[dimension]; ++i) {

@@ -1,6 +1,5 @@
 // buoyancy.Sea: the water and its waves, and their motion at many points.
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,11 +23,12 @@ namespace {
 class Broadcast {
  public:
   void add(const NumberArray<double>& array, const char* name) {
-    const int dimensions = std::max(static_cast<int>(shape_.size()), array.dimensions());
-    shape_.insert(shape_.begin(), static_cast<std::size_t>(dimensions) - shape_.size(), 1);
-    for (int i = 0; i < array.dimensions(); ++i) {
-      Py_ssize_t& known = shape_[static_cast<std::size_t>(dimensions - array.dimensions() + i)];
-      const Py_ssize_t extent = array.extent(i);
+    const auto dimensions = static_cast<std::size_t>(array.dimensions());
+    if (dimensions > shape_.size()) shape_.insert(shape_.begin(), dimensions - shape_.size(), 1);
+    const std::size_t first = shape_.size() - dimensions;
+    for (std::size_t i = 0; i < dimensions; ++i) {
+      Py_ssize_t& known = shape_[first + i];
+      const Py_ssize_t extent = array.shape()[i];
       if (known == extent || extent == 1) continue;
       if (known != 1) {
         throw py::value_error(std::string(name) + " has shape " + shape_text(array.shape()) +
