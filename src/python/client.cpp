@@ -275,6 +275,7 @@ py::dict statistics(py::handle self) {
   values["unanswered"] = stats.unanswered;
   values["late"] = stats.late;
   values["max_lag"] = stats.max_lag;
+  values["malformed"] = stats.malformed;
   values["round_trip_p50"] = round_trip.p50;
   values["round_trip_p99"] = round_trip.p99;
   values["round_trip_max"] = round_trip.max;
@@ -337,7 +338,7 @@ void define_client(py::module_& module) {
       "kernel's buffer is too small for\ntheir responses, else None.");
   type.def_property_readonly(
       "statistics", &statistics,
-      "dict: requests, retries, unanswered, late, max_lag, and round_trip_p50, _p99, _max in s.");
+      "dict: requests, retries, unanswered, late, max_lag, malformed, and round_trip_p50, _p99, _max in s.");
   type.def("__enter__", [](py::object self) { return self; });
   type.def("__exit__", [](py::handle self, const py::args&) { close(self); });
 }
