@@ -1,5 +1,8 @@
 #include "c/argument_checks.h"
 
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "base/format.h"
@@ -104,6 +107,11 @@ std::span<const std::int64_t> ArgumentChecks::utimes(const std::int64_t* utimes,
     return {};
   }
   return array("utimes", utimes, utime_count);
+}
+
+bool is_readable_file(std::string_view path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && std::ifstream(std::string(path)).is_open();
 }
 
 }  // namespace buoyancy

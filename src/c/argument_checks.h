@@ -93,6 +93,9 @@ class ArgumentChecks {
   CallResult failure_;
 };
 
+// Whether there is a regular file that can be opened: what distinguishes the errors FILE and MESH or SCENE.
+bool is_readable_file(std::string_view path);
+
 // The largest number of poses and points in a call: no machine has memory for more.
 inline constexpr std::int64_t kMaxCount = std::int64_t{1} << 40;
 

@@ -51,8 +51,7 @@ extern "C" {
 
 #define BUOYANCY_MAX_THREADS 1024
 
-// ---------------------------------------------------------------------------------------------- version,
-// errors
+// -------------------------------------------------------------------------------- version, errors
 
 // "1.0.0", of the library that runs. Never freed.
 BUOYANCY_API const char* buoyancy_version(void);
@@ -91,8 +90,7 @@ enum {
 // "OK", "NON_FINITE_POSE" and so on, "UNKNOWN_STATUS" for any other value. Never freed.
 BUOYANCY_API const char* buoyancy_status_name(int32_t status);
 
-// ---------------------------------------------------------------------------------------------------------
-// sea
+// -------------------------------------------------------------------------------------------- sea
 
 // A surface with waves, or at rest.
 typedef struct buoyancy_sea buoyancy_sea;
@@ -123,8 +121,8 @@ BUOYANCY_API buoyancy_error buoyancy_sea_get_info(const buoyancy_sea* sea, buoya
 
 // Sets elevations[i] [m] to the height of the surface over the level at x1[i], x2[i] [m], which are measured
 // along axis1 and axis2 from the world's origin. x1, x2, elevations: count numbers. utimes [us]: utime_count
-// of them, 1 for all points, which is quicker by far, or count. count: 0 to 2^40. A point that is not finite
-// gives NaN. Errors: HANDLE, INVALID_ARGUMENT. Complexity: O(count * wave components).
+// of them, 1 for all points, which is quicker by far, or count. count: 0 to 2^40. In waves a point that is
+// not finite gives NaN. Errors: HANDLE, INVALID_ARGUMENT. Complexity: O(count * wave components).
 BUOYANCY_API buoyancy_error buoyancy_sea_elevations(const buoyancy_sea* sea, int64_t count, const double* x1,
                                                     const double* x2, const int64_t* utimes,
                                                     int64_t utime_count, double* elevations, int32_t threads);
@@ -150,7 +148,7 @@ typedef struct buoyancy_water {
 // Sets all members to their defaults. size: sizeof(buoyancy_water). Errors: INVALID_ARGUMENT.
 BUOYANCY_API buoyancy_error buoyancy_default_water(buoyancy_water* water, size_t size);
 
-// ------------------------------------------------------------------------------------------ arrays of poses
+// -------------------------------------------------------------------------------- arrays of poses
 
 typedef struct buoyancy_poses {
   size_t size;                      // sizeof(buoyancy_poses)
@@ -195,8 +193,7 @@ typedef struct buoyancy_hydrostatics {
                         // [N, N m], columns [m, rad], W's axes; 36 n
 } buoyancy_hydrostatics;
 
-// --------------------------------------------------------------------------------------------------------
-// mesh
+// ------------------------------------------------------------------------------------------- mesh
 
 typedef int32_t buoyancy_method;
 enum {
@@ -295,8 +292,7 @@ BUOYANCY_API buoyancy_error buoyancy_mesh_hydrostatics(const buoyancy_mesh* mesh
                                                        const buoyancy_hydrostatics* hydrostatics,
                                                        int32_t threads);
 
-// -------------------------------------------------------------------------------------------------------
-// scene
+// ------------------------------------------------------------------------------------------ scene
 
 // The water, the waves and the bodies of a scene file (docs/scene_file.md).
 typedef struct buoyancy_scene buoyancy_scene;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
@@ -123,8 +122,7 @@ buoyancy_error buoyancy_mesh_load(const char* path, const buoyancy_mesh_options*
     if (checks.failed()) return checks.failure();
     buoyancy::Expected<std::shared_ptr<const buoyancy::QueryMesh>> loaded =
         buoyancy::QueryMesh::load(file, given);
-    const bool readable =
-        loaded || std::ifstream(std::string(file)).peek() != std::ifstream::traits_type::eof();
+    const bool readable = loaded || buoyancy::is_readable_file(file);
     return buoyancy::store_mesh(std::move(loaded), readable ? BUOYANCY_ERROR_MESH : BUOYANCY_ERROR_FILE,
                                 mesh);
   });

@@ -1,7 +1,6 @@
 // Scenes of the C interface.
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -79,7 +78,7 @@ buoyancy_error buoyancy_scene_load(const char* path, buoyancy_scene** scene) {
     const std::string_view file = checks.text("path", path);
     if (checks.failed()) return checks.failure();
     const auto description = buoyancy::read_scene_file(file);
-    if (!description && !std::ifstream(std::string(file)).is_open()) {
+    if (!description && !buoyancy::is_readable_file(file)) {
       return buoyancy::failure(BUOYANCY_ERROR_FILE, description.error());
     }
     return buoyancy::store_scene(description, scene);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <thread>
@@ -387,6 +388,10 @@ TEST(CInterface, SaysWhichFileCannotBeRead) {
   EXPECT_NE(last_error().find("no/such/scene.toml"), std::string::npos);
   const std::string folder = directory.path().string();
   EXPECT_EQ(buoyancy_mesh_load(folder.c_str(), nullptr, &mesh), BUOYANCY_ERROR_FILE);
+  EXPECT_EQ(buoyancy_scene_load(folder.c_str(), &scene), BUOYANCY_ERROR_FILE);
+  const std::string empty = folder + "/empty.obj";
+  std::ofstream(empty).close();
+  EXPECT_EQ(buoyancy_mesh_load(empty.c_str(), nullptr, &mesh), BUOYANCY_ERROR_MESH);
   EXPECT_EQ(buoyancy_mesh_load((std::string(BUOYANCY_SOURCE_DIR) + "/README.md").c_str(), nullptr, &mesh),
             BUOYANCY_ERROR_MESH);
   EXPECT_EQ(buoyancy_scene_load((std::string(BUOYANCY_SOURCE_DIR) + "/README.md").c_str(), &scene),
