@@ -51,7 +51,7 @@ extern "C" {
 
 #define BUOYANCY_MAX_THREADS 1024
 
-// -------------------------------------------------------------------------------- version, errors
+// ---------- version and errors
 
 // "1.0.0", of the library that runs. Never freed.
 BUOYANCY_API const char* buoyancy_version(void);
@@ -90,7 +90,7 @@ enum {
 // "OK", "NON_FINITE_POSE" and so on, "UNKNOWN_STATUS" for any other value. Never freed.
 BUOYANCY_API const char* buoyancy_status_name(int32_t status);
 
-// -------------------------------------------------------------------------------------------- sea
+// ---------- sea
 
 // A surface with waves, or at rest.
 typedef struct buoyancy_sea buoyancy_sea;
@@ -148,7 +148,7 @@ typedef struct buoyancy_water {
 // Sets all members to their defaults. size: sizeof(buoyancy_water). Errors: INVALID_ARGUMENT.
 BUOYANCY_API buoyancy_error buoyancy_default_water(buoyancy_water* water, size_t size);
 
-// -------------------------------------------------------------------------------- arrays of poses
+// ---------- arrays of poses
 
 typedef struct buoyancy_poses {
   size_t size;                      // sizeof(buoyancy_poses)
@@ -193,7 +193,7 @@ typedef struct buoyancy_hydrostatics {
                         // [N, N m], columns [m, rad], W's axes; 36 n
 } buoyancy_hydrostatics;
 
-// ------------------------------------------------------------------------------------------- mesh
+// ---------- mesh
 
 typedef int32_t buoyancy_method;
 enum {
@@ -292,7 +292,7 @@ BUOYANCY_API buoyancy_error buoyancy_mesh_hydrostatics(const buoyancy_mesh* mesh
                                                        const buoyancy_hydrostatics* hydrostatics,
                                                        int32_t threads);
 
-// ------------------------------------------------------------------------------------------ scene
+// ---------- scene
 
 // The water, the waves and the bodies of a scene file (docs/scene_file.md).
 typedef struct buoyancy_scene buoyancy_scene;

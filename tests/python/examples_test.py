@@ -20,6 +20,13 @@ class RunsExamples(TestCase):
         self.assertAlmostEqual(mass / 1025, volume, places=3)
         self.assertTrue(0 < height < 0.5)
 
+    def test_float_a_mesh_is_what_the_readme_shows(self):
+        readme = (SOURCE / "README.md").read_text(encoding="utf-8")
+        example = (SOURCE / "client/examples/python/float_a_mesh.py").read_text(encoding="utf-8")
+        shown = re.search(r"```python\n(.*?)```", readme, re.DOTALL)[1]
+        self.assertEqual(shown, example[example.index("import buoyancy"):])
+        self.assertIn(f"It prints `{self.run_example('float_a_mesh.py').strip()}`", readme)
+
     def test_righting_arm(self):
         rows = self.run_example("righting_arm.py").splitlines()[1:]
         arms = {float(angle): float(arm) for angle, arm in (row.split() for row in rows)}
