@@ -98,8 +98,8 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
   if (only_open) {
     cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
     hint =
-        "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\" for "
-        "this body in the scene file (with buoyancy-replay --mesh: --open dry_boundary)";
+        "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\", in "
+        "a scene file for this body (with buoyancy-replay --mesh: --open dry_boundary)";
   } else {
     cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"
                                        : "inner walls, or faces of the wrong winding";
