@@ -1,0 +1,30 @@
+// The part of a body that is under water and its waterplane, as moments in the body's axes, and the
+// hydrostatics that follow from them.
+#pragma once
+
+#include <optional>
+
+#include "hydrostatics/displacement_moments.h"
+#include "hydrostatics/hydrostatics.h"
+
+namespace buoyancy {
+
+struct ImmersedPart {
+  DisplacementMoments<double> moments;  // B axes, about `point`
+  Vec3 point = Vec3::Zero();            // [m], B axes, from an origin that the caller knows
+  double wetted_area = 0.0;             // [m^2]
+};
+
+// mesh: with its tree. plane: about the mesh's centre c, which is the origin of the part's point. A
+// waterplane whose area does not exceed its error bound counts as absent. Complexity: that of
+// hydrostatics().
+ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane);
+
+// What hydrostatics() returns. origin_B: [m], from which `part.point` is measured. volume_tolerance: [m^3],
+// below which a volume has no centre.
+std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3& origin_B,
+                                            double volume_tolerance, const Eigen::Quaterniond& q_WB,
+                                            const Water& water, const Vec3& reference_B,
+                                            const std::optional<Vec3>& center_of_mass_B);
+
+}  // namespace buoyancy
