@@ -1,0 +1,144 @@
+#include "flotation/attitude_descent.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace buoyancy {
+namespace {
+
+using Pair = std::array<double, 2>;
+
+constexpr int kMaxSteps = 200;
+constexpr double kFirstRadius = 0.4;  // [rad]
+constexpr double kMaxRadius = 0.6;    // [rad]
+constexpr double kEscape = 0.05;      // [rad], from a saddle point
+
+double norm(const Pair& v) {
+  return std::hypot(v[0], v[1]);
+}
+
+// A step in the axes of the principal curvatures.
+struct Step {
+  Pair along{};            // [rad]
+  double decrease = 0.0;   // [kg m], of the quadratic model
+  bool is_newton = false;  // does it reach the minimum of the model?
+  bool is_tied = false;    // is its mirror image as good: does the gradient not choose a side?
+};
+
+// Minimises the model g . s + 1/2 sum values s^2 within |s| <= radius.
+Step best_step(const Pair& g, const Pair& values, double radius, double gradient_rounding) {
+  Step step;
+  const auto at = [&](double shift) {
+    return Pair{-g[0] / (values[0] + shift), -g[1] / (values[1] + shift)};
+  };
+  step.is_newton = values[0] > 0.0 && norm(at(0.0)) <= radius;
+  if (step.is_newton) {
+    step.along = at(0.0);
+  } else {
+    double low = std::max(0.0, -values[0]);
+    double high = norm(g) / radius - values[0];
+    const double gap = values[1] - values[0];
+    const double across = gap > 0.0 ? -g[1] / gap : 0.0;
+    step.is_tied = std::abs(g[0]) <= gradient_rounding && values[0] <= 0.0 && std::abs(across) < radius;
+    if (step.is_tied) {
+      step.along = {std::copysign(std::sqrt(radius * radius - across * across), -g[0]), across};
+    } else {
+      constexpr int kBisections = 40;
+      for (int i = 0; i < kBisections; ++i) {
+        const double middle = 0.5 * (low + high);
+        (norm(at(middle)) > radius ? low : high) = middle;
+      }
+      step.along = at(high);
+    }
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    step.decrease -= step.along[i] * (g[i] + 0.5 * values[i] * step.along[i]);
+  }
+  return step;
+}
+
+Pair components(const BalancedAttitude& at, const EnergyCurvature& curvature) {
+  return {curvature.directions_B[0].dot(at.gradient), curvature.directions_B[1].dot(at.gradient)};
+}
+
+Vec3 tangent(const Pair& along, const EnergyCurvature& curvature) {
+  return along[0] * curvature.directions_B[0] + along[1] * curvature.directions_B[1];
+}
+
+}  // namespace
+
+std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& start, const IsKnown& is_known) {
+  const double converged = 0.05 * balance_->gradient_rounding();
+  BalancedAttitude at = start;
+  EnergyCurvature curvature = balance_->curvature(at);
+  double radius = kFirstRadius;
+  for (int count = 0; count < kMaxSteps; ++count) {
+    const Pair gradient = components(at, curvature);
+    const double size = at.gradient.norm();
+    const bool is_saddle = curvature.values[0] < -balance_->curvature_rounding();
+    if (size <= converged && !is_saddle) return Minimum{at, curvature};
+    if (size <= balance_->gradient_rounding() && is_saddle) radius = std::min(radius, kEscape);
+
+    const Step step = best_step(gradient, curvature.values, radius, balance_->gradient_rounding());
+    const Vec3 target = turned(at.up_B, tangent(step.along, curvature));
+    const double length = norm(step.along);
+    if (is_known(at, target, step.is_newton ? length : -length)) return std::nullopt;
+    if (step.is_tied && is_saddle) {
+      further_starts_.push_back(turned(at.up_B, tangent({-step.along[0], step.along[1]}, curvature)));
+    }
+    const std::optional<BalancedAttitude> next = balance_->at(target, &at);
+    const double rounding = balance_->energy_rounding();
+    bool accepted = false;
+    if (next) {
+      const double fall = at.energy - next->energy;
+      const bool is_below_rounding = step.decrease <= rounding && std::abs(fall) <= rounding;
+      accepted = is_below_rounding ? next->gradient.norm() < size || (is_saddle && step.is_tied) : fall > 0.0;
+      const double ratio = fall / step.decrease;
+      if (!is_below_rounding && ratio < 0.25) radius = 0.25 * length;
+      if (ratio > 0.75 && length > 0.9 * radius) radius = std::min(2.0 * radius, kMaxRadius);
+      // No step improves what rounding hides.
+      if (is_below_rounding && !accepted)
+        return size <= balance_->gradient_rounding() ? std::optional<Minimum>({at, curvature}) : std::nullopt;
+    } else {
+      radius = 0.25 * length;
+    }
+    if (!(radius > 1e-14)) return std::nullopt;
+    if (!accepted) continue;
+    at = *next;
+    curvature = balance_->curvature(at);
+  }
+  return std::nullopt;
+}
+
+std::optional<Minimum> AttitudeDescent::stationary_from(const BalancedAttitude& start) const {
+  constexpr double kMaxStep = 0.3;  // [rad]
+  BalancedAttitude at = start;
+  EnergyCurvature curvature = balance_->curvature(at);
+  for (int count = 0; count < 50; ++count) {
+    const double size = at.gradient.norm();
+    const Pair gradient = components(at, curvature);
+    Pair along{-gradient[0] / curvature.values[0], -gradient[1] / curvature.values[1]};
+    const double length = norm(along);
+    if (!std::isfinite(length)) break;
+    double factor = std::min(1.0, kMaxStep / length);
+    std::optional<BalancedAttitude> next;
+    for (int halving = 0; halving < 6; ++halving, factor *= 0.5) {
+      next = balance_->at(turned(at.up_B, factor * tangent(along, curvature)), &at);
+      if (next && next->gradient.norm() < size) break;
+      next.reset();
+    }
+    if (!next) break;
+    at = *next;
+    curvature = balance_->curvature(at);
+  }
+  if (!(at.gradient.norm() <= balance_->gradient_rounding())) return std::nullopt;
+  return Minimum{at, curvature};
+}
+
+std::vector<Vec3> AttitudeDescent::take_further_starts() {
+  return std::exchange(further_starts_, {});
+}
+
+}  // namespace buoyancy

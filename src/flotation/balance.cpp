@@ -1,0 +1,123 @@
+#include "flotation/balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+Vec3 turned(const Vec3& up_B, const Vec3& step) {
+  const double angle = step.norm();
+  if (!(angle > 0.0)) return up_B;
+  return (std::cos(angle) * up_B + (std::sin(angle) / angle) * step).normalized();
+}
+
+Balance::Balance(const FloatingBody& body, const Water& water)
+    : body_(&body), water_(&water), target_volume_(body.mass() / water.density) {
+  const double lever = body.reach() + (body.center_of_mass_B() - body.center_B()).norm();
+  double area = 0.0;
+  for (const FloatingBody::Term& term : body.terms()) area += term.placed.mesh->area;
+  gradient_rounding_ = water.density * body.volume_tolerance() * lever;
+  // Rounding of a volume and of a mass, each at its lever.
+  energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.mass() * lever;
+  curvature_rounding_ = 64.0 * kEpsilon * water.density * (area * lever * lever + body.volume() * lever);
+}
+
+BalancedAttitude Balance::balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const {
+  const Vec3 to_mass = body_->center_of_mass_B() - body_->center_B();
+  const Vec3 Q = body_->mass() * to_mass - water_->density * displaced.moment;
+  const double along = up_B.dot(Q);
+  return {.up_B = up_B,
+          .height = height,
+          .energy = along + height * (body_->mass() - water_->density * displaced.volume),
+          .lever_moment = Q,
+          .gradient = Q - along * up_B,
+          .area = 0.0,
+          .pivot = -height * up_B};
+}
+
+std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAttitude* guess) const {
+  constexpr int kMaxRounds = 200;
+  const auto sum_at = [&](double height) {
+    return displaced_sum(*body_, WaterPlane{.up_B = up_B, .h_c = -height});
+  };
+  HeightRange range = height_range(*body_, up_B);
+  if (body_->is_open()) {
+    if (!(range.low < range.high)) return std::nullopt;
+    if (!(sum_at(range.low).volume >= target_volume_)) return std::nullopt;
+  } else if (!(target_volume_ <= body_->volume())) {
+    return std::nullopt;
+  }
+
+  const double scale = std::max(std::abs(range.low), std::abs(range.high));
+  const double tolerance = 0.125 * body_->volume_tolerance();
+  double height = 0.5 * (range.low + range.high);
+  double area = 0.0;
+  if (guess != nullptr) {
+    const double expected = -up_B.dot(guess->pivot);
+    if (expected > range.low && expected < range.high) height = expected;
+    area = guess->area;
+  }
+  double last_height = 0.0;
+  double last_excess = 0.0;
+  double older_excess = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
+    const DisplacedSum displaced = sum_at(height);
+    const double excess = displaced.volume - target_volume_;
+    if (round > 0 && height != last_height && excess != last_excess) {
+      area = (last_excess - excess) / (height - last_height);
+    }
+    (excess > 0.0 ? range.low : range.high) = height;
+    const bool is_narrow = range.high - range.low <= 2.0 * kEpsilon * scale;
+    if (std::abs(excess) <= tolerance || is_narrow || round >= kMaxRounds) {
+      BalancedAttitude attitude = balanced(up_B, height, displaced);
+      attitude.area = std::max(area, 0.0);
+      return attitude;
+    }
+    double next = area > 0.0 ? height + excess / area : range.low;
+    const bool is_slow = round >= 2 && std::abs(excess) > 0.5 * older_excess;
+    if (!(next > range.low && next < range.high) || is_slow) next = 0.5 * (range.low + range.high);
+    older_excess = round > 0 ? std::abs(last_excess) : older_excess;
+    last_height = height;
+    last_excess = excess;
+    height = next;
+  }
+}
+
+EnergyCurvature Balance::curvature(BalancedAttitude& attitude) const {
+  const Vec3& k = attitude.up_B;
+  const Vec3 u = k.unitOrthogonal();
+  const Vec3 v = k.cross(u);
+  const Waterline line = waterline_sum(*body_, attitude.plane(), u);
+  const double density = water_->density;
+  double uu = 0.0;
+  double uv = 0.0;
+  double vv = 0.0;
+  if (line.area > 0.0) {
+    uu = density * (line.uu - line.u * line.u / line.area);
+    uv = density * (line.uv - line.u * line.v / line.area);
+    vv = density * (line.vv - line.v * line.v / line.area);
+  }
+  const double lift = k.dot(attitude.lever_moment);
+  const double half_difference = 0.5 * (uu - vv);
+  const double radius = std::hypot(half_difference, uv);
+  const double mean = 0.5 * (uu + vv);
+  const double angle = radius > 0.0 ? 0.5 * std::atan2(uv, half_difference) : 0.0;
+  const Vec3 larger = std::cos(angle) * u + std::sin(angle) * v;
+  EnergyCurvature curvature;
+  curvature.values = {mean - radius - lift, mean + radius - lift};
+  curvature.directions_B = {k.cross(larger), larger};
+  if (line.area > 0.0) {
+    attitude.area = line.area;
+    attitude.pivot = (line.u / line.area) * u + (line.v / line.area) * v - attitude.height * k;
+  }
+  curvature.largest_moment = mean + radius;
+  return curvature;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,77 @@
+// The energy of a floating body over the attitudes, with the height eliminated: at every attitude the body
+// displaces its mass (docs/mathematics.md, "Equilibrium and righting arms").
+//
+// Energies are divided by g: [kg m]. o is the body's center_B and z its height over the water, k the world's
+// up in B, Q = m (G - o) - rho M_o: the energy is k . Q + z (m - rho V), its gradient in k is Q, and where
+// m = rho V its Hessian over the sphere of k is rho J_F - (k . Q) I, with J_F the second moments of the
+// waterplane about its centroid.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "flotation/displaced_sum.h"
+
+namespace buoyancy {
+
+// A body in vertical balance.
+struct BalancedAttitude {
+  Vec3 up_B = Vec3::UnitZ();         // k, unit
+  double height = 0.0;               // [m], z
+  double energy = 0.0;               // [kg m]
+  Vec3 lever_moment = Vec3::Zero();  // [kg m], Q
+  Vec3 gradient = Vec3::Zero();      // [kg m], Q without its part along k: the torque over g, turned by k
+  double area = 0.0;                 // [m^2], of the waterplane, roughly; 0: not known
+  // [m], B axes, from o: a point of the waterplane about which a small turn keeps the displacement.
+  Vec3 pivot = Vec3::Zero();
+
+  WaterPlane plane() const { return {.up_B = up_B, .h_c = -height}; }
+};
+
+// Principal curvatures of the energy at a balanced attitude.
+struct EnergyCurvature {
+  std::array<double, 2> values{};  // [kg m], ascending; mass times metacentric height
+  std::array<Vec3, 2> directions_B{Vec3::UnitX(),
+                                   Vec3::UnitY()};  // unit, at right angles to k and each other
+  double largest_moment = 0.0;                      // [kg m], rho times the larger second moment
+
+  // [kg m], of the energy along a unit vector across k.
+  double along(const Vec3& direction_B) const {
+    const double first = direction_B.dot(directions_B[0]);
+    const double second = direction_B.dot(directions_B[1]);
+    return values[0] * first * first + values[1] * second * second;
+  }
+};
+
+class Balance {
+ public:
+  Balance(const FloatingBody& body, const Water& water);
+
+  // The height at which the body displaces its mass. guess: an attitude nearby, or nullptr. Returns nullopt
+  // where there is no such height: the body is too heavy, or an open mesh takes in water first.
+  std::optional<BalancedAttitude> at(const Vec3& up_B, const BalancedAttitude* guess = nullptr) const;
+  // Also sets the attitude's waterplane area and pivot, from which balances nearby start.
+  EnergyCurvature curvature(BalancedAttitude& attitude) const;
+
+  const FloatingBody& body() const { return *body_; }
+  const Water& water() const { return *water_; }
+  double target_volume() const { return target_volume_; }            // [m^3], mass over density
+  double energy_rounding() const { return energy_rounding_; }        // [kg m], of differences of energies
+  double gradient_rounding() const { return gradient_rounding_; }    // [kg m]
+  double curvature_rounding() const { return curvature_rounding_; }  // [kg m]
+
+ private:
+  BalancedAttitude balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const;
+
+  const FloatingBody* body_;
+  const Water* water_;
+  double target_volume_;
+  double energy_rounding_;
+  double gradient_rounding_;
+  double curvature_rounding_;
+};
+
+// The attitude reached by turning k by |step| towards a tangent step. [rad]
+Vec3 turned(const Vec3& up_B, const Vec3& step);
+
+}  // namespace buoyancy

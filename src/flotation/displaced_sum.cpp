@@ -1,0 +1,123 @@
+#include "flotation/displaced_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hydrostatics/hierarchical.h"
+
+namespace buoyancy {
+namespace {
+
+using Term = FloatingBody::Term;
+
+// The plane in the mesh's frame, about the mesh's centre.
+WaterPlane plane_of(const Term& term, const WaterPlane& plane) {
+  if (!term.is_turned && term.offset_B.isZero(0.0)) return plane;
+  WaterPlane moved;
+  moved.up_B = term.R_B.transpose() * plane.up_B;
+  moved.h_c = plane.h_c - plane.up_B.dot(term.offset_B);
+  return moved;
+}
+
+}  // namespace
+
+DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane) {
+  DisplacedSum sum;
+  for (const Term& term : body.terms()) {
+    const Displacement displaced = hierarchical(*term.placed.mesh, plane_of(term, plane));
+    sum.volume += term.placed.factor * displaced.volume;
+    sum.moment += term.placed.factor * (term.R_B * displaced.moment + displaced.volume * term.offset_B);
+  }
+  return sum;
+}
+
+DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane) {
+  DisplacedBounds bounds;
+  for (const Term& term : body.terms()) {
+    const HydrostaticMesh& mesh = *term.placed.mesh;
+    const Displacement displaced = hierarchical(mesh, plane_of(term, plane));
+    const double volume =
+        std::abs(term.placed.factor) * (mesh.rounding_bound() + displaced.rounding + term.plane_rounding);
+    const Vec3 reference = term.R_B.transpose() * (body.center_of_mass_B() - term.placed.position_B);
+    bounds.volume += volume;
+    bounds.moment += volume * mesh.max_lever_arm(reference);
+  }
+  return bounds;
+}
+
+ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane) {
+  ImmersedPart sum;
+  bool is_first = true;
+  for (const Term& term : body.terms()) {
+    const ImmersedPart part = immersed_part(*term.placed.mesh, plane_of(term, plane));
+    if (part.moments.volume == 0.0 && part.wetted_area == 0.0) continue;
+    DisplacementMoments<double> moments = term.is_turned ? part.moments.rotated(term.R_B) : part.moments;
+    const Vec3 point = term.offset_B + (term.is_turned ? Vec3(term.R_B * part.point) : part.point);
+    if (is_first) sum.point = point;
+    if (!is_first) moments = moments.moved(sum.point - point);
+    is_first = false;
+    const double factor = term.placed.factor;
+    sum.moments.volume += factor * moments.volume;
+    sum.moments.moment += factor * moments.moment;
+    sum.moments.waterplane_area += factor * moments.waterplane_area;
+    sum.moments.waterplane_moment += factor * moments.waterplane_moment;
+    sum.moments.waterplane_second_moments += factor * moments.waterplane_second_moments;
+    if (factor > 0.0) sum.wetted_area += part.wetted_area;
+  }
+  return sum;
+}
+
+Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u) {
+  const Vec3 v = plane.up_B.cross(u);
+  Waterline sum;
+  for (const Term& term : body.terms()) {
+    const Mat3 R = term.R_B.transpose();
+    const Waterline line = waterline(*term.placed.mesh, plane_of(term, plane),
+                                     {.u = R * u, .v = R * v, .origin = R * -term.offset_B});
+    const double factor = term.placed.factor;
+    sum.area += factor * line.area;
+    sum.u += factor * line.u;
+    sum.v += factor * line.v;
+    sum.uu += factor * line.uu;
+    sum.uv += factor * line.uv;
+    sum.vv += factor * line.vv;
+    if (factor < 0.0) continue;
+    sum.min_u = std::min(sum.min_u, line.min_u);
+    sum.max_u = std::max(sum.max_u, line.max_u);
+    sum.min_v = std::min(sum.min_v, line.min_v);
+    sum.max_v = std::max(sum.max_v, line.max_v);
+  }
+  return sum;
+}
+
+bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane) {
+  if (!body.is_open()) return false;
+  const Term& term = body.terms().front();
+  const WaterPlane of_mesh = plane_of(term, plane);
+  const HydrostaticMesh& mesh = *term.placed.mesh;
+  return std::any_of(mesh.boundary_vertices.begin(), mesh.boundary_vertices.end(),
+                     [&](std::int32_t i) { return of_mesh.height(mesh.vertex(i)) < 0.0; });
+}
+
+HeightRange height_range(const FloatingBody& body, const Vec3& up_B) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  HeightRange range{kInfinity, -kInfinity};
+  for (const Term& term : body.terms()) {
+    const HydrostaticMesh& mesh = *term.placed.mesh;
+    const Vec3 up = term.R_B.transpose() * up_B;
+    const double middle = up_B.dot(term.offset_B) + 0.5 * up.dot(mesh.box_min + mesh.box_max);
+    const double half = 0.5 * up.cwiseAbs().dot(mesh.box_max - mesh.box_min) + 1e-9 * mesh.diagonal;
+    range.low = std::min(range.low, -(middle + half));
+    range.high = std::max(range.high, -(middle - half));
+    if (!mesh.is_open()) continue;
+    double lowest = kInfinity;
+    for (const std::int32_t i : mesh.boundary_vertices) {
+      lowest = std::min(lowest, up_B.dot(term.offset_B) + up.dot(mesh.vertex(i)));
+    }
+    range.low = -lowest + 1e-12 * mesh.diagonal;
+  }
+  return range;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,42 @@
+// Sums over the meshes of a floating body at a water plane in its frame.
+#pragma once
+
+#include "flotation/floating_body.h"
+#include "flotation/waterline.h"
+#include "hydrostatics/immersed_part.h"
+
+namespace buoyancy {
+
+// About the body's center_B, B axes.
+struct DisplacedSum {
+  double volume = 0.0;         // [m^3]
+  Vec3 moment = Vec3::Zero();  // [m^4]
+};
+
+// All planes are about the body's center_B. Complexity: that of `hierarchical` per mesh.
+DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane);
+
+struct DisplacedBounds {
+  double volume = 0.0;  // [m^3], bound on the error of the volume
+  double moment = 0.0;  // [m^4], of the moment about the centre of mass, across the vertical
+};
+DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane);
+
+// The part's point is relative to the body's center_B.
+ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane);
+
+// The waterplane in the axes u, v = up x u of the plane, about the body's center_B. Its extent is that of the
+// meshes of factor 1. u: unit, horizontal, B axes. Errors: see waterline().
+Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u);
+
+bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane);
+
+// Heights of center_B over the water between which the body is neither dry nor fully submerged; for an open
+// mesh, at the lower end its boundary is at the surface.
+struct HeightRange {
+  double low = 0.0;   // [m]
+  double high = 0.0;  // [m]
+};
+HeightRange height_range(const FloatingBody& body, const Vec3& up_B);
+
+}  // namespace buoyancy

@@ -1,0 +1,136 @@
+#include "flotation/floating_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/format.h"
+#include "flotation/displaced_sum.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+std::optional<Error> fault_of(const PlacedMesh& placed, std::size_t count) {
+  Error error{.subject = "floating body", .actual = "", .expected = "", .cause = "", .hint = ""};
+  if (placed.mesh == nullptr || !placed.mesh->tree) {
+    error.actual = "a mesh without a moment tree";
+    error.expected = "meshes prepared with their trees";
+    error.hint = "Prepare the mesh with WithTree::kYes";
+    return error;
+  }
+  if (!(placed.factor == 1.0 || (placed.factor >= -1.0 && placed.factor < 0.0))) {
+    error.actual = "factor " + format_shortest(placed.factor);
+    error.expected = "1 for what displaces water, or minus a permeability between 0 and 1";
+    error.cause = "the sign of a permeability";
+    return error;
+  }
+  if (!placed.position_B.allFinite() || !(placed.orientation_B.norm() > 0.0) ||
+      !std::isfinite(placed.orientation_B.norm())) {
+    error.actual = "a mesh whose position or orientation is not finite";
+    error.expected = "three numbers in metres and a quaternion other than zero";
+    return error;
+  }
+  if (placed.mesh->is_open() && count > 1) {
+    error.actual = "an open mesh beside other meshes";
+    error.expected = "closed meshes, or one open mesh alone";
+    error.cause = "a hull without a deck";
+    error.hint = "Close the mesh";
+    return error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Expected<FloatingBody> FloatingBody::make(std::span<const PlacedMesh> meshes, double mass,
+                                          const Vec3& center_of_mass_B) {
+  if (!(mass > 0.0) || !std::isfinite(mass) || !center_of_mass_B.allFinite()) {
+    return make_error(
+        {.subject = "floating body",
+         .actual = "mass " + format_shortest(mass) + ", centre of mass " + format_vector(center_of_mass_B),
+         .expected = "a finite mass above 0 (kg) and a finite centre of mass (m)",
+         .cause = "",
+         .hint = ""});
+  }
+  FloatingBody body;
+  body.mass_ = mass;
+  body.center_of_mass_B_ = center_of_mass_B;
+  bool displaces = false;
+  for (const PlacedMesh& placed : meshes) {
+    if (const std::optional<Error> fault = fault_of(placed, meshes.size())) return make_error(*fault);
+    const HydrostaticMesh& mesh = *placed.mesh;
+    Term term{.placed = placed};
+    term.placed.orientation_B.normalize();
+    term.R_B = term.placed.orientation_B.toRotationMatrix();
+    term.is_turned = term.placed.orientation_B.vec().norm() > 0.0;
+    if (!term.is_turned) term.R_B.setIdentity();
+    const Vec3 center_B = term.R_B * mesh.center_B + placed.position_B;
+    if (body.terms_.empty()) body.center_B_ = center_B;
+    term.offset_B = (term.R_B * mesh.center_B - body.center_B_) + placed.position_B;
+    const bool is_moved = term.is_turned || !term.offset_B.isZero(0.0) || !placed.position_B.isZero(0.0);
+    const double distance = mesh.diagonal + term.offset_B.norm() + placed.position_B.norm();
+    if (is_moved) term.plane_rounding = 4.0 * kEpsilon * mesh.area * distance;
+    body.terms_.push_back(term);
+
+    displaces = displaces || placed.factor > 0.0;
+    body.is_open_ = body.is_open_ || mesh.is_open();
+    body.volume_ += placed.factor * mesh.volume;
+    body.volume_tolerance_ += std::abs(placed.factor) * mesh.volume_tolerance();
+    body.reach_ = std::max(body.reach_, term.offset_B.norm() + mesh.max_lever_arm(mesh.center_B));
+  }
+  if (!displaces) {
+    return make_error({.subject = "floating body",
+                       .actual = "no mesh of factor 1",
+                       .expected = "at least one mesh that displaces water",
+                       .cause = "",
+                       .hint = ""});
+  }
+  return body;
+}
+
+std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose& pose, const Water& water) {
+  const WaterPlane plane = water_plane_in_body(pose, water, body.center_B());
+  if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite() || is_boundary_wet(body, plane)) {
+    return std::nullopt;
+  }
+  const std::optional<Hydrostatics> hydrostatics =
+      hydrostatics_of(immersed_sum(body, plane), body.center_B(), body.volume_tolerance(), pose.q_WB, water,
+                      body.center_of_mass_B(), body.center_of_mass_B());
+  if (!hydrostatics) return std::nullopt;
+
+  const DisplacedSum displaced = displaced_sum(body, plane);
+  const DisplacedBounds bounds = displaced_bounds(body, plane);
+  const Vec3& k = plane.up_B;
+  const Vec3 to_mass = body.center_of_mass_B() - body.center_B();
+  const double weight = body.mass() * water.gravity;             // [N]
+  const double specific_weight = water.density * water.gravity;  // [N/m^3]
+  FloatingState state{.hydrostatics = *hydrostatics};
+  state.energy = weight * (k.dot(to_mass) - plane.h_c) -
+                 specific_weight * (k.dot(displaced.moment) - plane.h_c * displaced.volume);
+  state.force_W = (specific_weight * displaced.volume - weight) * water.up_W;
+  const Vec3 about_mass = displaced.moment - displaced.volume * to_mass;
+  state.torque_W = specific_weight * (pose.q_WB.normalized() * about_mass.cross(k));
+  state.force_error_bound = specific_weight * bounds.volume + kEpsilon * weight;
+  state.torque_error_bound = specific_weight * bounds.moment;
+  if (!std::isfinite(state.energy) || !state.torque_W.allFinite()) return std::nullopt;
+  return state;
+}
+
+double draft_at(const FloatingBody& body, const Pose& pose, const Water& water) {
+  const WaterPlane plane = water_plane_in_body(pose, water, body.center_B());
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const FloatingBody::Term& term : body.terms()) {
+    if (term.placed.factor < 0.0) continue;
+    const HydrostaticMesh& mesh = *term.placed.mesh;
+    const Vec3 up = term.R_B.transpose() * plane.up_B;
+    const double height = plane.up_B.dot(term.offset_B) - plane.h_c;
+    for (const Triangle& triangle : mesh.surface.triangles) {
+      for (const std::int32_t i : triangle) lowest = std::min(lowest, height + up.dot(mesh.vertex(i)));
+    }
+  }
+  return -lowest;
+}
+
+}  // namespace buoyancy

@@ -1,0 +1,89 @@
+// A rigid body of one or several closed meshes, with a mass, and what acts on it in water at rest.
+//
+// The displaced volume is a sum over the meshes, each with a factor: 1 for a hull or another part that
+// displaces water, minus the permeability for a compartment that is open to the sea. Every integral over the
+// displaced volume and over the waterplane is linear in the volume, so that the same sum gives centre,
+// waterplane, energy, wrench, stiffness and error bounds. Parts that overlap count twice where they do.
+//
+// Tanks enter here as a third kind of term: the mass of the liquid, its first moment at the attitude at hand,
+// and minus its density times the second moments of its own free surface. The functions that use a body need
+// nothing else of it (docs/mathematics.md, "Equilibrium and righting arms").
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+#include "hydrostatics/hydrostatics.h"
+
+namespace buoyancy {
+
+struct PlacedMesh {
+  const HydrostaticMesh* mesh = nullptr;                              // with its tree; outlives the body
+  Vec3 position_B = Vec3::Zero();                                     // [m], of the mesh's origin in B
+  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // x_B = orientation x + position
+  double factor = 1.0;  // 1: displaces water; minus its permeability: a compartment open to the sea
+};
+
+class FloatingBody {
+ public:
+  // One of the meshes, as the sums need it.
+  struct Term {
+    PlacedMesh placed;
+    Mat3 R_B = Mat3::Identity();   // of the orientation
+    Vec3 offset_B = Vec3::Zero();  // [m], from the body's center_B() to the mesh's centre
+    bool is_turned = false;        // is R_B not the identity?
+    double plane_rounding = 0.0;   // [m^3], what moving the water plane to the mesh's frame adds
+  };
+
+  // mass: [kg]; center_of_mass_B: [m]. Errors: no mesh of factor 1; a mesh without a tree; a factor that is
+  // neither 1 nor between -1 and 0; an open mesh beside others; a mass that is not above 0; numbers that are
+  // not finite.
+  static Expected<FloatingBody> make(std::span<const PlacedMesh> meshes, double mass,
+                                     const Vec3& center_of_mass_B);
+
+  const std::vector<Term>& terms() const { return terms_; }
+  double mass() const { return mass_; }                               // [kg]
+  const Vec3& center_of_mass_B() const { return center_of_mass_B_; }  // [m]
+  const Vec3& center_B() const {
+    return center_B_;
+  }  // [m], the centre of the first mesh: water planes are about it
+  bool is_open() const { return is_open_; }
+  double volume() const { return volume_; }  // [m^3], displaced fully submerged; open: only a scale
+  double volume_tolerance() const { return volume_tolerance_; }  // [m^3], sum of G_V of the meshes
+  double reach() const { return reach_; }  // [m], the farthest that a corner of a box is from center_B()
+
+ private:
+  FloatingBody() = default;
+
+  std::vector<Term> terms_;
+  double mass_ = 0.0;
+  Vec3 center_of_mass_B_ = Vec3::Zero();
+  Vec3 center_B_ = Vec3::Zero();
+  bool is_open_ = false;
+  double volume_ = 0.0;
+  double volume_tolerance_ = 0.0;
+  double reach_ = 0.0;
+};
+
+struct FloatingState {
+  Hydrostatics
+      hydrostatics;  // of the sum, with metacentric heights; the stiffness is about the centre of mass
+  // [J], m g z_G - rho g V z_B, heights over the water. Its minima are the stable equilibria.
+  double energy = 0.0;
+  Vec3 force_W = Vec3::Zero();      // [N], buoyancy and weight
+  Vec3 torque_W = Vec3::Zero();     // [N m], about the centre of mass
+  double force_error_bound = 0.0;   // [N], bound on the error of the force
+  double torque_error_bound = 0.0;  // [N m], bound on the error of the torque
+};
+
+// The state of a body at a pose. Returns nullopt where the boundary of an open mesh is under water, and where
+// a number is beyond double's range. The wetted area is that of the meshes of factor 1. Complexity: per mesh
+// that of hydrostatics() and buoyancy() with `hierarchical`; no heap.
+std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose& pose, const Water& water);
+
+// [m], depth of the lowest vertex that displaces water. Complexity: O(vertices).
+double draft_at(const FloatingBody& body, const Pose& pose, const Water& water);
+
+}  // namespace buoyancy

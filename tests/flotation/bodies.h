@@ -1,0 +1,24 @@
+// Floating bodies of one generated mesh.
+#pragma once
+
+#include <memory>
+
+#include "flotation/floating_body.h"
+#include "geometry/shapes.h"
+#include "hydrostatics/hydrostatic_mesh.h"
+
+namespace buoyancy {
+
+inline HydrostaticMesh mesh_of(const Shape& shape) {
+  return make_hydrostatic_mesh({make_shape(shape), {}});
+}
+
+// mesh: outlives the body. relative_density: of the mass to that of the water which the mesh can displace.
+inline FloatingBody body_of(const HydrostaticMesh& mesh, double relative_density,
+                            const Vec3& center_of_mass_B = Vec3::Zero(), const Water& water = {}) {
+  const PlacedMesh placed{.mesh = &mesh};
+  return FloatingBody::make({&placed, 1}, relative_density * water.density * mesh.volume, center_of_mass_B)
+      .value();
+}
+
+}  // namespace buoyancy

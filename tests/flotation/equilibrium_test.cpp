@@ -1,0 +1,231 @@
+#include "flotation/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "geometry/mesh_validation.h"
+#include "hydrostatics/buoyancy.h"
+#include "tests/flotation/bodies.h"
+#include "tests/hydrostatics/test_meshes.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+const Water kWater;
+
+void expect_equilibrium(const Equilibrium& at, const FloatingBody& body) {
+  EXPECT_LE(at.residual_force, at.force_bound);
+  EXPECT_LE(at.residual_torque, at.torque_bound);
+  // The same from the wrench that the service computes.
+  const FloatingBody::Term& term = body.terms().front();
+  const BuoyancyResult wrench =
+      buoyancy(Solver(*term.placed.mesh, Method::kHierarchical), at.pose, kWater, body.center_of_mass_B());
+  EXPECT_LE((wrench.force_W - body.mass() * kWater.gravity * kWater.up_W).norm(), at.force_bound);
+  EXPECT_LE(wrench.torque_W.norm(), at.torque_bound);
+}
+
+// [rad], how far a heel is from the nearest multiple of 90 degrees.
+double from_a_face(double heel) {
+  const double quarter = 0.5 * std::numbers::pi;
+  return std::abs(heel - quarter * std::round(heel / quarter));
+}
+
+// The log is square, and floats with its axis horizontal. It lies on a side where s < (3 - sqrt 3)/6 and
+// where s > (3 + sqrt 3)/6, on an edge where 9/32 < s < 23/32, and tilted between these.
+TEST(Equilibrium, FindsEveryAttitudeOfTheSquareLog) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{{8, 1, 1}, {4, 1, 1}});
+  const double side = (3.0 - std::sqrt(3.0)) / 6.0;
+  for (const double density : {0.02, 0.1, 0.2, side - 2e-3, side + 2e-3, 0.23, 0.25, 0.27, 9.0 / 32.0 - 2e-3,
+                               9.0 / 32.0 + 2e-3, 0.35, 0.5, 0.6, 23.0 / 32.0 - 2e-3, 23.0 / 32.0 + 2e-3,
+                               0.75, 1.0 - side - 2e-3, 1.0 - side + 2e-3, 0.9}) {
+    SCOPED_TRACE(density);
+    const FloatingBody body = body_of(mesh, density);
+    const Equilibria found = find_equilibria(body, kWater);
+    ASSERT_EQ(found.outcome, FlotationOutcome::kFloats);
+    const double s = std::min(density, 1.0 - density);  // water and air change places
+    EXPECT_EQ(found.attitudes.size(), s > side && s < 9.0 / 32.0 ? 8U : 4U);
+    for (const Equilibrium& at : found.attitudes) {
+      expect_equilibrium(at, body);
+      EXPECT_TRUE(at.is_stable());
+      EXPECT_EQ(at.family, AttitudeFamily::kNone);
+      EXPECT_NEAR(at.state.energy, found.attitudes.front().state.energy, 1e-12 * at.state.energy);
+      EXPECT_LT(std::abs(at.angles.trim), 1e-9);
+      const double tilt = from_a_face(at.angles.heel);
+      if (s < side) {
+        EXPECT_LT(tilt, 1e-9);
+      } else if (s <= 0.25) {
+        // The angle of loll of a wall-sided body: tan^2 = -2 GM/BM.
+        const double radius = 1.0 / (12.0 * s);
+        EXPECT_NEAR(std::tan(tilt), std::sqrt(-2.0 * (radius - 0.5 * (1.0 - s)) / radius), 1e-9);
+      } else if (s < 9.0 / 32.0) {
+        EXPECT_GT(tilt, 26.0 * kDegree);
+        EXPECT_LT(tilt, 44.9 * kDegree);
+      } else {
+        EXPECT_NEAR(tilt, 45.0 * kDegree, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Equilibrium, FindsAngleOfLollOfBoxWithHighCentreOfMass) {
+  // Beam 20, depth 12, draught 6 [m]: KB 3, BM 5.5556, so that the upright box is unstable with KG > 8.5556.
+  const HydrostaticMesh mesh = mesh_of(BoxShape{{60, 20, 12}, {3, 2, 2}});
+  const FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, 8.7 - 6.0));
+  const auto found = find_equilibrium_from(body, kWater, Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(found);
+  const double radius = 400.0 / 72.0;
+  EXPECT_NEAR(std::abs(std::tan(found->angles.heel)), std::sqrt(-2.0 * (3.0 + radius - 8.7) / radius), 1e-10);
+  expect_equilibrium(*found, body);
+  const FloatingBody stable = body_of(mesh, 0.5, Vec3(0, 0, 8.0 - 6.0));
+  const auto upright = find_equilibrium_from(stable, kWater, Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(upright);
+  EXPECT_NEAR(upright->angles.heel, 0.0, 1e-10);
+  EXPECT_NEAR(upright->draft, 6.0, 1e-12);
+  EXPECT_NEAR(upright->state.hydrostatics.metacentric_heights[0], 3.0 + radius - 8.0, 1e-11);
+}
+
+TEST(Equilibrium, ReportsSphereOnce) {
+  const HydrostaticMesh mesh = mesh_of(SphereShape{});
+  for (const double density : {0.05, 0.3, 0.5, 0.8}) {
+    SCOPED_TRACE(density);
+    const FloatingBody body = body_of(mesh, density);
+    const Equilibria found = find_equilibria(body, kWater);
+    ASSERT_EQ(found.attitudes.size(), 1U);
+    EXPECT_EQ(found.attitudes[0].family, AttitudeFamily::kSphere);
+    // The metacentre is at the centre at every draught; the mesh has 50 meridians.
+    for (const double height : found.attitudes[0].state.hydrostatics.metacentric_heights) {
+      EXPECT_NEAR(height, 0.0, 4e-3);
+    }
+  }
+  const FloatingBody weighted = body_of(mesh, 0.5, Vec3(0.1, -0.2, 0.05));
+  const Equilibria found = find_equilibria(weighted, kWater);
+  ASSERT_EQ(found.attitudes.size(), 1U);
+  EXPECT_EQ(found.attitudes[0].family, AttitudeFamily::kNone);
+  const Vec3 down_W = found.attitudes[0].pose.q_WB * Vec3(0.1, -0.2, 0.05).normalized();
+  EXPECT_LT((down_W + Vec3::UnitZ()).norm(), 0.01);
+}
+
+TEST(Equilibrium, ReportsCylinderThatRollsOnce) {
+  const HydrostaticMesh slender = mesh_of(CylinderShape{0.5, 3.0});
+  const Equilibria lying = find_equilibria(body_of(slender, 0.3), kWater);
+  ASSERT_EQ(lying.attitudes.size(), 1U);
+  EXPECT_EQ(lying.attitudes[0].family, AttitudeFamily::kCurve);
+  EXPECT_NEAR((lying.attitudes[0].pose.q_WB * Vec3::UnitZ()).z(), 0.0, 1e-6);
+
+  const HydrostaticMesh disc = mesh_of(CylinderShape{0.5, 0.5});
+  const Equilibria flat = find_equilibria(body_of(disc, 0.5), kWater);
+  ASSERT_EQ(flat.attitudes.size(), 2U);
+  for (const Equilibrium& at : flat.attitudes) {
+    EXPECT_EQ(at.family, AttitudeFamily::kNone);
+    EXPECT_NEAR(std::abs((at.pose.q_WB * Vec3::UnitZ()).z()), 1.0, 1e-12);
+  }
+}
+
+// A cone floats with its apex down where s^(1/3) > cos^2 of its half-angle: GM = 3/4 (h / cos^2 - H).
+TEST(Equilibrium, FindsWhetherConeFloatsOnItsApex) {
+  const double radius = 0.6;
+  const HydrostaticMesh mesh = mesh_of(ConeShape{radius, 1.0, 96, 1});
+  const double cos_squared = 1.0 / (1.0 + radius * radius);
+  for (const double factor : {0.9, 0.97, 1.03, 1.1}) {
+    SCOPED_TRACE(factor);
+    const FloatingBody body = body_of(mesh, factor * std::pow(cos_squared, 3.0), Vec3(0, 0, 0.25));
+    bool on_apex = false;
+    for (const Equilibrium& at : find_equilibria(body, kWater).attitudes) {
+      on_apex = on_apex || (at.pose.q_WB * Vec3::UnitZ()).z() < -1.0 + 1e-9;
+    }
+    EXPECT_EQ(on_apex, factor > 1.0);
+  }
+}
+
+TEST(Equilibrium, FindsDesignDraughtOfWigleyHull) {
+  const WigleyShape hull{};
+  const HydrostaticMesh mesh = mesh_of(hull);
+  const double volume = hydrostatics(mesh, Pose{}, kWater, Vec3::Zero(), std::nullopt)->volume;
+  const FloatingBody body = body_of(mesh, volume / mesh.volume, Vec3(0, 0, -0.35));
+  const Equilibria found = find_equilibria(body, kWater);
+  ASSERT_FALSE(found.attitudes.empty());
+  const Equilibrium& at = found.attitudes.front();
+  expect_equilibrium(at, body);
+  EXPECT_NEAR(at.draft, hull.draft, 1e-12);
+  EXPECT_NEAR(at.angles.heel, 0.0, 1e-10);
+  EXPECT_NEAR(at.angles.trim, 0.0, 1e-12);
+  EXPECT_LT((at.pose.q_WB * Vec3::UnitX() - Vec3::UnitX()).norm(), 1e-9);  // the bow over W's x axis
+}
+
+TEST(Equilibrium, FindsTheSameAttitudesInAnyFrame) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 6, .roughness = 0.5, .seed = 4});
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({rock, {}});
+  const HydrostaticMesh far =
+      make_hydrostatic_mesh({moved_and_scaled(rock, Vec3(4096, -512, 1024), 1.0), {}});
+  const Water tilted{.up_W = Vec3(0.6, 0.0, 0.8), .level = 7.0};
+  const Equilibria near_found = find_equilibria(body_of(mesh, 0.4, Vec3(0.1, 0, 0)), kWater);
+  const Equilibria far_found = find_equilibria(body_of(far, 0.4, Vec3(4096.1, -512, 1024)), tilted);
+  ASSERT_EQ(near_found.attitudes.size(), far_found.attitudes.size());
+  for (std::size_t i = 0; i < near_found.attitudes.size(); ++i) {
+    const Equilibrium& a = near_found.attitudes[i];
+    const Equilibrium& b = far_found.attitudes[i];
+    EXPECT_NEAR(a.angles.heel, b.angles.heel, 1e-7);
+    EXPECT_NEAR(a.angles.trim, b.angles.trim, 1e-7);
+    EXPECT_NEAR(a.draft, b.draft, 1e-7);
+    EXPECT_LE(b.residual_force, b.force_bound);
+    EXPECT_LE(b.residual_torque, b.torque_bound);
+    // B's origin is on the vertical through W's origin.
+    EXPECT_LT(b.pose.p_WB.cross(tilted.up_W).norm(), 1e-9);
+  }
+}
+
+// On a sphere of attitudes, minima - saddle points + maxima = 2.
+TEST(Equilibrium, FindsUnstableAttitudesThatCompleteTheSphere) {
+  EquilibriumOptions options;
+  options.unstable = true;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 5U}) {
+    SCOPED_TRACE(seed);
+    const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 5, .roughness = 0.4, .seed = seed});
+    const Equilibria found = find_equilibria(body_of(mesh, 0.4), kWater, options);
+    int characteristic = 0;
+    for (const Equilibrium& at : found.attitudes) {
+      characteristic += at.unstable_directions == 1 ? -1 : 1;
+      EXPECT_EQ(at.unstable_directions > 0, at.stiffness[0] < 0.0);
+      EXPECT_LE(at.residual_torque, at.torque_bound);
+    }
+    EXPECT_EQ(characteristic, 2);
+  }
+}
+
+TEST(Equilibrium, SaysWhatSinksAndWhatIsNeutral) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{});
+  EXPECT_EQ(find_equilibria(body_of(mesh, 1.001), kWater).outcome, FlotationOutcome::kSinks);
+  EXPECT_EQ(find_equilibria(body_of(mesh, 1.0), kWater).outcome, FlotationOutcome::kNeutral);
+  const Equilibria nearly = find_equilibria(body_of(mesh, 1.0 - 1e-8), kWater);
+  EXPECT_EQ(nearly.outcome, FlotationOutcome::kFloats);
+  EXPECT_FALSE(nearly.attitudes.empty());
+  EXPECT_FALSE(find_equilibrium_from(body_of(mesh, 1.001), kWater, Eigen::Quaterniond::Identity()));
+}
+
+TEST(Equilibrium, FloatsOpenHullUntilItTakesInWater) {
+  TriangleMesh hull = make_shape(BoxShape{{4, 2, 1}, {2, 2, 2}});
+  std::erase_if(hull.triangles, [&](const Triangle& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(),
+                       [&](std::int32_t i) { return hull.vertex(i).z() > 0.49; });
+  });
+  const ValidatedMesh open =
+      validate_mesh({hull, {}}, "hull", {.open = OpenPolicy::kDryBoundary}).mesh.value();
+  const HydrostaticMesh mesh = make_hydrostatic_mesh(open);
+  ASSERT_TRUE(mesh.is_open());
+  const PlacedMesh placed{.mesh = &mesh};
+  const auto outcome_of = [&](double mass, double height) {
+    return find_equilibria(FloatingBody::make({&placed, 1}, mass, Vec3(0, 0, height)).value(), kWater);
+  };
+  const Equilibria found = outcome_of(4.0 * 1025.0, 0.0);
+  ASSERT_EQ(found.attitudes.size(), 1U);
+  EXPECT_NEAR(found.attitudes[0].draft, 0.5, 1e-12);
+  EXPECT_EQ(outcome_of(8.5 * 1025.0, 0.0).outcome, FlotationOutcome::kTakesInWater);
+  EXPECT_EQ(outcome_of(4.0 * 1025.0, 3.0).outcome, FlotationOutcome::kTakesInWater);
+}
+
+}  // namespace
+}  // namespace buoyancy

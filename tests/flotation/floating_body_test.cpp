@@ -1,0 +1,208 @@
+#include "flotation/floating_body.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "flotation/equilibrium.h"
+#include "flotation/ship_axes.h"
+#include "hydrostatics/buoyancy.h"
+#include "tests/flotation/bodies.h"
+#include "tests/hydrostatics/random_poses.h"
+
+namespace buoyancy {
+namespace {
+
+const Water kWater;
+
+FloatingState state_of(const FloatingBody& body, const Pose& pose) {
+  const std::optional<FloatingState> state = floating_state(body, pose, kWater);
+  EXPECT_TRUE(state);
+  return state.value_or(FloatingState{});
+}
+
+// Compares everything that is defined at a pose that pierces the surface.
+void expect_same(const FloatingState& a, const FloatingState& b, double tolerance) {
+  EXPECT_NEAR(a.hydrostatics.volume, b.hydrostatics.volume, tolerance);
+  EXPECT_LE((a.hydrostatics.center_of_buoyancy_W - b.hydrostatics.center_of_buoyancy_W).norm(), tolerance);
+  EXPECT_NEAR(a.hydrostatics.waterplane_area, b.hydrostatics.waterplane_area, tolerance);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(a.hydrostatics.waterplane_second_moments[i], b.hydrostatics.waterplane_second_moments[i],
+                tolerance);
+    EXPECT_NEAR(a.hydrostatics.metacentric_heights[i], b.hydrostatics.metacentric_heights[i], 10 * tolerance);
+  }
+  const double weight = kWater.density * kWater.gravity;
+  EXPECT_NEAR(a.energy, b.energy, weight * tolerance);
+  EXPECT_LE((a.force_W - b.force_W).norm(), weight * tolerance);
+  EXPECT_LE((a.torque_W - b.torque_W).norm(), weight * tolerance);
+  EXPECT_LE((a.hydrostatics.stiffness - b.hydrostatics.stiffness).norm(), 10 * weight * tolerance);
+}
+
+TEST(FloatingBody, HasTheHydrostaticsAndTheWrenchOfItsMesh) {
+  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 6, .roughness = 0.5, .seed = 2});
+  const Vec3 center_of_mass_B(0.1, -0.2, 0.3);
+  const FloatingBody body = body_of(mesh, 0.5, center_of_mass_B);
+  const Solver solver(mesh, Method::kHierarchical);
+  RandomPoses random(3);
+  for (int i = 0; i < 50; ++i) {
+    const Pose pose = random.crossing(bounding_box(mesh.surface), kWater);
+    const FloatingState state = state_of(body, pose);
+    const auto expected = hydrostatics(mesh, pose, kWater, center_of_mass_B, center_of_mass_B);
+    EXPECT_EQ(state.hydrostatics.volume, expected->volume);
+    EXPECT_EQ(state.hydrostatics.stiffness, expected->stiffness);
+    EXPECT_EQ(state.hydrostatics.wetted_area, expected->wetted_area);
+    const BuoyancyResult wrench = buoyancy(solver, pose, kWater, center_of_mass_B);
+    const double weight = body.mass() * kWater.gravity;
+    EXPECT_LE((state.force_W + weight * Vec3::UnitZ() - wrench.force_W).norm(),
+              2.0 * state.force_error_bound);
+    EXPECT_LE((state.torque_W - wrench.torque_W).norm(), 2.0 * state.torque_error_bound);
+    EXPECT_GE(state.force_error_bound, wrench.force_error_bound);
+    if (wrench.immersion == Immersion::kDry) continue;
+    EXPECT_LE(state.torque_error_bound, 1.01 * wrench.torque_error_bound);
+  }
+}
+
+TEST(FloatingBody, HasForceAndTorqueThatAreTheGradientOfItsEnergy) {
+  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 8, .roughness = 0.4, .seed = 3});
+  const FloatingBody body = body_of(mesh, 0.4, Vec3(0.05, 0.1, -0.1));
+  RandomPoses random(4);
+  for (int i = 0; i < 20; ++i) {
+    const Pose pose = random.crossing(bounding_box(mesh.surface), kWater);
+    const FloatingState state = state_of(body, pose);
+    const Vec3 axis = random.direction();
+    const auto energy_at = [&](double rise, double angle) {
+      Pose moved = pose;
+      moved.q_WB = Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)) * pose.q_WB.normalized();
+      const Vec3 to_mass = body.center_of_mass_B();
+      moved.p_WB += pose.q_WB.normalized() * to_mass - moved.q_WB * to_mass + Vec3(0, 0, rise);
+      return state_of(body, moved).energy;
+    };
+    const double h = 1e-5;
+    const double scale = body.mass() * kWater.gravity;
+    EXPECT_NEAR(-(energy_at(h, 0) - energy_at(-h, 0)) / (2 * h), state.force_W.z(), 1e-7 * scale);
+    EXPECT_NEAR(-(energy_at(0, h) - energy_at(0, -h)) / (2 * h), axis.dot(state.torque_W), 1e-7 * scale);
+  }
+}
+
+// Two boxes side by side, one of them turned, are the box that they make up.
+TEST(FloatingBody, OfTwoPartsIsTheBodyOfTheirUnion) {
+  const HydrostaticMesh whole = mesh_of(BoxShape{{4, 2, 1}, {1, 1, 1}});
+  const HydrostaticMesh aft = mesh_of(BoxShape{{1, 2, 1}, {1, 1, 1}});
+  const HydrostaticMesh forward = mesh_of(BoxShape{{2, 3, 1}, {1, 1, 1}});
+  const std::array<PlacedMesh, 2> parts{PlacedMesh{.mesh = &aft, .position_B = Vec3(-1.5, 0, 0)},
+                                        PlacedMesh{.mesh = &forward,
+                                                   .position_B = Vec3(0.5, 0, 0),
+                                                   .orientation_B = Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                       std::numbers::pi / 2, Vec3::UnitZ()))}};
+  const Vec3 center_of_mass_B(0.2, 0.1, 0.1);
+  const double mass = 3.0 * kWater.density;
+  const FloatingBody body = FloatingBody::make(parts, mass, center_of_mass_B).value();
+  const PlacedMesh single{.mesh = &whole};
+  const FloatingBody expected = FloatingBody::make({&single, 1}, mass, center_of_mass_B).value();
+  EXPECT_NEAR(body.volume(), 8.0, 1e-14);
+  RandomPoses random(7);
+  for (int i = 0; i < 50; ++i) {
+    const Pose pose = random.crossing(bounding_box(whole.surface), kWater);
+    const FloatingState state = state_of(expected, pose);
+    if (state.hydrostatics.volume < 1e-2) continue;
+    expect_same(state_of(body, pose), state, 2e-12);
+    EXPECT_NEAR(draft_at(body, pose, kWater), draft_at(expected, pose, kWater), 1e-14);
+  }
+}
+
+// A compartment of permeability 1 over the full section is the hull with it cut out.
+TEST(FloatingBody, WithFloodedCompartmentIsTheHullWithoutIt) {
+  const HydrostaticMesh hull = mesh_of(BoxShape{{6, 2, 1}, {1, 1, 1}});
+  const HydrostaticMesh compartment = mesh_of(BoxShape{{2, 2, 1}, {1, 1, 1}});
+  const HydrostaticMesh end = mesh_of(BoxShape{{2, 2, 1}, {1, 1, 1}});
+  const std::array<PlacedMesh, 2> flooded{PlacedMesh{.mesh = &hull},
+                                          PlacedMesh{.mesh = &compartment, .factor = -1.0}};
+  const std::array<PlacedMesh, 2> cut{PlacedMesh{.mesh = &end, .position_B = Vec3(-2, 0, 0)},
+                                      PlacedMesh{.mesh = &end, .position_B = Vec3(2, 0, 0)}};
+  const FloatingBody body = FloatingBody::make(flooded, 4000.0, Vec3(0, 0, 0.1)).value();
+  const FloatingBody expected = FloatingBody::make(cut, 4000.0, Vec3(0, 0, 0.1)).value();
+  RandomPoses random(8);
+  for (int i = 0; i < 50; ++i) {
+    const Pose pose = random.crossing(bounding_box(hull.surface), kWater);
+    const FloatingState state = state_of(expected, pose);
+    if (state.hydrostatics.volume < 1e-2) continue;
+    expect_same(state_of(body, pose), state, 2e-12);
+  }
+}
+
+// T' = T L/(L - mu l) for a compartment of length l over the full section.
+TEST(FloatingBody, SinksToTheDraughtOfLostBuoyancy) {
+  const double length = 60.0;
+  const double flooded_length = 12.0;
+  const HydrostaticMesh hull = mesh_of(BoxShape{{length, 20, 12}, {1, 1, 1}});
+  const HydrostaticMesh compartment = mesh_of(BoxShape{{flooded_length, 20, 12}, {1, 1, 1}});
+  for (const double permeability : {0.5, 0.85, 1.0}) {
+    const std::array<PlacedMesh, 2> meshes{PlacedMesh{.mesh = &hull},
+                                           PlacedMesh{.mesh = &compartment, .factor = -permeability}};
+    const double draft = 6.0;
+    const double mass = kWater.density * length * 20.0 * draft;
+    const FloatingBody body = FloatingBody::make(meshes, mass, Vec3(0, 0, -3.0)).value();
+    const auto found = find_equilibrium_from(body, kWater, Eigen::Quaterniond::Identity());
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->draft, draft * length / (length - permeability * flooded_length), 1e-11);
+    EXPECT_NEAR(found->angles.trim, 0.0, 1e-11);
+    EXPECT_LE(found->residual_force, found->force_bound);
+    EXPECT_LE(found->residual_torque, found->torque_bound);
+  }
+}
+
+TEST(FloatingBody, RejectsWhatIsNoBody) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{});
+  const HydrostaticMesh without_tree = make_hydrostatic_mesh({make_shape(BoxShape{}), {}}, WithTree::kNo);
+  const auto make = [](PlacedMesh placed, double mass) {
+    return FloatingBody::make({&placed, 1}, mass, Vec3::Zero());
+  };
+  EXPECT_TRUE(make({.mesh = &mesh}, 1.0));
+  EXPECT_FALSE(make({.mesh = &mesh}, 0.0));
+  EXPECT_FALSE(make({.mesh = &mesh}, std::nan("")));
+  EXPECT_FALSE(make({.mesh = &mesh, .factor = 0.5}, 1.0));
+  EXPECT_FALSE(make({.mesh = &mesh, .factor = -0.5}, 1.0));  // a compartment alone
+  EXPECT_FALSE(make({.mesh = &without_tree}, 1.0));
+  EXPECT_FALSE(make({}, 1.0));
+  EXPECT_FALSE(FloatingBody::make({}, 1.0, Vec3::Zero()));
+  const auto error = make({.mesh = &mesh, .factor = 0.5}, 1.0).error();
+  EXPECT_NE(error.message().find("0.5"), std::string::npos) << error.message();
+}
+
+TEST(ShipAxes, ConvertBetweenHeelTrimAndUp) {
+  const ShipAxes axes = make_ship_axes(-Vec3::UnitY(), Vec3::UnitX()).value();
+  const Vec3 up_W = Vec3(0.36, 0.48, 0.8);
+  for (const double heel : {-3.0, -1.0, 0.0, 0.5, 2.0}) {
+    for (const double trim : {-1.2, -0.1, 0.0, 0.7}) {
+      const Vec3 up_B = up_at(axes, {heel, trim});
+      const HeelTrim found = heel_trim_of(axes, up_B);
+      EXPECT_NEAR(found.heel, heel, 1e-14);
+      EXPECT_NEAR(found.trim, trim, 1e-14);
+      const Eigen::Quaterniond q = attitude_at(axes, {heel, trim}, up_W);
+      EXPECT_LT((q * up_B - up_W).norm(), 1e-15);
+      // Forward lies over W's x axis, the bow is up by the trim, and starboard is down by the heel.
+      const Vec3 forward_W = q * axes.forward_B;
+      EXPECT_NEAR(forward_W.dot(up_W), std::sin(trim), 1e-14);
+      EXPECT_NEAR(up_W.cross(forward_W).dot(Vec3::UnitX()), 0.0, 1e-14);
+      EXPECT_GT(forward_W.x(), 0.0);
+      EXPECT_NEAR((q * axes.port_B()).dot(up_W), std::cos(trim) * std::sin(heel), 1e-14);
+      const Vec3 starboard_W = q * starboard_at(axes, heel);
+      EXPECT_NEAR(starboard_W.dot(up_W), 0.0, 1e-14);
+      EXPECT_NEAR(starboard_W.dot(forward_W), 0.0, 1e-14);
+    }
+  }
+}
+
+TEST(ShipAxes, RejectsDirectionsThatAreNoAxes) {
+  EXPECT_FALSE(make_ship_axes(Vec3::Zero(), Vec3::UnitZ()));
+  EXPECT_FALSE(make_ship_axes(Vec3::UnitX(), Vec3(0, std::nan(""), 1)));
+  EXPECT_FALSE(make_ship_axes(Vec3::UnitX(), Vec3(1, 0, 1)));
+  const auto axes = make_ship_axes(Vec3(2, 0, 0), Vec3(0, 0, 1e-3));
+  ASSERT_TRUE(axes);
+  EXPECT_EQ(axes->port_B(), Vec3::UnitY());
+}
+
+}  // namespace
+}  // namespace buoyancy
