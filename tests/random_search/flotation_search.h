@@ -1,0 +1,50 @@
+// The random search for attitudes that are no stable equilibria (docs/mathematics.md, "Equilibrium and
+// righting arms"): random closed meshes with random masses and centres of mass.
+//
+// A body lighter than the water that it can displace floats in at least one attitude. Each attitude balances
+// within its bounds, and the energy rises when the body is moved a little: turned about a random axis and
+// raised or lowered.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flotation/equilibrium.h"
+#include "tests/random_search/random_mesh.h"
+
+namespace buoyancy {
+
+// Depends on the seed and the number alone.
+struct FlotationCase {
+  RandomMesh mesh;
+  double relative_density = 0.0;         // mass over that of the water that the mesh can displace
+  Vec3 center_of_mass_B = Vec3::Zero();  // [m], the centroid, or in the bounding box
+
+  std::string text() const;
+};
+FlotationCase random_flotation_case(std::uint64_t seed, std::int64_t number);
+
+struct FailedFlotationCase {
+  std::int64_t number = 0;
+  std::string violation;
+};
+
+struct FlotationSearchStats {
+  std::int64_t cases = 0;
+  std::int64_t attitudes = 0;
+  std::int64_t families = 0;
+  std::int64_t most_attitudes = 0;  // of one body
+  double largest_force = 0.0;       // residual over bound
+  double largest_torque = 0.0;
+  std::vector<FailedFlotationCase> failures;
+
+  FlotationSearchStats& operator+=(const FlotationSearchStats& other);
+  std::string text() const;
+};
+
+// Runs the cases begin <= number < end.
+FlotationSearchStats search_flotation(std::uint64_t seed, std::int64_t begin, std::int64_t end,
+                                      unsigned threads);
+
+}  // namespace buoyancy
