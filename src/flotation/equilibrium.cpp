@@ -231,7 +231,7 @@ std::optional<Equilibrium> equilibrium_at(const Balance& balance, const Minimum&
   std::optional<FloatingState> state = floating_state(body, result.pose, water);
   if (!state) return std::nullopt;
   result.state = *state;
-  result.draft = draft_at(body, result.pose, water);
+  result.draft = -at.height - lowest_along(body, at.up_B);
   result.residual_force = state->force_W.norm();
   result.residual_torque = state->torque_W.norm();
 

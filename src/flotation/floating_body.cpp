@@ -118,19 +118,18 @@ std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose
   return state;
 }
 
-double draft_at(const FloatingBody& body, const Pose& pose, const Water& water) {
-  const WaterPlane plane = water_plane_in_body(pose, water, body.center_B());
+double lowest_along(const FloatingBody& body, const Vec3& up_B) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const FloatingBody::Term& term : body.terms()) {
     if (term.placed.factor < 0.0) continue;
     const HydrostaticMesh& mesh = *term.placed.mesh;
-    const Vec3 up = term.R_B.transpose() * plane.up_B;
-    const double height = plane.up_B.dot(term.offset_B) - plane.h_c;
+    const Vec3 up = term.R_B.transpose() * up_B;
+    const double height = up_B.dot(term.offset_B);
     for (const Triangle& triangle : mesh.surface.triangles) {
       for (const std::int32_t i : triangle) lowest = std::min(lowest, height + up.dot(mesh.vertex(i)));
     }
   }
-  return -lowest;
+  return lowest;
 }
 
 }  // namespace buoyancy

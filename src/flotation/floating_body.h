@@ -83,7 +83,8 @@ struct FloatingState {
 // that of hydrostatics() and buoyancy() with `hierarchical`; no heap.
 std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose& pose, const Water& water);
 
-// [m], depth of the lowest vertex that displaces water. Complexity: O(vertices).
-double draft_at(const FloatingBody& body, const Pose& pose, const Water& water);
+// [m], the lowest vertex that displaces water along a direction: its distance from center_B() that way. up_B:
+// unit. Complexity: O(triangles).
+double lowest_along(const FloatingBody& body, const Vec3& up_B);
 
 }  // namespace buoyancy

@@ -108,7 +108,8 @@ TEST(FloatingBody, OfTwoPartsIsTheBodyOfTheirUnion) {
     const FloatingState state = state_of(expected, pose);
     if (state.hydrostatics.volume < 1e-2) continue;
     expect_same(state_of(body, pose), state, 2e-12);
-    EXPECT_NEAR(draft_at(body, pose, kWater), draft_at(expected, pose, kWater), 1e-14);
+    const Vec3 up_B = pose.q_WB.conjugate() * kWater.up_W;
+    EXPECT_NEAR(lowest_along(body, up_B) + up_B.dot(body.center_B()), lowest_along(expected, up_B), 1e-14);
   }
 }
 
