@@ -1,0 +1,160 @@
+#include "flotation/hydrostatic_table.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/format.h"
+#include "flotation/displaced_sum.h"
+#include "hydrostatics/triangle_clip.h"
+
+namespace buoyancy {
+namespace {
+
+double ratio(double value, double by) {
+  return by != 0.0 ? value / by : kNaN;
+}
+
+}  // namespace
+
+Expected<HydrostaticTable> HydrostaticTable::make(const FloatingBody& body, const Water& water,
+                                                  const HydrostaticTableOptions& options) {
+  HydrostaticTable table(body, water);
+  table.axes_ = options.axes;
+  const ShipAxes& axes = options.axes;
+  const auto end_along = [&](const Vec3& direction) {
+    return lowest_along(body, direction) + direction.dot(body.center_B());
+  };
+  table.keel_ = options.keel ? *options.keel : end_along(axes.up_B);
+  const double aft = options.aft_perpendicular ? *options.aft_perpendicular : end_along(axes.forward_B);
+  const double forward =
+      options.forward_perpendicular ? *options.forward_perpendicular : -end_along(-axes.forward_B);
+  table.midship_ = 0.5 * (aft + forward);
+  table.lpp_ = forward - aft;
+  if (!std::isfinite(table.keel_) || !std::isfinite(table.lpp_) || !(table.lpp_ > 0.0)) {
+    return make_error({.subject = "hydrostatic table",
+                       .actual = "aft perpendicular " + format_shortest(aft) + " m, forward perpendicular " +
+                                 format_shortest(forward) + " m, keel " + format_shortest(table.keel_) + " m",
+                       .expected = "finite numbers, the aft perpendicular aft of the forward one",
+                       .cause = "perpendiculars in the wrong order, or a forward axis that points aft",
+                       .hint = "Exchange the perpendiculars or name another forward axis"});
+  }
+  table.cut_midship_section();
+  return table;
+}
+
+void HydrostaticTable::cut_midship_section() {
+  const Vec3& forward = axes_.forward_B;
+  const Vec3 port = axes_.port_B();
+  for (const FloatingBody::Term& term : body_->terms()) {
+    const HydrostaticMesh& mesh = *term.placed.mesh;
+    const Vec3 center_B = body_->center_B() + term.offset_B;
+    const auto corner = [&](std::int32_t i) {
+      const Vec3 x_B = center_B + term.R_B * mesh.vertex(i);
+      return ClipVertex<double>{Point<double>::from(Vec3(port.dot(x_B), axes_.up_B.dot(x_B), 0.0)),
+                                forward.dot(x_B) - midship_};
+    };
+    for (const Triangle& triangle : mesh.surface.triangles) {
+      const std::array<ClipVertex<double>, 3> corners{corner(triangle[0]), corner(triangle[1]),
+                                                      corner(triangle[2])};
+      unsigned aft = 0;
+      for (unsigned i = 0; i < 3; ++i) aft |= corners[i].wet() ? 1U << i : 0U;
+      if (aft == 0U || aft == 7U) continue;
+      const std::size_t first = kOddOneOut[aft];
+      const ClipVertex<double>& p = corners[first];
+      const auto cut = [&](const ClipVertex<double>& other) {
+        const ClipVertex<double> point = p.wet() ? intersect_edge(p, other) : intersect_edge(other, p);
+        return Eigen::Vector2d(point.y.x, point.y.y);
+      };
+      SectionEdge edge{cut(corners[(first + 1) % 3]), cut(corners[(first + 2) % 3]), term.placed.factor};
+      // The aft part is counter-clockwise seen from outside, and the section lies to the other side.
+      if (p.wet()) std::swap(edge.from, edge.to);
+      section_.push_back(edge);
+    }
+  }
+}
+
+// By Green's theorem, the area under water is the integral of the depth over the horizontal, along the wet
+// edges.
+double HydrostaticTable::immersed_section(double draft) const {
+  const double level = keel_ + draft;
+  double area = 0.0;
+  for (const SectionEdge& edge : section_) {
+    Eigen::Vector2d from = edge.from;
+    Eigen::Vector2d to = edge.to;
+    if (from.y() >= level && to.y() >= level) continue;
+    const auto at_level = [&] {
+      const double share = (level - from.y()) / (to.y() - from.y());
+      return Eigen::Vector2d(from.x() + share * (to.x() - from.x()), level);
+    };
+    if (from.y() > level) {
+      from = at_level();
+    } else if (to.y() > level) {
+      to = at_level();
+    }
+    area += edge.factor * 0.5 * ((level - from.y()) + (level - to.y())) * (to.x() - from.x());
+  }
+  return area;
+}
+
+std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) const {
+  // The water plane goes through the point on the water at midship.
+  const Vec3 up_B = up_at(axes_, {0.0, trim});
+  const Vec3 on_water_B = midship_ * axes_.forward_B + (keel_ + draft) * axes_.up_B;
+  const WaterPlane plane{.up_B = up_B, .h_c = up_B.dot(on_water_B - body_->center_B())};
+  if (!std::isfinite(plane.h_c) || is_boundary_wet(*body_, plane)) return std::nullopt;
+  const ImmersedPart part = immersed_sum(*body_, plane);
+  const Vec3 forward_in_water = up_at(axes_, {0.0, trim + 0.5 * std::numbers::pi});
+  const Waterline line = waterline_sum(*body_, plane, forward_in_water);
+
+  HydrostaticRow row;
+  row.draft = draft;
+  row.trim = trim;
+  row.volume = part.moments.volume;
+  row.mass = water_.density * row.volume;
+  const bool displaces = row.volume > body_->volume_tolerance();
+  const Vec3 from_origin = body_->center_B() + part.point;
+  const Vec3 center_B =
+      displaces ? Vec3(from_origin + part.moments.moment / row.volume) : Vec3::Constant(kNaN);
+  const Vec3 center = axes_.components(center_B);
+  row.lcb = center.x() - midship_;
+  row.tcb = center.y();
+  row.kb = center.z() - keel_;
+
+  row.waterplane_area = part.moments.waterplane_area;
+  const bool has_waterplane = row.waterplane_area > 0.0;
+  if (has_waterplane) {
+    const Vec3 centroid_B = from_origin + part.moments.waterplane_moment / row.waterplane_area;
+    row.lcf = axes_.forward_B.dot(centroid_B) - midship_;
+    row.lwl = line.max_u - line.min_u;
+    row.bwl = line.max_v - line.min_v;
+  } else {
+    row.lcf = kNaN;
+  }
+  const double about_length = has_waterplane ? line.vv - line.v * line.v / line.area : 0.0;
+  const double about_beam = has_waterplane ? line.uu - line.u * line.u / line.area : 0.0;
+  row.bm_t = displaces ? about_length / row.volume : kNaN;
+  row.bm_l = displaces ? about_beam / row.volume : kNaN;
+  row.km_t = row.kb + row.bm_t * std::cos(trim);
+  row.km_l = row.kb + row.bm_l * std::cos(trim);
+  const double kg = axes_.up_B.dot(body_->center_of_mass_B()) - keel_;
+  row.mass_per_cm = 0.01 * water_.density * row.waterplane_area;
+  row.moment_per_cm = row.mass * (row.km_l - kg) / (100.0 * lpp_);
+  row.moment_per_degree = row.mass * (row.km_t - kg) * std::sin(std::numbers::pi / 180.0);
+
+  row.wetted_area = part.wetted_area;
+  row.midship_area = immersed_section(draft);
+  row.midship = ratio(row.midship_area, row.bwl * draft);
+  const auto coefficients_on = [&](double length) {
+    return FormCoefficients{.length = length,
+                            .block = ratio(row.volume, length * row.bwl * draft),
+                            .prismatic = ratio(row.volume, length * row.midship_area),
+                            .waterplane = ratio(row.waterplane_area, length * row.bwl)};
+  };
+  row.on_lpp = coefficients_on(lpp_);
+  row.on_lwl = coefficients_on(row.lwl);
+  if (!std::isfinite(row.volume) || !std::isfinite(row.wetted_area)) return std::nullopt;
+  return row;
+}
+
+}  // namespace buoyancy
