@@ -42,14 +42,15 @@ class EquilibriumSearch {
 
   void find_minima() {
     constexpr int kMinStarts = 24;
-    constexpr int kStartsWithoutNews = 16;
-    constexpr int kMaxStarts = 200;
+    constexpr int kMaxStarts = 600;
     for (const Vec3& axis : {Vec3(Vec3::UnitZ()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitX())}) {
       descend(axis);
       descend(-axis);
     }
+    // The more attitudes are known, the smaller is what leads to one that is not.
+    const auto enough = [&](int starts) { return 12 + static_cast<int>(2 * found_.size()) <= starts; };
     int last_news = 0;
-    for (int n = 0; n < kMaxStarts && (n < kMinStarts || n < last_news + kStartsWithoutNews); ++n) {
+    for (int n = 0; n < kMaxStarts && (n < kMinStarts || !enough(n - last_news)); ++n) {
       if (descend(direction(n))) last_news = n;
       if (!found_.empty() && found_.front().family == AttitudeFamily::kSphere) return;
     }
@@ -133,13 +134,34 @@ class EquilibriumSearch {
   // none.
   bool approaches_known(const BalancedAttitude& at, const Vec3& target, double step) const {
     for (const Found& found : found_) {
-      const double energy = found.minimum.attitude.energy;
-      if (step >= 0.0 && energy <= at.energy) {
-        const double distance = (found.minimum.attitude.up_B - target).norm();
-        if (step <= 0.2 && distance <= 0.01 + 0.1 * step) return true;
-      }
+      const double distance = (found.minimum.attitude.up_B - target).norm();
+      if (step >= 0.0 && step <= 0.2 && distance <= 0.01 + 0.1 * step) return true;
+      if (is_in_bowl_of(found.minimum, at)) return true;
     }
     return belongs_to_family(at);
+  }
+
+  // Are energy and gradient those of the quadratic model at a minimum? Between two minima they are not.
+  static bool is_in_bowl_of(const Minimum& minimum, const BalancedAttitude& at) {
+    constexpr double kMaxDistance = 0.5;  // [rad]
+    constexpr double kAgreement = 0.2;
+    const Vec3 offset = at.up_B - minimum.attitude.up_B;
+    if (offset.squaredNorm() > kMaxDistance * kMaxDistance) return false;
+    double energy = 0.0;
+    double gradient_squared = 0.0;
+    double difference_squared = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vec3& direction = minimum.curvature.directions_B[i];
+      const double along = offset.dot(direction);
+      const double gradient = minimum.curvature.values[i] * along;
+      const double difference = at.gradient.dot(direction) - gradient;
+      energy += 0.5 * gradient * along;
+      gradient_squared += gradient * gradient;
+      difference_squared += difference * difference;
+    }
+    const double rise = at.energy - minimum.attitude.energy;
+    return std::abs(rise - energy) <= kAgreement * energy &&
+           difference_squared <= kAgreement * kAgreement * gradient_squared;
   }
 
   bool belongs_to_family(const BalancedAttitude& at) const {
