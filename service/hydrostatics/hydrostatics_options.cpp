@@ -1,0 +1,239 @@
+#include "service/hydrostatics/hydrostatics_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "base/csv_field.h"
+#include "cli/command_line.h"
+
+namespace buoyancy::service {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 3> kCommands{
+    {{"equilibrium", HydrostaticsCommand::kEquilibrium},
+     {"table", HydrostaticsCommand::kTable},
+     {"gz", HydrostaticsCommand::kRightingArms}}};
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(trim(text.substr(0, end)));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+bool parse_finite(std::string_view text, double& value) {
+  return parse_number(text, value) && std::isfinite(value);
+}
+
+Expected<Vec3> parse_point(const std::string& subject, const std::string& text) {
+  const std::vector<std::string_view> parts = split(text, ',');
+  Vec3 point = Vec3::Zero();
+  bool valid = parts.size() == 3;
+  for (std::size_t i = 0; valid && i < 3; ++i) valid = parse_finite(parts[i], point[static_cast<int>(i)]);
+  if (valid) return point;
+  return make_error({subject, quote(text), "three finite numbers, X,Y,Z in metres", "", ""});
+}
+
+Expected<Vec3> parse_direction(const std::string& subject, const std::string& text) {
+  constexpr std::string_view kAxes = "xyz";
+  if (text.size() == 2 && (text[0] == '+' || text[0] == '-')) {
+    const std::size_t axis = kAxes.find(text[1]);
+    if (axis != std::string_view::npos) {
+      return Vec3((text[0] == '-' ? -1.0 : 1.0) * Vec3::Unit(static_cast<int>(axis)));
+    }
+  }
+  return make_error({subject, quote(text), "one of +x -x +y -y +z -z, axes of the body's mesh", "",
+                     "Write a negative axis with an equals sign: " + subject + "=-x"});
+}
+
+std::vector<double> in_radians(std::vector<double> degrees) {
+  for (double& value : degrees) value *= kRadiansPerDegree;
+  return degrees;
+}
+
+Expected<void> check_angles(const std::string& subject, const std::vector<double>& degrees, double limit) {
+  for (const double value : degrees) {
+    if (std::abs(value) <= limit) continue;
+    return make_error(
+        {subject, CLI::detail::to_string(value) + " degrees",
+         "-" + CLI::detail::to_string(limit) + " to " + CLI::detail::to_string(limit) + " degrees", "", ""});
+  }
+  return {};
+}
+
+// Options that only one of the commands uses.
+Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand command) {
+  struct Use {
+    const char* option;
+    HydrostaticsCommand command;
+  };
+  constexpr std::array<Use, 4> kUses{{{"--unstable", HydrostaticsCommand::kEquilibrium},
+                                      {"--draft", HydrostaticsCommand::kTable},
+                                      {"--heel", HydrostaticsCommand::kRightingArms},
+                                      {"--fixed-trim", HydrostaticsCommand::kRightingArms}}};
+  for (const Use& use : kUses) {
+    if (app.count(use.option) == 0 || use.command == command) continue;
+    return make_error({use.option, "with another command",
+                       std::string("the command ") + kCommands[static_cast<std::size_t>(use.command)].first,
+                       "", ""});
+  }
+  const bool has_trim = command == HydrostaticsCommand::kTable || app.count("--fixed-trim") > 0;
+  if (app.count("--trim") > 0 && !has_trim) {
+    return make_error({"--trim", "without --fixed-trim", "the command table, or gz with --fixed-trim",
+                       "a body trims freely", ""});
+  }
+  if (command == HydrostaticsCommand::kTable && app.count("--draft") == 0) {
+    return make_error(
+        {"table", "no --draft", "--draft FROM:TO:STEP in metres", "", "For instance --draft 1:5:0.5"});
+  }
+  return {};
+}
+
+Expected<void> plan_axes(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  const Expected<Vec3> forward_B = parse_direction("--forward", options.forward);
+  if (!forward_B) return tl::unexpected(forward_B.error());
+  const Expected<Vec3> up_B = parse_direction("--up", options.up);
+  if (!up_B) return tl::unexpected(up_B.error());
+  const Expected<ShipAxes> axes = make_ship_axes(*forward_B, *up_B);
+  if (!axes) return tl::unexpected(axes.error());
+  plan.table = {.axes = *axes,
+                .keel = options.keel,
+                .aft_perpendicular = options.aft_perpendicular,
+                .forward_perpendicular = options.forward_perpendicular};
+  plan.arms.axes = *axes;
+  plan.arms.keel = options.keel;
+  return {};
+}
+
+Expected<void> plan_ranges(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  if (!options.drafts.empty()) {
+    Expected<std::vector<double>> drafts = parse_range("--draft", options.drafts);
+    if (!drafts) return tl::unexpected(drafts.error());
+    plan.drafts = *std::move(drafts);
+  }
+  Expected<std::vector<double>> trims = parse_range("--trim", options.trims);
+  if (!trims) return tl::unexpected(trims.error());
+  if (Expected<void> checked = check_angles("--trim", *trims, 89.0); !checked) return checked;
+  plan.trims = in_radians(*std::move(trims));
+  Expected<std::vector<double>> heels = parse_range("--heel", options.heels);
+  if (!heels) return tl::unexpected(heels.error());
+  if (Expected<void> checked = check_angles("--heel", *heels, 180.0); !checked) return checked;
+  plan.heels = in_radians(*std::move(heels));
+  if (options.fixed_trim) {
+    if (plan.trims.size() != 1) {
+      return make_error({"--trim", quote(options.trims), "one number with --fixed-trim", "", ""});
+    }
+    plan.arms.fixed_trim = plan.trims.front();
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<std::vector<double>> parse_range(const std::string& subject, const std::string& text) {
+  constexpr double kMaxValues = 100'000.0;
+  const std::vector<std::string_view> parts = split(text, ':');
+  double from = 0.0;
+  double to = 0.0;
+  double step = 1.0;
+  if (parts.size() == 1 && parse_finite(parts[0], from)) return std::vector<double>{from};
+  if (parts.size() == 3 && parse_finite(parts[0], from) && parse_finite(parts[1], to) &&
+      parse_finite(parts[2], step) && step > 0.0 && to >= from && (to - from) / step < kMaxValues) {
+    std::vector<double> values;
+    const auto count = static_cast<int>(std::floor((to - from) / step * (1.0 + 1e-12) + 1e-9));
+    for (int i = 0; i <= count; ++i) values.push_back(std::min(from + i * step, to));
+    return values;
+  }
+  return make_error({subject, quote(text),
+                     "FROM:TO:STEP with FROM <= TO and a STEP above 0, at most 100000 values, or one number",
+                     "", ""});
+}
+
+void add_options(CLI::App& app, HydrostaticsOptions& options) {
+  app.description(
+      "Compute where and how a body floats: its equilibrium attitudes, righting arms, and hydrostatic\n"
+      "tables. Angles are in degrees, heel positive to starboard, trim positive by the stern.\n" +
+      exit_status_help({.success = "on success, also if the body sinks",
+                        .failure = "on a runtime error, or if a righting arm or a row has no result",
+                        .usage_error = "on invalid arguments, scene or mesh"}));
+  app.set_version_flag("--version", "buoyancy-hydrostatics " BUOYANCY_VERSION);
+  auto* from = app.add_option_group("body", "Input geometry (exactly one)");
+  CLI::Option* scene = from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
+  CLI::Option* mesh = from->add_option(
+      "--mesh", options.mesh, "One mesh, in water of level 0, density 1025 kg/m^3, gravity 9.80665 m/s^2");
+  from->require_option(1);
+  app.add_option("--body", options.body, "With --scene: id of the body (default: the only one)")
+      ->needs(scene)
+      ->option_text("ID");
+  CLI::Option* mass = app.add_option("--mass", options.mass, "With --mesh: mass, kg")
+                          ->needs(mesh)
+                          ->check(CLI::PositiveNumber)
+                          ->option_text("M");
+  CLI::Option* center = app.add_option("--center-of-mass", options.center_of_mass,
+                                       "With --mesh: centre of mass in the frame of the mesh, m")
+                            ->needs(mesh)
+                            ->option_text("X,Y,Z");
+  mesh->needs(mass)->needs(center);
+  app.add_option("--forward", options.forward, "The ship's forward axis: +x, --forward=-x, +y ...")
+      ->option_text("AXIS [+x]");
+  app.add_option("--up", options.up, "The ship's upward axis")->option_text("AXIS [+z]");
+  app.add_option("--keel", options.keel,
+                 "Height of the keel K in the frame of the mesh, m (default: its lowest point)")
+      ->option_text("Z");
+  app.add_option("--aft-perpendicular", options.aft_perpendicular,
+                 "Along the forward axis, m (default: the aft end of the mesh)")
+      ->option_text("X");
+  app.add_option("--forward-perpendicular", options.forward_perpendicular,
+                 "Along the forward axis, m (default: the forward end of the mesh)")
+      ->option_text("X");
+  app.add_flag("--unstable", options.unstable, "equilibrium: also report unstable attitudes");
+  app.add_option("--draft", options.drafts, "table: drafts over the keel at midship, m")
+      ->option_text("FROM:TO:STEP");
+  app.add_option("--trim", options.trims, "table: trims, degrees; gz: the fixed trim")
+      ->option_text("FROM:TO:STEP [0]");
+  app.add_option("--heel", options.heels, "gz: heels, degrees")->option_text("FROM:TO:STEP [-180:180:5]");
+  app.add_flag("--fixed-trim", options.fixed_trim,
+               "gz: fix the trim at that of --trim, instead of letting the body trim");
+  app.add_option("--csv", options.csv, "Also write the results to a CSV file")->option_text("FILE");
+  app.add_flag("--json", options.json, "Print the results as JSON");
+  app.add_option("COMMAND", options.command, "equilibrium, table or gz")
+      ->required()
+      ->check(CLI::IsMember({"equilibrium", "table", "gz"}))
+      ->option_text("equilibrium|table|gz");
+}
+
+Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const HydrostaticsOptions& options) {
+  HydrostaticsPlan plan;
+  for (const auto& [name, command] : kCommands) {
+    if (options.command == name) plan.command = command;
+  }
+  if (const Expected<void> checked = check_command_options(app, plan.command); !checked) {
+    return tl::unexpected(checked.error());
+  }
+  if (!options.mesh.empty()) {
+    const Expected<Vec3> center = parse_point("--center-of-mass", options.center_of_mass);
+    if (!center) return tl::unexpected(center.error());
+    plan.center_of_mass_B = *center;
+  }
+  if (const Expected<void> axes = plan_axes(options, plan); !axes) return tl::unexpected(axes.error());
+  if (const Expected<void> ranges = plan_ranges(options, plan); !ranges) {
+    return tl::unexpected(ranges.error());
+  }
+  if (!options.csv.empty()) {
+    const Expected<void> checked = check_output_not_input(options.csv, {options.scene, options.mesh});
+    if (!checked) return tl::unexpected(checked.error());
+  }
+  return plan;
+}
+
+}  // namespace buoyancy::service

@@ -1,0 +1,61 @@
+// The command line of buoyancy-hydrostatics.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+#include "base/error.h"
+#include "flotation/hydrostatic_table.h"
+#include "flotation/righting_arms.h"
+
+namespace buoyancy::service {
+
+struct HydrostaticsOptions {
+  std::string command;
+  std::filesystem::path scene;
+  std::optional<std::int32_t> body;
+  std::filesystem::path mesh;
+  std::optional<double> mass;  // [kg]
+  std::string center_of_mass;  // X,Y,Z
+  std::string forward = "+x";
+  std::string up = "+z";
+  std::optional<double> keel;                   // [m]
+  std::optional<double> aft_perpendicular;      // [m]
+  std::optional<double> forward_perpendicular;  // [m]
+  bool unstable = false;
+  std::string drafts;  // FROM:TO:STEP
+  std::string trims = "0";
+  std::string heels = "-180:180:5";
+  bool fixed_trim = false;
+  std::filesystem::path csv;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, HydrostaticsOptions& options);
+
+enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms };
+
+// The options, checked.
+struct HydrostaticsPlan {
+  HydrostaticsCommand command = HydrostaticsCommand::kEquilibrium;
+  Vec3 center_of_mass_B = Vec3::Zero();  // [m], with --mesh
+  HydrostaticTableOptions table;
+  RightingArmOptions arms;
+  std::vector<double> drafts;  // [m]
+  std::vector<double> trims;   // [rad]
+  std::vector<double> heels;   // [rad]
+};
+
+// Errors: options that do not belong together, and texts that are no range, direction or point.
+Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const HydrostaticsOptions& options);
+
+// FROM:TO:STEP or one number: ascending, TO included where a step meets it. Errors: anything else, and more
+// than 100,000 values. subject: of the error.
+Expected<std::vector<double>> parse_range(const std::string& subject, const std::string& text);
+
+}  // namespace buoyancy::service

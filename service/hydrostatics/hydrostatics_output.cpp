@@ -1,0 +1,350 @@
+#include "service/hydrostatics/hydrostatics_output.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+namespace buoyancy::service {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+constexpr double kKilogramsPerTonne = 1000.0;
+
+double degrees(double radians) {
+  return radians * kDegreesPerRadian;
+}
+
+std::string outcome_name(FlotationOutcome outcome) {
+  switch (outcome) {
+    case FlotationOutcome::kFloats:
+      return "floats";
+    case FlotationOutcome::kSinks:
+      return "sinks";
+    case FlotationOutcome::kNeutral:
+      return "neutrally_buoyant";
+    case FlotationOutcome::kTakesInWater:
+      return "takes_in_water";
+    case FlotationOutcome::kOutOfRange:
+      break;
+  }
+  return "out_of_range";
+}
+
+std::string outcome_sentence(FlotationOutcome outcome) {
+  switch (outcome) {
+    case FlotationOutcome::kFloats:
+      return "The body floats.";
+    case FlotationOutcome::kSinks:
+      return "The body sinks: it is heavier than the water that it can displace.";
+    case FlotationOutcome::kNeutral:
+      return "The body is neutrally buoyant: it rests at any depth, its centre of mass under that of "
+             "buoyancy.";
+    case FlotationOutcome::kTakesInWater:
+      return "The mesh is open, and its edge is under water before the body floats at rest.";
+    case FlotationOutcome::kOutOfRange:
+      break;
+  }
+  return "No attitude was found: the numbers of the body are out of range.";
+}
+
+std::string family_name(AttitudeFamily family) {
+  switch (family) {
+    case AttitudeFamily::kNone:
+      break;
+    case AttitudeFamily::kCurve:
+      return "curve";
+    case AttitudeFamily::kSphere:
+      return "sphere";
+  }
+  return "none";
+}
+
+// Why an attitude is not stable; empty where it is.
+std::string reason(const Equilibrium& at) {
+  std::string text;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double height = at.state.hydrostatics.metacentric_heights[i];
+    if (at.is_stable() || !(height < 0.0)) continue;
+    const Vec3 axis = at.pose.q_WB.conjugate() * at.state.hydrostatics.waterplane_axes_W[i];
+    if (!text.empty()) text += "; ";
+    text += fmt::format("GM {:.4g} m about the axis ({:.3f}, {:.3f}, {:.3f}) of the body", height, axis.x(),
+                        axis.y(), axis.z());
+  }
+  return text;
+}
+
+std::array<double, 3> array_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+std::array<double, 4> wxyz(const Eigen::Quaterniond& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+std::string csv_row(const std::vector<double>& values) {
+  std::string row;
+  for (const double value : values) row += fmt::format("{}{:.17g}", row.empty() ? "" : ",", value);
+  row += '\n';
+  return row;
+}
+
+struct Column {
+  const char* name;
+  double HydrostaticRow::*member;
+  double factor = 1.0;
+};
+
+constexpr std::array<Column, 20> kColumns{
+    {{"draft", &HydrostaticRow::draft},
+     {"trim", &HydrostaticRow::trim, kDegreesPerRadian},
+     {"displacement_volume", &HydrostaticRow::volume},
+     {"displacement_mass", &HydrostaticRow::mass, 1.0 / kKilogramsPerTonne},
+     {"lcb", &HydrostaticRow::lcb},
+     {"tcb", &HydrostaticRow::tcb},
+     {"kb", &HydrostaticRow::kb},
+     {"lcf", &HydrostaticRow::lcf},
+     {"waterplane_area", &HydrostaticRow::waterplane_area},
+     {"bm_t", &HydrostaticRow::bm_t},
+     {"bm_l", &HydrostaticRow::bm_l},
+     {"km_t", &HydrostaticRow::km_t},
+     {"km_l", &HydrostaticRow::km_l},
+     {"tpc", &HydrostaticRow::mass_per_cm, 1.0 / kKilogramsPerTonne},
+     {"mct1cm", &HydrostaticRow::moment_per_cm, 1.0 / kKilogramsPerTonne},
+     {"rm1deg", &HydrostaticRow::moment_per_degree, 1.0 / kKilogramsPerTonne},
+     {"wetted_area", &HydrostaticRow::wetted_area},
+     {"lwl", &HydrostaticRow::lwl},
+     {"bwl", &HydrostaticRow::bwl},
+     {"cm", &HydrostaticRow::midship}}};
+
+struct CoefficientColumn {
+  const char* name;
+  FormCoefficients HydrostaticRow::*length;
+  double FormCoefficients::*member;
+};
+
+constexpr std::array<CoefficientColumn, 6> kCoefficients{
+    {{"cb_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::block},
+     {"cp_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::prismatic},
+     {"cwp_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::waterplane},
+     {"cb_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::block},
+     {"cp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::prismatic},
+     {"cwp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::waterplane}}};
+
+Json arm_json(const RightingArm& arm) {
+  return {{"heel", degrees(arm.heel)},
+          {"trim", degrees(arm.trim)},
+          {"draft", arm.draft},
+          {"gz", arm.gz},
+          {"kn", arm.kn}};
+}
+
+template <typename Value>
+Json json_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+std::optional<double> in_degrees(std::optional<double> radians) {
+  if (radians) *radians = degrees(*radians);
+  return radians;
+}
+
+}  // namespace
+
+std::string equilibria_text(const Equilibria& equilibria) {
+  std::string text = outcome_sentence(equilibria.outcome) + "\n";
+  if (equilibria.attitudes.empty()) return text;
+  text += fmt::format("{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>16}{:>14}{:>14}\n", "", "heel, deg",
+                      "trim, deg", "draft, m", "GM, m", "GM, m", "energy, J", "force/bound", "torque/bound");
+  for (const Equilibrium& at : equilibria.attitudes) {
+    const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
+    text += fmt::format("{:>10}{:>12.4f}{:>12.4f}{:>12.6g}{:>12.5g}{:>12.5g}{:>16.8g}{:>14.2g}{:>14.2g}\n",
+                        at.is_stable() ? "stable" : "unstable", degrees(at.angles.heel),
+                        degrees(at.angles.trim), at.draft, heights[0], heights[1], at.state.energy,
+                        at.residual_force / at.force_bound, at.residual_torque / at.torque_bound);
+    if (at.family == AttitudeFamily::kCurve)
+      text += "           one of a curve of attitudes of equal energy\n";
+    if (at.family == AttitudeFamily::kSphere) text += "           any attitude has the same energy\n";
+    if (!at.is_stable()) text += fmt::format("           unstable: {}\n", reason(at));
+  }
+  if (equilibria.is_truncated) text += "There are more attitudes, of higher energy.\n";
+  return text;
+}
+
+std::string equilibria_json(const Equilibria& equilibria) {
+  Json attitudes = Json::array();
+  for (const Equilibrium& at : equilibria.attitudes) {
+    Json entry{{"stable", at.is_stable()},
+               {"position", array_of(at.pose.p_WB)},
+               {"quaternion_wxyz", wxyz(at.pose.q_WB)},
+               {"draft", at.draft},
+               {"heel", degrees(at.angles.heel)},
+               {"trim", degrees(at.angles.trim)},
+               {"energy", at.state.energy},
+               {"residual_force", at.residual_force},
+               {"residual_torque", at.residual_torque},
+               {"force_bound", at.force_bound},
+               {"torque_bound", at.torque_bound},
+               {"metacentric_heights", at.state.hydrostatics.metacentric_heights},
+               {"stiffness", at.stiffness},
+               {"family", family_name(at.family)},
+               {"displacement_volume", at.state.hydrostatics.volume}};
+    if (!at.is_stable()) entry["reason"] = reason(at);
+    attitudes.push_back(std::move(entry));
+  }
+  const Json result{{"outcome", outcome_name(equilibria.outcome)},
+                    {"attitudes", std::move(attitudes)},
+                    {"truncated", equilibria.is_truncated}};
+  return result.dump(2) + "\n";
+}
+
+std::string equilibria_csv(const Equilibria& equilibria) {
+  std::string text =
+      "stable,heel,trim,draft,px,py,pz,qw,qx,qy,qz,gm_min,gm_max,energy,residual_force,residual_torque,"
+      "force_bound,torque_bound\n";
+  for (const Equilibrium& at : equilibria.attitudes) {
+    const std::array<double, 4> q = wxyz(at.pose.q_WB);
+    const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
+    text += csv_row({at.is_stable() ? 1.0 : 0.0, degrees(at.angles.heel), degrees(at.angles.trim), at.draft,
+                     at.pose.p_WB.x(), at.pose.p_WB.y(), at.pose.p_WB.z(), q[0], q[1], q[2], q[3], heights[0],
+                     heights[1], at.state.energy, at.residual_force, at.residual_torque, at.force_bound,
+                     at.torque_bound});
+  }
+  return text;
+}
+
+std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
+  std::string text = fmt::format(
+      "K at {:.6g} m along up, midship at {:.6g} m along forward, from the origin of the mesh; Lpp {:.6g} "
+      "m.\n"
+      "lcb and lcf from midship, positive forward; tcb to port; kb, km over K. Masses in tonnes.\n",
+      table.keel(), table.midship(), table.length_between_perpendiculars());
+  constexpr std::size_t kPerLine = 7;
+  std::vector<std::string> names;
+  for (const Column& column : kColumns) names.emplace_back(column.name);
+  for (const CoefficientColumn& column : kCoefficients) names.emplace_back(column.name);
+  std::vector<std::vector<double>> values;
+  for (const HydrostaticRow& row : rows) {
+    std::vector<double>& line = values.emplace_back();
+    for (const Column& column : kColumns) line.push_back(column.factor * (row.*column.member));
+    for (const CoefficientColumn& column : kCoefficients) line.push_back(row.*column.length.*column.member);
+  }
+  for (std::size_t first = 2; first < names.size(); first += kPerLine) {
+    const std::size_t end = std::min(first + kPerLine, names.size());
+    text += fmt::format("\n{:>10}{:>8}", names[0], names[1]);
+    for (std::size_t i = first; i < end; ++i) text += fmt::format("{:>20}", names[i]);
+    text += '\n';
+    for (const std::vector<double>& line : values) {
+      text += fmt::format("{:>10.5g}{:>8.3g}", line[0], line[1]);
+      for (std::size_t i = first; i < end; ++i) text += fmt::format("{:>20.8g}", line[i]);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string table_json(const HydrostaticTable& table, const TableRows& rows) {
+  Json entries = Json::array();
+  for (const HydrostaticRow& row : rows) {
+    Json& entry = entries.emplace_back(Json::object());
+    for (const Column& column : kColumns) entry[column.name] = column.factor * (row.*column.member);
+    for (const CoefficientColumn& column : kCoefficients)
+      entry[column.name] = row.*column.length.*column.member;
+  }
+  const Json result{{"keel", table.keel()},
+                    {"midship", table.midship()},
+                    {"length_between_perpendiculars", table.length_between_perpendiculars()},
+                    {"rows", std::move(entries)}};
+  return result.dump(2) + "\n";
+}
+
+std::string table_csv(const TableRows& rows) {
+  std::string text;
+  for (const Column& column : kColumns) text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
+  for (const CoefficientColumn& column : kCoefficients) text += fmt::format(",{}", column.name);
+  text += '\n';
+  for (const HydrostaticRow& row : rows) {
+    std::vector<double> values;
+    for (const Column& column : kColumns) values.push_back(column.factor * (row.*column.member));
+    for (const CoefficientColumn& column : kCoefficients) values.push_back(row.*column.length.*column.member);
+    text += csv_row(values);
+  }
+  return text;
+}
+
+std::string righting_text(const RightingResults& results) {
+  std::string text = fmt::format("{:>10}{:>10}{:>12}{:>14}{:>14}{:>14}\n", "heel, deg", "trim, deg",
+                                 "draft, m", "GZ, m", "KN, m", "area, m rad");
+  for (const auto& [arm, area] : results.curve.points) {
+    text += fmt::format("{:>10.4g}{:>10.4f}{:>12.6g}{:>14.8f}{:>14.8f}{:>14.8f}\n", degrees(arm.heel),
+                        degrees(arm.trim), arm.draft, arm.gz, arm.kn, area);
+  }
+  text += '\n';
+  for (const ArmCrossing& crossing : results.curve.crossings) {
+    text += fmt::format("GZ vanishes at {:.6f} degrees, {}\n", degrees(crossing.heel),
+                        crossing.returns ? "to which the body returns" : "from which the body turns away");
+  }
+  for (const auto& [side, arm] :
+       {std::pair{"starboard", &results.curve.max_starboard}, std::pair{"port", &results.curve.max_port}}) {
+    if (!*arm) continue;
+    text += fmt::format("largest arm to {}: {:.6g} m at {:.4f} degrees\n", side, std::abs((*arm)->gz),
+                        degrees((*arm)->heel));
+  }
+  if (results.criteria.empty()) return text;
+  text += "\n2008 IS Code A 2.2, to starboard (not a class approval):\n";
+  for (const StabilityCriterion& criterion : results.criteria) {
+    text += fmt::format("{:>40}{:>12.5g} {:<8}{:>12.4g}  {}\n", criterion.name, criterion.value,
+                        criterion.unit, criterion.required, criterion.is_met() ? "met" : "NOT met");
+  }
+  return text;
+}
+
+std::string righting_json(const RightingResults& results) {
+  Json points = Json::array();
+  for (const auto& [arm, area] : results.curve.points) {
+    Json point = arm_json(arm);
+    point["area"] = area;
+    points.push_back(std::move(point));
+  }
+  Json crossings = Json::array();
+  for (const ArmCrossing& crossing : results.curve.crossings) {
+    crossings.push_back({{"heel", degrees(crossing.heel)}, {"returns", crossing.returns}});
+  }
+  Json criteria = Json::array();
+  for (const StabilityCriterion& criterion : results.criteria) {
+    criteria.push_back({{"name", criterion.name},
+                        {"value", criterion.value},
+                        {"required", criterion.required},
+                        {"unit", criterion.unit},
+                        {"met", criterion.is_met()}});
+  }
+  const auto maximum = [](const std::optional<RightingArm>& arm) {
+    return arm ? arm_json(*arm) : Json(nullptr);
+  };
+  const Json result{{"points", std::move(points)},
+                    {"crossings", std::move(crossings)},
+                    {"vanishing_starboard", json_or_null(in_degrees(results.curve.vanishing_starboard()))},
+                    {"vanishing_port", json_or_null(in_degrees(results.curve.vanishing_port()))},
+                    {"max_starboard", maximum(results.curve.max_starboard)},
+                    {"max_port", maximum(results.curve.max_port)},
+                    {"criteria",
+                     {{"source", "2008 IS Code A 2.2, to starboard; not a class approval"},
+                      {"values", std::move(criteria)}}}};
+  return result.dump(2) + "\n";
+}
+
+std::string righting_csv(const RightingResults& results) {
+  std::string text = "heel,trim,draft,gz,kn,area\n";
+  for (const auto& [arm, area] : results.curve.points) {
+    text += csv_row({degrees(arm.heel), degrees(arm.trim), arm.draft, arm.gz, arm.kn, area});
+  }
+  return text;
+}
+
+}  // namespace buoyancy::service

@@ -1,0 +1,60 @@
+#include "service/hydrostatics/loaded_body.h"
+
+#include <string>
+#include <utility>
+
+#include "scene/body_motions.h"
+
+namespace buoyancy::service {
+namespace {
+
+Expected<const Body*> body_of(const Scene& scene, std::optional<std::int32_t> id) {
+  std::string ids;
+  for (const Body& body : scene.bodies()) {
+    if (!ids.empty()) ids += ' ';
+    ids += std::to_string(body.id);
+  }
+  if (id) {
+    if (const Body* body = scene.find(*id)) return body;
+    return make_error(
+        {scene.name(), "no body " + std::to_string(*id), "--body with one of its bodies: " + ids, "", ""});
+  }
+  if (scene.bodies().size() == 1) return &scene.bodies().front();
+  return make_error({scene.name(), std::to_string(scene.bodies().size()) + " bodies",
+                     "--body with one of them: " + ids, "", ""});
+}
+
+}  // namespace
+
+Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const HydrostaticsPlan& plan) {
+  Expected<Scene> scene =
+      options.mesh.empty()
+          ? Scene::load(options.scene)
+          : Scene::prepare(single_mesh_scene(options.mesh, Method::kHierarchical, 0.0, OpenPolicy::kRefuse));
+  if (!scene) return tl::unexpected(scene.error());
+  const Expected<const Body*> body = body_of(*scene, options.body);
+  if (!body) return tl::unexpected(body.error());
+
+  std::optional<BodyMass> mass;
+  if (options.mesh.empty()) {
+    if ((*body)->dynamics.given) mass = mass_of_body(**body, scene->water());
+  } else {
+    mass = BodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
+  }
+  if (!mass) {
+    return make_error({scene->name() + ": body '" + (*body)->name + "'", "no mass or no centre of mass",
+                       "a section [body.client] with density, or with mass and center_of_mass",
+                       "the service needs no mass, but what floats does",
+                       "Add the section to the body in the scene file"});
+  }
+
+  const HydrostaticMesh& prepared = (*body)->prepared_mesh->mesh;
+  auto mesh = std::make_shared<HydrostaticMesh>(prepared);
+  if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
+  const PlacedMesh placed{.mesh = mesh.get()};
+  Expected<FloatingBody> floating = FloatingBody::make({&placed, 1}, mass->mass, mass->center_of_mass_B);
+  if (!floating) return tl::unexpected(floating.error());
+  return LoadedBody{*std::move(scene), std::move(mesh), *std::move(floating)};
+}
+
+}  // namespace buoyancy::service

@@ -1,0 +1,23 @@
+// The body of buoyancy-hydrostatics: one of a scene, or a mesh with a mass.
+#pragma once
+
+#include <memory>
+
+#include "flotation/floating_body.h"
+#include "scene/scene.h"
+#include "service/hydrostatics/hydrostatics_options.h"
+
+namespace buoyancy::service {
+
+struct LoadedBody {
+  Scene scene;
+  std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
+  FloatingBody body;                            // of `mesh`
+
+  const Water& water() const { return scene.water(); }
+};
+
+// Errors: those of the scene, a body that it lacks, several bodies and none named, a body without a mass.
+Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const HydrostaticsPlan& plan);
+
+}  // namespace buoyancy::service

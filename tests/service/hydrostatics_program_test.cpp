@@ -1,0 +1,206 @@
+// Runs buoyancy-hydrostatics as a program.
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "service/hydrostatics/hydrostatics_options.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/timeouts.h"
+
+namespace buoyancy::service {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct ProgramRun {
+  int exit_code = -1;
+  std::string output;
+  std::string error;
+};
+
+ProgramRun run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BUOYANCY_HYDROSTATICS);
+  ChildProcess program(command_of(std::move(arguments)));
+  const std::optional<int> exit_code = program.wait(kWaitTimeout);
+  return {exit_code.value_or(-1), program.standard_output(), program.standard_error()};
+}
+
+// Beam 20, depth 12, draught 6, KG 8 [m], with B's origin in the middle.
+class HydrostaticsProgram : public testing::Test {
+ protected:
+  std::string scene(const std::string& client, const std::string& more = "") const {
+    return dir_.write("scene.toml", R"([[body]]
+id = 3
+name = "ship"
+shape = { type = "box", size = [80, 20, 12], segments = [2, 2, 2] }
+[body.client]
+)" + client + more);
+  }
+  std::string ship() const { return scene("density = 512.5\ncenter_of_mass = [0, 0, 2]\n"); }
+
+  TempDir dir_;
+};
+
+std::vector<std::vector<double>> rows_of(const std::string& csv, std::string& header) {
+  std::istringstream lines(csv);
+  std::getline(lines, header);
+  std::vector<std::vector<double>> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<double>& row = rows.emplace_back();
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) row.push_back(std::stod(field));
+  }
+  return rows;
+}
+
+TEST_F(HydrostaticsProgram, WritesRightingArmsAsCsv) {
+  const ProgramRun result =
+      run({"gz", "--scene", ship(), "--heel", "-30:90:15", "--csv", dir_.path("gz.csv")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  std::string header;
+  const auto rows = rows_of(read_file(dir_.path("gz.csv")), header);
+  EXPECT_EQ(header, "heel,trim,draft,gz,kn,area");
+  ASSERT_EQ(rows.size(), 9U);
+  EXPECT_NEAR(rows[4][0], 30.0, 1e-12);
+  EXPECT_NEAR(rows[4][3], 0.740740741, 1e-9);
+  EXPECT_NEAR(rows[4][4], 0.740740741 + 8.0 * std::sin(30 * kDegree), 1e-9);
+  EXPECT_NEAR(rows[4][5], 0.132002392797, 1e-12);
+  EXPECT_NEAR(rows[0][3], -rows[4][3], 1e-12);
+  EXPECT_NEAR(rows[8][3], -2.0, 1e-9);
+  EXPECT_NE(result.output.find("largest arm to starboard"), std::string::npos);
+  EXPECT_NE(result.output.find("not a class approval"), std::string::npos);
+}
+
+TEST_F(HydrostaticsProgram, PrintsRightingArmsAsJson) {
+  const ProgramRun result = run({"--scene", ship(), "--json", "gz", "--fixed-trim", "--heel", "-180:180:10"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json.at("points").size(), 37U);
+  EXPECT_GT(json.at("vanishing_starboard").get<double>(), 60.0);
+  EXPECT_EQ(json.at("criteria").at("values").size(), 6U);
+  EXPECT_NEAR(json.at("criteria").at("values").at(0).at("value").get<double>(), 0.132002392797, 1e-12);
+  EXPECT_NEAR(json.at("criteria").at("values").at(5).at("value").get<double>(), 3.0 + 400.0 / 72.0 - 8.0,
+              1e-7);
+}
+
+TEST_F(HydrostaticsProgram, WritesTableAsCsv) {
+  const ProgramRun result = run(
+      {"table", "--scene", ship(), "--draft", "1:6:2.5", "--trim", "-1:1:1", "--csv", dir_.path("t.csv")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  std::string header;
+  const auto rows = rows_of(read_file(dir_.path("t.csv")), header);
+  EXPECT_TRUE(header.starts_with(
+      "draft,trim,displacement_volume,displacement_mass,lcb,tcb,kb,lcf,waterplane_area,bm_t,bm_l,km_t,km_l"))
+      << header;
+  ASSERT_EQ(rows.size(), 9U);
+  const std::vector<double>& design = rows[5];
+  EXPECT_EQ(design[0], 6.0);
+  EXPECT_EQ(design[1], 0.0);
+  EXPECT_NEAR(design[2], 9600.0, 1e-9);
+  EXPECT_NEAR(design[3], 9840.0, 1e-9);  // t
+  EXPECT_NEAR(design[6], 3.0, 1e-12);
+  EXPECT_NEAR(design[9], 400.0 / 72.0, 1e-12);
+  EXPECT_NEAR(design[11], 3.0 + 400.0 / 72.0, 1e-12);
+}
+
+TEST_F(HydrostaticsProgram, PrintsEquilibriaAsJsonLowestEnergyFirst) {
+  const ProgramRun result = run({"equilibrium", "--scene", ship(), "--json", "--unstable"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json.at("outcome"), "floats");
+  double energy = -std::numeric_limits<double>::infinity();
+  bool unstable = false;
+  for (const auto& at : json.at("attitudes")) {
+    EXPECT_GE(at.at("energy").get<double>(), energy);
+    energy = at.at("energy").get<double>();
+    EXPECT_LE(at.at("residual_force").get<double>(), at.at("force_bound").get<double>());
+    EXPECT_LE(at.at("residual_torque").get<double>(), at.at("torque_bound").get<double>());
+    EXPECT_EQ(at.at("position").size(), 3U);
+    EXPECT_EQ(at.at("quaternion_wxyz").size(), 4U);
+    unstable = unstable || !at.at("stable").get<bool>();
+    EXPECT_EQ(at.contains("reason"), !at.at("stable").get<bool>());
+  }
+  EXPECT_TRUE(unstable);
+  bool upright = false;
+  for (const auto& at : json.at("attitudes")) {
+    if (!at.at("stable").get<bool>() || std::abs(at.at("heel").get<double>()) > 1e-6) continue;
+    upright = true;
+    EXPECT_NEAR(at.at("draft").get<double>(), 6.0, 1e-12);
+    EXPECT_NEAR(at.at("position")[2].get<double>(), 0.0, 1e-12);
+  }
+  EXPECT_TRUE(upright);
+}
+
+TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
+  const std::string mesh =
+      dir_.write("box.obj",
+                 "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 0 2 1\n"
+                 "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const ProgramRun result =
+      run({"equilibrium", "--mesh", mesh, "--mass", "4100", "--center-of-mass", "2,1,0.3", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto first = nlohmann::json::parse(result.output).at("attitudes").at(0);
+  EXPECT_NEAR(first.at("draft").get<double>(), 0.5, 1e-12);
+  const ProgramRun without_mass = run({"equilibrium", "--mesh", mesh});
+  EXPECT_EQ(without_mass.exit_code, 2);
+  EXPECT_NE(without_mass.error.find("--mass"), std::string::npos) << without_mass.error;
+}
+
+TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
+  const std::string heavy = scene("density = 1100\n");
+  const ProgramRun result = run({"equilibrium", "--scene", heavy, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(nlohmann::json::parse(result.output).at("outcome"), "sinks");
+  const ProgramRun arms = run({"gz", "--scene", heavy});
+  EXPECT_EQ(arms.exit_code, 1);
+  EXPECT_NE(arms.error.find("sinks"), std::string::npos) << arms.error;
+}
+
+TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
+  const std::string good = ship();
+  const std::vector<std::vector<std::string>> wrong{
+      {},
+      {"gz"},
+      {"float", "--scene", good},
+      {"table", "--scene", good},
+      {"table", "--scene", good, "--draft", "5:1:1"},
+      {"table", "--scene", good, "--draft", "1:5:0"},
+      {"table", "--scene", good, "--draft", "1:5:1e-9"},
+      {"gz", "--scene", good, "--heel", "0:200:10"},
+      {"gz", "--scene", good, "--draft", "1:5:1"},
+      {"gz", "--scene", good, "--trim", "1"},
+      {"gz", "--scene", good, "--fixed-trim", "--trim", "0:2:1"},
+      {"gz", "--scene", good, "--forward", "+z"},
+      {"gz", "--scene", good, "--forward", "ahead"},
+      {"gz", "--scene", good, "--body", "4"},
+      {"gz", "--scene", good, "--csv", good},
+      {"table", "--scene", good, "--draft", "1", "--aft-perpendicular", "9", "--forward-perpendicular", "3"}};
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    const ProgramRun result = run(wrong[i]);
+    EXPECT_NE(result.exit_code, 0) << i;
+    EXPECT_FALSE(result.error.empty()) << i;
+    EXPECT_TRUE(result.output.empty()) << i << result.output;
+  }
+}
+
+TEST(HydrostaticsRange, IncludesItsEndWhereAStepMeetsIt) {
+  EXPECT_EQ(parse_range("--heel", "0:1:0.1")->size(), 11U);
+  EXPECT_EQ(parse_range("--heel", "0:1:0.1")->back(), 1.0);
+  EXPECT_EQ(parse_range("--heel", "0:1:0.3")->size(), 4U);
+  EXPECT_EQ(*parse_range("--heel", "-5"), std::vector<double>{-5.0});
+  EXPECT_EQ(*parse_range("--heel", "2:2:1"), std::vector<double>{2.0});
+  for (const char* text : {"", "a", "1:2", "1:2:3:4", "2:1:1", "0:1:-1", "0:nan:1", "0:inf:1", "0:1:1e-6"}) {
+    EXPECT_FALSE(parse_range("--heel", text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy::service
