@@ -185,14 +185,18 @@ TEST(Equilibrium, FindsUnstableAttitudesThatCompleteTheSphere) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 5U}) {
     SCOPED_TRACE(seed);
     const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 5, .roughness = 0.4, .seed = seed});
-    const Equilibria found = find_equilibria(body_of(mesh, 0.4), kWater, options);
+    const FloatingBody body = body_of(mesh, 0.4);
+    const Equilibria found = find_equilibria(body, kWater, options);
     int characteristic = 0;
+    std::size_t stable = 0;
     for (const Equilibrium& at : found.attitudes) {
       characteristic += at.unstable_directions == 1 ? -1 : 1;
+      if (at.is_stable()) ++stable;
       EXPECT_EQ(at.unstable_directions > 0, at.stiffness[0] < 0.0);
       EXPECT_LE(at.residual_torque, at.torque_bound);
     }
     EXPECT_EQ(characteristic, 2);
+    EXPECT_EQ(find_equilibria(body, kWater).attitudes.size(), stable);
   }
 }
 

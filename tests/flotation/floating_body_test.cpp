@@ -151,6 +151,10 @@ TEST(FloatingBody, SinksToTheDraughtOfLostBuoyancy) {
     EXPECT_NEAR(found->angles.trim, 0.0, 1e-11);
     EXPECT_LE(found->residual_force, found->force_bound);
     EXPECT_LE(found->residual_torque, found->torque_bound);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double expected = mass * kWater.gravity * found->state.hydrostatics.metacentric_heights[i];
+      EXPECT_NEAR(found->stiffness[i], expected, 1e-11 * mass * kWater.gravity * length);
+    }
   }
 }
 
