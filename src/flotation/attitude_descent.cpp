@@ -71,6 +71,7 @@ Vec3 tangent(const Pair& along, const EnergyCurvature& curvature) {
 
 std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& start, const IsKnown& is_known) {
   const double converged = 0.05 * balance_->gradient_rounding();
+  if (is_known(start, start.up_B, -1.0)) return std::nullopt;
   BalancedAttitude at = start;
   EnergyCurvature curvature = balance_->curvature(at);
   double radius = kFirstRadius;
@@ -106,6 +107,7 @@ std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& sta
     }
     if (!(radius > 1e-14)) return std::nullopt;
     if (!accepted) continue;
+    if (is_known(*next, next->up_B, -1.0)) return std::nullopt;
     at = *next;
     curvature = balance_->curvature(at);
   }

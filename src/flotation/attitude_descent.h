@@ -15,7 +15,7 @@ struct Minimum {
 };
 
 // Returns true where the descent may end, since it approaches a minimum that is known already. target: the
-// attitude that the model of the energy predicts.
+// attitude that the model of the energy predicts, at a distance of `step` [rad]; step < 0: there is none.
 using IsKnown = std::function<bool(const BalancedAttitude& at, const Vec3& target_B, double step)>;
 
 class AttitudeDescent {
