@@ -137,6 +137,23 @@ constexpr std::array<CoefficientColumn, 6> kCoefficients{
      {"cp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::prismatic},
      {"cwp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::waterplane}}};
 
+std::vector<std::string> column_names() {
+  std::vector<std::string> names;
+  names.reserve(kColumns.size() + kCoefficients.size());
+  for (const Column& column : kColumns) names.emplace_back(column.name);
+  for (const CoefficientColumn& column : kCoefficients) names.emplace_back(column.name);
+  return names;
+}
+
+// In the order of column_names().
+std::vector<double> values_of(const HydrostaticRow& row) {
+  std::vector<double> values;
+  values.reserve(kColumns.size() + kCoefficients.size());
+  for (const Column& column : kColumns) values.push_back(column.factor * (row.*column.member));
+  for (const CoefficientColumn& column : kCoefficients) values.push_back(row.*column.length.*column.member);
+  return values;
+}
+
 Json arm_json(const RightingArm& arm) {
   return {{"heel", degrees(arm.heel)},
           {"trim", degrees(arm.trim)},
@@ -226,15 +243,10 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
       "lcb and lcf from midship, positive forward; tcb to port; kb, km over K. Masses in tonnes.\n",
       table.keel(), table.midship(), table.length_between_perpendiculars());
   constexpr std::size_t kPerLine = 7;
-  std::vector<std::string> names;
-  for (const Column& column : kColumns) names.emplace_back(column.name);
-  for (const CoefficientColumn& column : kCoefficients) names.emplace_back(column.name);
+  const std::vector<std::string> names = column_names();
   std::vector<std::vector<double>> values;
-  for (const HydrostaticRow& row : rows) {
-    std::vector<double>& line = values.emplace_back();
-    for (const Column& column : kColumns) line.push_back(column.factor * (row.*column.member));
-    for (const CoefficientColumn& column : kCoefficients) line.push_back(row.*column.length.*column.member);
-  }
+  values.reserve(rows.size());
+  for (const HydrostaticRow& row : rows) values.push_back(values_of(row));
   for (std::size_t first = 2; first < names.size(); first += kPerLine) {
     const std::size_t end = std::min(first + kPerLine, names.size());
     text += fmt::format("\n{:>10}{:>8}", names[0], names[1]);
@@ -250,12 +262,12 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
 }
 
 std::string table_json(const HydrostaticTable& table, const TableRows& rows) {
+  const std::vector<std::string> names = column_names();
   Json entries = Json::array();
   for (const HydrostaticRow& row : rows) {
+    const std::vector<double> values = values_of(row);
     Json& entry = entries.emplace_back(Json::object());
-    for (const Column& column : kColumns) entry[column.name] = column.factor * (row.*column.member);
-    for (const CoefficientColumn& column : kCoefficients)
-      entry[column.name] = row.*column.length.*column.member;
+    for (std::size_t i = 0; i < names.size(); ++i) entry[names[i]] = values[i];
   }
   const Json result{{"keel", table.keel()},
                     {"midship", table.midship()},
@@ -266,15 +278,9 @@ std::string table_json(const HydrostaticTable& table, const TableRows& rows) {
 
 std::string table_csv(const TableRows& rows) {
   std::string text;
-  for (const Column& column : kColumns) text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
-  for (const CoefficientColumn& column : kCoefficients) text += fmt::format(",{}", column.name);
+  for (const std::string& name : column_names()) text += fmt::format("{}{}", text.empty() ? "" : ",", name);
   text += '\n';
-  for (const HydrostaticRow& row : rows) {
-    std::vector<double> values;
-    for (const Column& column : kColumns) values.push_back(column.factor * (row.*column.member));
-    for (const CoefficientColumn& column : kCoefficients) values.push_back(row.*column.length.*column.member);
-    text += csv_row(values);
-  }
+  for (const HydrostaticRow& row : rows) text += csv_row(values_of(row));
   return text;
 }
 

@@ -48,6 +48,25 @@ TEST(Waterline, HasTheMomentsOfTheWaterplane) {
   }
 }
 
+// A mesh that a scene scales keeps the file's coordinates in its tree.
+TEST(Waterline, IsInMetresForAScaledMesh) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 6, .roughness = 0.4, .seed = 7});
+  const HydrostaticMesh mesh =
+      make_hydrostatic_mesh({moved_and_scaled(rock, Vec3::Zero(), 0.01), {}}, WithTree::kYes, 0.01);
+  ASSERT_EQ(mesh.tree->scale, 0.01);
+  const Pose pose{Vec3(0, 0, 0.002), Eigen::Quaterniond(0.8, 0.6, 0.0, 0.0)};
+  const auto expected = hydrostatics(mesh, pose, kWater, mesh.center_B, std::nullopt);
+  const WaterPlane plane = water_plane_in_body(pose, kWater, mesh.center_B);
+  const Vec3 u_B = pose.q_WB.conjugate() * expected->waterplane_axes_W[0];
+  const Vec3 centroid_B = pose.q_WB.conjugate() * expected->waterplane_centroid_W - mesh.center_B;
+  const Waterline found =
+      waterline(mesh, plane, {.u = u_B, .v = plane.up_B.cross(u_B), .origin = centroid_B});
+  EXPECT_NEAR(found.area, expected->waterplane_area, 1e-16);
+  EXPECT_NEAR(found.u, 0.0, 1e-18);
+  EXPECT_NEAR(found.vv, expected->waterplane_second_moments[0], 1e-20);
+  EXPECT_NEAR(found.uu, expected->waterplane_second_moments[1], 1e-20);
+}
+
 TEST(Waterline, HasTheExtentOfABoxAndNoneInTheDry) {
   const HydrostaticMesh mesh = mesh_of(BoxShape{{6, 2, 1}, {3, 2, 2}});
   const WaterlineAxes axes;
