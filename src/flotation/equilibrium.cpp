@@ -241,6 +241,7 @@ class EquilibriumSearch {
   std::vector<Minimum> unstable_;
 };
 
+// Returns nullopt where a number is out of range, and where the residuals are not within their bounds.
 std::optional<Equilibrium> equilibrium_at(const Balance& balance, const Minimum& minimum,
                                           const ShipAxes& axes) {
   const FloatingBody& body = balance.body();
@@ -267,6 +268,9 @@ std::optional<Equilibrium> equilibrium_at(const Balance& balance, const Minimum&
   const double rotation = stiffness.bottomRightCorner<3, 3>().norm();
   result.force_bound = state->force_error_bound + heave * height_rounding + coupling * angle_rounding;
   result.torque_bound = state->torque_error_bound + coupling * height_rounding + rotation * angle_rounding;
+  const bool balances = result.residual_force <= result.force_bound && std::isfinite(result.force_bound) &&
+                        result.residual_torque <= result.torque_bound && std::isfinite(result.torque_bound);
+  if (!balances) return std::nullopt;
   for (std::size_t i = 0; i < 2; ++i) {
     result.stiffness[i] = water.gravity * minimum.curvature.values[i];
     if (minimum.curvature.values[i] < -balance.curvature_rounding()) ++result.unstable_directions;

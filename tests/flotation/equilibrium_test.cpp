@@ -210,6 +210,13 @@ TEST(Equilibrium, SaysWhatSinksAndWhatIsNeutral) {
   EXPECT_FALSE(find_equilibrium_from(body_of(mesh, 1.001), kWater, Eigen::Quaterniond::Identity()));
 }
 
+TEST(Equilibrium, ReportsNothingThatDoesNotBalance) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{});
+  const Equilibria found = find_equilibria(body_of(mesh, 0.5, Vec3(1e200, 0, 0)), kWater);
+  EXPECT_EQ(found.outcome, FlotationOutcome::kOutOfRange);
+  EXPECT_TRUE(found.attitudes.empty());
+}
+
 TEST(Equilibrium, FloatsOpenHullUntilItTakesInWater) {
   TriangleMesh hull = make_shape(BoxShape{{4, 2, 1}, {2, 2, 2}});
   std::erase_if(hull.triangles, [&](const Triangle& triangle) {
