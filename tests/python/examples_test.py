@@ -25,7 +25,7 @@ class RunsExamples(TestCase):
         example = (SOURCE / "client/examples/python/float_a_mesh.py").read_text(encoding="utf-8")
         shown = re.search(r"```python\n(.*?)```", readme, re.DOTALL)[1]
         self.assertEqual(shown, example[example.index("import buoyancy"):])
-        self.assertIn(f"It prints `{self.run_example('float_a_mesh.py').strip()}`", readme)
+        self.assertIn(f"The ten lines print `{self.run_example('float_a_mesh.py').strip()}`", readme)
 
     def test_righting_arm(self):
         rows = self.run_example("righting_arm.py").splitlines()[1:]
