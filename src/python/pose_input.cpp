@@ -50,6 +50,7 @@ PoseInput::Rows::Rows(PyObject* object, const char* of, Py_ssize_t expected)
 void PoseInput::Rows::fit(std::size_t poses, bool single) {
   const std::span<const double> row = array.values();
   if (row.empty() || single || has_poses()) return;
+  is_repeated = true;
   repeated.reserve(poses * row.size());
   for (std::size_t i = 0; i < poses; ++i) repeated.insert(repeated.end(), row.begin(), row.end());
 }

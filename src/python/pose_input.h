@@ -36,13 +36,14 @@ class PoseInput {
   struct Rows {
     NumberArray<double> array;
     std::vector<double> repeated;
+    bool is_repeated = false;  // also for no pose at all, when `repeated` is empty
     const char* name;
     Py_ssize_t columns;
 
     Rows(PyObject* object, const char* name, Py_ssize_t columns);
     bool has_poses() const { return array.dimensions() == 2; }
     void fit(std::size_t poses, bool single);  // repeats one row for all poses
-    std::span<const double> values() const { return repeated.empty() ? array.values() : std::span(repeated); }
+    std::span<const double> values() const { return is_repeated ? std::span(repeated) : array.values(); }
   };
 
   Rows position_, quaternion_, linear_velocity_, angular_velocity_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "engine/load_evaluation.h"
@@ -165,6 +166,7 @@ QueryWater water_of(const Scene& scene) {
 
 void evaluate_poses(const Body& body, const QueryWater& water, const PoseArrays& poses,
                     const WrenchArrays& wrenches, std::span<BodyLoads> loads, unsigned threads) {
+  assert(wrenches.statuses.size() == poses.size() && (loads.empty() || loads.size() == poses.size()));
   run_chunks(poses.size(), estimated_time(body, water.waves != nullptr), threads,
              [&](std::size_t begin, std::size_t end) {
                RangeEvaluation(body, water, poses, wrenches, loads).run(begin, end);
@@ -173,6 +175,7 @@ void evaluate_poses(const Body& body, const QueryWater& water, const PoseArrays&
 
 void evaluate_hydrostatics(const Body& body, const Water& water, const PoseArrays& poses,
                            std::span<BodyHydrostatics> hydrostatics, unsigned threads) {
+  assert(hydrostatics.size() == poses.size());
   run_chunks(poses.size(), estimated_time(body, false), threads, [&](std::size_t begin, std::size_t end) {
     ServiceCounters counters;
     for (std::size_t i = begin; i < end; ++i) {
