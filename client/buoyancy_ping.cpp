@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
                       .count = options.count,
                       .rate = options.rate,
                       .seed = options.seed,
+                      .identical = options.identical,
                       .sea = std::move(*sea)};
   TerminationSignals signals;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes a write error with a message

@@ -242,6 +242,13 @@ class Run {
     if (silent_ > 1) {
       fail(kResponsesCheck, pluralize(silent_, "request", "requests") + " got no response");
     }
+    const std::int64_t others = result_.checks.replies() - result_.checks.identical();
+    if (task_.identical && others > 0) {
+      fail(kIdenticalCheck,
+           pluralize(others, "reply is", "replies are") +
+               " not identical to the last bit; expected the bits that the same scene, version and "
+               "instruction set give");
+    }
     if (signals_.pending()) {
       fail(kResponsesCheck, "stopped after " + std::to_string(result_.requests) + " of " +
                                 std::to_string(task_.count) + " requests");

@@ -21,6 +21,7 @@ struct PingTask {
   std::int64_t count = 100;  // of requests, >= 1
   double rate = 0.0;         // [Hz]; 0: each request is sent when the reply before has arrived
   std::uint64_t seed = 1;    // of the poses
+  bool identical = false;    // is a reply that differs in a bit a failure?
   ByteVector sea;            // a sea_state_t to publish, for a scene that receives its sea; else empty
 };
 
@@ -35,8 +36,10 @@ inline constexpr const char* kDecodableCheck = "messages that can be decoded";
 inline constexpr const char* kSingleResponseCheck = "one response to a request";
 inline constexpr const char* kIdsCheck = "ids and bodies as requested";
 inline constexpr const char* kOutputsCheck = "all outputs of the scene";
+inline constexpr const char* kIdenticalCheck = "identical replies";
 inline constexpr std::array kRunChecks{kConnectionCheck,     kResponsesCheck, kDecodableCheck,
-                                       kSingleResponseCheck, kIdsCheck,       kOutputsCheck};
+                                       kSingleResponseCheck, kIdsCheck,       kOutputsCheck,
+                                       kIdenticalCheck};
 
 struct RoundTrips {  // [s], from the first sending of a request to the arrival of its response
   double min = 0.0, median = 0.0, p90 = 0.0, p99 = 0.0, max = 0.0;

@@ -38,6 +38,10 @@ void add_options(CLI::App& app, PingOptions& options) {
                  "For a scene with waves = \"received\": publish the sea of this scene file (TOML), which "
                  "replaces the sea that the service has")
       ->type_name("FILE");
+  app.add_flag(
+      "--identical", options.identical,
+      "Fail unless every reply is identical to the last bit, as it is from the same scene, version and\n"
+      "instruction set: this finds differences that are smaller than the error bounds, as in waves");
   add_states_channel_option(app, options.link.states_channel);
   add_wrenches_channel_option(app, options.link.wrenches_channel);
   add_hydrostatics_channel_option(app, options.link.hydrostatics_channel);

@@ -23,6 +23,7 @@ struct PingOptions {
   double rate = 0.0;  // [Hz]; 0: not given
   std::uint64_t seed = 1;
   std::filesystem::path sea;
+  bool identical = false;
   bool json = false;
   std::filesystem::path junit;
 };

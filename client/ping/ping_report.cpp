@@ -51,10 +51,16 @@ std::string describe_check(const CheckResult& check) {
 }
 
 const char* verdict(const PingResult& result) {
+  if (result.agrees() && result.checks.identical() < result.checks.replies()) {
+    return "The service agrees with this program within the published bounds, but not to the last bit: it "
+           "has\n"
+           "another version, processor, method or tolerance, or a difference that the bounds hide "
+           "(--identical).\n";
+  }
   if (result.agrees()) return "The service agrees with this program within the published bounds.\n";
   if (!result.checks.all_passed()) return "The service does NOT agree with this program.\n";
   if (result.checks.replies() == 0) return "The service was NOT checked: there was no response.\n";
-  return "The values agree, but the check has FAILED for other reasons.\n";
+  return "The values agree, but the check has FAILED for the reasons that the error messages give.\n";
 }
 
 const char* mode_name(ServiceMode mode) {

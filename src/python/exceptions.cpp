@@ -1,5 +1,8 @@
 #include "python/exceptions.h"
 
+#include <cxxabi.h>
+#include <unistd.h>
+
 namespace buoyancy::python {
 namespace {
 
@@ -49,6 +52,14 @@ void define_exceptions(py::module_& module) {
       define(module, "StatusError", "A pose that could not be evaluated. Raised by raise_for_status() only.",
              with_base(PyExc_ValueError));
   py::register_exception_translator(&translate);
+}
+
+void take_gil_again(PyThreadState* state) noexcept {
+  try {
+    PyEval_RestoreThread(state);
+  } catch (const abi::__forced_unwind&) {  // the C library's, for pthread_exit()
+    while (true) pause();
+  }
 }
 
 void set_python_error() noexcept {

@@ -69,11 +69,16 @@ T& instance_of(py::handle object) {
   return *static_cast<T*>(holder.value_ptr());
 }
 
+// Takes the global interpreter lock again, for the thread that released it. A thread that outlives the
+// interpreter never gets it: Python ends such a thread by unwinding its stack, which would run destructors
+// that need the lock. It waits here instead for the end of the process, as it does from Python 3.14 on.
+void take_gil_again(PyThreadState* state) noexcept;
+
 // Releases Python's global interpreter lock for the life of this object.
 class WithoutGil {
  public:
   WithoutGil() : state_(PyEval_SaveThread()) {}
-  ~WithoutGil() { PyEval_RestoreThread(state_); }
+  ~WithoutGil() { take_gil_again(state_); }
   WithoutGil(const WithoutGil&) = delete;
   WithoutGil& operator=(const WithoutGil&) = delete;
 

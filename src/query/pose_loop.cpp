@@ -1,9 +1,12 @@
 #include "query/pose_loop.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
+
+#include <pthread.h>
 
 #include "engine/thread_pool.h"
 
@@ -14,9 +17,15 @@ namespace {
 constexpr double kMinParallelWork = 5e4;
 constexpr double kMinTaskWork = 2e4;
 
+// A child of fork() has none of its parent's threads, and what they held stays locked, in oneTBB too: it
+// works on one thread. Until a program has its first pool there is nothing that a child could find locked.
+std::atomic<bool> is_forked_child{false};
+
 // Pools live as long as the program: starting threads takes as long as thousands of queries. A pool may run
 // several loops at once.
 ThreadPool& pool_with(unsigned threads) {
+  static const int registered = pthread_atfork(nullptr, nullptr, [] { is_forked_child = true; });
+  static_cast<void>(registered);
   static std::mutex mutex;
   static std::map<unsigned, std::unique_ptr<ThreadPool>> pools;
   const std::lock_guard lock(mutex);
@@ -30,7 +39,7 @@ ThreadPool& pool_with(unsigned threads) {
 void run_chunks(std::size_t count, double time_each, unsigned threads,
                 const std::function<void(std::size_t, std::size_t)>& task) {
   const double work = time_each * static_cast<double>(count);
-  if (threads == 1 || count < 2 || work < kMinParallelWork) {
+  if (threads == 1 || count < 2 || work < kMinParallelWork || is_forked_child) {
     if (count > 0) task(0, count);
     return;
   }

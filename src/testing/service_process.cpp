@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <random>
 #include <system_error>
 #include <thread>
@@ -121,6 +123,8 @@ struct ServiceProcess::Impl {
   std::filesystem::path folder;  // of scene_text; empty: there is none
   UniqueFd log;
   pid_t pid = -1;
+  std::thread parent;           // starts the service, and waits for its end
+  std::atomic<int> status{-1};  // of wait(2), once the service has ended; -1: it runs
   std::optional<int> exit_code;
 
   Impl() = default;
@@ -128,6 +132,7 @@ struct ServiceProcess::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     stop();
+    if (parent.joinable()) parent.join();
     std::error_code ignored;
     if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
   }
@@ -144,12 +149,28 @@ struct ServiceProcess::Impl {
     return {};
   }
 
-  // Reaps the process if it has ended.
+  // Starts a program. The kernel ends it when the thread that started it ends, which therefore lives as long,
+  // whatever becomes of the thread that calls this. Returns 0 or an error of fork().
+  int start(char* const* arguments) {
+    std::promise<int> started;
+    std::future<int> result = started.get_future();
+    parent = std::thread([this, arguments, started = std::move(started)]() mutable {
+      const pid_t test = getpid();
+      const pid_t child = fork();
+      if (child == 0) execute(arguments, log.value(), test);
+      pid = child;
+      started.set_value(child < 0 ? errno : 0);
+      int ended = 0;
+      while (child > 0 && waitpid(child, &ended, 0) < 0 && errno == EINTR) {
+      }
+      status = ended;
+    });
+    return result.get();
+  }
+
   bool has_ended() {
-    int status = 0;
-    if (!exit_code && waitpid(pid, &status, WNOHANG) == pid) {
-      exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    }
+    const int ended = status;
+    if (!exit_code && ended != -1) exit_code = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
     return exit_code.has_value();
   }
 
@@ -219,10 +240,9 @@ Expected<ServiceProcess> ServiceProcess::start(const ServiceOptions& options) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  const pid_t parent = getpid();
-  impl->pid = fork();
-  if (impl->pid < 0) return make_error({arguments[0], message_of(errno), "a process", "", ""});
-  if (impl->pid == 0) execute(pointers.data(), impl->log.value(), parent);
+  if (const int failed = impl->start(pointers.data()); failed != 0) {
+    return make_error({arguments[0], message_of(failed), "a process", "", ""});
+  }
 
   if (impl->wait_for_log("ready:", options.ready_timeout)) return ServiceProcess(std::move(impl));
   const bool ended = impl->has_ended();

@@ -90,7 +90,8 @@ TEST(PingProgram, AgreesBitForBitWithServiceOfSameScene) {
   waves.tolerance = "0.001";
   for (const std::string& scene : {kScene, hydrostatics.text(), loads.text(), waves.text()}) {
     const RunningService service({}, scene);
-    const FinishedProcess ping = PingRun(scene).run({"--json", "--count", "60", "--retries", "10000"});
+    const FinishedProcess ping =
+        PingRun(scene).run({"--json", "--identical", "--count", "60", "--retries", "10000"});
     ASSERT_EQ(ping.exit_code, kSuccess) << ping.standard_error << scene;
     EXPECT_EQ(ping.standard_error, "");
     const nlohmann::json json = parse_json(ping.standard_output);
@@ -129,6 +130,24 @@ TEST(PingProgram, NamesDensityOfService) {
   EXPECT_GT(json["bodies"][0]["checks"]["force"]["failed"].get<int>(), 0);
   const std::string xml = read_file(here.path("ping.xml"));
   EXPECT_TRUE(contains(xml, "failures=\"4\"")) << xml;  // force and torque of both bodies
+}
+
+// In waves the bounds are wide: they hide a density that differs by little.
+TEST(PingProgram, FailsOnHiddenDifferenceIfItMustBeIdentical) {
+  SceneText here;
+  here.water = kWaves;
+  here.tolerance = "0.01";
+  std::string there = here.text();
+  const std::size_t density = there.find("density = 1025");
+  ASSERT_NE(density, std::string::npos) << there;
+  there.replace(density, 14, "density = 1025.01");
+  const RunningService service({}, there);
+  const FinishedProcess lenient = PingRun(here.text()).run({"--count", "20"});
+  EXPECT_EQ(lenient.exit_code, kSuccess) << lenient.standard_error;
+  EXPECT_TRUE(contains(lenient.standard_output, "but not to the last bit")) << lenient.standard_output;
+  const FinishedProcess strict = PingRun(here.text()).run({"--count", "20", "--identical"});
+  EXPECT_EQ(strict.exit_code, kFailure);
+  EXPECT_TRUE(contains(strict.standard_error, "not identical to the last bit")) << strict.standard_error;
 }
 
 TEST(PingProgram, NamesBodyThatServiceLacks) {

@@ -84,7 +84,7 @@ TEST(ResponseChecks, AllowSumOfBothBoundsAndNoMore) {
          }}};
     for (const auto& [check, change] : changes) {
       const ResponseChecks checks =
-          reply.compare([&](WrenchResponse& response) { change(response.bodies[0]); });
+          reply.compare([&apply = change](WrenchResponse& response) { apply(response.bodies[0]); });
       EXPECT_EQ(checks.identical(), 0);
       EXPECT_EQ(failed_checks(checks), factor < 1.0 ? std::vector<Check>{} : std::vector<Check>{check})
           << to_string(check) << " at " << factor;

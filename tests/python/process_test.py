@@ -104,6 +104,51 @@ class WorksWithThreadsAndProcesses(TestCase):
         killer.cancel()
         self.assertEqual(statuses, [0] * 4)
 
+    def test_children_forked_during_a_query_do_not_hang(self):
+        mesh = self.reference.mesh("rock")
+        position, quaternion = (np.tile(array, (20, 1)) for array in (self.reference.position, self.reference.quaternion))
+        expected = rows_of(mesh.query(position, quaternion, threads=2))
+        stop = threading.Event()
+
+        def query():
+            while not stop.is_set():
+                mesh.query(position, quaternion, threads=2)
+
+        thread = threading.Thread(target=query)
+        thread.start()
+        children = []
+        try:
+            for _ in range(10):
+                child = os.fork()
+                if child == 0:
+                    same = np.array_equal(rows_of(mesh.query(position, quaternion)), expected)
+                    os._exit(0 if same else 1)
+                children.append(child)
+        finally:
+            stop.set()
+            thread.join(TIMEOUT)
+        killer = threading.Timer(TIMEOUT, lambda: [os.kill(child, 9) for child in children])
+        killer.start()
+        statuses = [os.waitpid(child, 0)[1] for child in children]
+        killer.cancel()
+        self.assertEqual(statuses, [0] * 10)
+
+    def test_a_thread_in_a_query_survives_the_end_of_the_interpreter(self):
+        script = ("import sys, threading, buoyancy\n"
+                  "mesh = buoyancy.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],\n"
+                  "                     [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])\n"
+                  "begun = threading.Event()\n"
+                  "def query():\n"
+                  "    while True:\n"
+                  "        mesh.query((0, 0, 0), (1, 0, 0, 0))\n"
+                  "        begun.set()\n"
+                  "for _ in range(3): threading.Thread(target=query, daemon=True).start()\n"
+                  "begun.wait()\n")
+        for _ in range(5):
+            done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=TIMEOUT,
+                                  check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
 
 WITHOUT_NUMPY = """
 import array, sys

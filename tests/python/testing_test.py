@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -55,6 +56,14 @@ class StartsTheService(unittest.TestCase):
         self.assertFalse(service.is_running)
         self.assertEqual(service.stop(), 0)
         self.assertFalse(Path("/proc", str(service.pid)).exists())
+
+    def test_that_outlives_the_thread_that_started_it(self):
+        services = []
+        thread = threading.Thread(target=lambda: services.append(Service(scene_text=BOX, program=PROGRAM)))
+        thread.start()
+        thread.join()
+        self.assertAlmostEqual(lift_of_half_a_box(services[0].lcm_url), 512.5 * 9.80665, delta=1e-9)
+        self.assertEqual(services[0].stop(), 0)
 
     def test_and_removes_the_scene_that_it_wrote(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -3,8 +3,10 @@
 #include "testing/service_process.h"
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,13 @@ TEST(ServiceProcess, StopsTheServiceWithItsObject) {
     EXPECT_TRUE(moved.is_running());
   }
   EXPECT_EQ(kill(pid, 0), -1);
+}
+
+TEST(ServiceProcess, OutlivesTheThreadThatStartedIt) {
+  std::optional<ServiceProcess> service;
+  std::thread([&] { service.emplace(started(box())); }).join();
+  EXPECT_NEAR(lift_of_half_a_box(service->lcm_url()), 512.5 * 9.80665, 1e-9);
+  EXPECT_EQ(service->stop(), 0);
 }
 
 TEST(ServiceProcess, PassesArgumentsOn) {

@@ -34,6 +34,7 @@ import socket
 import struct
 import subprocess
 import tempfile
+import threading
 import time
 from collections.abc import Iterable
 
@@ -41,6 +42,7 @@ __all__ = ["Service", "ServiceError", "buoyancy_service", "ensure_multicast", "e
 
 _GROUP = "239.255.76.67"
 _PORTS = range(20000, 30000)  # below the ports that the kernel gives to senders
+_LIBC = ctypes.CDLL(None, use_errno=True)
 _STOP_TIMEOUT = 10.0  # [s]
 _POLL_INTERVAL = 0.002  # [s]
 
@@ -80,8 +82,7 @@ def enter_private_network() -> None:
     """
     clone_newuser, clone_newnet = 0x10000000, 0x40000000
     user, group = os.geteuid(), os.getegid()
-    libc = ctypes.CDLL(None, use_errno=True)
-    if libc.unshare(clone_newnet if user == 0 else clone_newuser | clone_newnet) != 0:
+    if _LIBC.unshare(clone_newnet if user == 0 else clone_newuser | clone_newnet) != 0:
         code = ctypes.get_errno()
         if code == errno.EINVAL:
             raise ServiceError(
@@ -183,15 +184,9 @@ class Service:
         self.lcm_url = f"udpm://{_GROUP}:{port}?ttl=0"
         program = os.fspath(program or os.environ.get("BUOYANCYD") or "buoyancyd")
         self._log = tempfile.TemporaryFile()
-        try:
-            self._process = subprocess.Popen(
-                [program, "--scene", os.fspath(scene), "--lcm-url", self.lcm_url, *map(os.fspath, arguments)],
-                stdin=subprocess.DEVNULL,
-                stdout=self._log,
-                stderr=self._log,
-                preexec_fn=_end_with_parent,
-            )
-        except OSError as error:
+        command = [program, "--scene", os.fspath(scene), "--lcm-url", self.lcm_url, *map(os.fspath, arguments)]
+        error = self._start(command)
+        if error is not None:
             self.stop()
             raise ServiceError(
                 f"{program}: {error.strerror}; expected the program. Install the package buoyancy, or set $BUOYANCYD"
@@ -202,6 +197,30 @@ class Service:
             self.stop()
             actual = f"not ready after {ready_timeout} s" if code is None else f"exit code {code}"
             raise ServiceError(f"{program}: {actual}; expected a service that is ready. Its log:\n{log}")
+
+    def _start(self, command: list[str]) -> OSError | None:
+        """Start the program in a thread that lives as long: the kernel ends the program when that thread ends."""
+        started = threading.Event()
+        errors: list[OSError] = []
+
+        def parent() -> None:
+            try:
+                self._process = subprocess.Popen(
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=self._log,
+                    stderr=self._log,
+                    preexec_fn=_end_with_parent,
+                )
+            except OSError as error:
+                errors.append(error)
+            started.set()
+            if not errors:
+                self._process.wait()
+
+        threading.Thread(target=parent, name="buoyancyd's parent", daemon=True).start()
+        started.wait()
+        return errors[0] if errors else None
 
     @property
     def log(self) -> str:
@@ -265,7 +284,7 @@ class Service:
 def _end_with_parent() -> None:
     """In the child, before it becomes buoyancyd: end when the test's process ends, however it does."""
     pr_set_pdeathsig = 1
-    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+    _LIBC.prctl(pr_set_pdeathsig, signal.SIGKILL)
 
 
 try:
