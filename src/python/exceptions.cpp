@@ -1,5 +1,7 @@
 #include "python/exceptions.h"
 
+#include <cstring>
+
 #include <cxxabi.h>
 #include <unistd.h>
 
@@ -20,15 +22,22 @@ PyObject* define(py::module_& module, const char* name, const char* doc, const p
   return type;
 }
 
+// Sets Python's error. The text may name a file whose name is not UTF-8.
+void set_error(PyObject* type, const char* text) {
+  const py::object decoded = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(text, static_cast<Py_ssize_t>(std::strlen(text)), "backslashreplace"));
+  if (decoded) PyErr_SetObject(type, decoded.ptr());
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(std::move(pointer));
   } catch (const InputException& exception) {
-    PyErr_SetString(input_error_type, exception.what());
+    set_error(input_error_type, exception.what());
   } catch (const ServiceException& exception) {
-    PyErr_SetString(service_error_type, exception.what());
+    set_error(service_error_type, exception.what());
   } catch (const StatusException& exception) {
-    PyErr_SetString(status_error_type, exception.what());
+    set_error(status_error_type, exception.what());
   }
 }
 
@@ -70,9 +79,9 @@ void set_python_error() noexcept {
   } catch (const py::builtin_exception& exception) {
     exception.set_error();
   } catch (const InputException& exception) {
-    PyErr_SetString(input_error_type, exception.what());
+    set_error(input_error_type, exception.what());
   } catch (const ServiceException& exception) {
-    PyErr_SetString(service_error_type, exception.what());
+    set_error(service_error_type, exception.what());
   } catch (const std::bad_alloc&) {
     PyErr_NoMemory();
   } catch (const std::exception& exception) {

@@ -45,6 +45,15 @@ void define_exceptions(py::module_& module);
 // without pybind11 in between.
 void set_python_error() noexcept;
 
+// The text as a str, also if it names a file whose name is not UTF-8: Python's file names have such bytes as
+// lone surrogates.
+inline py::str to_str(const std::string& text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 // The name of a class without its module, for errors.
 inline const char* short_name(const PyTypeObject* type) {
   const char* const dot = std::strrchr(type->tp_name, '.');

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <pybind11/stl.h>
@@ -193,7 +194,15 @@ const MeshReport& report_of(py::handle self) {
 template <typename Value>
 void add_report(py::class_<MeshObject>& type, const char* name, Value MeshReport::*member, const char* doc) {
   type.def_property_readonly(
-      name, [member](py::handle self) { return report_of(self).*member; }, doc);
+      name,
+      [member](py::handle self) {
+        if constexpr (std::is_same_v<Value, std::string>) {
+          return to_str(report_of(self).*member);
+        } else {
+          return report_of(self).*member;
+        }
+      },
+      doc);
 }
 
 py::object vector(const Vec3& value) {
@@ -234,7 +243,7 @@ void define_mesh(py::module_& module) {
   type.def_property_readonly(
       "format", [](py::handle self) { return report_of(self).source.format; }, "str: of the file.");
   type.def_property_readonly(
-      "report", [](py::handle self) { return to_text(report_of(self)); },
+      "report", [](py::handle self) { return to_str(to_text(report_of(self))); },
       "str: the whole report, several lines.");
   type.def_property_readonly(
       "bounding_box",
@@ -258,8 +267,9 @@ void define_mesh(py::module_& module) {
       "(3, 3), m^5, about center_of_mass, in the mesh's axes: times the density of a solid it is kg m^2.");
   type.def("__repr__", [](py::handle self) {
     const MeshReport& report = report_of(self);
-    return "<buoyancy.Mesh " + report.name + ": " + pluralize(report.triangles, "triangle", "triangles") +
-           ", " + format_number(report.volume, 6) + " m^3>";
+    return to_str("<buoyancy.Mesh " + report.name + ": " +
+                  pluralize(report.triangles, "triangle", "triangles") + ", " +
+                  format_number(report.volume, 6) + " m^3>");
   });
 }
 

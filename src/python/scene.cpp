@@ -133,7 +133,7 @@ void define_body(py::module_& module) {
   add(
       "id", [](const Body& body) { return body.id; }, "int.");
   add(
-      "name", [](const Body& body) { return body.name; }, "str.");
+      "name", [](const Body& body) { return to_str(body.name); }, "str.");
   add(
       "method", [](const Body& body) { return std::string(to_string(body.solver.method())); }, "str.");
   add(
@@ -143,7 +143,7 @@ void define_body(py::module_& module) {
   add(
       "triangles", [](const Body& body) { return body.prepared_mesh->report.triangles; }, "int.");
   add(
-      "report", [](const Body& body) { return to_text(body.prepared_mesh->report); },
+      "report", [](const Body& body) { return to_str(to_text(body.prepared_mesh->report)); },
       "str: the report of its mesh.");
   add(
       "reference_point", [](const Body& body) { return vector(body.reference_B); },
@@ -176,7 +176,7 @@ void define_body(py::module_& module) {
       "(4,), (w, x, y, z): the orientation of [body.client].");
   type.def("__repr__", [](py::handle self) {
     const Body& body = body_of(self);
-    return "<buoyancy.Body " + std::to_string(body.id) + " \"" + body.name + "\">";
+    return to_str("<buoyancy.Body " + std::to_string(body.id) + " \"" + body.name + "\">");
   });
 }
 
@@ -252,8 +252,8 @@ void define_scene(py::module_& module) {
       "(3,): unit vector, world frame.");
   type.def("__repr__", [](py::handle self) {
     const Scene& scene = *instance_of<SceneObject>(self).scene;
-    return "<buoyancy.Scene " + scene.name() + ": " +
-           pluralize(static_cast<std::int64_t>(scene.bodies().size()), "body", "bodies") + ">";
+    return to_str("<buoyancy.Scene " + scene.name() + ": " +
+                  pluralize(static_cast<std::int64_t>(scene.bodies().size()), "body", "bodies") + ">");
   });
 }
 

@@ -1,12 +1,14 @@
 """Bad input raises an exception that says what is wrong, and never ends the process."""
 import copy
 import pickle
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
 import buoyancy
-from support import TestCase, box
+from support import SOURCE, TestCase, box
 
 
 class RefusesBadInput(TestCase):
@@ -131,6 +133,19 @@ class RefusesBadInput(TestCase):
             self.refused(TypeError, "pickle", pickle.dumps, value)
             self.refused(TypeError, "pickle", copy.copy, value)
         self.refused(TypeError, "constructor", buoyancy.Wrenches)
+
+
+class TakesNamesThatAreNotUtf8(TestCase):
+    def test_of_files(self):
+        with self.assertRaisesRegex(buoyancy.InputError, r"missing\\xff.obj: no such file"):
+            buoyancy.Mesh("missing\udcff.obj")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "hull\udcff.obj")
+            path.write_bytes((SOURCE / "scenes/meshes/catamaran.obj").read_bytes())
+            mesh = buoyancy.Mesh(path)
+        self.assertEqual(mesh.name, str(path))
+        self.assertIn("hull\udcff.obj", mesh.report)
+        self.assertIn("hull\udcff.obj", repr(mesh))
 
 
 class SurvivesRandomArrays(TestCase):
