@@ -238,6 +238,7 @@ Expected<ServiceProcess> ServiceProcess::start(const ServiceOptions& options) {
                                      impl->lcm_url};
   arguments.insert(arguments.end(), options.arguments.begin(), options.arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   if (const int failed = impl->start(pointers.data()); failed != 0) {

@@ -7,6 +7,7 @@
 //   target_link_libraries(service_round_trip_test buoyancy::testing buoyancy::client GTest::gtest_main)
 //
 // buoyancyd is searched for in $PATH; the environment variable BUOYANCYD names another one.
+#include <cstdint>
 #include <vector>
 
 #include <buoyancy/client/client.h>
@@ -42,7 +43,7 @@ TEST_F(Crate, FloatsAtHalfItsHeight) {
   buoyancy::BodyState state;
   state.body_id = 1;
   state.quaternion_wxyz = {1, 0, 0, 0};
-  for (int step = 0; step < 100; ++step) {
+  for (std::int64_t step = 0; step < 100; ++step) {
     const auto response = client->request(10'000 * step, std::vector{state});
     ASSERT_TRUE(response) << response.error().message();
     const buoyancy::BodyWrench& wrench = (*response)->bodies[0];
