@@ -270,45 +270,38 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& name)
   }
 }
 
-// The sections that describe the water, of scenes with and without bodies.
-void read_world_and_water(TomlTable& top, SceneDescription& scene, const std::filesystem::path& directory,
-                          SceneParseContext& context) {
+// Parses a scene, or the sections [world] and [water] alone.
+Expected<SceneDescription> parse(std::string_view text, const std::string& name,
+                                 const std::filesystem::path& directory, bool has_bodies) {
+  const Expected<toml::table> root = parse_toml(text, name);
+  if (!root) return make_error(root.error());
+  SceneParseContext context{name, std::nullopt};
+  SceneDescription scene;
+  scene.name = name;
+  TomlTable top(*root, has_bodies ? "the scene" : "the water", context);
   if (const toml::table* world = top.table("world")) read_world({*world, "[world]", context}, scene.water);
   if (const toml::table* water = top.table("water")) read_water(*water, scene, directory, context);
+  if (has_bodies) {
+    if (const toml::table* limits = top.table("limits"))
+      read_limits({*limits, "[limits]", context}, scene.limits);
+    read_bodies(top, scene, directory, context);
+  }
+  top.finish();
+  if (has_bodies && scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
+  if (context.error) return make_error(*std::move(context.error));
+  return scene;
 }
 
 }  // namespace
 
 Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory) {
-  const Expected<toml::table> root = parse_toml(text, name);
-  if (!root) return make_error(root.error());
-  SceneParseContext context{name, std::nullopt};
-  SceneDescription scene;
-  scene.name = name;
-  TomlTable top(*root, "the scene", context);
-  read_world_and_water(top, scene, directory, context);
-  if (const toml::table* limits = top.table("limits"))
-    read_limits({*limits, "[limits]", context}, scene.limits);
-  read_bodies(top, scene, directory, context);
-  top.finish();
-  if (scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
-  if (context.error) return make_error(*std::move(context.error));
-  return scene;
+  return parse(text, name, directory, true);
 }
 
 Expected<SceneDescription> parse_water(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory) {
-  const Expected<toml::table> root = parse_toml(text, name);
-  if (!root) return make_error(root.error());
-  SceneParseContext context{name, std::nullopt};
-  SceneDescription scene;
-  scene.name = name;
-  TomlTable top(*root, "the water", context);
-  read_world_and_water(top, scene, directory, context);
-  top.finish();
-  if (context.error) return make_error(*std::move(context.error));
-  return scene;
+  return parse(text, name, directory, false);
 }
 
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
