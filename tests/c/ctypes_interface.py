@@ -139,15 +139,15 @@ class Malformed:
     """Calls with random arguments. Arrays are as long as any count that the library accepts with them."""
 
     def __init__(self, library):
-        self.library = library
+        self.functions = library
         self.random = random.Random(24)
         self.successes = self.failures = 0
 
     def judge(self, error):
         self.successes += error == 0
         self.failures += error != 0
-        if error != 0 and not (0 < error < 7 and len(self.library.buoyancy_last_error()) > 20):
-            sys.exit(f"code {error}: {self.library.buoyancy_last_error()}")
+        if error != 0 and not (0 < error < 7 and len(self.functions.buoyancy_last_error()) > 20):
+            sys.exit(f"code {error}: {self.functions.buoyancy_last_error()}")
         return error == 0
 
     def odd(self, probability):
@@ -181,7 +181,7 @@ class Malformed:
         mesh = c_void_p()
         narrow = self.odd(0.5)
         array = None if self.odd(0.03) else ((c_int32 if narrow else c_int64) * 36)(*faces)
-        function = self.library.buoyancy_mesh_create if narrow else self.library.buoyancy_mesh_create_64
+        function = self.functions.buoyancy_mesh_create if narrow else self.functions.buoyancy_mesh_create_64
         error = function(self.doubles(CUBE_VERTICES), self.count(self.random.choice([8, 8, 8, 7, 0])), array,
                          self.count(self.random.choice([12, 12, 12, 11, 1, 0])), self.options(),
                          None if self.odd(0.02) else byref(mesh))
@@ -204,7 +204,7 @@ class Malformed:
         for struct in (poses, wrenches, water):
             if self.odd(0.03):
                 struct.size = self.random.randrange(200)
-        self.judge(self.library.buoyancy_mesh_query(
+        self.judge(self.functions.buoyancy_mesh_query(
             self.handle(mesh.value), None if self.odd(0.3) else byref(water), self.random.randrange(-1, 7),
             self.random.choice([0.0, 0.01, 1.0] + ODD_NUMBERS), None if self.odd(0.02) else byref(poses),
             None if self.odd(0.02) else byref(wrenches), self.random.choice([0, 1, 2, -1, 2**31 - 1])))
@@ -215,11 +215,11 @@ class Malformed:
             text[self.random.randrange(len(text) - 1)] = self.random.randrange(256)
         sea, heights = c_void_p(), (c_double * 4)()
         place = (c_double * 4)(*[self.random.choice(ODD_NUMBERS) for _ in range(4)])
-        if self.judge(self.library.buoyancy_sea_from_toml(bytes(text), None, byref(sea))):
-            self.judge(self.library.buoyancy_sea_elevations(sea, self.count(4), place, place, (c_int64 * 1)(2**63 - 1), 1,
+        if self.judge(self.functions.buoyancy_sea_from_toml(bytes(text), None, byref(sea))):
+            self.judge(self.functions.buoyancy_sea_elevations(sea, self.count(4), place, place, (c_int64 * 1)(2**63 - 1), 1,
                                                             heights, 1))
-        self.judge(self.library.buoyancy_sea_free(self.handle(sea.value)))
-        self.library.buoyancy_sea_free(sea)
+        self.judge(self.functions.buoyancy_sea_free(self.handle(sea.value)))
+        self.functions.buoyancy_sea_free(sea)
 
     def run(self, calls):
         while self.successes + self.failures < calls:
@@ -227,9 +227,9 @@ class Malformed:
             if mesh is not None:
                 for _ in range(3):
                     self.query(mesh)
-                self.judge(self.library.buoyancy_mesh_free(mesh))
+                self.judge(self.functions.buoyancy_mesh_free(mesh))
                 self.query(mesh)  # it was freed
-                self.judge(self.library.buoyancy_mesh_free(mesh))
+                self.judge(self.functions.buoyancy_mesh_free(mesh))
             self.text()
         print(f"{self.successes} calls succeeded, {self.failures} returned an error with its reason")
         if min(self.successes, self.failures) < calls / 5:

@@ -91,32 +91,32 @@ immersion = "none"
 }
 
 TEST(Examples, BulletCrateSettlesLevel) {
-  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
+  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;  // the engine is optional for a build
   expect_crate_settles_level(box_service(), {BULLET_CRATE});
 }
 
 TEST(Examples, BulletCrateWithLoadsSettlesLevel) {
-  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
+  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;  // the engine is optional for a build
   expect_crate_settles_level(crate_service(), {BULLET_CRATE, "--loads"});
 }
 
 TEST(Examples, OdeCrateSettlesLevel) {
-  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;
+  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;  // the engine is optional for a build
   expect_crate_settles_level(box_service(), {ODE_CRATE});
 }
 
 TEST(Examples, OdeCrateWithLoadsSettlesLevel) {
-  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;
+  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;  // the engine is optional for a build
   expect_crate_settles_level(crate_service(), {ODE_CRATE, "--loads"});
 }
 
 TEST(Examples, BulletCrateHeavesWith20TimesItsMass) {
-  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
+  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;  // the engine is optional for a build
   expect_crate_heaves_with_20_times_its_mass(BULLET_CRATE);
 }
 
 TEST(Examples, OdeCrateHeavesWith20TimesItsMass) {
-  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;
+  if (*ODE_CRATE == '\0') GTEST_SKIP() << kNoOde;  // the engine is optional for a build
   expect_crate_heaves_with_20_times_its_mass(ODE_CRATE);
 }
 
@@ -173,7 +173,7 @@ void expect_motion_of_client(const std::string& scene, const std::string& model,
 }
 
 TEST(Examples, MujocoBodySinksAtItsTerminalVelocity) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   const TempDir directory;
   const std::string scene = directory.write("sinks.toml", R"(
 [[body]]
@@ -195,7 +195,7 @@ center = [0, 0, 0]
 }
 
 TEST(Examples, MujocoBodyHeavesWithItsAddedMass) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   const TempDir directory;
   const std::string scene = directory.write("heaves.toml", R"(
 [[body]]
@@ -217,7 +217,7 @@ immersion = "none"
 // A body without symmetries, tilted, falls and turns in a current: frames, centre of mass and the blocks of
 // the matrices all matter.
 TEST(Examples, MujocoBodyTumblesAsInBuoyancyClient) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   const TempDir directory;
   const std::string scene = directory.write("tumbles.toml", R"(
 [water.current]
@@ -250,13 +250,13 @@ orientation = [0.8, 0.4, 0.2, 0.4]
 }
 
 TEST(Examples, MujocoCatamaranRidesWavesAsInBuoyancyClient) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   expect_motion_of_client(kSources + "/scenes/catamaran.toml", kSources + "/client/examples/catamaran.xml",
                           "8", "0.005");
 }
 
 TEST(Examples, MujocoBodyDriftsWithTheCurrent) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   MujocoMotion motion;
   run_mujoco(kSources + "/scenes/rov.toml", kSources + "/client/examples/rov.xml", "30", motion);
   // The current of the scene; the drag of the last centimetres a second is almost linear.
@@ -271,9 +271,9 @@ TEST(Examples, MujocoBodyDriftsWithTheCurrent) {
 // A small neutrally buoyant sphere, whose added mass is half the mass of its water, moves as that water
 // would.
 TEST(Examples, MujocoSphereMovesAsTheWaterInWaves) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
-  constexpr double kAmplitude = 0.02;  // [m]
-  constexpr double kPeriod = 4.0;      // [s]
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
+  constexpr double kAmplitude = 0.02;                     // [m]
+  constexpr double kPeriod = 4.0;                         // [s]
   const TempDir directory;
   const std::string scene = directory.write("waves.toml", R"(
 [water.waves]
@@ -306,7 +306,7 @@ center = [0, 0, 0]
 }
 
 TEST(Examples, MujocoModelWithoutWetBodiesIsRefused) {
-  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;
+  if (*MUJOCO_BODIES == '\0') GTEST_SKIP() << kNoMujoco;  // the engine is optional for a build
   const TempDir directory;
   const std::string model = directory.write("dry.xml", "<mujoco><worldbody><body/></worldbody></mujoco>");
   const FinishedProcess run = run_to_end(command_of({MUJOCO_BODIES, model, "memq://"}), kRunTimeout);
@@ -315,7 +315,7 @@ TEST(Examples, MujocoModelWithoutWetBodiesIsRefused) {
 }
 
 TEST(Examples, ReportMissingService) {
-  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;
+  if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;  // the engine is optional for a build
   const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://", kStep, "3"}), kRunTimeout);
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.standard_error.find("no buoyancyd is running"), std::string::npos) << run.standard_error;
@@ -341,7 +341,7 @@ std::string run_python(const TempDir& directory, const Options& options) {
 }
 
 TEST(Examples, PythonReceivesForceOnBox) {
-  if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;
+  if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;  // the engine is optional for a build
   const TempDir directory;
   const RunningProgram service(box_service());
   for (const double height : {0.0, 0.1, 1.0}) {
@@ -361,7 +361,7 @@ TEST(Examples, PythonReceivesForceOnBox) {
 }
 
 TEST(Examples, PythonReceivesLoadsOfCrate) {
-  if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;
+  if (*PYTHON == '\0') GTEST_SKIP() << kNoPython;  // the engine is optional for a build
   const TempDir directory;
   const RunningProgram service(crate_service());
   const std::string output = run_python(directory, {"--loads", "--velocity", "0", "0", "-0.5"});
