@@ -195,7 +195,9 @@ double ResponseChecks::volume_limit(const RequestId& id, const BodyState& state,
     if (!(weight > 0.0)) return body.solver.tolerance() * body.solver.mesh().volume + rounding;
     return (expected.force_error_bound + received.force_error_bound) / weight + rounding;
   }
-  const double own = buoyancy_of(body, water, validate_pose(state, 0.0).pose).volume_error_bound;
+  BodyOutcome outcome;
+  evaluate(body, water, validate_pose(state, 0.0), outcome);
+  const double own = outcome.in_waves.volume_error_bound;
   const double larger = expected.force_error_bound > 0.0
                             ? std::max(1.0, received.force_error_bound / expected.force_error_bound)
                             : 1.0;

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "scene/body_motions.h"
+#include "scene/floating_bodies.h"
 
 namespace buoyancy::service {
 namespace {
@@ -51,8 +51,7 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   const HydrostaticMesh& prepared = (*body)->prepared_mesh->mesh;
   auto mesh = std::make_shared<HydrostaticMesh>(prepared);
   if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
-  const PlacedMesh placed{.mesh = mesh.get()};
-  Expected<FloatingBody> floating = FloatingBody::make({&placed, 1}, mass->mass, mass->center_of_mass_B);
+  Expected<FloatingBody> floating = floating_body_of(**body, *mesh, *mass);
   if (!floating) return tl::unexpected(floating.error());
   return LoadedBody{*std::move(scene), std::move(mesh), *std::move(floating)};
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/subdivision_load.h"
 #include "hydrostatics/hydrostatics.h"
 #include "messages/conversions.h"
 
@@ -80,12 +81,10 @@ bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
   return difference == 0;
 }
 
-WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose) {
-  if (water.waves == nullptr) {
-    return {.result = buoyancy(body.solver, pose, *water.at_rest, body.reference_B)};
-  }
-  return buoyancy_in_waves(body.solver, body.prepared_mesh->wave_mesh.value(), *water.waves, pose,
-                           body.reference_B);
+WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const CurrentWater& water,
+                               const Pose& pose, const Vec3& reference_B) {
+  if (water.waves == nullptr) return {.result = buoyancy(solver, pose, *water.at_rest, reference_B)};
+  return buoyancy_in_waves(solver, mesh.wave_mesh.value(), *water.waves, pose, reference_B);
 }
 
 WaveDetails details_of(const WaveBuoyancyResult& computed) {
@@ -93,11 +92,17 @@ WaveDetails details_of(const WaveBuoyancyResult& computed) {
 }
 
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
-              BodyOutcome& outcome) {
-  const WaveBuoyancyResult computed = buoyancy_of(body, water, validated.pose);
+              BodyOutcome& outcome, const BodyCondition* condition) {
+  WaveBuoyancyResult computed =
+      buoyancy_of(body.solver, *body.prepared_mesh, water, validated.pose, body.reference_B);
+  double flooded_volume = 0.0;
+  if (body.subdivision != nullptr) {
+    flooded_volume = add_subdivision_load(body, condition, water, validated.pose, computed);
+  }
   outcome.result = computed.result;
   complete_outcome(validated.quaternion_normalised, outcome);
   outcome.in_waves = details_of(computed);
+  outcome.flooded_volume = flooded_volume;
 }
 
 // Apart from try_evaluate_from_bounds(), which is the whole cost of most bodies of a large scene at rest.
@@ -119,6 +124,7 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
+  if (body.subdivision != nullptr) return false;
   if (water.waves != nullptr) {
     return try_evaluate_from_bounds_in_waves(body, submerged, *water.waves, validated, outcome);
   }
@@ -134,6 +140,7 @@ void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
   outcome.quaternion_normalised = quaternion_normalised;
   outcome.unchanged = false;
   outcome.in_waves = {};
+  outcome.flooded_volume = 0.0;
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {
@@ -171,13 +178,16 @@ void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
 }
 
 BodyHydrostatics evaluate_hydrostatics(const Body& body, const Water& water, const Pose& pose,
-                                       BodyStatus status, ServiceCounters& counters) {
+                                       BodyStatus status, ServiceCounters& counters,
+                                       const BodyCondition* condition) {
   BodyHydrostatics message;
   message.body_id = body.id;
   message.status = status;
   if (status != BodyStatus::kOk) return message;
   const std::optional<Hydrostatics> computed =
-      hydrostatics(body.solver.mesh(), pose, water, body.reference_B, body.center_of_mass_B);
+      body.subdivision == nullptr
+          ? hydrostatics(body.solver.mesh(), pose, water, body.reference_B, body.center_of_mass_B)
+          : subdivided_hydrostatics(body, condition, water, pose);
   if (!computed) {
     message.status = BodyStatus::kOutOfRange;
     return message;

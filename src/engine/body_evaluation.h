@@ -50,7 +50,8 @@ struct BodyOutcome {
   bool quaternion_normalised = false;
   bool unchanged = false;  // the body's last result was reused
   WaveDetails in_waves;
-  BuoyancyResult result;  // zeros if status is not kOk
+  BuoyancyResult result;        // zeros if status is not kOk
+  double flooded_volume = 0.0;  // [m^3], that flooded compartments take from the hull's displaced volume
 };
 
 // The water at a request's time.
@@ -59,31 +60,36 @@ struct CurrentWater {
   const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
 };
 
-// The result of a body at a pose. Precondition: the water is known. No heap allocation, except, in waves,
-// until a thread's buffers are as large as its queries need.
-WaveBuoyancyResult buoyancy_of(const Body& body, const CurrentWater& water, const Pose& pose);
+// The result of a mesh at a pose. mesh: of the solver. Precondition: the water is known. No heap allocation,
+// except, in waves, until a thread's buffers are as large as its queries need.
+WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const CurrentWater& water,
+                               const Pose& pose, const Vec3& reference_B);
 
 // The details of a result of buoyancy_of().
 WaveDetails details_of(const WaveBuoyancyResult& computed);
 
-// Preconditions: validated.status is kOk, and the water is known.
+// condition: of the body's compartments and tanks; nullptr: that of the scene file. Preconditions:
+// validated.status is kOk, and the water is known.
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
-              BodyOutcome& outcome);
+              BodyOutcome& outcome, const BodyCondition* condition = nullptr);
 // Sets outcome to what bounds alone decide (see try_buoyancy_from_bounds, and in waves
-// try_buoyancy_in_waves_from_bounds). Returns false, and leaves outcome unchanged, where they do not suffice.
+// try_buoyancy_in_waves_from_bounds). Returns false, and leaves outcome unchanged, where they do not suffice,
+// and for a body with compartments or tanks.
 // Preconditions: validated.status is kOk, and the water is known. No heap allocation.
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 // Sets the fields of outcome that accompany its result, which was computed at a valid pose; in_waves to those
-// of water at rest.
+// of water at rest, flooded_volume to 0.
 void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 
 // Computes and counts the hydrostatics of a body at the pose of its wrench. status: the status of that
-// wrench; unless it is kOk, the result holds zeros. No heap allocation.
+// wrench; unless it is kOk, the result holds zeros. condition: as for evaluate(). No heap allocation for a
+// body without compartments and tanks.
 BodyHydrostatics evaluate_hydrostatics(const Body& body, const Water& water, const Pose& pose,
-                                       BodyStatus status, ServiceCounters& counters);
+                                       BodyStatus status, ServiceCounters& counters,
+                                       const BodyCondition* condition = nullptr);
 
 // The pose after `seconds` of constant twist: p + v t, and q rotated by w t about W's axes. The quaternion
 // keeps its norm. The pose is not finite where it exceeds double's range, or where |w t| exceeds 1e154 [rad].

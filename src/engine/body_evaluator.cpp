@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "engine/subdivision_load.h"
 #include "messages/wire_views.h"
 
 namespace buoyancy {
@@ -47,7 +48,7 @@ bool mark_first(std::uint32_t& last_request, std::uint32_t request) {
 }  // namespace
 
 void BodyEvaluator::set_scene(const Scene& scene) {
-  using Key = std::tuple<const PreparedMesh*, Method, double, double, double, double>;
+  using Key = std::tuple<const PreparedMesh*, const Subdivision*, Method, double, double, double, double>;
   scene_ = &scene;
   kinds_.clear();
   kind_of_.clear();
@@ -55,8 +56,8 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   std::map<Key, std::uint32_t> known;
   for (const Body& body : scene.bodies()) {
     const Vec3& reference = body.reference_B;
-    const Key key{body.prepared_mesh, body.solver.method(), body.solver.tolerance(),
-                  reference.x(),      reference.y(),        reference.z()};
+    const Key key{body.prepared_mesh, body.subdivision, body.solver.method(), body.solver.tolerance(),
+                  reference.x(),      reference.y(),    reference.z()};
     const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds_.size()));
     if (is_new) {
       kinds_.push_back(
@@ -70,6 +71,16 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   results_.assign(scene.bodies().size(), {});
   has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
   last_twists_.assign(scene.bodies_with_hydrodynamics() > 0 ? scene.bodies().size() : 0, {});
+  conditions_.assign(scene.bodies_with_subdivision() > 0 ? scene.bodies().size() : 0, {});
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    const Subdivision* subdivision = scene.bodies()[i].subdivision;
+    if (subdivision != nullptr) conditions_[i] = initial_condition(*subdivision);
+  }
+}
+
+void BodyEvaluator::set_condition(std::size_t body, const BodyCondition& condition) {
+  conditions_[body] = condition;
+  last_[body].cached = Cached::kNothing;
 }
 
 void BodyEvaluator::clear_cache() {
@@ -249,25 +260,33 @@ void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const Re
   }
   buoyancy(std::span(queries).first(order.size()), *water_.at_rest, std::span(results).first(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    set_result(pending_[order[i]], results[i], {}, request, response, counters);
+    WaveBuoyancyResult computed{.result = results[i]};
+    set_result(pending_[order[i]], computed, request, response, counters);
   }
 }
 
 void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
                             ServiceCounters& counters) {
   const Body& example = example_of(pending.body);
-  const WaveBuoyancyResult computed = buoyancy_of(example, water_, to_pose(last_[pending.body].pose));
-  counters.wave_patches += computed.patches;
-  set_result(pending, computed.result, details_of(computed), request, response, counters);
+  WaveBuoyancyResult computed = buoyancy_of(example.solver, *example.prepared_mesh, water_,
+                                            to_pose(last_[pending.body].pose), example.reference_B);
+  set_result(pending, computed, request, response, counters);
 }
 
-void BodyEvaluator::set_result(const Pending& pending, const BuoyancyResult& result,
-                               const WaveDetails& in_waves, const RequestView& request,
-                               ResponseWriter& response, ServiceCounters& counters) {
+void BodyEvaluator::set_result(const Pending& pending, WaveBuoyancyResult& computed,
+                               const RequestView& request, ResponseWriter& response,
+                               ServiceCounters& counters) {
+  double flooded_volume = 0.0;
+  if (const BodyCondition* inside = condition(pending.body)) {
+    flooded_volume = add_subdivision_load(example_of(pending.body), inside, water_,
+                                          to_pose(last_[pending.body].pose), computed);
+  }
+  counters.wave_patches += computed.patches;
   BodyOutcome& outcome = results_[pending.body];
-  outcome.result = result;
+  outcome.result = computed.result;
   complete_outcome(pending.quaternion_normalised, outcome);
-  outcome.in_waves = in_waves;
+  outcome.in_waves = details_of(computed);
+  outcome.flooded_volume = flooded_volume;
   if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
   respond(pending, outcome, request, response, counters);
 }

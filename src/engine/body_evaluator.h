@@ -47,6 +47,14 @@ class BodyEvaluator {
   // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
 
+  // Replaces the condition of a body with compartments or tanks, and discards its cached result. At first a
+  // body has the condition of the scene file. body: index into the scene's.
+  void set_condition(std::size_t body, const BodyCondition& condition);
+  // nullptr: the body has neither compartments nor tanks.
+  const BodyCondition* condition(std::size_t body) const {
+    return conditions_.empty() || example_of(body).subdivision == nullptr ? nullptr : &conditions_[body];
+  }
+
   unsigned thread_count() const { return thread_pool_.thread_count(); }
   const Scene& scene() const { return *scene_; }
 
@@ -113,8 +121,9 @@ class BodyEvaluator {
                      ResponseWriter& response, ServiceCounters& counters);
   void compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
                ServiceCounters& counters);
-  void set_result(const Pending& pending, const BuoyancyResult& result, const WaveDetails& in_waves,
-                  const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  // computed: of the body's mesh alone.
+  void set_result(const Pending& pending, WaveBuoyancyResult& computed, const RequestView& request,
+                  ResponseWriter& response, ServiceCounters& counters);
   // Sets the wrench of a state, and counts it.
   void respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
                ResponseWriter& response, ServiceCounters& counters);
@@ -130,11 +139,12 @@ class BodyEvaluator {
   CurrentWater water_;  // of the current request
   ThreadPool thread_pool_;
   std::vector<BodyKind> kinds_;
-  std::vector<std::uint32_t> kind_of_;  // by body: index into kinds_
-  std::vector<LastPose> last_;          // by body
-  std::vector<BodyOutcome> results_;    // by body
-  bool has_loads_ = false;              // does any body have drag, added mass or the loads output?
-  std::vector<BodyTwist> last_twists_;  // by body; empty if no body has drag or added mass
+  std::vector<std::uint32_t> kind_of_;     // by body: index into kinds_
+  std::vector<LastPose> last_;             // by body
+  std::vector<BodyOutcome> results_;       // by body
+  bool has_loads_ = false;                 // does any body have drag, added mass or the loads output?
+  std::vector<BodyTwist> last_twists_;     // by body; empty if no body has drag or added mass
+  std::vector<BodyCondition> conditions_;  // by body; empty if no body has compartments or tanks
   std::uint32_t request_number_ = 0;
 
   // Of the current request. Chunk c's part of pending_ and repeated_ begins at the chunk's first state.

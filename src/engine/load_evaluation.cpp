@@ -34,7 +34,7 @@ ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, con
                                  const Pose& pose, const BodyOutcome& outcome) {
   if (outcome.result.immersion == Immersion::kDry) return {0.0, 0.0};
   const HydrostaticMesh& mesh = body.solver.mesh();
-  const double volume = outcome.result.volume;
+  const double volume = outcome.result.volume + outcome.flooded_volume;  // of the hull
   const bool wet = volume > mesh.volume_tolerance();
   switch (scaling) {
     case ImmersionScaling::kVolume:

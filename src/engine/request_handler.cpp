@@ -148,8 +148,8 @@ void RequestHandler::compute_hydrostatics(const RequestView& request, const Resp
     const Pose pose = validate_pose(state, request.lead_time()).pose;
     const PoseBits bits = pose_bits(pose);
     if (status != BodyStatus::kOk || !cached.valid || !equal_branch_free(cached.pose, bits)) {
-      cached.hydrostatics =
-          evaluate_hydrostatics(scene_->bodies()[*index], scene_->water(), pose, status, counters_);
+      cached.hydrostatics = evaluate_hydrostatics(scene_->bodies()[*index], scene_->water(), pose, status,
+                                                  counters_, evaluator_.condition(*index));
       cached.pose = bits;
       cached.valid = cached.hydrostatics.status == BodyStatus::kOk;
     }

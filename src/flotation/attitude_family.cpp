@@ -26,7 +26,7 @@ Vec3 direction_at(const Vec3& from, const Vec3& to) {
 }  // namespace
 
 double flat_energy(const Balance& balance, double relative) {
-  return relative * balance.body().mass() * std::cbrt(balance.body().volume());
+  return relative * balance.body().total_mass() * std::cbrt(balance.body().volume());
 }
 
 std::vector<Vec3> flat_curve(const Balance& balance, const Minimum& minimum, double flat) {

@@ -18,23 +18,26 @@ Vec3 turned(const Vec3& up_B, const Vec3& step) {
 }
 
 Balance::Balance(const FloatingBody& body, const Water& water)
-    : body_(&body), water_(&water), target_volume_(body.mass() / water.density) {
+    : body_(&body), water_(&water), target_volume_(body.total_mass() / water.density) {
   const double lever = body.reach() + (body.center_of_mass_B() - body.center_B()).norm();
   double area = 0.0;
   for (const FloatingBody::Term& term : body.terms()) area += term.placed.mesh->area;
-  gradient_rounding_ = water.density * body.volume_tolerance() * lever;
+  gradient_rounding_ = (water.density * body.volume_tolerance() + body.liquid_tolerance()) * lever;
   // Rounding of a volume and of a mass, each at its lever.
-  energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.mass() * lever;
+  energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.total_mass() * lever;
   curvature_rounding_ = 64.0 * kEpsilon * water.density * (area * lever * lever + body.volume() * lever);
+  for (const Tank& tank : body.tanks()) {
+    curvature_rounding_ += 64.0 * kEpsilon * tank.density * tank.mesh->area * lever * lever;
+  }
 }
 
 BalancedAttitude Balance::balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const {
-  const Vec3 to_mass = body_->center_of_mass_B() - body_->center_B();
-  const Vec3 Q = body_->mass() * to_mass - water_->density * displaced.moment;
+  const Vec3 of_mass = mass_moment(*body_, liquid_sum(*body_, up_B, FreeSurfaces::kNo));
+  const Vec3 Q = of_mass - water_->density * displaced.moment;
   const double along = up_B.dot(Q);
   return {.up_B = up_B,
           .height = height,
-          .energy = along + height * (body_->mass() - water_->density * displaced.volume),
+          .energy = along + height * (body_->total_mass() - water_->density * displaced.volume),
           .lever_moment = Q,
           .gradient = Q - along * up_B,
           .area = 0.0,
@@ -102,6 +105,12 @@ EnergyCurvature Balance::curvature(BalancedAttitude& attitude) const {
     uu = density * (line.uu - line.u * line.u / line.area);
     uv = density * (line.uv - line.u * line.v / line.area);
     vv = density * (line.vv - line.v * line.v / line.area);
+  }
+  if (!body_->tanks().empty()) {
+    const Mat3 free_surface = liquid_sum(*body_, k, FreeSurfaces::kYes).free_surface;
+    uu -= u.dot(free_surface * u);
+    uv -= u.dot(free_surface * v);
+    vv -= v.dot(free_surface * v);
   }
   const double lift = k.dot(attitude.lever_moment);
   const double half_difference = 0.5 * (uu - vv);

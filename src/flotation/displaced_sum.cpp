@@ -48,24 +48,44 @@ DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& pla
 
 ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane) {
   ImmersedPart sum;
-  bool is_first = true;
   for (const Term& term : body.terms()) {
-    const ImmersedPart part = immersed_part(*term.placed.mesh, plane_of(term, plane));
-    if (part.moments.volume == 0.0 && part.wetted_area == 0.0) continue;
-    DisplacementMoments<double> moments = term.is_turned ? part.moments.rotated(term.R_B) : part.moments;
-    const Vec3 point = term.offset_B + (term.is_turned ? Vec3(term.R_B * part.point) : part.point);
-    if (is_first) sum.point = point;
-    if (!is_first) moments = moments.moved(sum.point - point);
-    is_first = false;
-    const double factor = term.placed.factor;
-    sum.moments.volume += factor * moments.volume;
-    sum.moments.moment += factor * moments.moment;
-    sum.moments.waterplane_area += factor * moments.waterplane_area;
-    sum.moments.waterplane_moment += factor * moments.waterplane_moment;
-    sum.moments.waterplane_second_moments += factor * moments.waterplane_second_moments;
-    if (factor > 0.0) sum.wetted_area += part.wetted_area;
+    ImmersedPart part = immersed_part(*term.placed.mesh, plane_of(term, plane));
+    if (term.is_turned) {
+      part.moments = part.moments.rotated(term.R_B);
+      part.point = term.R_B * part.point;
+    }
+    add_scaled(part, term.offset_B, term.placed.factor, sum);
   }
   return sum;
+}
+
+LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces) {
+  LiquidSum sum;
+  for (const Tank& tank : body.tanks()) {
+    const TankLiquid liquid = tank_liquid(tank, up_B);
+    add_liquid(tank, liquid, body.center_B(), sum);
+    if (free_surfaces == FreeSurfaces::kYes) add_free_surface(tank, liquid, sum);
+  }
+  return sum;
+}
+
+Vec3 mass_moment(const FloatingBody& body, const LiquidSum& liquids) {
+  return body.mass() * (body.center_of_mass_B() - body.center_B()) + liquids.moment;
+}
+
+Vec3 total_center_of_mass_B(const FloatingBody& body, const LiquidSum& liquids) {
+  if (body.tanks().empty()) return body.center_of_mass_B();
+  return body.center_B() + mass_moment(body, liquids) / body.total_mass();
+}
+
+double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B) {
+  // A level is found to a part of the rounding of the volume under it.
+  constexpr double kWithLevel = 2.0;
+  double bound = 0.0;
+  for (const Tank& tank : body.tanks()) {
+    bound += kWithLevel * tank.density * tank.mesh->max_rounding_bound() * tank.mesh->max_lever_arm(point_B);
+  }
+  return bound;
 }
 
 Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u) {

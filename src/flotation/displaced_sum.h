@@ -25,6 +25,20 @@ DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& pla
 // The part's point is relative to the body's center_B.
 ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane);
 
+enum class FreeSurfaces { kNo, kYes };
+
+// The liquids in the tanks, about the body's center_B; with their free surfaces if asked for. Complexity:
+// that of tank_liquid() per tank.
+LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces);
+
+// [kg m], of the body and these liquids, about the body's center_B.
+Vec3 mass_moment(const FloatingBody& body, const LiquidSum& liquids);
+// [m], the centre of mass of both, in B.
+Vec3 total_center_of_mass_B(const FloatingBody& body, const LiquidSum& liquids);
+
+// [kg m], bound on the error of the liquids' moment about a point.
+double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B);
+
 // The waterplane in the axes u, v = up x u of the plane, about the body's center_B. Its extent is that of the
 // meshes of factor 1. u: unit, horizontal, B axes. Errors: see waterline().
 Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u);

@@ -281,8 +281,8 @@ std::optional<Equilibrium> equilibrium_at(const Balance& balance, const Minimum&
 FlotationOutcome outcome_before_search(const FloatingBody& body, const Water& water) {
   const double displaced = water.density * body.volume();
   if (body.is_open()) return FlotationOutcome::kFloats;
-  if (std::abs(body.mass() - displaced) <= kNeutral * displaced) return FlotationOutcome::kNeutral;
-  return body.mass() < displaced ? FlotationOutcome::kFloats : FlotationOutcome::kSinks;
+  if (std::abs(body.total_mass() - displaced) <= kNeutral * displaced) return FlotationOutcome::kNeutral;
+  return body.total_mass() < displaced ? FlotationOutcome::kFloats : FlotationOutcome::kSinks;
 }
 
 }  // namespace

@@ -42,10 +42,25 @@ std::optional<Error> fault_of(const PlacedMesh& placed, std::size_t count) {
   return std::nullopt;
 }
 
+std::optional<Error> fault_of(const Tank& tank) {
+  Error error{.subject = "tank of a floating body", .actual = "", .expected = "", .cause = "", .hint = ""};
+  if (tank.mesh == nullptr || !tank.mesh->tree || tank.mesh->is_open()) {
+    error.actual = "a mesh that is open or without a moment tree";
+    error.expected = "a closed mesh prepared with its tree";
+    return error;
+  }
+  const bool fits = tank.liquid_volume >= 0.0 && tank.liquid_volume <= tank.mesh->volume;
+  if (fits && tank.density >= 0.0 && std::isfinite(tank.density)) return std::nullopt;
+  error.actual = format_shortest(tank.liquid_volume) + " m^3 of density " + format_shortest(tank.density);
+  error.expected =
+      "a volume from 0 to " + format_shortest(tank.mesh->volume) + " m^3 and a density of 0 or more";
+  return error;
+}
+
 }  // namespace
 
 Expected<FloatingBody> FloatingBody::make(std::span<const PlacedMesh> meshes, double mass,
-                                          const Vec3& center_of_mass_B) {
+                                          const Vec3& center_of_mass_B, std::span<const Tank> tanks) {
   if (!(mass > 0.0) || !std::isfinite(mass) || !center_of_mass_B.allFinite()) {
     return make_error(
         {.subject = "floating body",
@@ -87,6 +102,15 @@ Expected<FloatingBody> FloatingBody::make(std::span<const PlacedMesh> meshes, do
                        .cause = "",
                        .hint = ""});
   }
+  body.total_mass_ = mass;
+  for (const Tank& tank : tanks) {
+    if (const std::optional<Error> fault = fault_of(tank)) return make_error(*fault);
+    body.tanks_.push_back(tank);
+    body.total_mass_ += tank.liquid_mass();
+    body.liquid_tolerance_ += tank.density * tank.mesh->volume_tolerance();
+    const double offset = (tank.mesh->center_B - body.center_B_).norm();
+    body.reach_ = std::max(body.reach_, offset + tank.mesh->max_lever_arm(tank.mesh->center_B));
+  }
   return body;
 }
 
@@ -95,25 +119,31 @@ std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite() || is_boundary_wet(body, plane)) {
     return std::nullopt;
   }
+  const Vec3 to_mass = body.center_of_mass_B() - body.center_B();
+  LiquidSum liquids = liquid_sum(body, plane.up_B, FreeSurfaces::kYes);
+  const Vec3 moment_of_mass = mass_moment(body, liquids);
+  const Vec3 total_center_B = total_center_of_mass_B(body, liquids);
+  liquids.moment -= liquids.mass * to_mass;  // now about the centre of mass
   const std::optional<Hydrostatics> hydrostatics =
       hydrostatics_of(immersed_sum(body, plane), body.center_B(), body.volume_tolerance(), pose.q_WB, water,
-                      body.center_of_mass_B(), body.center_of_mass_B());
+                      body.center_of_mass_B(), total_center_B, liquids);
   if (!hydrostatics) return std::nullopt;
 
   const DisplacedSum displaced = displaced_sum(body, plane);
   const DisplacedBounds bounds = displaced_bounds(body, plane);
   const Vec3& k = plane.up_B;
-  const Vec3 to_mass = body.center_of_mass_B() - body.center_B();
-  const double weight = body.mass() * water.gravity;             // [N]
+  const double weight = body.total_mass() * water.gravity;       // [N]
   const double specific_weight = water.density * water.gravity;  // [N/m^3]
   FloatingState state{.hydrostatics = *hydrostatics};
-  state.energy = weight * (k.dot(to_mass) - plane.h_c) -
+  state.energy = water.gravity * (k.dot(moment_of_mass) - plane.h_c * body.total_mass()) -
                  specific_weight * (k.dot(displaced.moment) - plane.h_c * displaced.volume);
   state.force_W = (specific_weight * displaced.volume - weight) * water.up_W;
   const Vec3 about_mass = displaced.moment - displaced.volume * to_mass;
-  state.torque_W = specific_weight * (pose.q_WB.normalized() * about_mass.cross(k));
+  const Vec3 couple = specific_weight * about_mass - water.gravity * liquids.moment;
+  state.torque_W = pose.q_WB.normalized() * couple.cross(k);
   state.force_error_bound = specific_weight * bounds.volume + kEpsilon * weight;
-  state.torque_error_bound = specific_weight * bounds.moment;
+  state.torque_error_bound =
+      specific_weight * bounds.moment + water.gravity * liquid_moment_bound(body, body.center_of_mass_B());
   if (!std::isfinite(state.energy) || !state.torque_W.allFinite()) return std::nullopt;
   return state;
 }

@@ -5,9 +5,9 @@
 // displaced volume and over the waterplane is linear in the volume, so that the same sum gives centre,
 // waterplane, energy, wrench, stiffness and error bounds. Parts that overlap count twice where they do.
 //
-// Tanks enter here as a third kind of term: the mass of the liquid, its first moment at the attitude at hand,
-// and minus its density times the second moments of its own free surface. The functions that use a body need
-// nothing else of it (docs/mathematics.md, "Equilibrium and righting arms").
+// Tanks are a third kind of term (hydrostatics/tank.h): the mass of the liquid, its first moment at the
+// attitude at hand, and minus its density times the second moments of its own free surface
+// (docs/mathematics.md, "Equilibrium and righting arms").
 #pragma once
 
 #include <optional>
@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "hydrostatics/hydrostatics.h"
+#include "hydrostatics/tank.h"
 
 namespace buoyancy {
 
@@ -37,28 +38,34 @@ class FloatingBody {
     double plane_rounding = 0.0;   // [m^3], what moving the water plane to the mesh's frame adds
   };
 
-  // mass: [kg]; center_of_mass_B: [m]. Errors: no mesh of factor 1; a mesh without a tree; a factor that is
-  // neither 1 nor between -1 and 0; an open mesh beside others; a mass that is not above 0; numbers that are
-  // not finite.
+  // mass: [kg], without the liquids in the tanks; center_of_mass_B: [m], of that mass. Errors: no mesh of
+  // factor 1; a mesh without a tree; a factor that is neither 1 nor between -1 and 0; an open mesh beside
+  // others; a mass that is not above 0; a liquid volume that a tank cannot hold; numbers that are not finite.
   static Expected<FloatingBody> make(std::span<const PlacedMesh> meshes, double mass,
-                                     const Vec3& center_of_mass_B);
+                                     const Vec3& center_of_mass_B, std::span<const Tank> tanks = {});
 
   const std::vector<Term>& terms() const { return terms_; }
-  double mass() const { return mass_; }                               // [kg]
-  const Vec3& center_of_mass_B() const { return center_of_mass_B_; }  // [m]
+  const std::vector<Tank>& tanks() const { return tanks_; }
+  double mass() const { return mass_; }                               // [kg], without liquids
+  const Vec3& center_of_mass_B() const { return center_of_mass_B_; }  // [m], likewise
+  double total_mass() const { return total_mass_; }                   // [kg], with the liquids in the tanks
   const Vec3& center_B() const {
     return center_B_;
   }  // [m], the centre of the first mesh: water planes are about it
   bool is_open() const { return is_open_; }
   double volume() const { return volume_; }  // [m^3], displaced fully submerged; open: only a scale
   double volume_tolerance() const { return volume_tolerance_; }  // [m^3], sum of G_V of the meshes
+  double liquid_tolerance() const { return liquid_tolerance_; }  // [kg], likewise of the tanks, as a mass
   double reach() const { return reach_; }  // [m], the farthest that a corner of a box is from center_B()
 
  private:
   FloatingBody() = default;
 
   std::vector<Term> terms_;
+  std::vector<Tank> tanks_;
   double mass_ = 0.0;
+  double total_mass_ = 0.0;
+  double liquid_tolerance_ = 0.0;
   Vec3 center_of_mass_B_ = Vec3::Zero();
   Vec3 center_B_ = Vec3::Zero();
   bool is_open_ = false;
@@ -69,11 +76,12 @@ class FloatingBody {
 
 struct FloatingState {
   Hydrostatics
-      hydrostatics;  // of the sum, with metacentric heights; the stiffness is about the centre of mass
-  // [J], m g z_G - rho g V z_B, heights over the water. Its minima are the stable equilibria.
+      hydrostatics;  // of the sum, with metacentric heights; the stiffness is about center_of_mass_B()
+  // [J], m g z_G - rho g V z_B, heights over the water, liquids included. Its minima are the stable
+  // equilibria.
   double energy = 0.0;
   Vec3 force_W = Vec3::Zero();      // [N], buoyancy and weight
-  Vec3 torque_W = Vec3::Zero();     // [N m], about the centre of mass
+  Vec3 torque_W = Vec3::Zero();     // [N m], about center_of_mass_B()
   double force_error_bound = 0.0;   // [N], bound on the error of the force
   double torque_error_bound = 0.0;  // [N m], bound on the error of the torque
 };

@@ -137,10 +137,14 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   row.bm_l = displaces ? about_beam / row.volume : kNaN;
   row.km_t = row.kb + row.bm_t * std::cos(trim);
   row.km_l = row.kb + row.bm_l * std::cos(trim);
-  const double kg = axes_.up_B.dot(body_->center_of_mass_B()) - keel_;
+  const LiquidSum liquids = liquid_sum(*body_, plane.up_B, FreeSurfaces::kYes);
+  const double kg = axes_.up_B.dot(total_center_of_mass_B(*body_, liquids)) - keel_;
+  // The virtual rise of the centre of mass by a free surface, times the displaced mass.
+  const auto rise = [&](const Vec3& across) { return across.dot(liquids.free_surface * across); };
   row.mass_per_cm = 0.01 * water_.density * row.waterplane_area;
-  row.moment_per_cm = row.mass * (row.km_l - kg) / (100.0 * lpp_);
-  row.moment_per_degree = row.mass * (row.km_t - kg) * std::sin(std::numbers::pi / 180.0);
+  row.moment_per_cm = (row.mass * (row.km_l - kg) - rise(forward_in_water)) / (100.0 * lpp_);
+  row.moment_per_degree =
+      (row.mass * (row.km_t - kg) - rise(up_B.cross(forward_in_water))) * std::sin(std::numbers::pi / 180.0);
 
   row.wetted_area = part.wetted_area;
   row.midship_area = immersed_section(draft);

@@ -121,8 +121,9 @@ class ArmSearch {
     const FloatingBody& body = balance_.body();
     const Vec3 starboard = starboard_at(options_.axes, heel);
     RightingArm arm{.heel = heel, .trim = trimmed->trim};
-    arm.gz = -starboard.dot(attitude.lever_moment) / body.mass();
-    arm.kn = arm.gz + starboard.dot(body.center_of_mass_B() - keel_ * options_.axes.up_B);
+    arm.gz = -starboard.dot(attitude.lever_moment) / body.total_mass();
+    const LiquidSum liquids = liquid_sum(body, attitude.up_B, FreeSurfaces::kNo);
+    arm.kn = arm.gz + starboard.dot(total_center_of_mass_B(body, liquids) - keel_ * options_.axes.up_B);
     arm.energy = balance_.water().gravity * attitude.energy;
     arm.draft = -attitude.height - lowest_along(body, attitude.up_B);
     return arm;
@@ -234,9 +235,9 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
     arms[i] = *arm;
     const auto trimmed = [](const RightingArm& a) { return a.gz * (1.0 - std::cos(a.trim)); };
     by_trim += 0.5 * (arm->heel - inner.heel) * (trimmed(*arm) + trimmed(inner));
-    areas[i] = (arm->energy - upright->energy) / (body.mass() * water.gravity) + by_trim;
+    areas[i] = (arm->energy - upright->energy) / (body.total_mass() * water.gravity) + by_trim;
     if (options.fixed_trim) {
-      areas[i] = (arm->energy - upright->energy) / (body.mass() * water.gravity * std::cos(arm->trim));
+      areas[i] = (arm->energy - upright->energy) / (body.total_mass() * water.gravity * std::cos(arm->trim));
     }
     return true;
   };

@@ -55,6 +55,24 @@ void add_metacenters(const DisplacementMoments<double>& moments_W, const Vec3& p
   }
 }
 
+// What the free surfaces take from the metacentric heights. Requires a preceding call of add_metacenters().
+void subtract_free_surface(const Mat3& free_surface_W, const Water& water, Hydrostatics& result) {
+  const double displaced_mass = water.density * result.volume;
+  if (result.waterplane_area > 0.0) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vec3 across = water.up_W.cross(result.waterplane_axes_W[i]);
+      result.metacentric_heights[i] -= across.dot(free_surface_W * across) / displaced_mass;
+    }
+    return;
+  }
+  // Without a waterplane the free surfaces alone tell the axes apart.
+  Hydrostatics of_surfaces;
+  add_principal_moments(free_surface_W, water.up_W, of_surfaces);
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.metacentric_heights[i] -= of_surfaces.waterplane_second_moments[1 - i] / displaced_mass;
+  }
+}
+
 bool finite(const Hydrostatics& result) {
   return std::isfinite(result.volume) && std::isfinite(result.wetted_area) &&
          std::isfinite(result.waterplane_area) && std::isfinite(result.waterplane_second_moments[1]) &&
@@ -90,10 +108,25 @@ ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane)
   return part;
 }
 
+void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, ImmersedPart& sum) {
+  if (part.moments.volume == 0.0 && part.wetted_area == 0.0) return;
+  const bool is_first = sum.moments.volume == 0.0 && sum.wetted_area == 0.0;
+  const Vec3 point = offset_B + part.point;
+  if (is_first) sum.point = point;
+  const DisplacementMoments<double> moments = is_first ? part.moments : part.moments.moved(sum.point - point);
+  sum.moments.volume += factor * moments.volume;
+  sum.moments.moment += factor * moments.moment;
+  sum.moments.waterplane_area += factor * moments.waterplane_area;
+  sum.moments.waterplane_moment += factor * moments.waterplane_moment;
+  sum.moments.waterplane_second_moments += factor * moments.waterplane_second_moments;
+  if (factor > 0.0) sum.wetted_area += part.wetted_area;
+}
+
 std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3& origin_B,
                                             double volume_tolerance, const Eigen::Quaterniond& q_WB,
                                             const Water& water, const Vec3& reference_B,
-                                            const std::optional<Vec3>& center_of_mass_B) {
+                                            const std::optional<Vec3>& center_of_mass_B,
+                                            const LiquidSum& liquids) {
   const Mat3 R_WB = q_WB.normalized().toRotationMatrix();
   const DisplacementMoments<double> moments_W = part.moments.rotated(R_WB);
   const Vec3 point_W = R_WB * (origin_B + part.point);  // from p_WB
@@ -109,6 +142,16 @@ std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3
   }
   const Vec3 to_reference_W = R_WB * ((reference_B - origin_B) - part.point);
   result.stiffness = water.density * water.gravity * stiffness(moments_W.moved(to_reference_W), water.up_W);
+  if (liquids.mass > 0.0) {
+    // A liquid pulls its tank down as displaced water pushes a hull up, at a level that keeps its volume.
+    DisplacementMoments<double> weight;
+    weight.volume = liquids.mass;
+    weight.moment = liquids.moment;
+    weight.waterplane_second_moments = liquids.free_surface;
+    weight = weight.rotated(R_WB);
+    result.stiffness -= water.gravity * stiffness(weight, water.up_W);
+    subtract_free_surface(weight.waterplane_second_moments, water, result);
+  }
   if (!finite(result)) return std::nullopt;
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include "hydrostatics/displacement_moments.h"
 #include "hydrostatics/hydrostatics.h"
+#include "hydrostatics/tank.h"
 
 namespace buoyancy {
 
@@ -20,11 +21,18 @@ struct ImmersedPart {
 // hydrostatics().
 ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
+// Adds the moments of a part of a body, times a factor, to a sum. offset_B: [m], from the sum's origin to the
+// part's. The wetted area counts for a factor above 0.
+void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, ImmersedPart& sum);
+
 // What hydrostatics() returns. origin_B: [m], from which `part.point` is measured. volume_tolerance: [m^3],
-// below which a volume has no centre.
+// below which a volume has no centre. center_of_mass_B: of all that the body weighs. liquids: in its tanks,
+// about the reference point: they take part in the stiffness and, with their free surfaces, in the
+// metacentric heights.
 std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3& origin_B,
                                             double volume_tolerance, const Eigen::Quaterniond& q_WB,
                                             const Water& water, const Vec3& reference_B,
-                                            const std::optional<Vec3>& center_of_mass_B);
+                                            const std::optional<Vec3>& center_of_mass_B,
+                                            const LiquidSum& liquids = {});
 
 }  // namespace buoyancy

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/load_evaluation.h"
+#include "engine/subdivision_load.h"
 #include "query/pose_loop.h"
 
 namespace buoyancy {
@@ -107,8 +108,15 @@ class RangeEvaluation {
                        std::span(results).first(pending_count_));
     for (std::size_t n = 0; n < pending_count_; ++n) {
       BodyOutcome outcome;
-      outcome.result = results[n];
+      WaveBuoyancyResult computed{.result = results[n]};
+      double flooded_volume = 0.0;
+      if (body_.subdivision != nullptr) {
+        flooded_volume =
+            add_subdivision_load(body_, nullptr, {&water_.at_rest, nullptr}, queries_[n].pose, computed);
+      }
+      outcome.result = computed.result;
       complete_outcome(pending_[n].quaternion_normalised, outcome);
+      outcome.flooded_volume = flooded_volume;
       const std::size_t i = pending_[n].pose;
       complete(state_at(body_, poses_, i), queries_[n].pose, {&water_.at_rest, nullptr}, outcome, i);
     }

@@ -1,6 +1,8 @@
 #include "scene/prepared_mesh.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -9,11 +11,55 @@
 namespace buoyancy {
 namespace {
 
-void apply_scale(TriangleMesh& mesh, double scale) {
-  if (scale == 1.0) return;
-  for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
-    for (double& coordinate : *coordinates) coordinate *= scale;
+void place(TriangleMesh& mesh, const MeshPlacement& placement) {
+  if (placement.scale != 1.0) {
+    for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
+      for (double& coordinate : *coordinates) coordinate *= placement.scale;
+    }
   }
+  const bool is_turned = placement.orientation_B.vec() != Vec3::Zero();
+  if (!is_turned && placement.position_B == Vec3::Zero()) return;
+  const Mat3 R = is_turned ? placement.orientation_B.toRotationMatrix() : Mat3::Identity();
+  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
+    const Vec3 moved = R * Vec3(mesh.x[i], mesh.y[i], mesh.z[i]) + placement.position_B;
+    mesh.x[i] = moved.x();
+    mesh.y[i] = moved.y();
+    mesh.z[i] = moved.z();
+  }
+}
+
+// Appends a prepared mesh's triangles, in B.
+void append(const HydrostaticMesh& mesh, TriangleMesh& all) {
+  const auto first = static_cast<std::int32_t>(all.x.size());
+  for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
+    all.add_vertex(mesh.center_B + mesh.vertex(static_cast<std::int32_t>(i)));
+  }
+  for (const Triangle& triangle : mesh.surface.triangles) {
+    all.triangles.push_back({first + triangle[0], first + triangle[1], first + triangle[2]});
+  }
+}
+
+void append(const MeshReport& report, MeshReport& all) {
+  all.triangles += report.triangles;
+  all.vertices_stored += report.vertices_stored;
+  all.vertices_welded += report.vertices_welded;
+  if (report.weld != WeldKind::kExact) all.weld = report.weld;
+  all.weld_largest_move = std::max(all.weld_largest_move, report.weld_largest_move);
+  all.box = {all.box.min_B.cwiseMin(report.box.min_B), all.box.max_B.cwiseMax(report.box.max_B)};
+  all.diagonal = all.box.diagonal();
+  all.area += report.area;
+  all.volume += report.volume;
+  all.volume_by_axis += report.volume_by_axis;
+  all.area_vector += report.area_vector;
+  all.balanced_edges += report.balanced_edges;
+  all.degenerate_faces += report.degenerate_faces;
+  all.dropped_faces += report.dropped_faces;
+  all.duplicate_faces += report.duplicate_faces;
+  // Faces of two parts that intersect are not counted: their common volume is reported instead.
+  if (all.intersecting_pairs && report.intersecting_pairs) {
+    *all.intersecting_pairs += *report.intersecting_pairs;
+  }
+  all.components.insert(all.components.end(), report.components.begin(), report.components.end());
 }
 
 // The others sum volumes under a plane water surface.
@@ -23,17 +69,35 @@ bool works_in_waves(Method method) {
 
 }  // namespace
 
-Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name, double scale,
-                                    const ValidationOptions& options) {
-  apply_scale(imported.mesh, scale);
+Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
+                                    const MeshPlacement& placement, const ValidationOptions& options) {
+  place(imported.mesh, placement);
   MeshValidation validation = validate_mesh(imported, name, options);
   if (!validation.mesh) {
     assert(validation.refusal);
     return make_error(*std::move(validation.refusal));
   }
   return PreparedMesh{std::move(validation.report),
-                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, scale),
+                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, placement.scale),
                       mass_properties(validation.mesh->mesh), std::nullopt};
+}
+
+PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes) {
+  ValidatedMesh all;
+  for (const PreparedMesh* mesh : meshes) append(mesh->mesh, all.mesh);
+  MeshReport report = meshes.front()->report;
+  for (const PreparedMesh* mesh : meshes.subspan(1)) append(mesh->report, report);
+  std::stable_sort(report.components.begin(), report.components.end(),
+                   [](const ComponentReport& a, const ComponentReport& b) {
+                     return std::abs(a.volume) > std::abs(b.volume);
+                   });
+  report.source = {};
+  report.source.format = std::to_string(meshes.size()) + " parts";
+  std::string name;
+  for (const PreparedMesh* mesh : meshes) name += (name.empty() ? "" : " + ") + mesh->report.name;
+  report.name = std::move(name);
+  return PreparedMesh{std::move(report), make_hydrostatic_mesh(all, WithTree::kNo), mass_properties(all.mesh),
+                      std::nullopt};
 }
 
 std::optional<Error> method_error_in_waves(const std::string& subject, Method method, double tolerance) {

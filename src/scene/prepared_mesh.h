@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/error.h"
@@ -24,10 +25,21 @@ struct PreparedMesh {
   std::optional<WaveMesh> wave_mesh;  // if queries in waves need it
 };
 
-// Scales the mesh in double, validates and prepares it; without a moment tree. name: identifies it in the
-// report and in errors. scale: > 0. Errors: those of validate_mesh(). Complexity: O(n log n).
-Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name, double scale,
-                                    const ValidationOptions& options);
+// How the vertices of a mesh are moved to the frame of a body: x_B = orientation (scale x) + position.
+struct MeshPlacement {
+  double scale = 1.0;                                                 // > 0
+  Vec3 position_B = Vec3::Zero();                                     // [m]
+  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // unit
+};
+
+// Moves the mesh in double, validates and prepares it; without a moment tree. name: identifies it in the
+// report and in errors. Errors: those of validate_mesh(). Complexity: O(n log n).
+Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
+                                    const MeshPlacement& placement, const ValidationOptions& options);
+
+// All triangles of closed meshes as one mesh, as they are: where meshes overlap, their volume counts as often
+// as they do. Its report is the sum of theirs. Precondition: at least one mesh. Complexity: O(n log n).
+PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes);
 
 // What makes a method or a tolerance unusable in waves. subject: of the error.
 std::optional<Error> method_error_in_waves(const std::string& subject, Method method, double tolerance);

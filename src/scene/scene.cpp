@@ -4,31 +4,10 @@
 #include <utility>
 
 #include "base/format.h"
+#include "scene/scene_meshes.h"
 
 namespace buoyancy {
 namespace {
-
-// Identifies a prepared mesh: two bodies with equal keys share it.
-struct MeshKey {
-  std::variant<std::filesystem::path, Shape> source;  // canonical path
-  double scale = 1.0;
-  OpenPolicy open = OpenPolicy::kRefuse;
-
-  bool operator==(const MeshKey&) const = default;
-};
-
-MeshKey key_of(const BodyDescription& body) {
-  MeshKey key{{}, body.scale, body.open};
-  if (const auto* file = std::get_if<MeshFile>(&body.source)) {
-    std::error_code code;
-    std::filesystem::path canonical = std::filesystem::weakly_canonical(file->path, code);
-    if (code) canonical = file->path;
-    key.source = std::move(canonical);
-  } else {
-    key.source = std::get<Shape>(body.source);
-  }
-  return key;
-}
 
 Error with_body(const BodyDescription& body, Error error) {
   if (!body.source_location.empty()) {
@@ -37,28 +16,17 @@ Error with_body(const BodyDescription& body, Error error) {
   return error;
 }
 
-std::string source_name(const BodyDescription& body) {
-  if (const auto* file = std::get_if<MeshFile>(&body.source)) return file->path.string();
-  return std::string(type_name(std::get<Shape>(body.source)));
+MeshUser user_of(const BodyDescription& body) {
+  return {body.source_location, "body " + std::to_string(body.id)};
 }
 
-Expected<ImportedMesh> read_source(const BodyDescription& body, const ImportLimits& limits) {
-  if (const auto* file = std::get_if<MeshFile>(&body.source)) return import_mesh(file->path, limits);
-  ImportedMesh generated;
-  generated.mesh = make_shape(std::get<Shape>(body.source));
-  generated.source.format = "generated";
-  return generated;
-}
-
-Expected<std::unique_ptr<PreparedMesh>> prepare_body_mesh(const BodyDescription& body,
-                                                          const ImportLimits& limits,
-                                                          const PrepareOptions& options) {
-  Expected<ImportedMesh> imported = read_source(body, limits);
-  if (!imported) return make_error(with_body(body, std::move(imported.error())));
-  Expected<PreparedMesh> prepared = prepare_mesh(*std::move(imported), source_name(body), body.scale,
-                                                 {body.open, options.count_intersecting_pairs});
-  if (!prepared) return make_error(with_body(body, std::move(prepared.error())));
-  return std::make_unique<PreparedMesh>(*std::move(prepared));
+MeshUser user_of(const BodyDescription& body, const std::string& section, const std::string& name,
+                 const std::string& source_location) {
+  std::string user = "body " + std::to_string(body.id);
+  user += ", ";
+  user += section;
+  user += " '" + name + "'";
+  return {source_location, std::move(user)};
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
@@ -163,6 +131,103 @@ const HydrodynamicModel* find_or_add_model(const HydrodynamicCoefficients& coeff
   return models.emplace_back(std::make_unique<HydrodynamicModel>(coefficients, reference_B)).get();
 }
 
+// The mesh of a body, and the parts that it was made of.
+struct BodyMesh {
+  PreparedMesh* prepared = nullptr;
+  std::vector<BodyPart> parts;
+};
+
+Expected<BodyMesh> prepare_body_mesh(const BodyDescription& body, SceneMeshes& meshes) {
+  BodyMesh result;
+  if (!body.is_parts_only) {
+    const MeshDescription mesh{.source = body.source, .scale = body.scale};
+    const Expected<PreparedMesh*> prepared = meshes.find_or_prepare(mesh, body.open, user_of(body));
+    if (!prepared) return make_error(prepared.error());
+    result.prepared = *prepared;
+    const bool is_alone = body.parts.empty() && body.compartments.empty() && body.tanks.empty();
+    if ((*prepared)->mesh.is_open() && !is_alone) {
+      return make_error(with_body(body, {(*prepared)->report.name, "an open mesh", "a closed mesh",
+                                         "a body with parts, compartments or tanks has an inside",
+                                         "Close the mesh, for example a hull with its deck"}));
+    }
+    if (body.parts.empty()) return result;
+    result.parts.push_back({"hull", *prepared});
+  }
+  for (const PartDescription& part : body.parts) {
+    const Expected<PreparedMesh*> prepared = meshes.find_or_prepare(
+        part.mesh, OpenPolicy::kRefuse, user_of(body, "part", part.name, part.source_location));
+    if (!prepared) return make_error(prepared.error());
+    result.parts.push_back({part.name, *prepared});
+  }
+  std::vector<const PreparedMesh*> merged;
+  for (const BodyPart& part : result.parts) merged.push_back(part.prepared_mesh);
+  result.prepared = meshes.find_or_merge(merged);
+  return result;
+}
+
+// What the queries of a mesh need besides its surface.
+struct QueryNeeds {
+  bool tree = false;
+  bool meshlets = false;
+  bool waves = false;
+};
+
+std::optional<Error> prepare_queries(PreparedMesh& prepared, const QueryNeeds& needs, const MeshUser& user) {
+  if (needs.tree && !prepared.mesh.tree) prepared.mesh.tree = build_moment_tree(prepared.mesh);
+  if (needs.meshlets && !prepared.mesh.meshlets) {
+    prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
+  }
+  if (needs.waves && !prepared.wave_mesh) {
+    if (std::optional<Error> error = size_error_in_waves(prepared.report.name, prepared.mesh)) {
+      return user.error(*std::move(error));
+    }
+    prepared.wave_mesh = make_wave_mesh(prepared.mesh);
+  }
+  return std::nullopt;
+}
+
+Expected<double> liquid_volume_of(const TankDescription& tank, const PreparedMesh& prepared,
+                                  const MeshUser& user) {
+  constexpr double kRounding = 1e-9;  // relative, of a volume that a user wrote down
+  const double capacity = prepared.mesh.volume;
+  if (tank.fill) return *tank.fill * capacity;
+  const double volume = tank.liquid_volume.value_or(0.0);
+  if (volume <= capacity * (1.0 + kRounding)) return std::min(volume, capacity);
+  return make_error(user.error({"liquid_volume", format_shortest(volume) + " m^3",
+                                "at most the tank's volume, " + format_number(capacity) + " m^3",
+                                "a tank in another unit, or litres", "Set scale, or give fill (0 to 1)"}));
+}
+
+Expected<Subdivision> prepare_subdivision(const BodyDescription& body, double tolerance,
+                                          const QueryNeeds& needs, SceneMeshes& meshes) {
+  Subdivision subdivision;
+  for (const CompartmentDescription& described : body.compartments) {
+    const MeshUser user = user_of(body, "compartment", described.name, described.source_location);
+    const Expected<PreparedMesh*> prepared =
+        meshes.find_or_prepare(described.mesh, OpenPolicy::kRefuse, user);
+    if (!prepared) return make_error(prepared.error());
+    QueryNeeds with_tree = needs;
+    with_tree.tree = true;
+    if (std::optional<Error> error = prepare_queries(**prepared, with_tree, user)) return make_error(*error);
+    subdivision.compartments.push_back({described.name, *prepared,
+                                        Solver((*prepared)->mesh, body.method, tolerance),
+                                        described.permeability, described.flooded});
+  }
+  for (const TankDescription& described : body.tanks) {
+    const MeshUser user = user_of(body, "tank", described.name, described.source_location);
+    const Expected<PreparedMesh*> prepared =
+        meshes.find_or_prepare(described.mesh, OpenPolicy::kRefuse, user);
+    if (!prepared) return make_error(prepared.error());
+    if (std::optional<Error> error = prepare_queries(**prepared, {.tree = true}, user)) {
+      return make_error(*error);
+    }
+    const Expected<double> volume = liquid_volume_of(described, **prepared, user);
+    if (!volume) return make_error(volume.error());
+    subdivision.tanks.push_back({described.name, *prepared, described.density, *volume});
+  }
+  return subdivision;
+}
+
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
@@ -182,34 +247,23 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     }
   }
   const double default_tolerance = has_waves ? kDefaultWaveTolerance : 0.0;
-  std::vector<MeshKey> keys;  // in the order of scene.meshes_
+  SceneMeshes meshes(description.limits, {OpenPolicy::kRefuse, options.count_intersecting_pairs});
   for (const BodyDescription& body : description.bodies) {
-    MeshKey key = key_of(body);
-    const auto known = std::find(keys.begin(), keys.end(), key);
-    const auto index = static_cast<std::size_t>(known - keys.begin());
-    if (known == keys.end()) {
-      Expected<std::unique_ptr<PreparedMesh>> prepared = prepare_body_mesh(body, description.limits, options);
-      if (!prepared) return make_error(std::move(prepared.error()));
-      scene.meshes_.push_back(*std::move(prepared));
-      keys.push_back(std::move(key));
-    }
-    PreparedMesh& prepared = *scene.meshes_[index];
+    Expected<BodyMesh> mesh = prepare_body_mesh(body, meshes);
+    if (!mesh) return make_error(std::move(mesh.error()));
+    PreparedMesh& prepared = *mesh->prepared;
     const Expected<HydrodynamicCoefficients> coefficients = make_coefficients(body, prepared);
     if (!coefficients) return make_error(coefficients.error());
-    if ((body.method == Method::kHierarchical || body.hydrostatics ||
-         scales_with_wetted_area(*coefficients)) &&
-        !prepared.mesh.tree) {
-      prepared.mesh.tree = build_moment_tree(prepared.mesh);
+    const QueryNeeds needs{.tree = body.method == Method::kHierarchical || body.hydrostatics ||
+                                   scales_with_wetted_area(*coefficients),
+                           .meshlets = is_of_paper(body.method),
+                           .waves = has_waves};
+    if (std::optional<Error> error = prepare_queries(prepared, needs, user_of(body))) {
+      return make_error(*std::move(error));
     }
-    if (is_of_paper(body.method) && !prepared.mesh.meshlets) {
-      prepared.mesh.meshlets = std::make_shared<const Meshlets>(build_meshlets(prepared.mesh.surface));
-    }
-    if (has_waves && !prepared.wave_mesh) {
-      if (std::optional<Error> error = size_error_in_waves(source_name(body), prepared.mesh)) {
-        return make_error(with_body(body, *std::move(error)));
-      }
-      prepared.wave_mesh = make_wave_mesh(prepared.mesh);
-    }
+    const double tolerance = body.tolerance.value_or(default_tolerance);
+    Expected<Subdivision> subdivision = prepare_subdivision(body, tolerance, needs, meshes);
+    if (!subdivision) return make_error(std::move(subdivision.error()));
     if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
     if (body.loads) ++scene.bodies_with_loads_;
     const HydrodynamicModel* hydrodynamics = nullptr;
@@ -217,11 +271,20 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       ++scene.bodies_with_hydrodynamics_;
       hydrodynamics = find_or_add_model(*coefficients, body.reference_B, scene.hydrodynamic_models_);
     }
-    scene.bodies_.push_back({body.id, body.name, &prepared,
-                             Solver(prepared.mesh, body.method, body.tolerance.value_or(default_tolerance)),
-                             body.reference_B, body.hydrostatics, body.loads, hydrodynamics,
-                             center_of_mass(body.dynamics, prepared), body.dynamics});
+    Body& added = scene.bodies_.emplace_back(
+        Body{body.id, body.name, &prepared, Solver(prepared.mesh, body.method, tolerance), body.reference_B,
+             body.hydrostatics, body.loads, hydrodynamics, center_of_mass(body.dynamics, prepared),
+             body.dynamics, nullptr, nullptr});
+    if (!mesh->parts.empty()) {
+      scene.parts_.push_back(std::make_unique<std::vector<BodyPart>>(std::move(mesh->parts)));
+      added.parts = scene.parts_.back().get();
+    }
+    if (!body.compartments.empty() || !body.tanks.empty()) {
+      scene.subdivisions_.push_back(std::make_unique<Subdivision>(*std::move(subdivision)));
+      added.subdivision = scene.subdivisions_.back().get();
+    }
   }
+  scene.meshes_ = meshes.release();
   std::vector<std::int32_t> ids;
   for (const Body& body : scene.bodies_) ids.push_back(body.id);
   scene.index_ = IdIndex(std::move(ids));

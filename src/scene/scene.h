@@ -14,6 +14,7 @@
 #include "scene/id_index.h"
 #include "scene/prepared_mesh.h"
 #include "scene/scene_file.h"
+#include "scene/subdivision.h"
 #include "wave_loads/prepared_sea.h"
 #include "waves/sea_report.h"
 
@@ -38,6 +39,10 @@ struct Body {
   // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
   std::optional<Vec3> center_of_mass_B;
   DynamicsSpec dynamics;  // section [body.client]
+  // Of a body with parts, compartments or tanks, else nullptr; owned by the scene. The parts begin with the
+  // body's own mesh, if it has one.
+  const std::vector<BodyPart>* parts = nullptr;
+  const Subdivision* subdivision = nullptr;
 };
 
 class Scene {
@@ -46,7 +51,8 @@ class Scene {
   // scene file, the line, the body and the mesh. A body with drag or added mass has a closed mesh where its
   // volume scales them, and a centre, given or derived, for each. In waves, also where they are received,
   // these are errors: the methods fast, improved and exact; hydrostatics; a tolerance of 0 for hierarchical;
-  // coefficients that scale with the wetted area.
+  // coefficients that scale with the wetted area. Parts, compartments and tanks are closed, and so is the
+  // mesh of a body that has them; a tank holds the liquid that is in it.
   static Expected<Scene> prepare(const SceneDescription& description, const PrepareOptions& options = {});
 
   // Reads a scene file and prepares the scene.
@@ -74,6 +80,7 @@ class Scene {
   std::size_t bodies_with_loads() const { return bodies_with_loads_; }  // that request this output
   // With drag or added mass, whose wrenches depend on their velocities.
   std::size_t bodies_with_hydrodynamics() const { return bodies_with_hydrodynamics_; }
+  std::size_t bodies_with_subdivision() const { return subdivisions_.size(); }  // with compartments or tanks
 
  private:
   std::string name_;
@@ -84,6 +91,8 @@ class Scene {
   Vec3 current_W_ = Vec3::Zero();
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<std::unique_ptr<HydrodynamicModel>> hydrodynamic_models_;
+  std::vector<std::unique_ptr<std::vector<BodyPart>>> parts_;
+  std::vector<std::unique_ptr<Subdivision>> subdivisions_;
   std::vector<Body> bodies_;
   IdIndex index_;  // into bodies_
   std::size_t bodies_with_hydrostatics_ = 0;

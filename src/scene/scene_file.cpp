@@ -12,7 +12,7 @@
 #include "base/text_file.h"
 #include "scene/loads_toml.h"
 #include "scene/sea_toml.h"
-#include "scene/shape_toml.h"
+#include "scene/subdivision_toml.h"
 #include "scene/toml_table.h"
 
 namespace buoyancy {
@@ -115,17 +115,7 @@ void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
   table.read("angular_damping_quadratic", dynamics.angular_damping_quadratic,
              NumberRange::from_zero("N m/(rad/s)^2"));
 
-  std::array<double, 4> wxyz{1.0, 0.0, 0.0, 0.0};
-  table.read("orientation", std::span<double>(wxyz), "w, x, y, z");
-  Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  const double largest = q.cwiseAbs().maxCoeff();
-  if (largest > 0.0) {
-    q = (q / largest).normalized();
-    dynamics.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  } else {
-    table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is the identity");
-  }
-
+  parse_orientation(table, dynamics.orientation);
   table.finish();
   if (dynamics.mass && dynamics.density) {
     table.fail("both 'mass' and 'density'",
@@ -177,28 +167,8 @@ void read_outputs(TomlTable& table, BodyDescription& body) {
   body.loads = named[2] == 1;
 }
 
-void read_source(TomlTable& table, BodyDescription& body, const std::filesystem::path& directory,
-                 SceneParseContext& context) {
-  std::string mesh;
-  table.read("mesh", mesh);
-  table.read("scale", body.scale, NumberRange::above_zero(""));
-  const bool has_mesh = table.has("mesh");
-  const bool has_shape = table.has("shape");
-  if (has_mesh && has_shape) {
-    table.fail("both 'mesh' and 'shape'", "one of them", {}, "Remove one");
-  } else if (has_shape && table.has("scale")) {
-    table.fail("both 'scale' and 'shape'", "a scale only with a mesh file", {},
-               "Give the shape its sizes in metres");
-  }
-  if (has_mesh) body.source = MeshFile{(directory / mesh).lexically_normal()};
-  if (const toml::table* shape = table.table("shape")) {
-    TomlTable shape_table(*shape, "body " + std::to_string(body.id) + ", shape", context);
-    if (std::optional<Shape> read = parse_shape(shape_table)) body.source = *read;
-  }
-}
-
-BodyDescription read_body(const toml::table& toml, std::size_t number, const std::filesystem::path& directory,
-                          SceneParseContext& context) {
+BodyDescription read_body(const toml::table& toml, std::size_t number, const Water& water,
+                          const std::filesystem::path& directory, SceneParseContext& context) {
   TomlTable table(toml, "[[body]] number " + std::to_string(number), context);
   BodyDescription body;
   table.read("id", body.id);
@@ -208,7 +178,8 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   body.source_location = context.location(toml.source());
 
   table.read("name", body.name);
-  read_source(table, body, directory, context);
+  const bool has_source = parse_mesh_source(table, "body " + std::to_string(body.id) + ", shape", directory,
+                                            context, body.source, body.scale);
   read_method(table, body.method);
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
@@ -217,13 +188,15 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const std
   const std::string body_name = "body " + std::to_string(body.id);
   parse_drag(table, body_name, context, body.drag);
   parse_added_mass(table, body_name, context, body.added_mass);
+  parse_subdivision(table, body_name, water, directory, context, body);
   const toml::table* client = table.table("client");
 
   // Missing keys are checked last, so that a mistyped key is reported as unknown and not as missing.
   table.finish();
   if (!has_id) table.fail_missing("id", "a unique whole number for each body");
-  if (!table.has("mesh") && !table.has("shape")) {
-    table.fail("neither 'mesh' nor 'shape'", "one of them", {},
+  body.is_parts_only = !has_source && !body.parts.empty();
+  if (!has_source && body.parts.empty()) {
+    table.fail("neither 'mesh' nor 'shape'", "one of them, or sections [[body.part]]", {},
                "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
   }
   if (client != nullptr) {
@@ -246,7 +219,7 @@ void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem:
   std::map<std::int32_t, std::string> locations;  // by id
   for (const toml::node& element : *array) {
     const toml::table& toml = *element.as_table();
-    scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, directory, context));
+    scene.bodies.push_back(read_body(toml, scene.bodies.size() + 1, scene.water, directory, context));
     const BodyDescription& body = scene.bodies.back();
     if (const auto [earlier, is_new] = locations.emplace(body.id, body.source_location); !is_new) {
       TomlTable(toml, "body " + std::to_string(body.id), context)

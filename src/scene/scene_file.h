@@ -63,11 +63,46 @@ struct MeshFile {
   std::filesystem::path path;  // resolved against the scene file's directory
 };
 
+// A mesh in the frame of a body: x_B = orientation (scale x) + position.
+struct MeshDescription {
+  std::variant<MeshFile, Shape> source;
+  double scale = 1.0;                                                 // > 0; mesh files only
+  Vec3 position_B = Vec3::Zero();                                     // [m]
+  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // normalised
+};
+
+// Sections [[body.part]], [[body.compartment]] and [[body.tank]]: meshes that make up a body, or lie in it.
+struct PartDescription {
+  std::string name;  // default: "part 0", the number among the parts of the body; likewise below
+  MeshDescription mesh;
+  std::string source_location;
+};
+struct CompartmentDescription {
+  std::string name;
+  MeshDescription mesh;
+  double permeability = 1.0;  // above 0, at most 1: the share of its volume that water can fill
+  double flooded = 1.0;       // 0 to 1, at the start: the share of that which is open to the sea
+  std::string source_location;
+};
+struct TankDescription {
+  std::string name;
+  MeshDescription mesh;
+  double density = 0.0;                 // [kg/m^3], of the liquid; default: the water's
+  std::optional<double> fill;           // 0 to 1, at the start: of the tank's volume; or
+  std::optional<double> liquid_volume;  // [m^3], >= 0
+  std::string source_location;
+};
+
 struct BodyDescription {
   std::int32_t id = 0;
   std::string name;  // default: "body <id>"
+  // The body's mesh, with its origin and axes; unused where the body consists of its parts alone.
   std::variant<MeshFile, Shape> source;
-  double scale = 1.0;  // factor for the mesh's coordinates, > 0; mesh files only
+  double scale = 1.0;          // factor for the mesh's coordinates, > 0; mesh files only
+  bool is_parts_only = false;  // has no mesh beside its parts
+  std::vector<PartDescription> parts;
+  std::vector<CompartmentDescription> compartments;
+  std::vector<TankDescription> tanks;
   Method method = Method::kHierarchical;
   // 0 to 1, relative to the weight of the full displacement; default: 0, in waves kDefaultWaveTolerance
   std::optional<double> tolerance;
@@ -98,7 +133,8 @@ struct SceneDescription {
 };
 
 // Errors: no such file; invalid TOML (with line and column); unknown or missing keys; wrong types or ranges;
-// duplicate ids; a body with both or neither of mesh and shape; an invalid file of wave components.
+// duplicate ids; a body with both mesh and shape, or without mesh, shape and parts; an invalid file of wave
+// components.
 Expected<SceneDescription> read_scene_file(const std::filesystem::path& path);
 
 // Parses a scene from text. name: identifies the text in errors; directory: resolves relative paths.

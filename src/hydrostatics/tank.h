@@ -1,0 +1,52 @@
+// The liquid in a tank: where it is, and how its free surface lies, at a given attitude.
+//
+// The surface is level, as in a tank that moves slowly: no sloshing, in waves neither. Its height follows
+// from the volume of the liquid, which no attitude changes: the part of the tank below a plane is what the
+// exact solver of a displaced volume computes (hierarchical.h). The liquid's energy has its minimum there, so
+// that its first moment is the derivative of that energy (docs/mathematics.md, "Compartments and tanks").
+#pragma once
+
+#include "hydrostatics/hydrostatic_mesh.h"
+#include "hydrostatics/water_plane.h"
+
+namespace buoyancy {
+
+struct Tank {
+  const HydrostaticMesh* mesh = nullptr;  // closed, in the body's frame, with its tree; outlives the tank
+  double liquid_volume = 0.0;             // [m^3], from 0 to the mesh's volume
+  double density = 0.0;                   // [kg/m^3], of the liquid, >= 0
+
+  double liquid_mass() const { return density * liquid_volume; }  // [kg]
+};
+
+// Points are relative to the mesh's centre c.
+struct TankLiquid {
+  Vec3 centroid = Vec3::Zero();   // [m], of the liquid; 0 of an empty tank
+  WaterPlane surface;             // the liquid's surface, about c; where has_free_surface
+  bool has_free_surface = false;  // neither empty nor full
+  double volume = 0.0;            // [m^3], under the surface as found: the liquid's to 1e-14 of the mesh's
+  double volume_error = 0.0;  // [m^3], bound on the error of `volume` and of its distance from the liquid's
+};
+
+// up_B: unit. A pure function: it starts from no earlier result. Complexity: some seven displaced volumes; no
+// heap.
+TankLiquid tank_liquid(const Tank& tank, const Vec3& up_B);
+
+// [m^4], about the centroid of the free surface, B axes: the integral of y y^T over it. Zero without one.
+// What the liquid takes from the stiffness is its density times g times these. Complexity: one query of
+// hydrostatics.
+Mat3 free_surface_second_moments(const Tank& tank, const TankLiquid& liquid);
+
+// The liquids in the tanks of a body at an attitude, about a point of B.
+struct LiquidSum {
+  double mass = 0.0;                 // [kg]
+  Vec3 moment = Vec3::Zero();        // [kg m], B axes: mass times the centroid
+  Mat3 free_surface = Mat3::Zero();  // [kg m^2], B axes: densities times free_surface_second_moments()
+};
+
+// Adds a tank, without its free surface. about_B: the point of the sum.
+void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, LiquidSum& sum);
+// Adds its free surface.
+void add_free_surface(const Tank& tank, const TankLiquid& liquid, LiquidSum& sum);
+
+}  // namespace buoyancy

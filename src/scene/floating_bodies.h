@@ -1,0 +1,16 @@
+// The bodies of a scene as what floats: their meshes and compartments, tanks and masses.
+#pragma once
+
+#include "flotation/floating_body.h"
+#include "scene/body_motions.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+// mesh: the body's, with its tree; it outlives the result, and so does the scene. mass: without the liquids
+// in its tanks. condition: of its compartments and tanks; nullptr: that of the scene file. Errors: those of
+// FloatingBody::make().
+Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh, const BodyMass& mass,
+                                        const BodyCondition* condition = nullptr);
+
+}  // namespace buoyancy

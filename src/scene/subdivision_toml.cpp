@@ -1,0 +1,121 @@
+#include "scene/subdivision_toml.h"
+
+#include <array>
+#include <utility>
+
+#include "scene/shape_toml.h"
+
+namespace buoyancy {
+namespace {
+
+// What the sections of a body share.
+struct SectionContext {
+  const std::string& body_name;
+  const std::filesystem::path& directory;
+  SceneParseContext& context;
+};
+
+// Calls read(element, table) for every section [[body.<key>]].
+template <typename Description, typename Read>
+void parse_sections(TomlTable& body, std::string_view key, const SectionContext& where,
+                    std::vector<Description>& descriptions, const Read& read) {
+  const toml::node* node = body.node(key);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array != nullptr && array->empty()) return;
+  const std::string section = "[body." + std::string(key) + "]";
+  if (array == nullptr || !array->is_homogeneous<toml::table>()) {
+    body.fail_at(key, "a list of tables: a section [" + section + "] for each",
+                 node->is_table() ? section + " in single brackets" : "",
+                 "Write [" + section + "] in double brackets");
+    return;
+  }
+  for (const toml::node& element : *array) {
+    const toml::table& toml = *element.as_table();
+    Description& description = descriptions.emplace_back();
+    description.name = std::string(key) + " " + std::to_string(descriptions.size() - 1);
+    description.source_location = where.context.location(toml.source());
+    const std::string label = where.body_name + ", " + description.name;
+    TomlTable table(toml, label, where.context);
+    table.read("name", description.name);
+    const bool has_source = parse_mesh_source(table, label + ", shape", where.directory, where.context,
+                                              description.mesh.source, description.mesh.scale);
+    table.read("position", description.mesh.position_B, "m");
+    parse_orientation(table, description.mesh.orientation_B);
+    read(description, table);
+    if (!has_source) {
+      table.fail("neither 'mesh' nor 'shape'", "one of them", {},
+                 "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
+    }
+  }
+}
+
+void read_tank(TankDescription& tank, const Water& water, TomlTable& table) {
+  tank.density = water.density;
+  table.read("density", tank.density, NumberRange::from_zero("kg/m^3"));
+  table.read("fill", tank.fill, NumberRange::from_zero_to(1.0));
+  table.read("liquid_volume", tank.liquid_volume, NumberRange::from_zero("m^3"));
+  table.finish();
+  if (tank.fill && tank.liquid_volume) {
+    table.fail("both 'fill' and 'liquid_volume'", "one of them", {}, "Remove one");
+  } else if (!tank.fill && !tank.liquid_volume) {
+    table.fail("neither 'fill' nor 'liquid_volume'",
+               "one of them: fill, of the tank's volume, or liquid_volume (m^3)", {},
+               "Add fill = 0 for an empty tank");
+  }
+}
+
+}  // namespace
+
+void parse_orientation(TomlTable& table, Eigen::Quaterniond& orientation) {
+  std::array<double, 4> wxyz{1.0, 0.0, 0.0, 0.0};
+  table.read("orientation", std::span<double>(wxyz), "w, x, y, z");
+  Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  const double largest = q.cwiseAbs().maxCoeff();
+  if (largest > 0.0) {
+    q = (q / largest).normalized();
+    orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  } else {
+    table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is the identity");
+  }
+}
+
+bool parse_mesh_source(TomlTable& table, const std::string& shape_name,
+                       const std::filesystem::path& directory, SceneParseContext& context,
+                       std::variant<MeshFile, Shape>& source, double& scale) {
+  std::string mesh;
+  table.read("mesh", mesh);
+  table.read("scale", scale, NumberRange::above_zero(""));
+  const bool has_mesh = table.has("mesh");
+  const bool has_shape = table.has("shape");
+  if (has_mesh && has_shape) {
+    table.fail("both 'mesh' and 'shape'", "one of them", {}, "Remove one");
+  } else if (has_shape && table.has("scale")) {
+    table.fail("both 'scale' and 'shape'", "a scale only with a mesh file", {},
+               "Give the shape its sizes in metres");
+  }
+  if (has_mesh) source = MeshFile{(directory / mesh).lexically_normal()};
+  if (const toml::table* shape = table.table("shape")) {
+    TomlTable shape_table(*shape, shape_name, context);
+    if (std::optional<Shape> read = parse_shape(shape_table)) source = *read;
+  }
+  return has_mesh || has_shape;
+}
+
+void parse_subdivision(TomlTable& body_table, const std::string& body_name, const Water& water,
+                       const std::filesystem::path& directory, SceneParseContext& context,
+                       BodyDescription& body) {
+  const SectionContext where{body_name, directory, context};
+  parse_sections(body_table, "part", where, body.parts,
+                 [](const PartDescription&, TomlTable& table) { table.finish(); });
+  parse_sections(body_table, "compartment", where, body.compartments,
+                 [](CompartmentDescription& compartment, TomlTable& table) {
+                   table.read("permeability", compartment.permeability, NumberRange::above_zero_to(1.0));
+                   table.read("flooded", compartment.flooded, NumberRange::from_zero_to(1.0));
+                   table.finish();
+                 });
+  parse_sections(body_table, "tank", where, body.tanks,
+                 [&water](TankDescription& tank, TomlTable& table) { read_tank(tank, water, table); });
+}
+
+}  // namespace buoyancy
