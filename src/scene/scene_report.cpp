@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "scene/body_motions.h"
 #include "scene/coefficient_warnings.h"
 #include "scene/motion_report.h"
+#include "scene/subdivision_warnings.h"
 
 namespace buoyancy {
 namespace {
@@ -318,6 +320,7 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 
 std::vector<Warning> scene_warnings(const Scene& scene) {
   std::vector<Warning> warnings = coefficient_warnings(scene);
+  std::ranges::move(subdivision_warnings(scene), std::back_inserter(warnings));
   const Sea* sea = scene.sea();
   if (sea == nullptr || !sea->is_too_steep()) return warnings;
   warnings.insert(

@@ -41,7 +41,9 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 // Warnings about a scene that can be used: a sea that is too steep for linear theory; a full quadratic drag
 // matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
 // or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the
-// mesh's diagonal; coefficients that are too large for the mesh. A warning about equal bodies appears once.
+// mesh's diagonal; coefficients that are too large for the mesh; parts, compartments and tanks that overlap,
+// and compartments and tanks that stick out of their hull (subdivision_warnings.h). A warning about equal
+// bodies appears once.
 std::vector<Warning> scene_warnings(const Scene& scene);
 
 }  // namespace buoyancy

@@ -1,0 +1,172 @@
+#include "geometry/common_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace buoyancy {
+namespace {
+
+constexpr int kColumns = 256;  // per direction
+// Off the middle of a column, so that its axis meets no edge of a mesh with round coordinates.
+constexpr std::array<double, 2> kAxisAt{0.4939, 0.5047};
+
+BoundingBox box_of(const OffsetMesh& mesh) {
+  BoundingBox box = bounding_box(*mesh.mesh);
+  box.min_B += mesh.offset_B;
+  box.max_B += mesh.offset_B;
+  return box;
+}
+
+BoundingBox common_box(const BoundingBox& a, const BoundingBox& b) {
+  return {a.min_B.cwiseMax(b.min_B), a.max_B.cwiseMin(b.max_B)};
+}
+
+// A surface crosses the axis of a column.
+struct Crossing {
+  std::uint32_t column = 0;
+  double height = 0.0;                // [m], along the axis
+  std::int8_t first = 0, second = 0;  // by which the winding number of either mesh changes there
+};
+
+// Columns over a box, along its longest side.
+class Columns {
+ public:
+  explicit Columns(const BoundingBox& box) : box_(box) {
+    (box.max_B - box.min_B).maxCoeff(&along_);
+    across_ = {(along_ + 1) % 3, (along_ + 2) % 3};
+    for (std::size_t i = 0; i < 2; ++i) {
+      spacing_[i] = (box.max_B[across_[i]] - box.min_B[across_[i]]) / kColumns;
+    }
+  }
+
+  double area() const { return spacing_[0] * spacing_[1]; }  // [m^2], of a column
+
+  // Adds the crossings of a surface.
+  void add(const OffsetMesh& mesh, bool is_first) {
+    for (const Triangle& triangle : mesh.mesh->triangles) {
+      std::array<Vec3, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.mesh->vertex(triangle[i]) + mesh.offset_B;
+      add_triangle(corners, is_first);
+    }
+  }
+
+  std::vector<Crossing>& crossings() { return crossings_; }
+
+ private:
+  using Point2 = Eigen::Vector2d;
+
+  Point2 across(const Vec3& point) const { return {point[across_[0]], point[across_[1]]}; }
+  double axis(std::size_t direction, int number) const {
+    return box_.min_B[across_[direction]] + (number + kAxisAt[direction]) * spacing_[direction];
+  }
+
+  // The first and the last column whose axis lies between two coordinates.
+  std::array<int, 2> range(std::size_t direction, double low, double high) const {
+    const double first =
+        std::ceil((low - box_.min_B[across_[direction]]) / spacing_[direction] - kAxisAt[direction]);
+    const double last =
+        std::floor((high - box_.min_B[across_[direction]]) / spacing_[direction] - kAxisAt[direction]);
+    return {static_cast<int>(std::clamp(first, 0.0, double{kColumns})),
+            static_cast<int>(std::clamp(last, -1.0, kColumns - 1.0))};
+  }
+
+  // Is the point on the left of the directed edge? The same edge the other way gives the opposite, so that a
+  // closed surface has no gaps.
+  static bool is_left(const Point2& from, const Point2& to, const Point2& point) {
+    const bool is_swapped = to.x() < from.x() || (to.x() == from.x() && to.y() < from.y());
+    const Point2& a = is_swapped ? to : from;
+    const Point2& b = is_swapped ? from : to;
+    const double side = (b.x() - a.x()) * (point.y() - a.y()) - (b.y() - a.y()) * (point.x() - a.x());
+    return (side >= 0.0) != is_swapped;
+  }
+
+  void add_triangle(const std::array<Vec3, 3>& corners, bool is_first) {
+    const Point2 a = across(corners[0]);
+    const Point2 b = across(corners[1]);
+    const Point2 c = across(corners[2]);
+    const double twice_area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    const std::array<int, 2> rows =
+        range(1, std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}));
+    const std::array<int, 2> columns =
+        range(0, std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}));
+    for (int row = rows[0]; row <= rows[1]; ++row) {
+      for (int column = columns[0]; column <= columns[1]; ++column) {
+        const Point2 point(axis(0, column), axis(1, row));
+        const bool left = is_left(a, b, point);
+        if (is_left(b, c, point) != left || is_left(c, a, point) != left) continue;
+        // From below, the surface leads in where its normal points down, which is where it turns clockwise.
+        const auto change = static_cast<std::int8_t>(left ? -1 : 1);
+        crossings_.push_back({static_cast<std::uint32_t>(row * kColumns + column),
+                              height_at(corners, {a, b, c}, twice_area, point),
+                              is_first ? change : std::int8_t{0}, is_first ? std::int8_t{0} : change});
+      }
+    }
+  }
+
+  double height_at(const std::array<Vec3, 3>& corners, const std::array<Point2, 3>& at, double twice_area,
+                   const Point2& point) const {
+    const double bottom = std::min({corners[0][along_], corners[1][along_], corners[2][along_]});
+    const double top = std::max({corners[0][along_], corners[1][along_], corners[2][along_]});
+    if (twice_area == 0.0) return bottom;
+    const auto weight = [&](std::size_t i, std::size_t j) {
+      return (at[i].x() - point.x()) * (at[j].y() - point.y()) -
+             (at[i].y() - point.y()) * (at[j].x() - point.x());
+    };
+    const double height = (weight(1, 2) * corners[0][along_] + weight(2, 0) * corners[1][along_] +
+                           weight(0, 1) * corners[2][along_]) /
+                          twice_area;
+    return std::clamp(height, bottom, top);
+  }
+
+  BoundingBox box_;
+  Eigen::Index along_ = 2;
+  std::array<Eigen::Index, 2> across_{0, 1};
+  std::array<double, 2> spacing_{};
+  std::vector<Crossing> crossings_;
+};
+
+// The volume of the box where `counts` holds for the winding numbers of the two meshes.
+template <typename Counts>
+double volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
+                    const Counts& counts) {
+  if (!((box.max_B - box.min_B).minCoeff() > 0.0)) return 0.0;
+  Columns columns(box);
+  columns.add(first, true);
+  columns.add(second, false);
+  std::vector<Crossing>& crossings = columns.crossings();
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.column != b.column ? a.column < b.column : a.height < b.height;
+  });
+  double length = 0.0;
+  int first_winding = 0;
+  int second_winding = 0;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    first_winding += crossings[i].first;
+    second_winding += crossings[i].second;
+    if (crossings[i + 1].column != crossings[i].column) {
+      first_winding = 0;
+      second_winding = 0;
+      continue;
+    }
+    if (counts(first_winding, second_winding)) length += crossings[i + 1].height - crossings[i].height;
+  }
+  return length * columns.area();
+}
+
+}  // namespace
+
+double common_volume(const OffsetMesh& a, const OffsetMesh& b) {
+  return volume_where(common_box(box_of(a), box_of(b)), a, b,
+                      [](int in_a, int in_b) { return in_a > 0 && in_b > 0; });
+}
+
+double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer) {
+  return volume_where(box_of(inner), inner, outer,
+                      [](int in_inner, int in_outer) { return in_inner > 0 && in_outer <= 0; });
+}
+
+}  // namespace buoyancy

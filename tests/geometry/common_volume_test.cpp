@@ -1,0 +1,86 @@
+#include "geometry/common_volume.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "geometry/mass_properties.h"
+#include "geometry/shapes.h"
+#include "tests/hydrostatics/random_poses.h"
+
+namespace buoyancy {
+namespace {
+
+TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q, const Vec3& by = Vec3::Zero()) {
+  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
+    const Vec3 moved = q * Vec3(mesh.x[i], mesh.y[i], mesh.z[i]) + by;
+    mesh.x[i] = moved.x();
+    mesh.y[i] = moved.y();
+    mesh.z[i] = moved.z();
+  }
+  return mesh;
+}
+
+double common(const TriangleMesh& a, const TriangleMesh& b, const Vec3& offset = Vec3::Zero()) {
+  return common_volume({&a, Vec3::Zero()}, {&b, offset});
+}
+
+double outside(const TriangleMesh& a, const TriangleMesh& b, const Vec3& offset = Vec3::Zero()) {
+  return volume_outside({&a, Vec3::Zero()}, {&b, offset});
+}
+
+const TriangleMesh kBox = make_shape(BoxShape{.size = {2.0, 1.0, 1.0}});
+const TriangleMesh kFineBox = make_shape(BoxShape{.size = {2.0, 1.0, 1.0}, .segments = {8, 5, 3}});
+
+TEST(CommonVolume, IsExactForBoxesAlongTheAxes) {
+  EXPECT_NEAR(common(kBox, kFineBox), 2.0, 1e-12);
+  EXPECT_NEAR(common(kBox, kFineBox, {0.5, 0.25, -0.125}), 1.5 * 0.75 * 0.875, 1e-12);
+  EXPECT_NEAR(outside(kBox, kFineBox, {0.5, 0.25, -0.125}), 2.0 - 1.5 * 0.75 * 0.875, 1e-2);
+  EXPECT_NEAR(outside(kBox, kFineBox), 0.0, 1e-12);
+}
+
+TEST(CommonVolume, IsZeroForMeshesThatTouch) {
+  EXPECT_LE(common(kBox, kFineBox, {2.0, 0.0, 0.0}), 1e-15);
+  EXPECT_LE(common(kBox, kFineBox, {0.0, 1.0, 0.0}), 1e-15);
+  EXPECT_LE(common(kBox, kFineBox, {0.0, 0.0, -1.0}), 1e-15);
+  EXPECT_EQ(common(kBox, kFineBox, {5.0, 0.0, 0.0}), 0.0);
+  EXPECT_NEAR(outside(kBox, kFineBox, {5.0, 0.0, 0.0}), 2.0, 1e-12);
+}
+
+// Two unit balls at a distance share a lens.
+TEST(CommonVolume, IsTheLensOfTwoSpheres) {
+  const TriangleMesh ball = make_shape(SphereShape{.radius = 1.0, .segments = 64});
+  for (const double distance : {0.2, 0.7, 1.3, 1.9}) {
+    const double half = 1.0 - 0.5 * distance;
+    const double lens = 2.0 * M_PI * half * half * (3.0 - half) / 3.0;
+    EXPECT_NEAR(common(ball, ball, distance * Vec3(0.6, 0.0, 0.8)), lens, 1e-2) << distance;
+  }
+}
+
+TEST(CommonVolume, IsThatOfWhateverIsInside) {
+  RandomPoses random(91);
+  const TriangleMesh hull = make_shape(SphereShape{.radius = 4.0, .segments = 24});
+  for (const Shape& shape : {Shape(TorusKnotShape{}), Shape(RockShape{.frequency = 6}), Shape(ConeShape{}),
+                             Shape(BoxShape{.size = {1.0, 2.0, 3.0}})}) {
+    for (int i = 0; i < 8; ++i) {
+      const TriangleMesh inner = turned(make_shape(shape), random.rotation(), random.direction());
+      const double volume = mass_properties(inner).volume;
+      EXPECT_NEAR(common(inner, hull), volume, 2e-3 * volume);
+      EXPECT_LE(outside(inner, hull), 1e-12);
+      const TriangleMesh moved = turned(inner, Eigen::Quaterniond::Identity(), 0.3 * random.direction());
+      EXPECT_NEAR(common(inner, moved) + outside(inner, moved), volume, 4e-3 * volume);
+    }
+  }
+}
+
+// The same surface in other triangles, turned so that no face lies along a column.
+TEST(CommonVolume, FindsNothingOutsideTheSameSurface) {
+  RandomPoses random(92);
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Quaterniond q = random.rotation();
+    EXPECT_LE(outside(turned(kBox, q), turned(kFineBox, q)), 1e-6) << i;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy

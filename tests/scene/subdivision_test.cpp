@@ -1,0 +1,181 @@
+// The sections [[body.part]], [[body.compartment]] and [[body.tank]], and the bodies prepared from them.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "scene/floating_bodies.h"
+#include "scene/scene_report.h"
+#include "tests/geometry/mesh_files.h"
+#include "tests/scene/scene_texts.h"
+#include "tests/support/scene_of.h"
+
+namespace buoyancy {
+namespace {
+
+const std::string kBox = "shape = { type = \"box\", size = [1, 1, 1] }\n";
+
+std::string preparation_error(const std::string& text) {
+  const Expected<SceneDescription> description = parse(text);
+  if (!description) return description.error().message();
+  const Expected<Scene> scene = Scene::prepare(*description);
+  return scene ? "accepted" : scene.error().message();
+}
+
+std::vector<std::string> warnings_of(const std::string& text) {
+  std::vector<std::string> messages;
+  for (const Warning& warning : scene_warnings(scene_of(text))) messages.push_back(warning.message());
+  return messages;
+}
+
+TEST(Subdivision, ReadsEverySection) {
+  const auto scene = parse(
+      scene_with_crate("[[body.part]]\nname = \"float\"\n" + kBox + "position = [3, 0, 0]\n" +
+                       "orientation = [2, 0, 0, 2]\n[[body.compartment]]\n" + kBox +
+                       "permeability = 0.85\nflooded = 0.25\n[[body.tank]]\n" + kBox +
+                       "fill = 0.5\n[[body.tank]]\nmesh = \"tank.stl\"\nscale = 0.001\nliquid_volume = 0.75\n"
+                       "density = 850\n"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  const BodyDescription& body = scene->bodies[0];
+  ASSERT_EQ(body.parts.size(), 1U);
+  EXPECT_EQ(body.parts[0].name, "float");
+  EXPECT_EQ(body.parts[0].mesh.position_B, Vec3(3, 0, 0));
+  EXPECT_NEAR(body.parts[0].mesh.orientation_B.w(), std::sqrt(0.5), 1e-15);
+  ASSERT_EQ(body.compartments.size(), 1U);
+  EXPECT_EQ(body.compartments[0].name, "compartment 0");
+  EXPECT_EQ(body.compartments[0].permeability, 0.85);
+  EXPECT_EQ(body.compartments[0].flooded, 0.25);
+  ASSERT_EQ(body.tanks.size(), 2U);
+  EXPECT_EQ(body.tanks[0].density, 1025.0) << "the water's";
+  EXPECT_EQ(body.tanks[0].fill, 0.5);
+  EXPECT_EQ(body.tanks[1].name, "tank 1");
+  EXPECT_EQ(body.tanks[1].mesh.scale, 0.001);
+  EXPECT_EQ(body.tanks[1].liquid_volume, 0.75);
+  EXPECT_EQ(body.tanks[1].density, 850.0);
+}
+
+TEST(Subdivision, ExplainsWhatIsWrong) {
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"[body.part]\n" + kBox, "Write [[body.part]] in double brackets"},
+      {"[[body.part]]\n", "part 0: neither 'mesh' nor 'shape'"},
+      {"[[body.part]]\nmesh = \"a.stl\"\n" + kBox, "both 'mesh' and 'shape'"},
+      {"[[body.part]]\n" + kBox + "permeability = 1\n", "pool.toml:6: body 7, part 0: unknown key"},
+      {"[[body.compartment]]\n" + kBox + "permeabilty = 1\n", "nearest known key is 'permeability'"},
+      {"[[body.compartment]]\n" + kBox + "permeability = 0\n", "permeability = 0; expected"},
+      {"[[body.compartment]]\n" + kBox + "permeability = 1.2\n", "permeability = 1.2; expected"},
+      {"[[body.compartment]]\n" + kBox + "flooded = -0.1\n", "flooded = -0.1; expected"},
+      {"[[body.tank]]\n" + kBox, "neither 'fill' nor 'liquid_volume'"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\nliquid_volume = 1\n", "both 'fill' and 'liquid_volume'"},
+      {"[[body.tank]]\n" + kBox + "fill = 1.5\n", "fill = 1.5; expected"},
+      {"[[body.tank]]\n" + kBox + "fill = nan\n", "fill = nan; expected"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\ndensity = -1\n", "density = -1; expected"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\norientation = [0, 0, 0, 0]\n",
+       "a quaternion (w, x, y, z), not"},
+      {"[[body.tank]]\nshape = { type = \"box\", sizes = [1, 1, 1] }\nfill = 0.5\n",
+       "pool.toml:5: body 7, tank 0, shape: unknown key 'sizes'"},
+      {"[[body.tank]]\nname = \"ballast\"\n" + kBox + "liquid_volume = 1.5\n",
+       "pool.toml:4: body 7, tank 'ballast', liquid_volume: 1.5 m^3; expected at most the tank's volume, 1 "
+       "m^3"},
+      {"[[body.tank]]\nmesh = \"no_such_tank.stl\"\nfill = 0.5\n", "no_such_tank.stl"},
+  };
+  for (const auto& [text, expected] : wrong) {
+    const std::string message = preparation_error(scene_with_crate(text));
+    EXPECT_NE(message.find(expected), std::string::npos) << message << "\nexpected to contain: " << expected;
+  }
+}
+
+TEST(Subdivision, RejectsOpenMeshes) {
+  const TempDir directory;
+  const std::string open =
+      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  for (const std::string section : {"part", "compartment", "tank"}) {
+    const std::string fill = section == "tank" ? "fill = 0.5\n" : "";
+    const std::string message =
+        preparation_error(scene_with_crate("[[body." + section + "]]\nmesh = \"" + open + "\"\n" + fill));
+    EXPECT_NE(message.find("body 7, " + section + " '" + section + " 0', "), std::string::npos) << message;
+    EXPECT_NE(message.find("open"), std::string::npos) << message;
+  }
+  const std::string hull =
+      preparation_error("[[body]]\nid = 1\nmesh = \"" + open +
+                        "\"\nopen = \"dry_boundary\"\n[[body.tank]]\nfill = 0.5\n" + kBox);
+  EXPECT_NE(hull.find("an open mesh; expected a closed mesh"), std::string::npos) << hull;
+}
+
+TEST(Subdivision, SharesMeshesOfEqualBodies) {
+  const std::string keys =
+      kBox + "[[body.part]]\n" + kBox + "position = [1, 0, 0]\n[[body.tank]]\n" + kBox + "fill = 0.5\n";
+  const Scene scene = scene_of("[[body]]\nid = 1\n" + keys + "[[body]]\nid = 2\n" + keys);
+  EXPECT_EQ(scene.meshes().size(), 3U) << "the box, the moved box, both together";
+  EXPECT_EQ(scene.bodies()[0].prepared_mesh, scene.bodies()[1].prepared_mesh);
+  EXPECT_EQ(scene.bodies_with_subdivision(), 2U);
+  ASSERT_NE(scene.bodies()[1].parts, nullptr);
+  EXPECT_EQ(scene.bodies()[1].parts->at(0).name, "hull");
+  EXPECT_EQ(scene.bodies()[1].parts->at(1).name, "part 0");
+}
+
+TEST(Subdivision, OfABodyWithoutSectionsIsAbsent) {
+  const Scene scene = scene_of(scene_with_crate());
+  EXPECT_EQ(scene.bodies()[0].parts, nullptr);
+  EXPECT_EQ(scene.bodies()[0].subdivision, nullptr);
+  EXPECT_EQ(scene.bodies_with_subdivision(), 0U);
+}
+
+// One part inside another is no cavity: parts are added up as they are.
+TEST(Subdivision, AddsPartsInsideOthers) {
+  const Scene scene = scene_of(
+      "[[body]]\nid = 1\n[[body.part]]\nshape = { type = \"box\", size = [3, 3, 3] }\n"
+      "[[body.part]]\n" +
+      kBox);
+  EXPECT_NEAR(scene.bodies()[0].prepared_mesh->mesh.volume, 28.0, 1e-12);
+  const std::vector<std::string> warnings = warnings_of(
+      "[[body]]\nid = 1\n[[body.part]]\nshape = { type = \"box\", size = [3, 3, 3] }\n"
+      "[[body.part]]\n" +
+      kBox);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("parts 'part 0' and 'part 1': overlap by 1 m^3 (100 %)"), std::string::npos)
+      << warnings[0];
+}
+
+TEST(Subdivision, WarnsAboutSpacesThatStickOutOrOverlap) {
+  const std::string hull = "[[body]]\nid = 1\nshape = { type = \"box\", size = [4, 2, 1] }\n";
+  EXPECT_TRUE(warnings_of(hull + "[[body.compartment]]\nshape = { type = \"box\", size = [1, 2, 1] }\n"
+                                 "position = [1.5, 0, 0]\n[[body.tank]]\nfill = 0.5\n"
+                                 "shape = { type = \"box\", size = [1, 2, 1] }\nposition = [0.5, 0, 0]\n")
+                  .empty())
+      << "they touch the hull and each other";
+  const std::vector<std::string> warnings =
+      warnings_of(hull +
+                  "[[body.compartment]]\nname = \"bow\"\nshape = { type = \"box\", size = [1, 2, 1] }\n"
+                  "position = [1.75, 0, 0]\n[[body.tank]]\nfill = 0.5\n"
+                  "shape = { type = \"box\", size = [1, 1, 1] }\nposition = [1, 0, 0]\n");
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("compartment 'bow': 0.5 m^3 (25 %) outside the hull"), std::string::npos)
+      << warnings[0];
+  EXPECT_NE(warnings[1].find("compartment 'bow' and tank 'tank 0': overlap by 0.25 m^3 (25 %)"),
+            std::string::npos)
+      << warnings[1];
+}
+
+TEST(Subdivision, FloatsWithItsCompartmentsAndTanks) {
+  const Scene scene = scene_of(
+      "[[body]]\nid = 1\nshape = { type = \"box\", size = [4, 2, 1] }\n[[body.compartment]]\n"
+      "shape = { type = \"box\", size = [1, 2, 1] }\nflooded = 0.5\npermeability = "
+      "0.9\n[[body.compartment]]\n"
+      "shape = { type = \"box\", size = [1, 2, 1] }\nposition = [1.5, 0, 0]\nflooded = 0\n[[body.tank]]\n"
+      "shape = { type = \"box\", size = [1, 1, 1] }\nposition = [-1, 0, 0]\nliquid_volume = 0.25\ndensity = "
+      "800\n");
+  const Body& body = scene.bodies()[0];
+  const BodyMass mass{.mass = 2000.0, .center_of_mass_B = Vec3(0, 0, -0.1)};
+  const FloatingBody floating = floating_body_of(body, body.prepared_mesh->mesh, mass).value();
+  ASSERT_EQ(floating.terms().size(), 2U) << "the hull and what is flooded";
+  EXPECT_EQ(floating.terms()[1].placed.factor, -0.45);
+  EXPECT_EQ(floating.total_mass(), 2200.0);
+  const BodyCondition damaged{.flooded = {0.0, 1.0}, .liquid_volumes = {1.0}};
+  const FloatingBody later = floating_body_of(body, body.prepared_mesh->mesh, mass, &damaged).value();
+  EXPECT_EQ(later.terms()[1].placed.factor, -1.0);
+  EXPECT_EQ(later.total_mass(), 2800.0);
+}
+
+}  // namespace
+}  // namespace buoyancy
