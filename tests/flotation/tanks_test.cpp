@@ -115,6 +115,15 @@ TEST(FloatingBodyWithTanks, HasTheMetacentricHeightOfItsArms) {
   const auto upright = righting_arm(body, kWater, 0.0, fixed);
   ASSERT_TRUE(upright);
   EXPECT_NEAR(upright->draft, draft, 1e-12);
+  const auto afloat = find_equilibrium_from(body, kWater, Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(afloat);
+  // The tank lies forward of the middle, so that the body trims a little.
+  EXPECT_NEAR(afloat->state.hydrostatics.metacentric_heights[0], gm, 1e-2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(afloat->stiffness[i],
+                total * kWater.gravity * afloat->state.hydrostatics.metacentric_heights[i],
+                1e-9 * afloat->stiffness[1]);
+  }
   // Wall-sided, hull and tank alike: GZ = sin (GM + BM tan^2 / 2), with BM less that of the tank.
   const double bm = 64.0 / (12.0 * draft) - free_surface;
   for (const double degrees : {2.0, 5.0, 8.0}) {

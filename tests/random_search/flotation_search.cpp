@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "geometry/mass_properties.h"
+#include "geometry/shapes.h"
 
 namespace buoyancy {
 namespace {
@@ -23,7 +24,8 @@ Vec3 random_direction(std::mt19937_64& random) {
 // from B's origin.
 double energy_rounding(const FloatingBody& body, const Water& water, const Equilibrium& at) {
   const double lever = body.reach() + (body.center_of_mass_B() - body.center_B()).norm();
-  const double volume = water.density * body.volume_tolerance() + 16.0 * kEpsilon * body.mass();
+  const double volume =
+      water.density * body.volume_tolerance() + body.liquid_tolerance() + 16.0 * kEpsilon * body.total_mass();
   const double distance = body.center_of_mass_B().norm() + body.reach();
   return water.gravity * volume * lever + at.force_bound * distance * kEpsilon;
 }
@@ -63,14 +65,37 @@ std::string violation_of(const FloatingBody& body, const Water& water, const Equ
   return {};
 }
 
+HydrostaticMesh box_mesh(const BoundingBox& box) {
+  const Vec3 size = box.max_B - box.min_B;
+  TriangleMesh mesh = make_shape(BoxShape{.size = {size.x(), size.y(), size.z()}});
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    mesh.x[i] += box.center().x();
+    mesh.y[i] += box.center().y();
+    mesh.z[i] += box.center().z();
+  }
+  return make_hydrostatic_mesh({mesh, {}});
+}
+
 void run_case(std::uint64_t seed, std::int64_t number, FlotationSearchStats& stats) {
   const FlotationCase flotation = random_flotation_case(seed, number);
   const HydrostaticMesh mesh = make_hydrostatic_mesh(flotation.mesh.validated);
   const Water water;
-  const PlacedMesh placed{.mesh = &mesh};
-  const double mass = flotation.relative_density * water.density * mesh.volume;
+  std::vector<PlacedMesh> meshes{{.mesh = &mesh}};
+  if (flotation.permeability > 0.0) meshes.push_back({.mesh = &mesh, .factor = -flotation.permeability});
+  const double total_mass =
+      flotation.relative_density * water.density * (1.0 - flotation.permeability) * mesh.volume;
+  double mass = total_mass;
+  std::vector<HydrostaticMesh> tank_meshes;
+  tank_meshes.reserve(flotation.tanks.size());
+  std::vector<Tank> tanks;
+  for (const RandomTank& tank : flotation.tanks) {
+    const HydrostaticMesh& tank_mesh = tank_meshes.emplace_back(box_mesh(tank.box));
+    const double volume = tank.fill * tank_mesh.volume;
+    tanks.push_back({&tank_mesh, volume, tank.share_of_mass * total_mass / volume});
+    mass -= tank.share_of_mass * total_mass;
+  }
   ++stats.cases;
-  const Expected<FloatingBody> body = FloatingBody::make({&placed, 1}, mass, flotation.center_of_mass_B);
+  const Expected<FloatingBody> body = FloatingBody::make(meshes, mass, flotation.center_of_mass_B, tanks);
   if (!body) {
     stats.failures.push_back({number, body.error().message()});
     return;
@@ -99,14 +124,19 @@ std::string FlotationCase::text() const {
   std::ostringstream text;
   text.precision(17);
   text << "  " << mesh.kind << ", relative density " << relative_density << ", centre of mass "
-       << center_of_mass_B.transpose() << "\n";
+       << center_of_mass_B.transpose() << ", permeability " << permeability << "\n";
+  for (const RandomTank& tank : tanks) {
+    text << "    tank from " << tank.box.min_B.transpose() << " to " << tank.box.max_B.transpose()
+         << ", fill " << tank.fill << ", " << tank.share_of_mass << " of the mass\n";
+  }
   return text.str();
 }
 
 FlotationCase random_flotation_case(std::uint64_t seed, std::int64_t number) {
   std::mt19937_64 random(seed * 1'000'003 + static_cast<std::uint64_t>(number));
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  FlotationCase flotation{.mesh = random_mesh(random())};
+  FlotationCase flotation;
+  flotation.mesh = random_mesh(random());
   const double fraction = uniform(random);
   const double small = std::pow(10.0, -4.0 * uniform(random));
   const double which = uniform(random);
@@ -118,6 +148,17 @@ FlotationCase random_flotation_case(std::uint64_t seed, std::int64_t number) {
   // Bodies of even density, many of which are symmetric, float in more attitudes.
   if (uniform(random) < 0.5) {
     flotation.center_of_mass_B = mass_properties(flotation.mesh.validated.mesh).centroid_B;
+  }
+  if (uniform(random) < 0.5) return flotation;
+  if (uniform(random) < 0.5) flotation.permeability = 0.9 * uniform(random);
+  const int tanks = static_cast<int>(3.0 * uniform(random));
+  for (int i = 0; i < tanks; ++i) {
+    const Vec3 a(uniform(random), uniform(random), uniform(random));
+    const Vec3 b = a + 0.1 * Vec3::Ones() + 0.3 * Vec3(uniform(random), uniform(random), uniform(random));
+    const Vec3 size = box.max_B - box.min_B;
+    flotation.tanks.push_back({.box = {box.min_B + a.cwiseProduct(size), box.min_B + b.cwiseProduct(size)},
+                               .fill = 0.05 + 0.9 * uniform(random),
+                               .share_of_mass = 0.4 * uniform(random)});
   }
   return flotation;
 }

@@ -1,5 +1,6 @@
 // The random search for attitudes that are no stable equilibria (docs/mathematics.md, "Equilibrium and
-// righting arms"): random closed meshes with random masses and centres of mass.
+// righting arms"): random closed meshes with random masses and centres of mass, every second one with up to
+// two tanks and with a share of its volume open to the sea.
 //
 // A body lighter than the water that it can displace floats in at least one attitude. Each attitude balances
 // within its bounds, and the energy rises when the body is moved a little: turned about a random axis and
@@ -15,11 +16,19 @@
 
 namespace buoyancy {
 
+struct RandomTank {
+  BoundingBox box{Vec3::Zero(), Vec3::Zero()};  // [m]
+  double fill = 0.0;
+  double share_of_mass = 0.0;  // of the mass of body and liquids
+};
+
 // Depends on the seed and the number alone.
 struct FlotationCase {
   RandomMesh mesh;
-  double relative_density = 0.0;         // mass over that of the water that the mesh can displace
+  double relative_density = 0.0;         // mass over that of the water that the body can displace
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], the centroid, or in the bounding box
+  double permeability = 0.0;             // of a compartment that is the whole mesh; 0: there is none
+  std::vector<RandomTank> tanks;
 
   std::string text() const;
 };
