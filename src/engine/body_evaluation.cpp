@@ -140,7 +140,6 @@ void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
   outcome.quaternion_normalised = quaternion_normalised;
   outcome.unchanged = false;
   outcome.in_waves = {};
-  outcome.flooded_volume = 0.0;
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {

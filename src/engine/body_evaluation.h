@@ -79,7 +79,7 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 // Sets the fields of outcome that accompany its result, which was computed at a valid pose; in_waves to those
-// of water at rest, flooded_volume to 0.
+// of water at rest. flooded_volume stays.
 void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
