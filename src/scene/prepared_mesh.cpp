@@ -7,26 +7,10 @@
 #include <vector>
 
 #include "base/format.h"
+#include "scene/mesh_placement.h"
 
 namespace buoyancy {
 namespace {
-
-void place(TriangleMesh& mesh, const MeshPlacement& placement) {
-  if (placement.scale != 1.0) {
-    for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
-      for (double& coordinate : *coordinates) coordinate *= placement.scale;
-    }
-  }
-  const bool is_turned = placement.orientation_B.vec() != Vec3::Zero();
-  if (!is_turned && placement.position_B == Vec3::Zero()) return;
-  const Mat3 R = is_turned ? placement.orientation_B.toRotationMatrix() : Mat3::Identity();
-  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
-    const Vec3 moved = R * Vec3(mesh.x[i], mesh.y[i], mesh.z[i]) + placement.position_B;
-    mesh.x[i] = moved.x();
-    mesh.y[i] = moved.y();
-    mesh.z[i] = moved.z();
-  }
-}
 
 // Appends a prepared mesh's triangles, in B.
 void append(const HydrostaticMesh& mesh, TriangleMesh& all) {

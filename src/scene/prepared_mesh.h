@@ -29,11 +29,11 @@ struct PreparedMesh {
 struct MeshPlacement {
   double scale = 1.0;                                                 // > 0
   Vec3 position_B = Vec3::Zero();                                     // [m]
-  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // unit
+  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
 };
 
-// Moves the mesh in double, validates and prepares it; without a moment tree. name: identifies it in the
-// report and in errors. Errors: those of validate_mesh(). Complexity: O(n log n).
+// Scales the mesh in double, moves it and rounds once, validates and prepares it; without a moment tree.
+// name: identifies it in the report and in errors. Errors: those of validate_mesh(). Complexity: O(n log n).
 Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
                                     const MeshPlacement& placement, const ValidationOptions& options);
 

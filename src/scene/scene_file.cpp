@@ -116,6 +116,7 @@ void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
              NumberRange::from_zero("N m/(rad/s)^2"));
 
   parse_orientation(table, dynamics.orientation);
+  dynamics.orientation.normalize();
   table.finish();
   if (dynamics.mass && dynamics.density) {
     table.fail("both 'mass' and 'density'",

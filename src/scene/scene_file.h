@@ -68,7 +68,7 @@ struct MeshDescription {
   std::variant<MeshFile, Shape> source;
   double scale = 1.0;                                                 // > 0; mesh files only
   Vec3 position_B = Vec3::Zero();                                     // [m]
-  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // normalised
+  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
 };
 
 // Sections [[body.part]], [[body.compartment]] and [[body.tank]]: meshes that make up a body, or lie in it.

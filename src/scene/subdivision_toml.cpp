@@ -1,6 +1,7 @@
 #include "scene/subdivision_toml.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "scene/shape_toml.h"
@@ -73,7 +74,9 @@ void parse_orientation(TomlTable& table, Eigen::Quaterniond& orientation) {
   Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   const double largest = q.cwiseAbs().maxCoeff();
   if (largest > 0.0) {
-    q = (q / largest).normalized();
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (double& component : q) component = std::ldexp(component, 1 - exponent);
     orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   } else {
     table.fail_at("orientation", "a quaternion (w, x, y, z), not zero; [1, 0, 0, 0] is the identity");

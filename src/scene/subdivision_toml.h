@@ -11,7 +11,8 @@
 
 namespace buoyancy {
 
-// Reads `orientation`, a quaternion (w, x, y, z) of any norm but 0, which is normalised.
+// Reads `orientation`, a quaternion (w, x, y, z) of any norm but 0, which is scaled by a power of 2 to a norm
+// of about 1.
 void parse_orientation(TomlTable& table, Eigen::Quaterniond& orientation);
 
 // Reads `mesh`, `scale` and `shape`. shape_name: identifies the shape's table in errors. Returns whether

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/format.h"
 #include "scene/floating_bodies.h"
 #include "scene/scene_report.h"
 #include "tests/geometry/mesh_files.h"
@@ -41,7 +42,7 @@ TEST(Subdivision, ReadsEverySection) {
   ASSERT_EQ(body.parts.size(), 1U);
   EXPECT_EQ(body.parts[0].name, "float");
   EXPECT_EQ(body.parts[0].mesh.position_B, Vec3(3, 0, 0));
-  EXPECT_NEAR(body.parts[0].mesh.orientation_B.w(), std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(body.parts[0].mesh.orientation_B.w(), body.parts[0].mesh.orientation_B.z()) << "not normalised";
   ASSERT_EQ(body.compartments.size(), 1U);
   EXPECT_EQ(body.compartments[0].name, "compartment 0");
   EXPECT_EQ(body.compartments[0].permeability, 0.85);
@@ -135,6 +136,30 @@ TEST(Subdivision, AddsPartsInsideOthers) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("parts 'part 0' and 'part 1': overlap by 1 m^3 (100 %)"), std::string::npos)
       << warnings[0];
+}
+
+// A mesh far from its own origin is turned and moved back to where it was: nothing is lost but the last bit.
+TEST(Subdivision, PlacesMeshesThatLieFarFromTheirOrigin) {
+  const TempDir directory;
+  std::string obj;
+  for (int i = 0; i < 8; ++i) {
+    obj += "v " + std::to_string(1000.0 + (i & 1)) + " " + std::to_string(2000.0 + ((i >> 1) & 1)) + " " +
+           std::to_string(-500.0 + (i >> 2)) + "\n";
+  }
+  obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  const std::string mesh = directory.write("far.obj", obj);
+  // 1192.02).
+  const Eigen::Quaterniond q = Eigen::Quaterniond(1, 2, -2, 4).normalized();
+  const Vec3 center = q * Vec3(1000.5, 2000.5, -499.5);
+  const Scene scene =
+      scene_of("[[body]]\nid = 1\n[[body.part]]\nmesh = \"" + mesh +
+               "\"\norientation = [1, 2, -2, 4]\nposition = [" + format_shortest(-center.x()) + ", " +
+               format_shortest(-center.y()) + ", " + format_shortest(-center.z()) + "]\n");
+  const HydrostaticMesh& placed = scene.bodies()[0].prepared_mesh->mesh;
+  EXPECT_NEAR(placed.volume, 1.0, 4e-16);
+  for (std::int32_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR((placed.vertex(i) - placed.centroid).norm(), std::sqrt(0.75), 4e-16) << i;
+  }
 }
 
 TEST(Subdivision, WarnsAboutSpacesThatStickOutOrOverlap) {
