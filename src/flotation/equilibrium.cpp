@@ -40,7 +40,7 @@ class EquilibriumSearch {
         flat_curve_energy_(flat_energy(balance, kFlatCurve)),
         flat_sphere_energy_(flat_energy(balance, kFlatSphere)) {}
 
-  void find_minima() {
+  void find_minima(const EquilibriumOptions& options) {
     constexpr int kMinStarts = 24;
     constexpr int kMaxStarts = 600;
     for (const Vec3& axis : {Vec3(Vec3::UnitZ()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitX())}) {
@@ -52,6 +52,10 @@ class EquilibriumSearch {
     int last_news = 0;
     for (int n = 0; n < kMaxStarts && (n < kMinStarts || !enough(n - last_news)); ++n) {
       if (descend(direction(n))) last_news = n;
+      if (options.progress) {
+        const int needed = last_news + 12 + static_cast<int>(2 * found_.size());
+        options.progress(n + 1, std::min(std::max({needed, kMinStarts, n + 1}), kMaxStarts));
+      }
       if (!found_.empty() && found_.front().family == AttitudeFamily::kSphere) return;
     }
   }
@@ -293,7 +297,7 @@ Equilibria find_equilibria(const FloatingBody& body, const Water& water, const E
   if (result.outcome != FlotationOutcome::kFloats) return result;
   const Balance balance(body, water);
   EquilibriumSearch search(balance);
-  search.find_minima();
+  search.find_minima(options);
   if (options.unstable) search.find_unstable();
 
   for (const Found& found : search.found()) {

@@ -14,6 +14,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "flotation/floating_body.h"
@@ -66,6 +68,9 @@ struct EquilibriumOptions {
   ShipAxes axes;
   bool unstable = false;            // report the saddle points and maxima that are found, too
   std::size_t max_attitudes = 128;  // the lowest are kept
+  // Called after each start of the search with the number of starts that are done and of those that will do
+  // unless more attitudes are found; may be empty.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
 struct Equilibria {

@@ -126,6 +126,7 @@ class ArmSearch {
     arm.kn = arm.gz + starboard.dot(total_center_of_mass_B(body, liquids) - keel_ * options_.axes.up_B);
     arm.energy = balance_.water().gravity * attitude.energy;
     arm.draft = -attitude.height - lowest_along(body, attitude.up_B);
+    arm.height = attitude.height - attitude.up_B.dot(body.center_B());
     return arm;
   }
 
@@ -229,6 +230,7 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
   const auto first_positive =
       static_cast<std::size_t>(std::lower_bound(heels.begin(), heels.end(), 0.0) - heels.begin());
   std::vector<double> areas(heels.size());
+  std::int64_t done = 0;
   const auto fill = [&](std::size_t i, const RightingArm& inner, double& by_trim) {
     const std::optional<RightingArm> arm = heels[i] == 0.0 ? upright : search.near(heels[i], inner);
     if (!arm) return false;
@@ -239,6 +241,8 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
     if (options.fixed_trim) {
       areas[i] = (arm->energy - upright->energy) / (body.total_mass() * water.gravity * std::cos(arm->trim));
     }
+    ++done;
+    if (options.progress) options.progress(done, static_cast<std::int64_t>(heels.size()));
     return true;
   };
   double by_trim = 0.0;

@@ -11,6 +11,8 @@
 // and so exact to rounding for every step of the heel; with a trim, what the trim adds is a trapezoidal sum.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +26,8 @@ struct RightingArmOptions {
   ShipAxes axes;
   std::optional<double> fixed_trim;  // [rad]; nullopt: free
   std::optional<double> keel;  // [m], of K along up from B's origin; nullopt: the lowest vertex along up
+  // Called after each heel of a curve with the number of heels that are done and of all; may be empty.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
 struct RightingArm {
@@ -33,6 +37,7 @@ struct RightingArm {
   double gz = 0.0;      // [m]
   double kn = 0.0;      // [m]
   double energy = 0.0;  // [J], as FloatingState::energy
+  double height = 0.0;  // [m], of B's origin over the water
 };
 
 // start_trim: [rad], where the search for the trim starts. Returns nullopt where the body does not float at

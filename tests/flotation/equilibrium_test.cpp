@@ -200,6 +200,22 @@ TEST(Equilibrium, FindsUnstableAttitudesThatCompleteTheSphere) {
   }
 }
 
+TEST(Equilibrium, ReportsItsProgress) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{{80, 20, 12}, {2, 2, 2}});
+  EquilibriumOptions options;
+  std::int64_t last = 0;
+  std::int64_t last_total = 0;
+  options.progress = [&](std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(done, last + 1);
+    EXPECT_LE(done, total);
+    last = done;
+    last_total = total;
+  };
+  find_equilibria(body_of(mesh, 0.5), kWater, options);
+  EXPECT_GE(last, 24);
+  EXPECT_EQ(last, last_total);
+}
+
 TEST(Equilibrium, SaysWhatSinksAndWhatIsNeutral) {
   const HydrostaticMesh mesh = mesh_of(BoxShape{});
   EXPECT_EQ(find_equilibria(body_of(mesh, 1.001), kWater).outcome, FlotationOutcome::kSinks);

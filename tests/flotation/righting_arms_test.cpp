@@ -232,5 +232,18 @@ TEST(RightingArms, AreAbsentForABodyThatSinks) {
   EXPECT_FALSE(righting_curve(body_of(mesh, 1.1), kWater, heels));
 }
 
+TEST(RightingArms, ReportTheirProgress) {
+  const BoxShip ship;
+  RightingArmOptions options;
+  std::vector<std::int64_t> done;
+  options.progress = [&](std::int64_t count, std::int64_t total) {
+    EXPECT_EQ(total, 5);
+    done.push_back(count);
+  };
+  const std::array heels{-0.2, -0.1, 0.0, 0.1, 0.2};
+  ASSERT_TRUE(righting_curve(ship.body, kWater, heels, options));
+  EXPECT_EQ(done, (std::vector<std::int64_t>{1, 2, 3, 4, 5}));
+}
+
 }  // namespace
 }  // namespace buoyancy
