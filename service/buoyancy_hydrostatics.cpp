@@ -1,12 +1,11 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <numbers>
 #include <string>
 #include <system_error>
 
 #include <CLI/App.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
@@ -17,12 +16,14 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-
 struct Output {
   std::string text;  // on standard output
   std::string csv;
 };
+
+std::string text_of(const nlohmann::ordered_json& json) {
+  return json.dump(2) + "\n";
+}
 
 Expected<void> write_file(const std::filesystem::path& path, const std::string& text) {
   std::FILE* file = std::fopen(path.c_str(), "w");
@@ -39,8 +40,13 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
   EquilibriumOptions search;
   search.axes = plan.table.axes;
   search.unstable = options.unstable;
+  ProgressBar progress("starts");
+  search.progress = [&progress](std::int64_t done, std::int64_t total) {
+    progress.update(done, total, done);
+  };
   const Equilibria found = find_equilibria(loaded.body, loaded.water(), search);
-  return {options.json ? equilibria_json(found) : equilibria_text(found), equilibria_csv(found)};
+  progress.clear();
+  return {options.json ? text_of(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found)};
 }
 
 Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
@@ -64,51 +70,24 @@ Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOption
     }
   }
   progress.clear();
-  return Output{options.json ? table_json(*table, rows) : table_text(*table, rows), table_csv(rows)};
-}
-
-// The general criteria, to starboard; empty where the arms are not known up to 90 degrees.
-std::vector<StabilityCriterion> general_criteria(const LoadedBody& loaded,
-                                                 const RightingArmOptions& options) {
-  constexpr int kMaxHeel = 90;  // [degrees]
-  constexpr std::size_t kThirty = 30;
-  constexpr std::size_t kForty = 40;
-  std::vector<double> heels;
-  for (int heel = 0; heel <= kMaxHeel; ++heel) heels.push_back(heel * kRadiansPerDegree);
-  const auto curve = righting_curve(loaded.body, loaded.water(), heels, options);
-  constexpr double kStep = 1e-4;  // [rad], of the central difference
-  const auto right = righting_arm(loaded.body, loaded.water(), kStep, options);
-  const auto left = righting_arm(loaded.body, loaded.water(), -kStep, options);
-  if (!curve || !right || !left) return {};
-  const double to_thirty = curve->points[kThirty].area;
-  const double to_forty = curve->points[kForty].area;
-  double beyond_thirty = curve->points[kThirty].arm.gz;
-  for (std::size_t i = kThirty; i < heels.size(); ++i) {
-    beyond_thirty = std::max(beyond_thirty, curve->points[i].arm.gz);
-  }
-  const double heel_of_max = curve->max_starboard ? curve->max_starboard->heel / kRadiansPerDegree : 0.0;
-  if (curve->max_starboard && heel_of_max >= 30.0) {
-    beyond_thirty = std::max(beyond_thirty, curve->max_starboard->gz);
-  }
-  return {{"area from 0 to 30 degrees", to_thirty, 0.055, "m rad"},
-          {"area from 0 to 40 degrees", to_forty, 0.090, "m rad"},
-          {"area from 30 to 40 degrees", to_forty - to_thirty, 0.030, "m rad"},
-          {"largest GZ at 30 degrees or more", beyond_thirty, 0.20, "m"},
-          {"heel of the largest GZ", heel_of_max, 25.0, "degrees"},
-          {"GM at heel 0", (right->gz - left->gz) / (2.0 * kStep), 0.15, "m"}};
+  return Output{options.json ? text_of(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows)};
 }
 
 Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
                                  const HydrostaticsPlan& plan) {
-  const auto curve = righting_curve(loaded.body, loaded.water(), plan.heels, plan.arms);
-  if (!curve) {
+  ProgressBar progress("heels");
+  RightingArmOptions arms = plan.arms;
+  arms.progress = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total, done); };
+  const auto results = righting_results(loaded.body, loaded.water(), plan.heels, plan.points, arms);
+  progress.clear();
+  if (!results) {
     return make_error({"gz", "no balance at one of the heels",
                        "a body that floats at each heel, and trims by less than 89 degrees",
                        "the body sinks, takes in water or has no stable trim",
                        "See the command equilibrium, or fix the trim with --fixed-trim"});
   }
-  const RightingResults results{*curve, general_criteria(loaded, plan.arms)};
-  return Output{options.json ? righting_json(results) : righting_text(results), righting_csv(results)};
+  return Output{options.json ? text_of(righting_json(*results)) : righting_text(*results),
+                righting_csv(*results)};
 }
 
 int run(int argc, char** argv) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include <CLI/Formatter.hpp>
 
 #include "base/csv_field.h"
+#include "base/format.h"
+#include "cli/channel_options.h"
 #include "cli/command_line.h"
 
 namespace buoyancy::service {
@@ -77,10 +80,12 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
     const char* option;
     HydrostaticsCommand command;
   };
-  constexpr std::array<Use, 4> kUses{{{"--unstable", HydrostaticsCommand::kEquilibrium},
+  constexpr std::array<Use, 6> kUses{{{"--unstable", HydrostaticsCommand::kEquilibrium},
                                       {"--draft", HydrostaticsCommand::kTable},
                                       {"--heel", HydrostaticsCommand::kRightingArms},
-                                      {"--fixed-trim", HydrostaticsCommand::kRightingArms}}};
+                                      {"--fixed-trim", HydrostaticsCommand::kRightingArms},
+                                      {"--deck-edge", HydrostaticsCommand::kRightingArms},
+                                      {"--downflooding", HydrostaticsCommand::kRightingArms}}};
   for (const Use& use : kUses) {
     if (app.count(use.option) == 0 || use.command == command) continue;
     return make_error({use.option, "with another command",
@@ -138,6 +143,26 @@ Expected<void> plan_ranges(const HydrostaticsOptions& options, HydrostaticsPlan&
   return {};
 }
 
+Expected<std::vector<Vec3>> parse_points(const std::string& subject, const std::vector<std::string>& texts) {
+  std::vector<Vec3> points;
+  for (const std::string& text : texts) {
+    const Expected<Vec3> point = parse_point(subject, text);
+    if (!point) return tl::unexpected(point.error());
+    points.push_back(*point);
+  }
+  return points;
+}
+
+Expected<void> plan_points(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  Expected<std::vector<Vec3>> deck_edge = parse_points("--deck-edge", options.deck_edges);
+  if (!deck_edge) return tl::unexpected(deck_edge.error());
+  plan.points.deck_edge_B = *std::move(deck_edge);
+  Expected<std::vector<Vec3>> downflooding = parse_points("--downflooding", options.downfloodings);
+  if (!downflooding) return tl::unexpected(downflooding.error());
+  plan.points.downflooding_B = *std::move(downflooding);
+  return {};
+}
+
 }  // namespace
 
 Expected<std::vector<double>> parse_range(const std::string& subject, const std::string& text) {
@@ -159,6 +184,38 @@ Expected<std::vector<double>> parse_range(const std::string& subject, const std:
                      "", ""});
 }
 
+namespace {
+
+std::string with_default(std::string type, double value) {
+  return type.append(" [").append(format_shortest(value)).append("]");
+}
+
+// What a scene says otherwise.
+void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& options) {
+  constexpr double kMax = 1e9;
+  app.add_option("--scale", options.scale, "With --mesh: factor on its coordinates")
+      ->needs(mesh)
+      ->check(number_in(0.0, kMax, ""))
+      ->option_text(with_default("FACTOR", options.scale));
+  app.add_option("--density", options.density, "With --mesh: density of the water, kg/m^3")
+      ->needs(mesh)
+      ->check(number_in(0.0, kMax, "kg/m^3"))
+      ->option_text(with_default("RHO", options.density));
+  app.add_option("--gravity", options.gravity, "With --mesh: gravity, m/s^2")
+      ->needs(mesh)
+      ->check(number_in(0.0, kMax, "m/s^2"))
+      ->option_text(with_default("G", options.gravity));
+  app.add_option("--open", options.open,
+                 "With --mesh: dry_boundary accepts a mesh with holes and evaluates it while their edges are "
+                 "dry")
+      ->needs(mesh)
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
+      ->option_text("refuse|dry_boundary [refuse]");
+}
+
+}  // namespace
+
 void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.description(
       "Compute where and how a body floats: its equilibrium attitudes, righting arms, and hydrostatic\n"
@@ -169,8 +226,7 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.set_version_flag("--version", "buoyancy-hydrostatics " BUOYANCY_VERSION);
   auto* from = app.add_option_group("body", "Input geometry (exactly one)");
   CLI::Option* scene = from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
-  CLI::Option* mesh = from->add_option(
-      "--mesh", options.mesh, "One mesh, in water of level 0, density 1025 kg/m^3, gravity 9.80665 m/s^2");
+  CLI::Option* mesh = from->add_option("--mesh", options.mesh, "One mesh, in water of level 0");
   from->require_option(1);
   app.add_option("--body", options.body, "With --scene: id of the body (default: the only one)")
       ->needs(scene)
@@ -180,10 +236,11 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                           ->check(CLI::PositiveNumber)
                           ->option_text("M");
   CLI::Option* center = app.add_option("--center-of-mass", options.center_of_mass,
-                                       "With --mesh: centre of mass in the frame of the mesh, m")
+                                       "With --mesh: centre of mass in the frame of the (scaled) mesh, m")
                             ->needs(mesh)
                             ->option_text("X,Y,Z");
   mesh->needs(mass)->needs(center);
+  add_mesh_options(app, mesh, options);
   app.add_option("--forward", options.forward, "The ship's forward axis: +x, --forward=-x, +y ...")
       ->option_text("AXIS [+x]");
   app.add_option("--up", options.up, "The ship's upward axis")->option_text("AXIS [+z]");
@@ -204,6 +261,16 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.add_option("--heel", options.heels, "gz: heels, degrees")->option_text("FROM:TO:STEP [-180:180:5]");
   app.add_flag("--fixed-trim", options.fixed_trim,
                "gz: fix the trim at that of --trim, instead of letting the body trim");
+  app.add_option("--deck-edge", options.deck_edges,
+                 "gz: a point of the deck edge in the frame of the mesh, m; report the heels to either side "
+                 "at which the first goes under water. Repeatable")
+      ->allow_extra_args(false)
+      ->option_text("X,Y,Z");
+  app.add_option("--downflooding", options.downfloodings,
+                 "gz: an opening that lets water in; the same, and the criteria end their areas there. "
+                 "Repeatable")
+      ->allow_extra_args(false)
+      ->option_text("X,Y,Z");
   app.add_option("--csv", options.csv, "Also write the results to a CSV file")->option_text("FILE");
   app.add_flag("--json", options.json, "Print the results as JSON");
   app.add_option("COMMAND", options.command, "equilibrium, table or gz")
@@ -228,6 +295,9 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   if (const Expected<void> axes = plan_axes(options, plan); !axes) return tl::unexpected(axes.error());
   if (const Expected<void> ranges = plan_ranges(options, plan); !ranges) {
     return tl::unexpected(ranges.error());
+  }
+  if (const Expected<void> points = plan_points(options, plan); !points) {
+    return tl::unexpected(points.error());
   }
   if (!options.csv.empty()) {
     const Expected<void> checked = check_output_not_input(options.csv, {options.scene, options.mesh});

@@ -12,6 +12,8 @@
 #include "base/error.h"
 #include "flotation/hydrostatic_table.h"
 #include "flotation/righting_arms.h"
+#include "scene/scene_file.h"
+#include "service/hydrostatics/righting_results.h"
 
 namespace buoyancy::service {
 
@@ -22,6 +24,10 @@ struct HydrostaticsOptions {
   std::filesystem::path mesh;
   std::optional<double> mass;  // [kg]
   std::string center_of_mass;  // X,Y,Z
+  double scale = 1.0;
+  double density = kSeawaterDensity;  // [kg/m^3], of the water
+  double gravity = kStandardGravity;  // [m/s^2]
+  OpenPolicy open = OpenPolicy::kRefuse;
   std::string forward = "+x";
   std::string up = "+z";
   std::optional<double> keel;                   // [m]
@@ -32,6 +38,8 @@ struct HydrostaticsOptions {
   std::string trims = "0";
   std::string heels = "-180:180:5";
   bool fixed_trim = false;
+  std::vector<std::string> deck_edges;     // X,Y,Z each
+  std::vector<std::string> downfloodings;  // X,Y,Z each
   std::filesystem::path csv;
   bool json = false;
 };
@@ -46,6 +54,7 @@ struct HydrostaticsPlan {
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], with --mesh
   HydrostaticTableOptions table;
   RightingArmOptions arms;
+  ImmersionPoints points;
   std::vector<double> drafts;  // [m]
   std::vector<double> trims;   // [rad]
   std::vector<double> heels;   // [rad]

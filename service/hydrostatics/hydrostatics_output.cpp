@@ -4,10 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+
+#include "service/hydrostatics/table_columns.h"
 
 namespace buoyancy::service {
 namespace {
@@ -15,7 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
-constexpr double kKilogramsPerTonne = 1000.0;
 
 double degrees(double radians) {
   return radians * kDegreesPerRadian;
@@ -37,6 +40,8 @@ std::string outcome_name(FlotationOutcome outcome) {
   return "out_of_range";
 }
 
+}  // namespace
+
 std::string outcome_sentence(FlotationOutcome outcome) {
   switch (outcome) {
     case FlotationOutcome::kFloats:
@@ -53,6 +58,8 @@ std::string outcome_sentence(FlotationOutcome outcome) {
   }
   return "No attitude was found: the numbers of the body are out of range.";
 }
+
+namespace {
 
 std::string family_name(AttitudeFamily family) {
   switch (family) {
@@ -95,65 +102,6 @@ std::string csv_row(const std::vector<double>& values) {
   return row;
 }
 
-struct Column {
-  const char* name;
-  double HydrostaticRow::*member;
-  double factor = 1.0;
-};
-
-constexpr std::array<Column, 20> kColumns{
-    {{"draft", &HydrostaticRow::draft},
-     {"trim", &HydrostaticRow::trim, kDegreesPerRadian},
-     {"displacement_volume", &HydrostaticRow::volume},
-     {"displacement_mass", &HydrostaticRow::mass, 1.0 / kKilogramsPerTonne},
-     {"lcb", &HydrostaticRow::lcb},
-     {"tcb", &HydrostaticRow::tcb},
-     {"kb", &HydrostaticRow::kb},
-     {"lcf", &HydrostaticRow::lcf},
-     {"waterplane_area", &HydrostaticRow::waterplane_area},
-     {"bm_t", &HydrostaticRow::bm_t},
-     {"bm_l", &HydrostaticRow::bm_l},
-     {"km_t", &HydrostaticRow::km_t},
-     {"km_l", &HydrostaticRow::km_l},
-     {"tpc", &HydrostaticRow::mass_per_cm, 1.0 / kKilogramsPerTonne},
-     {"mct1cm", &HydrostaticRow::moment_per_cm, 1.0 / kKilogramsPerTonne},
-     {"rm1deg", &HydrostaticRow::moment_per_degree, 1.0 / kKilogramsPerTonne},
-     {"wetted_area", &HydrostaticRow::wetted_area},
-     {"lwl", &HydrostaticRow::lwl},
-     {"bwl", &HydrostaticRow::bwl},
-     {"cm", &HydrostaticRow::midship}}};
-
-struct CoefficientColumn {
-  const char* name;
-  FormCoefficients HydrostaticRow::*length;
-  double FormCoefficients::*member;
-};
-
-constexpr std::array<CoefficientColumn, 6> kCoefficients{
-    {{"cb_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::block},
-     {"cp_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::prismatic},
-     {"cwp_lpp", &HydrostaticRow::on_lpp, &FormCoefficients::waterplane},
-     {"cb_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::block},
-     {"cp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::prismatic},
-     {"cwp_lwl", &HydrostaticRow::on_lwl, &FormCoefficients::waterplane}}};
-
-std::vector<std::string> column_names() {
-  std::vector<std::string> names;
-  names.reserve(kColumns.size() + kCoefficients.size());
-  for (const Column& column : kColumns) names.emplace_back(column.name);
-  for (const CoefficientColumn& column : kCoefficients) names.emplace_back(column.name);
-  return names;
-}
-
-// In the order of column_names().
-std::vector<double> values_of(const HydrostaticRow& row) {
-  std::vector<double> values;
-  values.reserve(kColumns.size() + kCoefficients.size());
-  for (const Column& column : kColumns) values.push_back(column.factor * (row.*column.member));
-  for (const CoefficientColumn& column : kCoefficients) values.push_back(row.*column.length.*column.member);
-  return values;
-}
-
 Json arm_json(const RightingArm& arm) {
   return {{"heel", degrees(arm.heel)},
           {"trim", degrees(arm.trim)},
@@ -165,6 +113,31 @@ Json arm_json(const RightingArm& arm) {
 template <typename Value>
 Json json_or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
+}
+
+Json immersion_json(const std::optional<PointImmersion>& immersion) {
+  if (!immersion) return nullptr;
+  return {{"heel", degrees(immersion->heel)}, {"point", immersion->point}};
+}
+
+Json immersions_json(const std::optional<FirstImmersions>& immersions) {
+  if (!immersions) return nullptr;
+  return {{"starboard", immersion_json(immersions->starboard)}, {"port", immersion_json(immersions->port)}};
+}
+
+std::string immersions_text(const char* name, const std::optional<FirstImmersions>& immersions) {
+  std::string text;
+  if (!immersions) return text;
+  for (const auto& [side, immersion] :
+       {std::pair{"starboard", &immersions->starboard}, std::pair{"port", &immersions->port}}) {
+    if (*immersion) {
+      text += fmt::format("{} to {}: {:.6f} degrees, point {}\n", name, side, degrees((*immersion)->heel),
+                          (*immersion)->point + 1);
+    } else {
+      text += fmt::format("{} to {}: at no heel\n", name, side);
+    }
+  }
+  return text;
 }
 
 std::optional<double> in_degrees(std::optional<double> radians) {
@@ -194,7 +167,7 @@ std::string equilibria_text(const Equilibria& equilibria) {
   return text;
 }
 
-std::string equilibria_json(const Equilibria& equilibria) {
+Json equilibria_json(const Equilibria& equilibria) {
   Json attitudes = Json::array();
   for (const Equilibrium& at : equilibria.attitudes) {
     Json entry{{"stable", at.is_stable()},
@@ -215,10 +188,9 @@ std::string equilibria_json(const Equilibria& equilibria) {
     if (!at.is_stable()) entry["reason"] = reason(at);
     attitudes.push_back(std::move(entry));
   }
-  const Json result{{"outcome", outcome_name(equilibria.outcome)},
-                    {"attitudes", std::move(attitudes)},
-                    {"truncated", equilibria.is_truncated}};
-  return result.dump(2) + "\n";
+  return {{"outcome", outcome_name(equilibria.outcome)},
+          {"attitudes", std::move(attitudes)},
+          {"truncated", equilibria.is_truncated}};
 }
 
 std::string equilibria_csv(const Equilibria& equilibria) {
@@ -243,14 +215,14 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
       "lcb and lcf from midship, positive forward; tcb to port; kb, km over K. Masses in tonnes.\n",
       table.keel(), table.midship(), table.length_between_perpendiculars());
   constexpr std::size_t kPerLine = 7;
-  const std::vector<std::string> names = column_names();
+  const std::span<const TableColumn> columns = table_columns();
   std::vector<std::vector<double>> values;
   values.reserve(rows.size());
   for (const HydrostaticRow& row : rows) values.push_back(values_of(row));
-  for (std::size_t first = 2; first < names.size(); first += kPerLine) {
-    const std::size_t end = std::min(first + kPerLine, names.size());
-    text += fmt::format("\n{:>10}{:>8}", names[0], names[1]);
-    for (std::size_t i = first; i < end; ++i) text += fmt::format("{:>20}", names[i]);
+  for (std::size_t first = 2; first < columns.size(); first += kPerLine) {
+    const std::size_t end = std::min(first + kPerLine, columns.size());
+    text += fmt::format("\n{:>10}{:>8}", columns[0].name, columns[1].name);
+    for (std::size_t i = first; i < end; ++i) text += fmt::format("{:>20}", columns[i].name);
     text += '\n';
     for (const std::vector<double>& line : values) {
       text += fmt::format("{:>10.5g}{:>8.3g}", line[0], line[1]);
@@ -261,24 +233,25 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
   return text;
 }
 
-std::string table_json(const HydrostaticTable& table, const TableRows& rows) {
-  const std::vector<std::string> names = column_names();
+Json table_json(const HydrostaticTable& table, const TableRows& rows) {
+  const std::span<const TableColumn> columns = table_columns();
   Json entries = Json::array();
   for (const HydrostaticRow& row : rows) {
     const std::vector<double> values = values_of(row);
     Json& entry = entries.emplace_back(Json::object());
-    for (std::size_t i = 0; i < names.size(); ++i) entry[names[i]] = values[i];
+    for (std::size_t i = 0; i < columns.size(); ++i) entry[columns[i].name] = values[i];
   }
-  const Json result{{"keel", table.keel()},
-                    {"midship", table.midship()},
-                    {"length_between_perpendiculars", table.length_between_perpendiculars()},
-                    {"rows", std::move(entries)}};
-  return result.dump(2) + "\n";
+  return {{"keel", table.keel()},
+          {"midship", table.midship()},
+          {"length_between_perpendiculars", table.length_between_perpendiculars()},
+          {"rows", std::move(entries)}};
 }
 
 std::string table_csv(const TableRows& rows) {
   std::string text;
-  for (const std::string& name : column_names()) text += fmt::format("{}{}", text.empty() ? "" : ",", name);
+  for (const TableColumn& column : table_columns()) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
+  }
   text += '\n';
   for (const HydrostaticRow& row : rows) text += csv_row(values_of(row));
   return text;
@@ -302,16 +275,18 @@ std::string righting_text(const RightingResults& results) {
     text += fmt::format("largest arm to {}: {:.6g} m at {:.4f} degrees\n", side, std::abs((*arm)->gz),
                         degrees((*arm)->heel));
   }
+  text += immersions_text("deck edge under water", results.deck_edge);
+  text += immersions_text("downflooding", results.downflooding);
   if (results.criteria.empty()) return text;
   text += "\n2008 IS Code A 2.2, to starboard (not a class approval):\n";
   for (const StabilityCriterion& criterion : results.criteria) {
-    text += fmt::format("{:>40}{:>12.5g} {:<8}{:>12.4g}  {}\n", criterion.name, criterion.value,
+    text += fmt::format("{:>48}{:>12.5g} {:<8}{:>12.4g}  {}\n", criterion.name, criterion.value,
                         criterion.unit, criterion.required, criterion.is_met() ? "met" : "NOT met");
   }
   return text;
 }
 
-std::string righting_json(const RightingResults& results) {
+Json righting_json(const RightingResults& results) {
   Json points = Json::array();
   for (const auto& [arm, area] : results.curve.points) {
     Json point = arm_json(arm);
@@ -333,16 +308,17 @@ std::string righting_json(const RightingResults& results) {
   const auto maximum = [](const std::optional<RightingArm>& arm) {
     return arm ? arm_json(*arm) : Json(nullptr);
   };
-  const Json result{{"points", std::move(points)},
-                    {"crossings", std::move(crossings)},
-                    {"vanishing_starboard", json_or_null(in_degrees(results.curve.vanishing_starboard()))},
-                    {"vanishing_port", json_or_null(in_degrees(results.curve.vanishing_port()))},
-                    {"max_starboard", maximum(results.curve.max_starboard)},
-                    {"max_port", maximum(results.curve.max_port)},
-                    {"criteria",
-                     {{"source", "2008 IS Code A 2.2, to starboard; not a class approval"},
-                      {"values", std::move(criteria)}}}};
-  return result.dump(2) + "\n";
+  return {{"points", std::move(points)},
+          {"crossings", std::move(crossings)},
+          {"vanishing_starboard", json_or_null(in_degrees(results.curve.vanishing_starboard()))},
+          {"vanishing_port", json_or_null(in_degrees(results.curve.vanishing_port()))},
+          {"max_starboard", maximum(results.curve.max_starboard)},
+          {"max_port", maximum(results.curve.max_port)},
+          {"deck_edge", immersions_json(results.deck_edge)},
+          {"downflooding", immersions_json(results.downflooding)},
+          {"criteria",
+           {{"source", "2008 IS Code A 2.2, to starboard; not a class approval"},
+            {"values", std::move(criteria)}}}};
 }
 
 std::string righting_csv(const RightingResults& results) {

@@ -154,6 +154,82 @@ TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
   EXPECT_NE(without_mass.error.find("--mass"), std::string::npos) << without_mass.error;
 }
 
+// [m rad], under the curve of the wall-sided ship from 0 to a heel.
+double wall_sided_area(double heel) {
+  constexpr double kBm = 400.0 / 72.0;
+  constexpr double kGm = 3.0 + kBm - 8.0;
+  return kGm * (1.0 - std::cos(heel)) + 0.5 * kBm * (1.0 / std::cos(heel) + std::cos(heel) - 2.0);
+}
+
+TEST_F(HydrostaticsProgram, ReportsDeckEdgeAndDownflooding) {
+  const std::string file = ship();
+  const ProgramRun result = run({"gz", "--scene", file, "--json", "--heel", "0:60:20", "--deck-edge",
+                                 "0,10,6", "--deck-edge", "5,-10,4", "--downflooding=0,-10,6"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_NEAR(json.at("deck_edge").at("starboard").at("heel").get<double>(), std::atan(0.4) / kDegree, 1e-9);
+  EXPECT_EQ(json.at("deck_edge").at("starboard").at("point"), 1);
+  EXPECT_NEAR(json.at("deck_edge").at("port").at("heel").get<double>(), -std::atan(0.6) / kDegree, 1e-9);
+  EXPECT_EQ(json.at("deck_edge").at("port").at("point"), 0);
+  const double flooding = std::atan(0.6);
+  EXPECT_NEAR(json.at("downflooding").at("starboard").at("heel").get<double>(), flooding / kDegree, 1e-9);
+  const auto& criteria = json.at("criteria").at("values");
+  EXPECT_NEAR(criteria.at(1).at("value").get<double>(), wall_sided_area(flooding), 1e-10);
+  EXPECT_EQ(criteria.at(1).at("name"), "area from 0 to downflooding at 30.96 degrees");
+  EXPECT_NEAR(criteria.at(2).at("value").get<double>(),
+              wall_sided_area(flooding) - wall_sided_area(30.0 * kDegree), 1e-10);
+  EXPECT_EQ(criteria.at(2).at("met"), false);
+
+  const ProgramRun text = run({"gz", "--scene", file, "--heel", "0", "--deck-edge", "0,-10,6"});
+  EXPECT_NE(text.output.find("deck edge under water to starboard: 30.963757 degrees, point 1\n"),
+            std::string::npos)
+      << text.output;
+  EXPECT_EQ(text.output.find("downflooding"), std::string::npos);
+  const auto without = nlohmann::json::parse(run({"gz", "--scene", file, "--json", "--heel", "0"}).output);
+  EXPECT_TRUE(without.at("deck_edge").is_null());
+  EXPECT_EQ(without.at("criteria").at("values").at(1).at("name"), "area from 0 to 40 degrees");
+}
+
+TEST_F(HydrostaticsProgram, EndsAreasWhereWaterComesInEarly) {
+  const std::string opening = "0,-5," + std::to_string(5.0 * std::tan(20.0 * kDegree));
+  const ProgramRun result =
+      run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", opening});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto criteria = nlohmann::json::parse(result.output).at("criteria").at("values");
+  EXPECT_NEAR(criteria.at(0).at("value").get<double>(), 0.132002392797, 1e-10);
+  EXPECT_NEAR(criteria.at(1).at("value").get<double>(), wall_sided_area(20.0 * kDegree), 1e-6);
+  EXPECT_EQ(criteria.at(2).at("value"), 0.0);
+  EXPECT_EQ(criteria.at(2).at("met"), false);
+}
+
+TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
+  // A tub of 2 x 1 x 0.5 without a lid.
+  const std::string mesh = dir_.write("tub.obj",
+                                      "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
+                                      "v 0 0 0.5\nv 2 0 0.5\nv 2 1 0.5\nv 0 1 0.5\n"
+                                      "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::vector<std::string> closed{"equilibrium",      "--mesh",  mesh,        "--mass",  "2000",
+                                        "--center-of-mass", "2,1,0.2", "--json",    "--scale", "2",
+                                        "--density",        "1000",    "--gravity", "1.62"};
+  const ProgramRun refused = run(closed);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.error.find("dry_boundary"), std::string::npos) << refused.error;
+  std::vector<std::string> open = closed;
+  open.insert(open.end(), {"--open", "dry_boundary"});
+  const ProgramRun result = run(open);
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto json = nlohmann::json::parse(result.output);
+  ASSERT_EQ(json.at("attitudes").size(), 1U);
+  const auto& at = json.at("attitudes").at(0);
+  EXPECT_NEAR(at.at("draft").get<double>(), 0.25, 1e-12);
+  EXPECT_NEAR(at.at("energy").get<double>(), 1.62 * 2000.0 * (0.2 - 0.25 + 0.125), 1e-9);
+
+  open.front() = "gz";
+  const ProgramRun capsized = run(open);
+  EXPECT_EQ(capsized.exit_code, 1);
+  EXPECT_NE(capsized.error.find("takes in water"), std::string::npos) << capsized.error;
+}
+
 TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   const std::string heavy = scene("density = 1100\n");
   const ProgramRun result = run({"equilibrium", "--scene", heavy, "--json"});
@@ -182,6 +258,14 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
       {"gz", "--scene", good, "--forward", "ahead"},
       {"gz", "--scene", good, "--body", "4"},
       {"gz", "--scene", good, "--csv", good},
+      {"gz", "--scene", good, "--deck-edge", "1,2"},
+      {"gz", "--scene", good, "--downflooding", "1,2,nan"},
+      {"table", "--scene", good, "--draft", "1", "--deck-edge", "1,2,3"},
+      {"equilibrium", "--scene", good, "--downflooding", "1,2,3"},
+      {"gz", "--scene", good, "--density", "1000"},
+      {"gz", "--scene", good, "--open", "dry_boundary"},
+      {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--gravity", "0"},
+      {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--open", "maybe"},
       {"table", "--scene", good, "--draft", "1", "--aft-perpendicular", "9", "--forward-perpendicular", "3"}};
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     const ProgramRun result = run(wrong[i]);

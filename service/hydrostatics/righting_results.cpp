@@ -1,0 +1,94 @@
+#include "service/hydrostatics/righting_results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <spdlog/fmt/fmt.h>
+
+namespace buoyancy::service {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr double kThirty = 30.0 * kRadiansPerDegree;
+constexpr double kForty = 40.0 * kRadiansPerDegree;
+
+// Of the criteria: each degree up to 90, and the angle of downflooding where that ends the areas.
+std::vector<double> heels_of_criteria(double flooding) {
+  constexpr int kMaxHeel = 90;  // [degrees]
+  std::vector<double> heels;
+  for (int heel = 0; heel <= kMaxHeel; ++heel) heels.push_back(heel * kRadiansPerDegree);
+  if (flooding < kForty) heels.insert(std::ranges::upper_bound(heels, flooding), flooding);
+  return heels;
+}
+
+// [m rad], to a heel of the curve.
+double area_to(const RightingCurve& curve, double heel) {
+  const auto found = std::ranges::find_if(
+      curve.points, [heel](const RightingCurvePoint& point) { return point.arm.heel >= heel; });
+  return found->area;
+}
+
+// flooding: [rad], to starboard; infinity: none. Empty where the arms are not known up to 90 degrees.
+std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const Water& water,
+                                                 double flooding, const RightingArmOptions& options) {
+  const auto curve = righting_curve(body, water, heels_of_criteria(flooding), options);
+  constexpr double kStep = 1e-4;  // [rad], of the central difference
+  const auto right = righting_arm(body, water, kStep, options);
+  const auto left = righting_arm(body, water, -kStep, options);
+  if (!curve || !right || !left) return {};
+
+  const double end = std::min(kForty, flooding);
+  const double to_thirty = area_to(*curve, kThirty);
+  const double to_end = area_to(*curve, end);
+  // Where water comes in below 30 degrees, there is no area beyond.
+  const double beyond_thirty = end > kThirty ? to_end - to_thirty : 0.0;
+  std::string end_text = "40 degrees";
+  if (flooding < kForty) {
+    end_text = fmt::format("downflooding at {:.4g} degrees", end / kRadiansPerDegree);
+  }
+  double max_beyond_thirty = -std::numeric_limits<double>::infinity();
+  for (const auto& [arm, area] : curve->points) {
+    if (arm.heel >= kThirty) max_beyond_thirty = std::max(max_beyond_thirty, arm.gz);
+  }
+  const double heel_of_max = curve->max_starboard ? curve->max_starboard->heel : 0.0;
+  if (curve->max_starboard && heel_of_max >= kThirty) {
+    max_beyond_thirty = std::max(max_beyond_thirty, curve->max_starboard->gz);
+  }
+  return {{"area from 0 to 30 degrees", to_thirty, 0.055, "m rad"},
+          {fmt::format("area from 0 to {}", end_text), to_end, 0.090, "m rad"},
+          {fmt::format("area from 30 to {}", end_text), beyond_thirty, 0.030, "m rad"},
+          {"largest GZ at 30 degrees or more", max_beyond_thirty, 0.20, "m"},
+          {"heel of the largest GZ", heel_of_max / kRadiansPerDegree, 25.0, "degrees"},
+          {"GM at heel 0", (right->gz - left->gz) / (2.0 * kStep), 0.15, "m"}};
+}
+
+std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water& water,
+                                          const std::vector<Vec3>& points_B,
+                                          const RightingArmOptions& options) {
+  if (points_B.empty()) return std::nullopt;
+  return first_immersions(body, water, points_B, options);
+}
+
+}  // namespace
+
+std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
+                                                std::span<const double> heels, const ImmersionPoints& points,
+                                                const RightingArmOptions& options) {
+  std::optional<RightingCurve> curve = righting_curve(body, water, heels, options);
+  if (!curve) return std::nullopt;
+  RightingResults results{.curve = *std::move(curve),
+                          .criteria = {},
+                          .deck_edge = immersions(body, water, points.deck_edge_B, options),
+                          .downflooding = immersions(body, water, points.downflooding_B, options)};
+  double flooding = std::numeric_limits<double>::infinity();
+  if (results.downflooding && results.downflooding->starboard) {
+    flooding = results.downflooding->starboard->heel;
+  }
+  results.criteria = general_criteria(body, water, flooding, options);
+  return results;
+}
+
+}  // namespace buoyancy::service
