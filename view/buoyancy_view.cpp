@@ -14,10 +14,10 @@
 #include "cli/termination_signals.h"
 #include "scene/scene.h"
 #include "transport/lcm_connection.h"
-#include "view/common/page_assets.h"
 #include "view/live/live_page.h"
 #include "view/live/live_view.h"
 #include "view/live/page_server.h"
+#include "view/page/page_assets.h"
 
 namespace buoyancy::view {
 namespace {

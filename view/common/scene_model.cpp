@@ -6,60 +6,16 @@
 #include <string>
 #include <vector>
 
-#include <meshoptimizer.h>
-
 #include "scene/scene_report.h"
-#include "view/common/base64.h"
 #include "view/common/sea_json.h"
+#include "view/page/base64.h"
+#include "view/page/mesh_drawing.h"
 #include "waves/sea.h"
 
 namespace buoyancy::view {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Drawing {
-  std::vector<float> positions;        // three per vertex
-  std::vector<std::uint32_t> indices;  // three per triangle
-};
-
-Drawing full_drawing(const TriangleMesh& mesh) {
-  Drawing drawing;
-  drawing.positions.reserve(3 * mesh.vertex_count());
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    for (const double coordinate : {mesh.x[i], mesh.y[i], mesh.z[i]}) {
-      drawing.positions.push_back(static_cast<float>(coordinate));
-    }
-  }
-  drawing.indices.reserve(3 * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::int32_t vertex : triangle) drawing.indices.push_back(static_cast<std::uint32_t>(vertex));
-  }
-  return drawing;
-}
-
-void reduce(Drawing& drawing, std::size_t max_triangles) {
-  constexpr float kMaxError = 0.02F;  // relative to the mesh's extent
-  constexpr std::size_t kVertexBytes = 3 * sizeof(float);
-  const std::size_t vertices = drawing.positions.size() / 3;
-  const std::size_t max_indices = 3 * max_triangles;
-  std::vector<std::uint32_t> reduced(drawing.indices.size());
-  std::size_t count =
-      meshopt_simplify(reduced.data(), drawing.indices.data(), drawing.indices.size(),
-                       drawing.positions.data(), vertices, kVertexBytes, max_indices, kMaxError);
-  if (count > max_indices) {  // it preserves topology, so it cannot reduce many small disconnected parts
-    count = meshopt_simplifySloppy(reduced.data(), drawing.indices.data(), drawing.indices.size(),
-                                   drawing.positions.data(), vertices, kVertexBytes, max_indices, 1.0F);
-  }
-  reduced.resize(count);
-  drawing.indices = std::move(reduced);
-  std::vector<float> used_positions(drawing.positions.size());
-  const std::size_t used_vertices =
-      meshopt_optimizeVertexFetch(used_positions.data(), drawing.indices.data(), drawing.indices.size(),
-                                  drawing.positions.data(), vertices, kVertexBytes);
-  used_positions.resize(3 * used_vertices);
-  drawing.positions = std::move(used_positions);
-}
 
 // The maximum number of triangles per mesh that keeps the total within max_triangles and reduces only meshes
 // that exceed an equal share of what the smaller ones leave.
@@ -127,12 +83,13 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
   const std::size_t share = std::max<std::size_t>(4, max_triangles_per_mesh(scene, options.max_triangles));
   for (std::size_t i = 0; i < scene.meshes().size(); ++i) {
     const HydrostaticMesh& mesh = scene.meshes()[i]->mesh;
-    Drawing drawing = full_drawing(mesh.surface);
-    if (mesh.surface.triangles.size() > share) reduce(drawing, share);
+    MeshDrawing drawing;
+    append(drawing, mesh.surface);
+    reduce(drawing, share);
     Json& description = model["meshes"][i];
     description["name"] = file_name(description["name"]);
     description["center"] = json_array(mesh.center_B);
-    description["shown_triangles"] = drawing.indices.size() / 3;
+    description["shown_triangles"] = drawing.triangle_count();
     description["positions"] = base64_of<float>(drawing.positions);
     description["indices"] = base64_of<std::uint32_t>(drawing.indices);
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/scene.h"
+#include "view/page/mesh_drawing.h"
 
 namespace buoyancy::view {
 
@@ -14,7 +15,7 @@ bool has_loads(const Body& body);
 
 struct SceneModelOptions {
   // Of all meshes together; meshes that exceed their equal share are reduced to it.
-  std::size_t max_triangles = 60'000;
+  std::size_t max_triangles = kMaxDrawnTriangles;
 };
 
 // The object of scene_report_json() with paths reduced to file names, "sea" as in sea_json.h and absent if

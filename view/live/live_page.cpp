@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "view/common/body_statuses.h"
-#include "view/common/page_assets.h"
 #include "view/common/scene_model.h"
+#include "view/page/page_assets.h"
 
 namespace buoyancy::view {
 namespace {

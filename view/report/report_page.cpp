@@ -10,11 +10,11 @@
 
 #include "engine/body_evaluation.h"
 #include "hydrostatics/hydrostatics.h"
-#include "view/common/base64.h"
 #include "view/common/body_statuses.h"
-#include "view/common/page_assets.h"
 #include "view/common/scene_model.h"
 #include "view/common/sea_json.h"
+#include "view/page/base64.h"
+#include "view/page/page_assets.h"
 
 namespace buoyancy::view {
 namespace {

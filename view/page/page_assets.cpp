@@ -1,4 +1,4 @@
-#include "view/common/page_assets.h"
+#include "view/page/page_assets.h"
 
 #include <array>
 #include <fstream>

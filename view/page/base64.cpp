@@ -1,4 +1,4 @@
-#include "view/common/base64.h"
+#include "view/page/base64.h"
 
 #include <algorithm>
 #include <bit>
