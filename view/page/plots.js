@@ -1,5 +1,5 @@
 'use strict';
-// Plots over time as SVG, and tables. Every value of the given arrays is drawn.
+// Plots over time, or over another quantity, as SVG, and tables. Every value of the given arrays is drawn.
 
 // Multiples of a round step (1, 2 or 5 times a power of ten) from low to high, about max_ticks of them.
 function round_ticks(low, high, max_ticks) {
@@ -27,10 +27,13 @@ function svg_element(name, attributes, parent) {
 }
 
 class Plot {
-  // parent: the containing element. series: [{name, times, values}], at most four. on_seek(time): called when the user
-  // points at a time. missing: text shown if there are no values.
-  constructor(parent, { title, unit, series, on_seek, missing = 'not recorded' }) {
+  // parent: the containing element. series: [{name, times, values}], at most sixteen. on_seek(time): called when the user
+  // points at a time. missing: text shown if there are no values. across: the quantity that `times` are, if not the time.
+  // marks: [{time, text}], vertical lines, ascending in time.
+  constructor(parent, { title, unit, series, on_seek, missing = 'not recorded', across = { name: 'time', unit: ' s' }, marks = [] }) {
     this.missing = missing;
+    this.across = across;
+    this.marks = marks;
     this.figure = document.createElement('figure');
     this.caption = document.createElement('figcaption');
     this.heading = document.createElement('b');
@@ -49,6 +52,10 @@ class Plot {
   static get colours() { return ['var(--first)', 'var(--second)', 'var(--third)', 'var(--fourth)']; }
   get height() { return 104; }
 
+  // The dashes of the i-th line: with four colours, sixteen lines differ.
+  static dashes(i) { return ['none', '6 3', '2 2', '9 3 2 3'][(i + (i >> 2)) % 4]; }
+  static colour(i) { return Plot.colours[i % 4]; }
+
   // The series, the title and the unit may change, the number of series too.
   update(series, title = this.title, unit = this.unit) {
     this.set(series, title, unit);
@@ -59,7 +66,7 @@ class Plot {
     this.series = series;
     this.title = title;
     this.unit = unit;
-    this.heading.textContent = `${title}, ${unit}`;
+    this.heading.textContent = unit ? `${title}, ${unit}` : title;
     while (this.readings.length > series.length) this.readings.pop().remove();
     while (this.readings.length < series.length) {
       const reading = document.createElement('span');
@@ -70,8 +77,8 @@ class Plot {
   }
 
   style_reading(reading, i) {
-    reading.className = `name ${['', 'dashed', 'dotted', 'dashed'][i]}`;
-    reading.style.setProperty('--line', Plot.colours[i]);
+    reading.className = `name ${['', 'dashed', 'dotted', 'dashed'][(i + (i >> 2)) % 4]}`;
+    reading.style.setProperty('--line', Plot.colour(i));
   }
 
   range() {
@@ -119,11 +126,28 @@ class Plot {
     const columns = round_ticks(range.start, end, Math.max(2, Math.floor(width / 90)));
     for (const tick of columns.ticks) {
       const label = svg_element('text', { x: this.x(tick), y: height - 5, 'text-anchor': 'middle' }, this.svg);
-      label.textContent = `${tick.toFixed(columns.digits)} s`;
+      label.textContent = `${tick.toFixed(columns.digits)}${this.across.unit}`;
     }
+    this.draw_marks(range, top, height - bottom);
     this.draw_series(y);
     this.now = svg_element('line', { class: 'now', y1: top, y2: height - bottom, x1: -9, x2: -9 }, this.svg);
     this.show(this.shown_time);
+  }
+
+  // The text stands along its line, at the bottom, or at the top where that is taken; the third of three lines close by
+  // has it in its tooltip only, as all have.
+  draw_marks(range, top, bottom) {
+    const width = 12, ends = [{ y: bottom, anchor: 'start', dx: 4, last: -Infinity }, { y: top, anchor: 'end', dx: -4, last: -Infinity }];
+    for (const { time, text } of this.marks) {
+      if (!(time >= range.start && time <= range.end)) continue;
+      const x = this.x(time);
+      const line = svg_element('line', { class: 'mark', x1: x, x2: x, y1: top, y2: bottom }, this.svg);
+      svg_element('title', {}, line).textContent = text;
+      const end = ends.find(({ last }) => x - last >= width);
+      if (!end) continue;
+      end.last = x;
+      svg_element('text', { x, y: end.y, dx: end.dx, dy: -3, 'text-anchor': end.anchor, transform: `rotate(-90 ${x} ${end.y})` }, this.svg).textContent = text;
+    }
   }
 
   // y: from values to the picture, as this.x from times.
@@ -137,9 +161,9 @@ class Plot {
         if (pen_up && !Number.isFinite(values[n + 1])) dots += `M${point}h0`;  // an isolated value has no line
         pen_up = false;
       }
-      svg_element('path', { d: path, fill: 'none', style: `stroke:${Plot.colours[i]}`, 'stroke-width': 1.7,
-                            'stroke-linejoin': 'round', 'stroke-dasharray': ['none', '6 3', '2 2', '9 3 2 3'][i] }, this.svg);
-      if (dots) svg_element('path', { class: 'lone', d: dots, style: `stroke:${Plot.colours[i]}` }, this.svg);
+      svg_element('path', { d: path, fill: 'none', style: `stroke:${Plot.colour(i)}`, 'stroke-width': 1.7,
+                            'stroke-linejoin': 'round', 'stroke-dasharray': Plot.dashes(i) }, this.svg);
+      if (dots) svg_element('path', { class: 'lone', d: dots, style: `stroke:${Plot.colour(i)}` }, this.svg);
     });
   }
 
@@ -151,8 +175,10 @@ class Plot {
       const min = finite.reduce((a, b) => Math.min(a, b)), max = finite.reduce((a, b) => Math.max(a, b));
       return `${name} from ${format_number(min)} to ${format_number(max)}, at the end ${format_number(finite[finite.length - 1])}`;
     });
-    const span = range.empty ? '' : ` from ${format_number(range.start)} to ${format_number(range.end)} s`;
-    this.svg.setAttribute('aria-label', `${this.title} in ${this.unit} over time${span}: ${parts.join('; ')}`);
+    const span = range.empty ? '' : ` from ${format_number(range.start)} to ${format_number(range.end)}${this.across.unit}`;
+    const unit = this.unit ? ` in ${this.unit}` : '';
+    const marks = this.marks.map(({ time, text }) => `; ${text} at ${format_number(time)}${this.across.unit}`).join('');
+    this.svg.setAttribute('aria-label', `${this.title}${unit} over ${this.across.name}${span}: ${parts.join('; ')}${marks}`);
   }
 
   // Marks the time and displays the values of the last row that is not later.

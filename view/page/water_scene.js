@@ -99,8 +99,8 @@ class WaterScene {
     this.water.position.copy(this.level_x).multiplyScalar(along(this.level_x)).addScaledVector(this.level_y, along(this.level_y));
   }
 
-  render() {
-    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+  // width, height: [CSS pixels], of the picture; those of the canvas on the page unless it is to be copied.
+  render(width = this.canvas.clientWidth, height = this.canvas.clientHeight) {
     if (width === 0 || height === 0) return;
     const size = this.renderer.getSize(new THREE.Vector2());
     if (size.x !== width || size.y !== height) this.renderer.setSize(width, height, false);
