@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
@@ -11,7 +12,9 @@
 #include "cli/progress_bar.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_output.h"
+#include "service/hydrostatics/hydrostatics_page.h"
 #include "service/hydrostatics/loaded_body.h"
+#include "view/page/page_assets.h"
 
 namespace buoyancy::service {
 namespace {
@@ -19,6 +22,7 @@ namespace {
 struct Output {
   std::string text;  // on standard output
   std::string csv;
+  std::string html;  // empty unless it is asked for
 };
 
 std::string text_of(const nlohmann::ordered_json& json) {
@@ -35,8 +39,13 @@ Expected<void> write_file(const std::filesystem::path& path, const std::string& 
                      "a file that can be written", "", ""});
 }
 
+PageSubject page_subject(const LoadedBody& loaded, const HydrostaticsPlan& plan) {
+  return {.name = loaded.name, .body = &loaded.body, .water = &loaded.water(), .axes = plan.table.axes};
+}
+
+// three: of the page, empty if none is asked for.
 Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
-                          const HydrostaticsPlan& plan) {
+                          const HydrostaticsPlan& plan, const std::string& three) {
   EquilibriumOptions search;
   search.axes = plan.table.axes;
   search.unstable = options.unstable;
@@ -46,11 +55,12 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
   };
   const Equilibria found = find_equilibria(loaded.body, loaded.water(), search);
   progress.clear();
-  return {options.json ? text_of(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found)};
+  return {options.json ? text_of(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found),
+          three.empty() ? "" : equilibria_page(page_subject(loaded, plan), found, three)};
 }
 
 Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
-                              const HydrostaticsPlan& plan) {
+                              const HydrostaticsPlan& plan, const std::string& three) {
   const Expected<HydrostaticTable> table = HydrostaticTable::make(loaded.body, loaded.water(), plan.table);
   if (!table) return tl::unexpected(table.error());
   TableRows rows;
@@ -70,11 +80,13 @@ Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOption
     }
   }
   progress.clear();
-  return Output{options.json ? text_of(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows)};
+  return Output{
+      options.json ? text_of(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows),
+      three.empty() ? "" : table_page(page_subject(loaded, plan), *table, rows, plan.drafts.size(), three)};
 }
 
 Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
-                                 const HydrostaticsPlan& plan) {
+                                 const HydrostaticsPlan& plan, const std::string& three) {
   ProgressBar progress("heels");
   RightingArmOptions arms = plan.arms;
   arms.progress = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total, done); };
@@ -87,7 +99,8 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
                        "See the command equilibrium, or fix the trim with --fixed-trim"});
   }
   return Output{options.json ? text_of(righting_json(*results)) : righting_text(*results),
-                righting_csv(*results)};
+                righting_csv(*results),
+                three.empty() ? "" : righting_page(page_subject(loaded, plan), *results, plan.arms, three)};
 }
 
 int run(int argc, char** argv) {
@@ -101,26 +114,33 @@ int run(int argc, char** argv) {
   };
   const Expected<HydrostaticsPlan> plan = plan_hydrostatics(app, options);
   if (!plan) return fail(plan.error(), kUsageError);
+  std::string three;
+  if (!options.html.empty()) {
+    Expected<std::string> text = view::three_js(options.three);
+    if (!text) return fail(text.error(), kFailure);
+    three = *std::move(text);
+  }
   const Expected<LoadedBody> loaded = load_body(options, *plan);
   if (!loaded) return fail(loaded.error(), kUsageError);
 
   Expected<Output> output;
   switch (plan->command) {
     case HydrostaticsCommand::kEquilibrium:
-      output = equilibrium_output(*loaded, options, *plan);
+      output = equilibrium_output(*loaded, options, *plan, three);
       break;
     case HydrostaticsCommand::kTable:
-      output = table_output(*loaded, options, *plan);
+      output = table_output(*loaded, options, *plan, three);
       break;
     case HydrostaticsCommand::kRightingArms:
-      output = righting_output(*loaded, options, *plan);
+      output = righting_output(*loaded, options, *plan, three);
       break;
   }
   if (!output) return fail(output.error(), kFailure);
-  if (!options.csv.empty()) {
-    if (const Expected<void> written = write_file(options.csv, output->csv); !written) {
+  for (const auto& [path, text] :
+       {std::pair{&options.csv, &output->csv}, std::pair{&options.html, &output->html}}) {
+    if (path->empty()) continue;
+    if (const Expected<void> written = write_file(*path, *text); !written)
       return fail(written.error(), kFailure);
-    }
   }
   return print_output(app, output->text) ? kSuccess : kFailure;
 }

@@ -272,6 +272,13 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");
   app.add_option("--csv", options.csv, "Also write the results to a CSV file")->option_text("FILE");
+  CLI::Option* html = app.add_option("--html", options.html,
+                                     "Also write the results as one HTML page, with plots and the hull")
+                          ->option_text("FILE");
+  app.add_option("--three", options.three,
+                 "With --html: three.js library (three.min.js) to embed in the page")
+      ->needs(html)
+      ->capture_default_str();
   app.add_flag("--json", options.json, "Print the results as JSON");
   app.add_option("COMMAND", options.command, "equilibrium, table or gz")
       ->required()
@@ -299,9 +306,13 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   if (const Expected<void> points = plan_points(options, plan); !points) {
     return tl::unexpected(points.error());
   }
-  if (!options.csv.empty()) {
-    const Expected<void> checked = check_output_not_input(options.csv, {options.scene, options.mesh});
+  for (const std::filesystem::path& output : {options.csv, options.html}) {
+    if (output.empty()) continue;
+    const Expected<void> checked = check_output_not_input(output, {options.scene, options.mesh});
     if (!checked) return tl::unexpected(checked.error());
+  }
+  if (!options.csv.empty() && options.csv.lexically_normal() == options.html.lexically_normal()) {
+    return make_error({"--html", options.html.string(), "another file than that of --csv", "", ""});
   }
   return plan;
 }

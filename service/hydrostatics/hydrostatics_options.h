@@ -14,6 +14,7 @@
 #include "flotation/righting_arms.h"
 #include "scene/scene_file.h"
 #include "service/hydrostatics/righting_results.h"
+#include "view/page/page_assets.h"
 
 namespace buoyancy::service {
 
@@ -41,6 +42,8 @@ struct HydrostaticsOptions {
   std::vector<std::string> deck_edges;     // X,Y,Z each
   std::vector<std::string> downfloodings;  // X,Y,Z each
   std::filesystem::path csv;
+  std::filesystem::path html;
+  std::filesystem::path three = view::kThreeJs;
   bool json = false;
 };
 

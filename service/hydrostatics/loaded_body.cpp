@@ -59,7 +59,11 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
   Expected<FloatingBody> floating = floating_body_of(**body, *mesh, *mass);
   if (!floating) return tl::unexpected(floating.error());
-  return LoadedBody{*std::move(scene), std::move(mesh), *std::move(floating)};
+  std::string name = options.mesh.filename().string();
+  if (options.mesh.empty()) {
+    name = options.scene.filename().string().append(", ").append((*body)->name);
+  }
+  return LoadedBody{std::move(name), *std::move(scene), std::move(mesh), *std::move(floating)};
 }
 
 }  // namespace buoyancy::service

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "flotation/floating_body.h"
 #include "scene/scene.h"
@@ -10,6 +11,7 @@
 namespace buoyancy::service {
 
 struct LoadedBody {
+  std::string name;  // of the scene's file and the body, or of the mesh's file
   Scene scene;
   std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
   FloatingBody body;                            // of `mesh`

@@ -1,5 +1,6 @@
 // Runs buoyancy-hydrostatics as a program.
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -238,6 +239,41 @@ TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   const ProgramRun arms = run({"gz", "--scene", heavy});
   EXPECT_EQ(arms.exit_code, 1);
   EXPECT_NE(arms.error.find("sinks"), std::string::npos) << arms.error;
+}
+
+TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
+  const std::string page = dir_.path("gz.html");
+  const ProgramRun result = run(
+      {"gz", "--scene", ship(), "--heel", "0:40:10", "--json", "--csv", dir_.path("gz.csv"), "--html", page});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_EQ(nlohmann::json::parse(result.output).at("points").size(), 5U);
+  std::string header;
+  EXPECT_EQ(rows_of(read_file(dir_.path("gz.csv")), header).size(), 5U);
+  const std::string html = read_file(page);
+  EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+  EXPECT_NE(html.find("WebGLRenderer"), std::string::npos);
+  EXPECT_EQ(html.find("<!-- data -->"), std::string::npos);
+  EXPECT_TRUE(html.ends_with("</html>\n"));
+}
+
+TEST_F(HydrostaticsProgram, SaysWhyAPageCannotBeWritten) {
+  const std::string file = ship();
+  const ProgramRun absent = run({"equilibrium", "--scene", file, "--html", dir_.path("no/such/page.html")});
+  EXPECT_EQ(absent.exit_code, 1);
+  EXPECT_NE(absent.error.find("No such file or directory"), std::string::npos) << absent.error;
+  const ProgramRun full = run({"equilibrium", "--scene", file, "--html", "/dev/full"});
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_NE(full.error.find("No space left on device"), std::string::npos) << full.error;
+  const std::string page = dir_.path("page.html");
+  const ProgramRun three =
+      run({"equilibrium", "--scene", file, "--html", page, "--three", dir_.path("three.js")});
+  EXPECT_EQ(three.exit_code, 1);
+  EXPECT_NE(three.error.find("libjs-three"), std::string::npos) << three.error;
+  EXPECT_FALSE(std::filesystem::exists(page));
+  const ProgramRun scene_itself = run({"equilibrium", "--scene", file, "--html", file});
+  EXPECT_EQ(scene_itself.exit_code, 2);
+  EXPECT_EQ(run({"equilibrium", "--scene", file, "--html", page, "--csv", page}).exit_code, 2);
+  EXPECT_EQ(run({"equilibrium", "--scene", file, "--three", "/dev/null"}).exit_code, 2);
 }
 
 TEST_F(HydrostaticsProgram, RejectsWrongArguments) {

@@ -1,0 +1,48 @@
+// The page of --html: one HTML file with the results, their plots, and the hull in the water, in the style of
+// buoyancy-report and from the same parts (view/common, view/page).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "flotation/equilibrium.h"
+#include "flotation/hydrostatic_table.h"
+#include "service/hydrostatics/hydrostatics_output.h"
+#include "service/hydrostatics/righting_results.h"
+
+namespace buoyancy::service {
+
+// Longer results are thinned evenly; --csv and --json have all of them.
+inline constexpr std::size_t kMaxPageRows = 5'000;
+
+struct PageSubject {
+  std::string name;                    // as the title has it
+  const FloatingBody* body = nullptr;  // its meshes of factor 1 are drawn
+  const Water* water = nullptr;
+  ShipAxes axes;
+};
+
+// Each returns the page. three: the text of three.js (page_assets.h). The page's script reads
+//   "version", "name", "command"
+//   "mass" [kg], "center_of_mass" [m], B
+//   "model"        for the picture, as in scene_model.h: one body and one mesh. The weight is drawn unless
+//                  mass and centre of mass are null
+//   "columns"      [{"name", "title", "unit"}] and "values", base64 of float64, one column after the other
+//   "rows", "all_rows", "group_rows": rows on the page, of the results, and per trim
+//   "states"       base64 of float64, of each row kStateNumbers: the body's position and quaternion (w, x, y,
+//   z)
+//                  in W, and relative to the position buoyant force [N], centre of buoyancy, metacentre of
+//                  the softer axis [m]; NaN where there is none
+//   "rests"        of righting arms: {"heel", "trim" [degrees], "draft" [m], "state"} where the body rests
+//   "results"      as --json prints them, without rows and points
+//   "outcome_text" of equilibria that are not there, else empty
+// Complexity: O(triangles) and one query of hydrostatics per row.
+std::string equilibria_page(const PageSubject& subject, const Equilibria& equilibria, std::string_view three);
+std::string righting_page(const PageSubject& subject, const RightingResults& results,
+                          const RightingArmOptions& options, std::string_view three);
+// rows: those of each trim after the other, each with as many drafts.
+std::string table_page(const PageSubject& subject, const HydrostaticTable& table, const TableRows& rows,
+                       std::size_t drafts, std::string_view three);
+
+}  // namespace buoyancy::service
