@@ -254,13 +254,16 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
     if (!fill(i, i + 1 < first_positive ? arms[i + 1] : *upright, by_trim)) return std::nullopt;
   }
 
+  constexpr double kUpright = 1e-9;  // of the body's size: an arm below it is rounding
+  const bool has_list = std::abs(upright->gz) > kUpright * body.reach();
   RightingCurve curve;
   for (std::size_t i = 0; i < arms.size(); ++i) curve.points.push_back({arms[i], areas[i]});
   for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
     const RightingArm& low = arms[i];
     const RightingArm& high = arms[i + 1];
-    // The arms next to upright vanish with the heel; its own crossing is no news.
-    if (!(low.gz * high.gz < 0.0) || (low.heel <= 0.0 && high.heel >= 0.0)) continue;
+    // The arms next to upright vanish with the heel, unless the body has a list.
+    const bool is_upright = low.heel <= 0.0 && high.heel >= 0.0 && !has_list;
+    if (!(low.gz * high.gz < 0.0) || is_upright) continue;
     const std::optional<RightingArm> crossing = crossing_between(search, low, high);
     if (crossing) curve.crossings.push_back({crossing->heel, high.gz > 0.0});
   }

@@ -178,6 +178,30 @@ TEST(RightingArms, CrossZeroAtTheAngleOfLoll) {
 
 // A hull that is not symmetric fore and aft trims as it heels: at the free trim no moment about the
 // transverse axis is left, and the area is that of a fine sum.
+TEST(RightingArms, CrossZeroAtTheAngleOfList) {
+  // The centre of mass is off the centre plane to starboard, so that GZ = sin (GM + BM/2 tan^2) - y cos.
+  const BoxShip ship;
+  constexpr double kBm = 400.0 / 72.0;
+  constexpr double kGm = 3.0 + kBm - 8.0;
+  for (const double offset : {1e-4, 0.03, 0.3}) {
+    const FloatingBody body = body_of(ship.mesh, 0.5, Vec3(0, -offset, 2.0));
+    for (const double step : {5.0, 4.0, 0.5}) {
+      const auto curve = righting_curve(body, kWater, degrees(-90.0, 90.0, step));
+      ASSERT_TRUE(curve);
+      std::vector<double> rests;
+      for (const ArmCrossing& crossing : curve->crossings) {
+        if (crossing.returns) rests.push_back(crossing.heel);
+      }
+      ASSERT_EQ(rests.size(), 1U) << offset << ' ' << step;
+      const double tangent = std::tan(rests[0]);
+      EXPECT_GT(tangent, 0.0);
+      EXPECT_NEAR(tangent * (kGm + 0.5 * kBm * tangent * tangent), offset, 1e-9) << offset << ' ' << step;
+      EXPECT_LT(curve->vanishing_port().value(), -0.9);
+      EXPECT_GT(curve->vanishing_starboard().value(), 0.9);
+    }
+  }
+}
+
 TEST(RightingArms, LeaveNoTrimmingMomentWithFreeTrim) {
   const HydrostaticMesh aft = mesh_of(BoxShape{{20, 6, 4}, {1, 1, 1}});
   const HydrostaticMesh forward = mesh_of(BoxShape{{20, 3, 4}, {1, 1, 1}});
