@@ -6,12 +6,15 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/shapes.h"
 #include "service/hydrostatics/hydrostatics_options.h"
+#include "service/hydrostatics/hydrostatics_page.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -309,6 +312,26 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
     EXPECT_FALSE(result.error.empty()) << i;
     EXPECT_TRUE(result.output.empty()) << i << result.output;
   }
+}
+
+TEST(HydrostaticsPageData, DrawsEveryPartThatDisplaces) {
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(BoxShape{{2, 1, 1}, {1, 1, 1}}), {}});
+  const std::vector<PlacedMesh> pontoons{{.mesh = &mesh, .position_B = Vec3(5, 2, 0)},
+                                         {.mesh = &mesh, .position_B = Vec3(5, -2, 0)},
+                                         {.mesh = &mesh, .position_B = Vec3(5, 2, 0), .factor = -0.25}};
+  const Water water;
+  const FloatingBody body = FloatingBody::make(pontoons, 1500.0, Vec3(5, 0, 0)).value();
+  const PageSubject subject{.name = "pontoons", .body = &body, .water = &water, .axes = {}};
+  const std::string page = equilibria_page(subject, find_equilibria(body, water), "");
+  constexpr std::string_view kStart = "id=\"data\">";
+  const std::size_t start = page.find(kStart) + kStart.size();
+  const auto data = nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
+  const auto& drawn = data.at("model").at("meshes").at(0);
+  EXPECT_EQ(drawn.at("triangles"), 24);
+  EXPECT_NEAR(drawn.at("diagonal").get<double>(), std::sqrt(4.0 + 25.0 + 1.0), 1e-6);
+  EXPECT_EQ(drawn.at("center"), nlohmann::json({5.0, 2.0, 0.0}));
+  EXPECT_NEAR(drawn.at("volume").get<double>(), 3.5, 1e-12);
+  EXPECT_GT(data.at("rows"), 0);
 }
 
 TEST(HydrostaticsRange, IncludesItsEndWhereAStepMeetsIt) {
