@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -14,14 +15,24 @@ namespace {
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kThirty = 30.0 * kRadiansPerDegree;
 constexpr double kForty = 40.0 * kRadiansPerDegree;
+constexpr int kMaxHeel = 90;  // [degrees], of the criteria
 
 // Of the criteria: each degree up to 90, and the angle of downflooding where that ends the areas.
 std::vector<double> heels_of_criteria(double flooding) {
-  constexpr int kMaxHeel = 90;  // [degrees]
   std::vector<double> heels;
   for (int heel = 0; heel <= kMaxHeel; ++heel) heels.push_back(heel * kRadiansPerDegree);
   if (flooding < kForty) heels.insert(std::ranges::upper_bound(heels, flooding), flooding);
   return heels;
+}
+
+// The options with progress that counts from `before` on, of `extra` heels more than those of the curve.
+RightingArmOptions with_progress(const RightingArmOptions& options, std::int64_t before, std::int64_t extra) {
+  RightingArmOptions counted = options;
+  if (!options.progress) return counted;
+  counted.progress = [&options, before, extra](std::int64_t done, std::int64_t total) {
+    options.progress(before + done, total + extra);
+  };
+  return counted;
 }
 
 // [m rad], to a heel of the curve.
@@ -77,7 +88,10 @@ std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water&
 std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
                                                 std::span<const double> heels, const ImmersionPoints& points,
                                                 const RightingArmOptions& options) {
-  std::optional<RightingCurve> curve = righting_curve(body, water, heels, options);
+  const auto count = static_cast<std::int64_t>(heels.size());
+  constexpr std::int64_t kCriteriaHeels = kMaxHeel + 1;
+  std::optional<RightingCurve> curve =
+      righting_curve(body, water, heels, with_progress(options, 0, kCriteriaHeels));
   if (!curve) return std::nullopt;
   RightingResults results{.curve = *std::move(curve),
                           .criteria = {},
@@ -87,7 +101,7 @@ std::optional<RightingResults> righting_results(const FloatingBody& body, const 
   if (results.downflooding && results.downflooding->starboard) {
     flooding = results.downflooding->starboard->heel;
   }
-  results.criteria = general_criteria(body, water, flooding, options);
+  results.criteria = general_criteria(body, water, flooding, with_progress(options, count, count));
   return results;
 }
 

@@ -33,7 +33,7 @@ center_of_mass = [0, 0, 2]
 // A log that floats with a corner down, at 45 degrees.
 const std::string kLog = R"([[body]]
 id = 1
-name = "log <1>"
+name = "log </script>"
 shape = { type = "box", size = [8, 1, 1] }
 [body.client]
 density = 512.5
@@ -233,7 +233,7 @@ TEST_F(HydrostaticsPage, PicturesEveryStableAttitude) {
     EXPECT_NEAR(drawn(0, 0, 0)[2], stable[i].at("position")[2].get<double>(), 1e-6);
   }
   EXPECT_NE(text_of("pre").find("orientation = ["), std::string::npos);
-  EXPECT_EQ(text_of("#title"), "scene.toml, log <1>: attitudes at rest");
+  EXPECT_EQ(text_of("#title"), "scene.toml, log </script>: attitudes at rest");
 }
 
 TEST_F(HydrostaticsPage, DrawsHullAtItsWaterline) {
