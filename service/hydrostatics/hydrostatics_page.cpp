@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
-constexpr std::size_t kStateNumbers = 16;
+constexpr std::size_t kStateNumbers = 19;
 
 constexpr TableColumn kHeel{"heel", "Heel", "°"};
 constexpr TableColumn kTrim{"trim", "Trim", "°"};
@@ -41,6 +41,15 @@ std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
   return numbers;
 }
 
+// [m], of the body with the liquids in its tanks. up_B: unit.
+Vec3 total_center_of_mass_B(const FloatingBody& body, const Vec3& up_B) {
+  LiquidSum liquids;
+  for (const Tank& tank : body.tanks()) {
+    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B(), liquids);
+  }
+  return body.center_of_mass_B() + liquids.moment / body.total_mass();
+}
+
 using State = std::array<double, kStateNumbers>;
 
 State state_at(const PageSubject& subject, const Pose& pose) {
@@ -56,6 +65,7 @@ State state_at(const PageSubject& subject, const Pose& pose) {
   add(force_W);
   add(hydrostatics.center_of_buoyancy_W);
   add(hydrostatics.metacenters_W[0]);
+  add(total_center_of_mass_B(*subject.body, pose.q_WB.conjugate() * water.up_W));
   return state;
 }
 
@@ -126,7 +136,7 @@ Json model_json(const PageSubject& subject, bool with_mass) {
       {"bodies",
        Json::array({{{"id", 1},
                      {"mesh", 0},
-                     {"mass", with_mass ? Json(body.mass()) : Json(nullptr)},
+                     {"mass", with_mass ? Json(body.total_mass()) : Json(nullptr)},
                      {"center_of_mass", with_mass ? json_array(body.center_of_mass_B()) : Json(nullptr)}}})},
       {"meshes", Json::array({mesh_json(body)})}};
 }
@@ -141,6 +151,7 @@ Json page_data(const PageSubject& subject, const char* command, const PageRows& 
           {"name", subject.name},
           {"command", command},
           {"mass", subject.body->mass()},
+          {"total_mass", subject.body->total_mass()},
           {"center_of_mass", json_array(subject.body->center_of_mass_B())},
           {"model", model_json(subject, with_mass)},
           {"columns", std::move(columns)},

@@ -25,15 +25,14 @@ struct PageSubject {
 
 // Each returns the page. three: the text of three.js (page_assets.h). The page's script reads
 //   "version", "name", "command"
-//   "mass" [kg], "center_of_mass" [m], B
+//   "mass" [kg], "center_of_mass" [m], B, and "total_mass" with the liquids in the tanks
 //   "model"        for the picture, as in scene_model.h: one body and one mesh. The weight is drawn unless
 //                  mass and centre of mass are null
 //   "columns"      [{"name", "title", "unit"}] and "values", base64 of float64, one column after the other
 //   "rows", "all_rows", "group_rows": rows on the page, of the results, and per trim
-//   "states"       base64 of float64, of each row kStateNumbers: the body's position and quaternion (w, x, y,
-//   z)
-//                  in W, and relative to the position buoyant force [N], centre of buoyancy, metacentre of
-//                  the softer axis [m]; NaN where there is none
+//   "states"       base64 of float64, 19 numbers per row: the body's position [m] and its quaternion;
+//                  W axes, relative to the position: buoyant force [N], centre of buoyancy, metacentre of the
+//                  softer axis [m]; B: centre of mass with the liquids [m]. NaN where there is none
 //   "rests"        of righting arms: {"heel", "trim" [degrees], "draft" [m], "state"} where the body rests
 //   "results"      as --json prints them, without rows and points
 //   "outcome_text" of equilibria that are not there, else empty

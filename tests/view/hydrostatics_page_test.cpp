@@ -127,10 +127,8 @@ class HydrostaticsPage : public PageTest {
 };
 
 TEST_F(HydrostaticsPage, OpensWithoutErrorsOrOtherResources) {
-  const std::vector<std::vector<std::string>> commands{{"equilibrium", "--unstable"},
-                                                       {"gz", "--heel", "10"},
-                                                       {"table", "--draft", "1:11:1", "--trim", "-2:2:2"},
-                                                       {"table", "--draft", "6"}};
+  const std::vector<std::vector<std::string>> commands{
+      {"gz", "--heel", "10"}, {"table", "--draft", "1:11:1", "--trim", "-2:2:2"}, {"table", "--draft", "6"}};
   for (const std::vector<std::string>& command : commands) {
     SCOPED_TRACE(command.front());
     open(kShip, command);
@@ -197,6 +195,30 @@ TEST_F(HydrostaticsPage, HeelsHullWithSliderPlotAndKeys) {
   EXPECT_EQ(text_of("#status"), "at rest: heel 0°, trim 0°, draft 6 m");
 }
 
+TEST_F(HydrostaticsPage, DrawsCentresWithGzBetweenThem) {
+  const std::string with_tank = kShip + R"([[body.tank]]
+name = "ballast"
+shape = { type = "box", size = [20, 16, 3] }
+position = [-20, 0, -4]
+fill = 0.5
+density = 1025
+)";
+  for (const std::string& ship : {kShip, with_tank}) {
+    open(ship, {"gz", "--heel", "-40:40:20"});
+    const std::vector<double> arms = recorded("gz");
+    for (int row = 0; row < 5; ++row) {
+      // Starboard is at negative y in W.
+      const auto distance = browser().run(
+          "buoyancy_hydrostatics.show_row(arguments[0]);"
+          "const { centre_of_buoyancy: b, centre_of_mass: g } = "
+          "buoyancy_hydrostatics.scene.bodies.get(1).markers;"
+          "return g.position.y - b.position.y;",
+          row);
+      EXPECT_NEAR(distance.get<double>(), arms.at(static_cast<std::size_t>(row)), 1e-6) << row;
+    }
+  }
+}
+
 TEST_F(HydrostaticsPage, PicturesEveryStableAttitude) {
   const nlohmann::json results = open(kLog, {"equilibrium", "--unstable"});
   std::vector<nlohmann::json> stable;
@@ -233,6 +255,7 @@ TEST_F(HydrostaticsPage, PicturesEveryStableAttitude) {
     EXPECT_NEAR(drawn(0, 0, 0)[2], stable[i].at("position")[2].get<double>(), 1e-6);
   }
   EXPECT_NE(text_of("pre").find("orientation = ["), std::string::npos);
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(text_of("#title"), "scene.toml, log </script>: attitudes at rest");
 }
 

@@ -24,12 +24,15 @@ class ArmPlot extends Plot {
   const columns = {};
   data.columns.forEach(({ name }, i) => { columns[name] = values.subarray(i * data.rows, (i + 1) * data.rows); });
   const numbers = decode_numbers(data.states, Float64Array);
-  const state_size = 16;
+  const state_size = 19;
 
-  // What the picture shows: of a row, or of an attitude at rest. state: the numbers of hydrostatics_page.h.
-  function drawn_state(state) {
+  // Places the body in the picture: at a row, or at rest. state: the numbers of hydrostatics_page.h.
+  function place(state) {
     const part = (from, count) => Array.from(state.slice(from, from + count));
-    return { id: 1, status: 0, p: part(0, 3), q: part(3, 4), f: part(7, 3), b: part(10, 3), m: [part(13, 3)] };
+    const { description } = scene.bodies.get(1);
+    if (description.center_of_mass !== null) description.center_of_mass = part(16, 3);  // liquids move
+    scene.show([{ id: 1, status: 0, p: part(0, 3), q: part(3, 4), f: part(7, 3), b: part(10, 3), m: [part(13, 3)] }]);
+    scene.follow(1);
   }
   const state_of_row = (row) => numbers.subarray(row * state_size, (row + 1) * state_size);
 
@@ -125,8 +128,7 @@ class ArmPlot extends Plot {
 
   function draw(state) {
     if (!scene) return;
-    scene.show([drawn_state(state)]);
-    scene.follow(1);
+    place(state);
     scene.render();
   }
 
@@ -172,8 +174,7 @@ class ArmPlot extends Plot {
       if (scene) {
         const picture = document.createElement('canvas');
         [picture.width, picture.height] = size;
-        scene.show([drawn_state(rest.state)]);
-        scene.follow(1);
+        place(rest.state);
         scene.distance *= 0.75;
         scene.render(...size);
         scene.distance /= 0.75;

@@ -73,6 +73,6 @@ function hydrostatics_tables(data, columns, parent) {
   const { water, meshes: [mesh] } = data.model;
   section('The body', table_of(
     `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s²`,
-    ['name', 'mass, kg', 'centre of mass, m', 'volume, m³', 'triangles', 'drawn'],
-    [[data.name, data.mass, data.center_of_mass.map(format_number).join(', '), mesh.volume, mesh.triangles, mesh.shown_triangles]]));
+    ['name', 'mass, kg', 'with liquids in tanks, kg', 'centre of mass without liquids, m', 'volume, m³', 'triangles', 'drawn'],
+    [[data.name, data.mass, data.total_mass, data.center_of_mass.map(format_number).join(', '), mesh.volume, mesh.triangles, mesh.shown_triangles]]));
 }
