@@ -192,7 +192,25 @@ TEST_F(HydrostaticsPage, HeelsHullWithSliderPlotAndKeys) {
   EXPECT_GT(browser().run("return buoyancy_hydrostatics.shown.row").get<int>(), 20);
   browser().press("End");
   browser().press("n");
-  EXPECT_EQ(text_of("#status"), "at rest: heel 0°, trim 0°, draft 6 m");
+  EXPECT_EQ(text_of("#status"), "heel 0°, trim 0°, draft 6 m");
+  EXPECT_EQ(browser().run("return document.querySelectorAll('#attitudes [aria-pressed=true]').length"), 1);
+}
+
+TEST_F(HydrostaticsPage, PicturesAnglesOfLoll) {
+  open(std::string(kShip).replace(kShip.find("0, 2]"), 5, "0, 2.8]"), {"gz"});
+  constexpr double kBm = 400.0 / 72.0;
+  constexpr double kGm = 3.0 + kBm - 8.8;
+  const double loll = std::atan(std::sqrt(-2.0 * kGm / kBm)) / kRadiansPerDegree;
+  const auto heels =
+      browser().run("return buoyancy_hydrostatics.rests.map(({ heel }) => heel)").get<std::vector<double>>();
+  ASSERT_EQ(heels.size(), 3U) << "to either side, and upside down";
+  EXPECT_NEAR(heels[0], -loll, 1e-6);
+  EXPECT_NEAR(heels[1], loll, 1e-6);
+  EXPECT_NEAR(heels[2], 180.0, 1e-6);
+  browser().click("#attitudes button:nth-child(2)");
+  EXPECT_EQ(text_of("#status").find("at rest: heel 16.52"), 0U);
+  EXPECT_NEAR(drawn(0, 0, 0)[2], 0.0, 1e-5) << "the middle of the waterplane";
+  EXPECT_LT(drawn(0, -10, 0)[2], -2.0) << "starboard";
 }
 
 TEST_F(HydrostaticsPage, DrawsCentresWithGzBetweenThem) {
@@ -315,13 +333,13 @@ density = 500
        {"table", "--draft", "1"});
   EXPECT_LT(read_file(page()).size(), 5'000'000);
   EXPECT_NE(text_of("#notices").find("The results are those of all 100,820."), std::string::npos);
-  open(kShip, {"table", "--draft", "1:11:0.001"});
+  open(kShip, {"gz", "--heel", "0:50:0.008"});
   EXPECT_LT(read_file(page()).size(), 5'000'000);
-  EXPECT_NE(text_of("#notices").find("5,000 rows of 10,001"), std::string::npos);
-  const std::vector<double> all = recorded("displacement_volume");
-  const std::vector<double> shown = plotted("displacement_volume");
+  EXPECT_NE(text_of("#notices").find("5,000 rows of 6,251"), std::string::npos);
+  const std::vector<double> all = recorded("kn");
+  const std::vector<double> shown = plotted("kn");
   ASSERT_EQ(shown.size(), 5'000U);
-  EXPECT_EQ(shown.front(), all.front());
+  EXPECT_NEAR(shown.front(), all.front(), 1e-10);
   EXPECT_EQ(shown.back(), all.back());
 }
 

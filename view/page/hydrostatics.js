@@ -39,7 +39,8 @@ class ArmPlot extends Plot {
   const angle = (value) => `${format_number(Math.abs(value) < 5e-5 ? 0 : Number(value.toFixed(4)))}°`;
   const attitude_text = (heel, trim, draft) => `heel ${angle(heel)}, trim ${angle(trim)}, draft ${format_number(draft)} m`;
   // The attitudes with a picture each: [{state, text, row}], row null where no row has it.
-  const rests = data.command === 'gz' ? data.rests.map((rest) => ({ ...rest, text: attitude_text(rest.heel, rest.trim, rest.draft), row: null })) : [];
+  const row_at_heel = (heel) => { const row = columns.heel.findIndex((other) => Math.abs(other - heel) < 1e-9); return row < 0 ? null : row; };
+  const rests = data.command === 'gz' ? data.rests.map((rest) => ({ ...rest, text: attitude_text(rest.heel, rest.trim, rest.draft), row: row_at_heel(rest.heel) })) : [];
   if (data.command === 'equilibrium') {
     data.results.attitudes.forEach((at, row) => {
       if (at.stable) rests.push({ state: state_of_row(row), text: attitude_text(at.heel, at.trim, at.draft), row });
