@@ -1,6 +1,6 @@
 // The waterplane of a mesh from the edges at which the water cuts its surface: area, moments and extent in
-// the plane. Green's theorem turns the integrals over the waterplane into sums over its edges, at a tenth of
-// the cost of all moments of the wetted surface; only the triangles that the water cuts are visited.
+// the plane. Green's theorem turns the integrals over the waterplane into sums over its edges, at less than
+// the cost of a displacement by `hierarchical`; only the triangles that the water cuts are visited.
 #pragma once
 
 #include <limits>

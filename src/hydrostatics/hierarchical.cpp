@@ -14,30 +14,6 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// x rounded to a whole multiple of unit, a power of two.
-double whole_multiples(double x, double unit) {
-  return std::nearbyint(x / unit) * unit;
-}
-
-// plane: of the tree.
-TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
-  constexpr double kUnit = 0x1p-26;
-  const Vec3& k = plane.up_B;
-  TreeQuery query{};
-  Vec3::Index a = 0;
-  k.cwiseAbs().maxCoeff(&a);
-  for (std::size_t n = 0; n < 3; ++n) query.axes[n] = (static_cast<std::size_t>(a) + n) % 3;
-  for (int i = 0; i < 3; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    query.k[n] = k[i];
-    query.k_high[n] = whole_multiples(k[i], kUnit);
-    query.k_low[n] = (k[i] - query.k_high[n]) + plane.up_B_rest[i];
-  }
-  query.h_high = whole_multiples(plane.h_c, tree.grid * kUnit);
-  query.h_low = (plane.h_c - query.h_high) + plane.h_c_rest;
-  return query;
-}
-
 // Integrals with n_a dA over the wetted surface.
 struct AxisIntegrals {
   double volume = 0.0;         // [m^3] int z n_a dA

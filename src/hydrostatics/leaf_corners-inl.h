@@ -1,6 +1,6 @@
 // Finds which of a leaf's triangles the water cuts, which count whole, and their corners: one implementation
 // for each kind of instruction set, since each has its own byte shuffles. Included once per instruction set
-// (wetted_tree_sum.cpp), after highway.h.
+// (wetted_tree_sum.cpp and waterline_sum.cpp), after highway.h.
 #if defined(BUOYANCY_LEAF_CORNERS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_LEAF_CORNERS_INL_H
 #undef BUOYANCY_LEAF_CORNERS_INL_H

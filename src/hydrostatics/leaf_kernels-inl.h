@@ -1,5 +1,5 @@
 // The SIMD kernels for the leaves of the moment tree: they sum the wet parts of the triangles, many at a
-// time. Included once per instruction set (wetted_tree_sum.cpp), after highway.h.
+// time. Included once per instruction set (wetted_tree_sum.cpp and waterline_sum.cpp), after highway.h.
 #if defined(BUOYANCY_LEAF_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_LEAF_KERNELS_INL_H
 #undef BUOYANCY_LEAF_KERNELS_INL_H

@@ -1,6 +1,6 @@
 // The SIMD kernels for the inner nodes of the moment tree: they test eight children at once, sum node
-// moments, and select and sum the nodes to prune. Included once per instruction set (wetted_tree_sum.cpp),
-// after highway.h.
+// moments, and select and sum the nodes to prune. Included once per instruction set (wetted_tree_sum.cpp
+// and waterline_sum.cpp), after highway.h.
 #if defined(BUOYANCY_NODE_KERNELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_NODE_KERNELS_INL_H
 #undef BUOYANCY_NODE_KERNELS_INL_H

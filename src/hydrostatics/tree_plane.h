@@ -1,9 +1,13 @@
-// The water plane in the coordinates of a moment tree (MomentTree::scale).
+// The water plane in the coordinates of a moment tree (MomentTree::scale), and as its descents take it.
 #pragma once
+
+#include <cmath>
+#include <cstddef>
 
 #include "base/double_double.h"
 #include "geometry/moment_tree.h"
 #include "hydrostatics/water_plane.h"
+#include "hydrostatics/wetted_tree_sum.h"
 
 namespace buoyancy {
 
@@ -20,6 +24,30 @@ inline WaterPlane plane_of_tree(const MomentTree& tree, const WaterPlane& plane)
   result.h_c = h.hi;
   result.h_c_rest = h.lo;
   return result;
+}
+
+// x rounded to a whole multiple of unit, a power of two.
+inline double whole_multiples(double x, double unit) {
+  return std::nearbyint(x / unit) * unit;
+}
+
+// plane: of the tree. The result has no budget.
+inline TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
+  constexpr double kUnit = 0x1p-26;
+  const Vec3& k = plane.up_B;
+  TreeQuery query{};
+  Vec3::Index a = 0;
+  k.cwiseAbs().maxCoeff(&a);
+  for (std::size_t n = 0; n < 3; ++n) query.axes[n] = (static_cast<std::size_t>(a) + n) % 3;
+  for (int i = 0; i < 3; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    query.k[n] = k[i];
+    query.k_high[n] = whole_multiples(k[i], kUnit);
+    query.k_low[n] = (k[i] - query.k_high[n]) + plane.up_B_rest[i];
+  }
+  query.h_high = whole_multiples(plane.h_c, tree.grid * kUnit);
+  query.h_low = (plane.h_c - query.h_high) + plane.h_c_rest;
+  return query;
 }
 
 }  // namespace buoyancy

@@ -6,6 +6,7 @@
 
 #include "hydrostatics/hydrostatics.h"
 #include "tests/flotation/bodies.h"
+#include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
 
@@ -45,6 +46,44 @@ TEST(Waterline, HasTheMomentsOfTheWaterplane) {
       EXPECT_GT(found.max_v, 0.0);
     }
     EXPECT_GT(compared, 20);
+  }
+}
+
+// Leaves of float32 and of double, with and without cut triangles, in vectors of one to eight numbers.
+TEST(Waterline, IsTheSameOnEveryInstructionSet) {
+  for (const Shape& shape : {Shape(RockShape{.frequency = 12, .roughness = 0.4, .seed = 9}),
+                             Shape(CylinderShape{0.5, 2, 40, 9})}) {
+    const HydrostaticMesh mesh = mesh_of(shape);
+    const BoundingBox box{mesh.center_B + mesh.box_min, mesh.center_B + mesh.box_max};
+    RandomPoses random(8);
+    int compared = 0;
+    for (int i = 0; i < 40; ++i) {
+      const WaterPlane plane = water_plane_in_body(random.crossing(box, kWater), kWater, mesh.center_B);
+      const Vec3 u_B = plane.up_B.unitOrthogonal();
+      const WaterlineAxes axes{.u = u_B, .v = plane.up_B.cross(u_B), .origin = Vec3(0.1, 0.2, 0.3)};
+      const auto on = [&](const std::string& target) {
+        const ForcedTarget forced(target);
+        return waterline(mesh, plane, axes);
+      };
+      const Waterline expected = on("SCALAR");
+      if (expected.min_u > expected.max_u) continue;
+      ++compared;
+      for (const std::string& target : simd_targets()) {
+        SCOPED_TRACE(target);
+        const Waterline found = on(target);
+        EXPECT_NEAR(found.area, expected.area, 1e-14);
+        EXPECT_NEAR(found.u, expected.u, 1e-14);
+        EXPECT_NEAR(found.v, expected.v, 1e-14);
+        EXPECT_NEAR(found.uu, expected.uu, 1e-14);
+        EXPECT_NEAR(found.uv, expected.uv, 1e-14);
+        EXPECT_NEAR(found.vv, expected.vv, 1e-14);
+        EXPECT_NEAR(found.min_u, expected.min_u, 1e-14);
+        EXPECT_NEAR(found.max_u, expected.max_u, 1e-14);
+        EXPECT_NEAR(found.min_v, expected.min_v, 1e-14);
+        EXPECT_NEAR(found.max_v, expected.max_v, 1e-14);
+      }
+    }
+    EXPECT_GT(compared, 15);
   }
 }
 
