@@ -16,7 +16,7 @@ constexpr double kMaxRadius = 0.6;    // [rad]
 constexpr double kEscape = 0.05;      // [rad], from a saddle point
 
 double norm(const Pair& v) {
-  return std::hypot(v[0], v[1]);
+  return std::sqrt(v[0] * v[0] + v[1] * v[1]);
 }
 
 // A step in the axes of the principal curvatures.
@@ -26,6 +26,28 @@ struct Step {
   bool is_newton = false;  // does it reach the minimum of the model?
   bool is_tied = false;    // is its mirror image as good: does the gradient not choose a side?
 };
+
+// The shift of the curvatures at which the step is as long as the radius, to 1 %: Newton's method on the
+// reciprocal of the length, which is nearly linear, within bounds.
+double shift_to(const Pair& g, const Pair& values, double radius) {
+  constexpr int kMaxRounds = 40;
+  constexpr double kAccuracy = 0.01;
+  const double size = norm(g);
+  double low = std::max({0.0, -values[0], size / radius - values[1]});
+  double high = std::max(low, size / radius - values[0]);
+  double shift = low > -values[0] ? low : 0.5 * (low + high);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Pair along{g[0] / (values[0] + shift), g[1] / (values[1] + shift)};
+    const double length = norm(along);
+    if (std::abs(length - radius) <= kAccuracy * radius) break;
+    (length > radius ? low : high) = shift;
+    const double slope =
+        along[0] * along[0] / (values[0] + shift) + along[1] * along[1] / (values[1] + shift);
+    shift += (length / radius - 1.0) * length * length / slope;
+    if (!(shift > low && shift < high)) shift = 0.5 * (low + high);
+  }
+  return shift;
+}
 
 // Minimises the model g . s + 1/2 sum values s^2 within |s| <= radius.
 Step best_step(const Pair& g, const Pair& values, double radius, double gradient_rounding) {
@@ -37,20 +59,13 @@ Step best_step(const Pair& g, const Pair& values, double radius, double gradient
   if (step.is_newton) {
     step.along = at(0.0);
   } else {
-    double low = std::max(0.0, -values[0]);
-    double high = norm(g) / radius - values[0];
     const double gap = values[1] - values[0];
     const double across = gap > 0.0 ? -g[1] / gap : 0.0;
     step.is_tied = std::abs(g[0]) <= gradient_rounding && values[0] <= 0.0 && std::abs(across) < radius;
     if (step.is_tied) {
       step.along = {std::copysign(std::sqrt(radius * radius - across * across), -g[0]), across};
     } else {
-      constexpr int kBisections = 40;
-      for (int i = 0; i < kBisections; ++i) {
-        const double middle = 0.5 * (low + high);
-        (norm(at(middle)) > radius ? low : high) = middle;
-      }
-      step.along = at(high);
+      step.along = at(shift_to(g, values, radius));
     }
   }
   for (std::size_t i = 0; i < 2; ++i) {
@@ -67,18 +82,34 @@ Vec3 tangent(const Pair& along, const EnergyCurvature& curvature) {
   return along[0] * curvature.directions_B[0] + along[1] * curvature.directions_B[1];
 }
 
+// [m^3], by how much the volume may be off after a step. What that changes must not hide what the step gains,
+// and less and less so at the end, where steps shrink quadratically.
+double slack_for(const Balance& balance, double decrease, double length, double area) {
+  constexpr double kAboveRounding = 1e3;
+  constexpr double kShare = 0.01;
+  if (!(decrease > kAboveRounding * balance.energy_rounding())) return 0.0;
+  return balance.slack(kShare * length * decrease, area);
+}
+
 }  // namespace
 
 std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& start, const IsKnown& is_known) {
   const double converged = 0.05 * balance_->gradient_rounding();
-  if (is_known(start, start.up_B, -1.0)) return std::nullopt;
   BalancedAttitude at = start;
   EnergyCurvature curvature = balance_->curvature(at);
+  if (is_known(at, at.up_B, -1.0)) return std::nullopt;
   double radius = kFirstRadius;
   for (int count = 0; count < kMaxSteps; ++count) {
     const Pair gradient = components(at, curvature);
     const double size = at.gradient.norm();
     const bool is_saddle = curvature.values[0] < -balance_->curvature_rounding();
+    if (size <= balance_->gradient_rounding() && !at.is_exact) {
+      const std::optional<BalancedAttitude> exact = balance_->at(at.up_B, &at);
+      if (!exact) return std::nullopt;
+      at = *exact;
+      curvature = balance_->curvature(at);
+      continue;
+    }
     if (size <= converged && !is_saddle) return Minimum{at, curvature};
     if (size <= balance_->gradient_rounding() && is_saddle) radius = std::min(radius, kEscape);
 
@@ -89,7 +120,8 @@ std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& sta
     if (step.is_tied && is_saddle) {
       further_starts_.push_back(turned(at.up_B, tangent({-step.along[0], step.along[1]}, curvature)));
     }
-    const std::optional<BalancedAttitude> next = balance_->at(target, &at);
+    const double slack = slack_for(*balance_, step.decrease, length, at.area);
+    const std::optional<BalancedAttitude> next = balance_->at(target, &at, slack);
     const double rounding = balance_->energy_rounding();
     bool accepted = false;
     if (next) {

@@ -44,7 +44,18 @@ BalancedAttitude Balance::balanced(const Vec3& up_B, double height, const Displa
           .pivot = -height * up_B};
 }
 
-std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAttitude* guess) const {
+double Balance::slack(double energy, double area) const {
+  return std::sqrt(2.0 * std::max(energy, 0.0) * std::max(area, 0.0) / water_->density);
+}
+
+double Balance::start_slack() const {
+  constexpr double kShare = 0.1;
+  const double dry = body_->is_open() ? target_volume_ : body_->volume() - target_volume_;
+  return kShare * std::max(0.0, std::min(target_volume_, dry));
+}
+
+std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAttitude* guess,
+                                            double slack) const {
   constexpr int kMaxRounds = 200;
   const auto sum_at = [&](double height) {
     return displaced_sum(*body_, WaterPlane{.up_B = up_B, .h_c = -height});
@@ -59,37 +70,77 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
 
   const double scale = std::max(std::abs(range.low), std::abs(range.high));
   const double tolerance = 0.125 * body_->volume_tolerance();
+  // The secant method on the cube root of the volume under water, or of that over it if it is smaller: at a
+  // tip the volume grows with the cube of its height.
+  const double total = body_->volume();
+  const bool is_mostly_wet = !body_->is_open() && target_volume_ > 0.5 * total;
+  const auto root_of = [&](double volume) {
+    return is_mostly_wet ? -std::cbrt(total - volume) : std::cbrt(volume);
+  };
+  const double target_root = root_of(target_volume_);
+
   double height = 0.5 * (range.low + range.high);
   double area = 0.0;
+  if (!body_->is_open()) {
+    // As if a sphere filled the range.
+    const double fraction = std::clamp(target_volume_ / total, 0.0, 1.0);
+    const double depth = 0.5 - std::sin(std::asin(1.0 - 2.0 * fraction) / 3.0);
+    height = range.high - depth * (range.high - range.low);
+    area = 6.0 * depth * (1.0 - depth) * total / (range.high - range.low);
+  }
+  const bool is_guessed = guess != nullptr && guess->area > 0.0;
   if (guess != nullptr) {
     const double expected = -up_B.dot(guess->pivot);
     if (expected > range.low && expected < range.high) height = expected;
-    area = guess->area;
+    if (is_guessed) area = guess->area;
   }
+  double slope = target_root != 0.0 ? area / (3.0 * target_root * target_root) : 0.0;  // of the root, down
   double last_height = 0.0;
+  double last_root = 0.0;
   double last_excess = 0.0;
   double older_excess = std::numeric_limits<double>::infinity();
   for (int round = 0;; ++round) {
     const DisplacedSum displaced = sum_at(height);
     const double excess = displaced.volume - target_volume_;
+    const double root = root_of(displaced.volume);
     if (round > 0 && height != last_height && excess != last_excess) {
       area = (last_excess - excess) / (height - last_height);
+      slope = (last_root - root) / (height - last_height);
     }
     (excess > 0.0 ? range.low : range.high) = height;
     const bool is_narrow = range.high - range.low <= 2.0 * kEpsilon * scale;
-    if (std::abs(excess) <= tolerance || is_narrow || round >= kMaxRounds) {
+    if (std::abs(excess) <= std::max(tolerance, slack) || is_narrow || round >= kMaxRounds) {
       BalancedAttitude attitude = balanced(up_B, height, displaced);
       attitude.area = std::max(area, 0.0);
+      attitude.is_exact = std::abs(excess) <= tolerance || slack <= tolerance;
+      if (!attitude.is_exact) attitude.excess = excess;
+      if (is_guessed) settle(attitude, area, guess->pivot);
       return attitude;
     }
-    double next = area > 0.0 ? height + excess / area : range.low;
+    double next = slope > 0.0 ? height + (root - target_root) / slope : range.low;
     const bool is_slow = round >= 2 && std::abs(excess) > 0.5 * older_excess;
     if (!(next > range.low && next < range.high) || is_slow) next = 0.5 * (range.low + range.high);
     older_excess = round > 0 ? std::abs(last_excess) : older_excess;
     last_height = height;
+    last_root = root;
     last_excess = excess;
     height = next;
   }
+}
+
+void Balance::settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const {
+  constexpr double kMaxRise = 0.05;
+  const double rise = attitude.excess / area;
+  // At the neck of a body the waterplane is no guide to the volume beside it.
+  if (attitude.excess == 0.0 || !(std::abs(rise) <= kMaxRise * std::cbrt(body_->volume()))) return;
+  const Vec3& k = attitude.up_B;
+  const double mass = water_->density * attitude.excess;
+  attitude.height += rise;
+  attitude.energy -= 0.5 * mass * rise;
+  attitude.lever_moment += mass * pivot;
+  attitude.gradient += mass * (pivot - k.dot(pivot) * k);
+  attitude.pivot -= rise * k;
+  attitude.excess = 0.0;
 }
 
 EnergyCurvature Balance::curvature(BalancedAttitude& attitude) const {
@@ -124,6 +175,7 @@ EnergyCurvature Balance::curvature(BalancedAttitude& attitude) const {
   if (line.area > 0.0) {
     attitude.area = line.area;
     attitude.pivot = (line.u / line.area) * u + (line.v / line.area) * v - attitude.height * k;
+    settle(attitude, line.area, attitude.pivot);
   }
   curvature.largest_moment = mean + radius;
   return curvature;

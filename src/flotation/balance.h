@@ -14,13 +14,15 @@
 
 namespace buoyancy {
 
-// A body in vertical balance.
+// A body in vertical balance: it displaces its mass.
 struct BalancedAttitude {
   Vec3 up_B = Vec3::UnitZ();         // k, unit
   double height = 0.0;               // [m], z
   double energy = 0.0;               // [kg m]
   Vec3 lever_moment = Vec3::Zero();  // [kg m], Q
   Vec3 gradient = Vec3::Zero();      // [kg m], Q without its part along k: the torque over g, turned by k
+  bool is_exact = true;              // does it displace its mass to rounding?
+  double excess = 0.0;               // [m^3], displaced too much, what above is not corrected for; else 0
   double area = 0.0;                 // [m^2], of the waterplane, roughly; 0: not known
   // [m], B axes, from o: a point of the waterplane about which a small turn keeps the displacement.
   Vec3 pivot = Vec3::Zero();
@@ -47,10 +49,18 @@ class Balance {
  public:
   Balance(const FloatingBody& body, const Water& water);
 
-  // The height at which the body displaces its mass. guess: an attitude nearby, or nullptr. Returns nullopt
-  // where there is no such height: the body is too heavy, or an open mesh takes in water first.
-  std::optional<BalancedAttitude> at(const Vec3& up_B, const BalancedAttitude* guess = nullptr) const;
-  // Also sets the attitude's waterplane area and pivot, from which balances nearby start.
+  // The height at which the body displaces its mass. guess: an attitude nearby, or nullptr. slack: [m^3], by
+  // how much the volume may be off; the height and the moments are corrected for it to first order, the
+  // energy to second, with the waterplane of the guess, or else by curvature(). Returns nullopt where there
+  // is no such height: the body is too heavy, or an open mesh takes in water first. Complexity: some two
+  // displacements with a guess and a slack, three to six without.
+  std::optional<BalancedAttitude> at(const Vec3& up_B, const BalancedAttitude* guess = nullptr,
+                                     double slack = 0.0) const;
+  // [m^3], the slack that changes the energy by `energy` [kg m]. area: [m^2], of the waterplane.
+  double slack(double energy, double area) const;
+  double start_slack() const;  // [m^3], for an attitude at which a descent starts
+  // Also sets the attitude's waterplane area and pivot, from which balances nearby start, and corrects it for
+  // its excess.
   EnergyCurvature curvature(BalancedAttitude& attitude) const;
 
   const FloatingBody& body() const { return *body_; }
@@ -62,6 +72,8 @@ class Balance {
 
  private:
   BalancedAttitude balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const;
+  // Raises an attitude by what its excess is over the waterplane, unless that is far.
+  void settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const;
 
   const FloatingBody* body_;
   const Water* water_;

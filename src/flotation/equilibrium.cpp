@@ -48,7 +48,7 @@ class EquilibriumSearch {
       descend(-axis);
     }
     // The more attitudes are known, the smaller is what leads to one that is not.
-    const auto enough = [&](int starts) { return 12 + static_cast<int>(2 * found_.size()) <= starts; };
+    const auto enough = [&](int starts) { return 16 + static_cast<int>(4 * found_.size()) <= starts; };
     int last_news = 0;
     for (int n = 0; n < kMaxStarts && (n < kMinStarts || !enough(n - last_news)); ++n) {
       if (descend(direction(n))) last_news = n;
@@ -100,7 +100,7 @@ class EquilibriumSearch {
  private:
   bool descend_once(const Vec3& start_B) {
     constexpr int kMaxRestarts = 4;
-    std::optional<BalancedAttitude> at = balance_.at(start_B);
+    std::optional<BalancedAttitude> at = balance_.at(start_B, nullptr, balance_.start_slack());
     for (int restart = 0; at && restart < kMaxRestarts; ++restart) {
       std::optional<Minimum> minimum =
           descent_.minimum_from(*at, [this](const BalancedAttitude& current, const Vec3& target,
@@ -139,7 +139,7 @@ class EquilibriumSearch {
   bool approaches_known(const BalancedAttitude& at, const Vec3& target, double step) const {
     for (const Found& found : found_) {
       const double distance = (found.minimum.attitude.up_B - target).norm();
-      if (step >= 0.0 && step <= 0.2 && distance <= 0.01 + 0.1 * step) return true;
+      if (step >= 0.0 && step <= 0.4 && distance <= 0.02 + 0.15 * step) return true;
       if (is_in_bowl_of(found.minimum, at)) return true;
     }
     return belongs_to_family(at);
@@ -184,12 +184,13 @@ class EquilibriumSearch {
     constexpr int kDirections = 8;
     constexpr double kRadius = 1e-3;  // [rad]
     const BalancedAttitude& center = minimum.attitude;
+    const double slack = balance_.slack(0.1 * balance_.energy_rounding(), center.area);
     std::optional<BalancedAttitude> lowest;
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2.0 * std::numbers::pi * (i + 0.25) / kDirections;
       const Vec3 step = std::cos(angle) * minimum.curvature.directions_B[0] +
                         std::sin(angle) * minimum.curvature.directions_B[1];
-      const auto at = balance_.at(turned(center.up_B, kRadius * step), &center);
+      const auto at = balance_.at(turned(center.up_B, kRadius * step), &center, slack);
       if (!at || at->energy >= center.energy - balance_.energy_rounding()) continue;
       if (!lowest || at->energy < lowest->energy) lowest = at;
     }

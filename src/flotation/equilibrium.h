@@ -79,9 +79,9 @@ struct Equilibria {
   bool is_truncated = false;           // there are more than max_attitudes
 };
 
-// Symmetric bodies have several attitudes of the same energy, which are all reported. Complexity: some 50
-// descents of some ten steps, each of some four displacements and one query of hydrostatics; curves of
-// attitudes take up to 60 steps more.
+// Symmetric bodies have several attitudes of the same energy, which are all reported. Complexity: some 30
+// descents of some four steps, each of one or two displacements and a waterline (waterline.h), and three
+// displacements for its start; curves of attitudes take up to 60 steps more.
 Equilibria find_equilibria(const FloatingBody& body, const Water& water,
                            const EquilibriumOptions& options = {});
 
