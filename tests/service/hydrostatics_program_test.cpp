@@ -1,4 +1,5 @@
 // Runs buoyancy-hydrostatics as a program.
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -93,6 +94,37 @@ TEST_F(HydrostaticsProgram, PrintsRightingArmsAsJson) {
   EXPECT_NEAR(json.at("criteria").at("values").at(0).at("value").get<double>(), 0.132002392797, 1e-12);
   EXPECT_NEAR(json.at("criteria").at("values").at(5).at("value").get<double>(), 3.0 + 400.0 / 72.0 - 8.0,
               1e-7);
+}
+
+// 2008 IS Code, part A, 2.2: the figures of the code, and which of them the box meets.
+TEST_F(HydrostaticsProgram, ComparesArmsWithTheGeneralCriteriaAsData) {
+  const auto criteria_at = [&](const std::string& height_of_mass) {
+    const std::string at = scene("density = 512.5\ncenter_of_mass = [0, 0, " + height_of_mass + "]\n");
+    const ProgramRun result = run({"gz", "--scene", at, "--heel", "0:90:30", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return nlohmann::json::parse(result.output).at("criteria");
+  };
+  const auto criteria = criteria_at("2");
+  EXPECT_EQ(criteria.at("source"), "2008 IS Code A 2.2, to starboard; not a class approval");
+  const auto& values = criteria.at("values");
+  ASSERT_EQ(values.size(), 6U);
+  const std::array<double, 6> required{0.055, 0.090, 0.030, 0.20, 25.0, 0.15};
+  const std::array<double, 3> areas{0.132002392797, 0.132002392797 + 0.16178627, 0.16178627};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(values[i].at("required").get<double>(), required[i]);
+    EXPECT_EQ(values[i].at("met"), true);
+    if (i < 3) {
+      EXPECT_NEAR(values[i].at("value").get<double>(), areas[i], 1e-8);
+    }
+  }
+  EXPECT_GT(values[3].at("value").get<double>(), 0.972596655);  // the arm at 40 degrees is not the largest
+  EXPECT_GT(values[4].at("value").get<double>(), 30.0);
+  EXPECT_LT(values[4].at("value").get<double>(), 50.0);
+  // KG 8.5 m: GM is 0.056 m.
+  const auto high = criteria_at("2.5").at("values");
+  EXPECT_NEAR(high[5].at("value").get<double>(), 3.0 + 400.0 / 72.0 - 8.5, 1e-7);
+  EXPECT_EQ(high[5].at("met"), false);
+  EXPECT_EQ(high[4].at("met"), true);
 }
 
 TEST_F(HydrostaticsProgram, WritesTableAsCsv) {
