@@ -59,6 +59,14 @@ ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane) {
   return sum;
 }
 
+double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane) {
+  double area = 0.0;
+  for (const Term& term : body.terms()) {
+    if (term.placed.factor > 0.0) area += wetted_area(*term.placed.mesh, plane_of(term, plane));
+  }
+  return area;
+}
+
 LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces) {
   LiquidSum sum;
   for (const Tank& tank : body.tanks()) {

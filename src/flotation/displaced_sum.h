@@ -25,6 +25,9 @@ DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& pla
 // The part's point is relative to the body's center_B.
 ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane);
 
+// [m^2], of the meshes of factor 1, without the waterplane.
+double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane);
+
 enum class FreeSurfaces { kNo, kYes };
 
 // The liquids in the tanks, about the body's center_B; with their free surfaces if asked for. Complexity:

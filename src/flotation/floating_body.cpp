@@ -6,6 +6,7 @@
 
 #include "base/format.h"
 #include "flotation/displaced_sum.h"
+#include "hydrostatics/lowest_vertex.h"
 
 namespace buoyancy {
 namespace {
@@ -152,12 +153,8 @@ double lowest_along(const FloatingBody& body, const Vec3& up_B) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const FloatingBody::Term& term : body.terms()) {
     if (term.placed.factor < 0.0) continue;
-    const HydrostaticMesh& mesh = *term.placed.mesh;
     const Vec3 up = term.R_B.transpose() * up_B;
-    const double height = up_B.dot(term.offset_B);
-    for (const Triangle& triangle : mesh.surface.triangles) {
-      for (const std::int32_t i : triangle) lowest = std::min(lowest, height + up.dot(mesh.vertex(i)));
-    }
+    lowest = std::min(lowest, up_B.dot(term.offset_B) + lowest_vertex(*term.placed.mesh->tree, up));
   }
   return lowest;
 }

@@ -92,7 +92,7 @@ struct FloatingState {
 std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose& pose, const Water& water);
 
 // [m], the lowest vertex that displaces water along a direction: its distance from center_B() that way. up_B:
-// unit. Complexity: O(triangles).
+// unit. Complexity: that of lowest_vertex() per mesh.
 double lowest_along(const FloatingBody& body, const Vec3& up_B);
 
 }  // namespace buoyancy

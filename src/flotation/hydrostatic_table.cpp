@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/format.h"
@@ -31,6 +32,9 @@ Expected<HydrostaticTable> HydrostaticTable::make(const FloatingBody& body, cons
       options.forward_perpendicular ? *options.forward_perpendicular : -end_along(-axes.forward_B);
   table.midship_ = 0.5 * (aft + forward);
   table.lpp_ = forward - aft;
+  for (const FloatingBody::Term& term : body.terms()) {
+    table.waterplane_tolerance_ += 64.0 * std::numeric_limits<double>::epsilon() * term.placed.mesh->area;
+  }
   if (!std::isfinite(table.keel_) || !std::isfinite(table.lpp_) || !(table.lpp_ > 0.0)) {
     return make_error({.subject = "hydrostatic table",
                        .actual = "aft perpendicular " + format_shortest(aft) + " m, forward perpendicular " +
@@ -103,28 +107,28 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   const Vec3 on_water_B = midship_ * axes_.forward_B + (keel_ + draft) * axes_.up_B;
   const WaterPlane plane{.up_B = up_B, .h_c = up_B.dot(on_water_B - body_->center_B())};
   if (!std::isfinite(plane.h_c) || is_boundary_wet(*body_, plane)) return std::nullopt;
-  const ImmersedPart part = immersed_sum(*body_, plane);
+  const DisplacedSum displaced = displaced_sum(*body_, plane);
   const Vec3 forward_in_water = up_at(axes_, {0.0, trim + 0.5 * std::numbers::pi});
   const Waterline line = waterline_sum(*body_, plane, forward_in_water);
 
   HydrostaticRow row;
   row.draft = draft;
   row.trim = trim;
-  row.volume = part.moments.volume;
+  row.volume = displaced.volume;
   row.mass = water_.density * row.volume;
   const bool displaces = row.volume > body_->volume_tolerance();
-  const Vec3 from_origin = body_->center_B() + part.point;
   const Vec3 center_B =
-      displaces ? Vec3(from_origin + part.moments.moment / row.volume) : Vec3::Constant(kNaN);
+      displaces ? Vec3(body_->center_B() + displaced.moment / row.volume) : Vec3::Constant(kNaN);
   const Vec3 center = axes_.components(center_B);
   row.lcb = center.x() - midship_;
   row.tcb = center.y();
   row.kb = center.z() - keel_;
 
-  row.waterplane_area = part.moments.waterplane_area;
-  const bool has_waterplane = row.waterplane_area > 0.0;
+  const bool has_waterplane = line.area > waterplane_tolerance_;
+  row.waterplane_area = has_waterplane ? line.area : 0.0;
   if (has_waterplane) {
-    const Vec3 centroid_B = from_origin + part.moments.waterplane_moment / row.waterplane_area;
+    const Vec3 from_center = (line.u * forward_in_water + line.v * up_B.cross(forward_in_water)) / line.area;
+    const Vec3 centroid_B = body_->center_B() + from_center + plane.h_c * up_B;
     row.lcf = axes_.forward_B.dot(centroid_B) - midship_;
     row.lwl = line.max_u - line.min_u;
     row.bwl = line.max_v - line.min_v;
@@ -146,7 +150,7 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   row.moment_per_degree =
       (row.mass * (row.km_t - kg) - rise(up_B.cross(forward_in_water))) * std::sin(std::numbers::pi / 180.0);
 
-  row.wetted_area = part.wetted_area;
+  row.wetted_area = wetted_area_sum(*body_, plane);
   row.midship_area = immersed_section(draft);
   row.midship = ratio(row.midship_area, row.bwl * draft);
   const auto coefficients_on = [&](double length) {

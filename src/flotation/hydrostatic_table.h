@@ -97,6 +97,7 @@ class HydrostaticTable {
   double keel_ = 0.0;
   double midship_ = 0.0;
   double lpp_ = 0.0;
+  double waterplane_tolerance_ = 0.0;  // [m^2], error bound of its area
   std::vector<SectionEdge> section_;
 };
 

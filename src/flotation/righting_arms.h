@@ -42,8 +42,8 @@ struct RightingArm {
 
 // start_trim: [rad], where the search for the trim starts. Returns nullopt where the body does not float at
 // this heel: see FlotationOutcome, and where no trim below 89 degrees balances. A pure function: heels may
-// be computed in parallel. Complexity: some five rounds of some three displacements; O(vertices) for the
-// draft.
+// be computed in parallel. Complexity: some five rounds of some three displacements; that of lowest_along()
+// for the draft.
 std::optional<RightingArm> righting_arm(const FloatingBody& body, const Water& water, double heel,
                                         const RightingArmOptions& options = {}, double start_trim = 0.0);
 

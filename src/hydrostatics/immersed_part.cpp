@@ -108,6 +108,18 @@ ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane)
   return part;
 }
 
+double wetted_area(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  switch (immersion(mesh, plane)) {
+    case Immersion::kDry:
+      return 0.0;
+    case Immersion::kSubmerged:
+      return mesh.area;
+    case Immersion::kPiercing:
+      break;
+  }
+  return wetted_area(*mesh.tree, plane);
+}
+
 void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, ImmersedPart& sum) {
   if (part.moments.volume == 0.0 && part.wetted_area == 0.0) return;
   const bool is_first = sum.moments.volume == 0.0 && sum.wetted_area == 0.0;

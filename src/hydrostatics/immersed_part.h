@@ -21,6 +21,9 @@ struct ImmersedPart {
 // hydrostatics().
 ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
+// [m^2], its wetted_area alone.
+double wetted_area(const HydrostaticMesh& mesh, const WaterPlane& plane);
+
 // Adds the moments of a part of a body, times a factor, to a sum. offset_B: [m], from the sum's origin to the
 // part's. The wetted area counts for a factor above 0.
 void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, ImmersedPart& sum);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "base/double_double.h"
 #include "geometry/pairwise_sum.h"
@@ -14,17 +15,39 @@
 namespace buoyancy {
 namespace {
 
-struct Patch {
+// What is summed over the wetted surface: all moments and the area, or the area alone.
+struct MomentPatch {
   SurfaceMoments<double> moments;
   double area = 0.0;
 
-  Patch& operator+=(const Patch& other) {
+  static MomentPatch of_node(const MomentTree& tree, std::uint32_t index) {
+    return {tree.moments_of(index), tree.areas[index]};
+  }
+  static MomentPatch of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    MomentPatch patch{moments_of_triangle<double>(a, b, c), 0.0};
+    patch.area = patch.moments.S.norm();
+    return patch;
+  }
+  MomentPatch& operator+=(const MomentPatch& other) {
     moments += other.moments;
     area += other.area;
     return *this;
   }
 };
 
+struct AreaPatch {
+  double area = 0.0;
+
+  static AreaPatch of_node(const MomentTree& tree, std::uint32_t index) { return {tree.areas[index]}; }
+  AreaPatch& operator+=(const AreaPatch& other) {
+    area += other.area;
+    return *this;
+  }
+};
+
+using LeafHeights = std::array<double, kLeafVertices>;
+
+template <typename Patch>
 class WettedSurfaceWalk {
  public:
   WettedSurfaceWalk(const MomentTree& tree, const WaterPlane& plane) : tree_(tree), plane_(plane) {
@@ -33,19 +56,10 @@ class WettedSurfaceWalk {
     visit(tree.nodes[0]);
   }
 
-  WettedMoments result() const {
-    const Patch nodes = wet_nodes_.total();
-    WettedMoments wet{nodes.moments, Vec3::Zero(), -plane_.h_c, nodes.area};
-    if (point_) {
-      const Patch patch = clipped_.total();
-      wet.moments = nodes.moments.moved(*point_);
-      wet.moments += patch.moments;
-      wet.point = *point_;
-      wet.height = height_;
-      wet.area += patch.area;
-    }
-    return wet;
-  }
+  Patch nodes() const { return wet_nodes_.total(); }  // about c
+  Patch clipped() const { return clipped_.total(); }  // about point()
+  const std::optional<Vec3>& point() const { return point_; }
+  double height() const { return height_; }
 
  private:
   void visit(const TreeNode& node) {
@@ -82,7 +96,7 @@ class WettedSurfaceWalk {
   void visit(const TreeLeaf<Real>& leaf) {
     const Vec3 center = tree_.center(leaf.center);
     const double center_height = exact_height(center);
-    std::array<double, kLeafVertices> heights;
+    LeafHeights heights;
     std::size_t wet = 0;
     std::size_t first_wet = leaf.vertices;
     for (std::size_t i = 0; i < leaf.vertices; ++i) {
@@ -96,12 +110,19 @@ class WettedSurfaceWalk {
       add_wet_node(leaf.moments);
       return;
     }
-    if (!point_) {
-      point_ = center + leaf.vertex(first_wet);
-      height_ = center_height + plane_.up_B.dot(*point_ - center);
+    if constexpr (std::is_same_v<Patch, AreaPatch>) {
+      clip_area(leaf, heights);
+    } else {
+      if (!point_) {
+        point_ = center + leaf.vertex(first_wet);
+        height_ = center_height + plane_.up_B.dot(*point_ - center);
+      }
+      clip_moments(leaf, heights, center - *point_);
     }
+  }
 
-    const Vec3 from_point = center - *point_;
+  template <typename Real>
+  void clip_moments(const TreeLeaf<Real>& leaf, const LeafHeights& heights, const Vec3& from_point) {
     const auto corner = [&](std::size_t i) {
       return ClipVertex<double>{Point<double>::from(from_point + leaf.vertex(i)), heights[i]};
     };
@@ -117,12 +138,36 @@ class WettedSurfaceWalk {
     }
   }
 
-  void add_wet_node(std::uint32_t index) { wet_nodes_.add({tree_.moments_of(index), tree_.areas[index]}); }
+  // The part at the corner that is alone on its side is that share of the area which the water cuts off both
+  // of its edges.
+  template <typename Real>
+  void clip_area(const TreeLeaf<Real>& leaf, const LeafHeights& heights) {
+    for (std::size_t t = 0; t < leaf.triangles; ++t) {
+      const std::array<std::size_t, 5> around{leaf.corners[t].a(), leaf.corners[t].b(), leaf.corners[t].c(),
+                                              leaf.corners[t].a(), leaf.corners[t].b()};
+      unsigned mask = 0;
+      for (unsigned i = 0; i < 3; ++i) mask |= static_cast<unsigned>(heights[around[i]] < 0.0) << i;
+      if (mask == 0U) continue;
+      const std::size_t first = kOddOneOut[mask];
+      const std::size_t p = around[first];
+      const std::size_t q = around[first + 1];
+      const std::size_t r = around[first + 2];
+      const Vec3 at_p = leaf.vertex(p);
+      const double area = 0.5 * (leaf.vertex(q) - at_p).cross(leaf.vertex(r) - at_p).norm();
+      if (mask == 7U) {
+        clipped_.add({area});
+        continue;
+      }
+      const double z = heights[p];
+      const double part = area * (z / (z - heights[q])) * (z / (z - heights[r]));
+      clipped_.add({z < 0.0 ? part : area - part});
+    }
+  }
+
+  void add_wet_node(std::uint32_t index) { wet_nodes_.add(Patch::of_node(tree_, index)); }
 
   void add(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c) {
-    Patch patch{moments_of_triangle<double>(a.y.vec3(), b.y.vec3(), c.y.vec3()), 0.0};
-    patch.area = patch.moments.S.norm();
-    clipped_.add(patch);
+    clipped_.add(Patch::of_triangle(a.y.vec3(), b.y.vec3(), c.y.vec3()));
   }
 
   const MomentTree& tree_;
@@ -138,7 +183,17 @@ class WettedSurfaceWalk {
 
 WettedMoments wetted_moments(const MomentTree& tree, const WaterPlane& plane) {
   const WaterPlane tree_plane = plane_of_tree(tree, plane);
-  WettedMoments wet = WettedSurfaceWalk(tree, tree_plane).result();
+  const WettedSurfaceWalk<MomentPatch> walk(tree, tree_plane);
+  const MomentPatch nodes = walk.nodes();
+  WettedMoments wet{nodes.moments, Vec3::Zero(), -tree_plane.h_c, nodes.area};
+  if (walk.point()) {
+    const MomentPatch clipped = walk.clipped();
+    wet.moments = nodes.moments.moved(*walk.point());
+    wet.moments += clipped.moments;
+    wet.point = *walk.point();
+    wet.height = walk.height();
+    wet.area += clipped.area;
+  }
   const double length = tree.scale;
   const double area = length * length;
   wet.moments.S *= area;
@@ -148,6 +203,12 @@ WettedMoments wetted_moments(const MomentTree& tree, const WaterPlane& plane) {
   wet.height *= length;
   wet.area *= area;
   return wet;
+}
+
+double wetted_area(const MomentTree& tree, const WaterPlane& plane) {
+  const WaterPlane tree_plane = plane_of_tree(tree, plane);
+  const WettedSurfaceWalk<AreaPatch> walk(tree, tree_plane);
+  return tree.scale * tree.scale * (walk.nodes().area + walk.clipped().area);
 }
 
 }  // namespace buoyancy

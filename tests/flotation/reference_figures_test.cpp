@@ -139,6 +139,17 @@ TEST(ReferenceFigures, ConeOnItsApexHasItsClosedForm) {
   }
 }
 
+// A part of 1e-9 of the volume keeps its digits.
+TEST(ReferenceFigures, TipOfAConeHasItsClosedForm) {
+  HydrostaticTableOptions on_apex;
+  on_apex.axes = make_ship_axes(Vec3::UnitX(), -Vec3::UnitZ()).value();
+  const double draft = 2e-3;
+  const HydrostaticRow row = row_of(mesh_of(ConeShape{0.8, 2.0, 7, 3}), draft, on_apex);
+  const Polygon waterplane(7, 0.8 * draft / 2.0);
+  EXPECT_NEAR(row.volume / (waterplane.area * draft / 3.0), 1.0, 1e-9);
+  EXPECT_NEAR(row.kb / draft, 0.75, 1e-9);
+}
+
 // The metacentre of a sphere is its centre at every draught, to second order in the mesh.
 TEST(ReferenceFigures, SphereHasItsMetacentreAtTheCentre) {
   for (const double draft : {0.3, 1.0, 1.7}) {

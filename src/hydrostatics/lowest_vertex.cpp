@@ -1,0 +1,66 @@
+#include "hydrostatics/lowest_vertex.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace buoyancy {
+namespace {
+
+class LowestVertexSearch {
+ public:
+  LowestVertexSearch(const MomentTree& tree, const Vec3& up_B) : tree_(tree), up_B_(up_B) {
+    visit(tree.nodes[0]);
+  }
+
+  double lowest() const { return lowest_; }
+
+ private:
+  // The lowest children first, so that the others can be skipped.
+  void visit(const TreeNode& node) {
+    const auto at = [this](const auto& by_axis, std::uint32_t i) {
+      return Vec3(tree_.unit * Vec3(by_axis[0][i], by_axis[1][i], by_axis[2][i]));
+    };
+    std::array<std::pair<double, std::uint32_t>, kTreeWidth> bounds;
+    for (std::uint32_t i = 0; i < node.children; ++i) {
+      const double bound = up_B_.dot(at(node.center, i)) - up_B_.cwiseAbs().dot(at(node.half, i));
+      std::size_t n = i;
+      for (; n > 0 && bounds[n - 1].first > bound; --n) bounds[n] = bounds[n - 1];
+      bounds[n] = {bound, i};
+    }
+    for (std::size_t n = 0; n < node.children; ++n) {
+      const auto [bound, i] = bounds[n];
+      if (bound >= lowest_) return;
+      if (i < node.inner_nodes) {
+        visit(tree_.nodes[node.first_node + i]);
+      } else if (const std::uint32_t leaf = node.first_leaf + i - node.inner_nodes; tree_.leaves.empty()) {
+        visit(tree_.double_leaves[leaf]);
+      } else {
+        visit(tree_.leaves[leaf]);
+      }
+    }
+  }
+
+  template <typename Real>
+  void visit(const TreeLeaf<Real>& leaf) {
+    const double center = up_B_.dot(tree_.center(leaf.center));
+    for (std::size_t i = 0; i < leaf.vertices; ++i) {
+      lowest_ = std::min(lowest_, center + up_B_.dot(leaf.vertex(i)));
+    }
+  }
+
+  const MomentTree& tree_;
+  const Vec3& up_B_;
+  double lowest_ = std::numeric_limits<double>::infinity();  // in the tree's unit of length
+};
+
+}  // namespace
+
+double lowest_vertex(const MomentTree& tree, const Vec3& up_B) {
+  return tree.scale * LowestVertexSearch(tree, up_B).lowest() + up_B.dot(tree.offset);
+}
+
+}  // namespace buoyancy
