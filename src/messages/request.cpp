@@ -22,6 +22,8 @@ const char* to_string(BodyStatus status) {
       return "OUT_OF_RANGE";
     case BodyStatus::kNoSea:
       return "NO_SEA";
+    case BodyStatus::kBadCondition:
+      return "BAD_CONDITION";
   }
   return "UNKNOWN_STATUS";
 }

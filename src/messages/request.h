@@ -53,8 +53,9 @@ enum class BodyStatus : std::int32_t {
   kOpenEdgeWet = 6,
   kOutOfRange = 7,
   kNoSea = 8,
+  kBadCondition = 9,
 };
-inline constexpr int kBodyStatusCount = 9;
+inline constexpr int kBodyStatusCount = 10;
 // The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other
 // value.
 const char* to_string(BodyStatus status);

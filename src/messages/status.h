@@ -28,6 +28,8 @@ struct ServiceCounters {
   std::int64_t rejected_length = 0;
   std::int64_t seas_received = 0;
   std::int64_t seas_rejected = 0;
+  std::int64_t conditions_received = 0;
+  std::int64_t conditions_rejected = 0;
   std::array<std::int64_t, kBodyStatusCount> bodies{};  // indexed by BodyStatus
   std::int64_t quaternions_normalised = 0;
   std::int64_t bodies_dry = 0;

@@ -23,6 +23,7 @@ inline constexpr std::string_view kHydrostaticsChannel = "BUOYANCY_HYDROSTATICS"
 inline constexpr std::string_view kLoadsChannel = "BUOYANCY_LOADS";
 inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 inline constexpr std::string_view kSeaChannel = "BUOYANCY_SEA";
+inline constexpr std::string_view kConditionChannel = "BUOYANCY_CONDITION";
 
 using Bytes = std::span<const std::uint8_t>;
 

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "messages/condition_change.h"
 #include "messages/hydrostatics.h"
 #include "messages/loads.h"
 #include "messages/request.h"
@@ -54,6 +55,11 @@ void visit_fields(Body& body, Visitor& visitor) {
   visitor(body.body_id, body.status, body.immersion, body.buoyancy_force, body.buoyancy_torque,
           body.drag_force, body.drag_torque, body.added_mass_force, body.added_mass_torque, body.added_mass,
           body.damping, body.water_velocity);
+}
+
+template <MaybeConst<ConditionChange> Change, typename Visitor>
+void visit_fields(Change& change, Visitor& visitor) {
+  visitor(change.utime, change.body_id, change.kind, change.index, change.flooded, change.liquid_volume);
 }
 
 // A header holds the fields before the number of bodies.
@@ -123,6 +129,8 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.rejected_length...);
   visitor(c.seas_received...);
   visitor(c.seas_rejected...);
+  visitor(c.conditions_received...);
+  visitor(c.conditions_rejected...);
   visitor(c.bodies...);
   visitor(c.quaternions_normalised...);
   visitor(c.bodies_dry...);

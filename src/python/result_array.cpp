@@ -98,6 +98,8 @@ const char* explain(BodyStatus status) {
       return "the pose or the result is beyond the range of a double";
     case BodyStatus::kNoSea:
       return "the scene's waves come in messages, and none is known here; pass sea=";
+    case BodyStatus::kBadCondition:
+      return "a message has set a compartment or tank to a value that cannot be used";
   }
   return "a status that this version does not know";
 }

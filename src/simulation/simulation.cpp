@@ -60,6 +60,10 @@ Error not_ok_error(const SimulatedBody& body, double time) {
       error.cause = "the scene's waves are received, and buoyancyd has not received a sea for this time";
       error.hint = "Start what publishes BUOYANCY_SEA before the client";
       break;
+    case BodyStatus::kBadCondition:
+      error.cause = "buoyancyd has received a condition of a compartment or tank that it cannot use";
+      error.hint = "See its log, and correct what publishes BUOYANCY_CONDITION";
+      break;
     default:
       error.cause = kDiverged;
       error.hint = kUseSmallerStep;

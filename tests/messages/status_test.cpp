@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 14 + 9 + 1 + 8 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 16 + 10 + 1 + 8 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -49,6 +49,8 @@ ServiceStatus random_status() {
                                 &c.rejected_length,
                                 &c.seas_received,
                                 &c.seas_rejected,
+                                &c.conditions_received,
+                                &c.conditions_rejected,
                                 &c.quaternions_normalised,
                                 &c.bodies_dry,
                                 &c.bodies_wet,
@@ -122,6 +124,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.rejected_length = c.rejected_length;
   message.seas_received = c.seas_received;
   message.seas_rejected = c.seas_rejected;
+  message.conditions_received = c.conditions_received;
+  message.conditions_rejected = c.conditions_rejected;
   message.bodies_ok = count(status, BodyStatus::kOk);
   message.bodies_unknown = count(status, BodyStatus::kUnknownBody);
   message.bodies_non_finite_pose = count(status, BodyStatus::kNonFinitePose);
@@ -131,6 +135,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_open_edge_wet = count(status, BodyStatus::kOpenEdgeWet);
   message.bodies_out_of_range = count(status, BodyStatus::kOutOfRange);
   message.bodies_no_sea = count(status, BodyStatus::kNoSea);
+  message.bodies_bad_condition = count(status, BodyStatus::kBadCondition);
   message.quaternions_normalised = c.quaternions_normalised;
   message.bodies_dry = c.bodies_dry;
   message.bodies_wet = c.bodies_wet;

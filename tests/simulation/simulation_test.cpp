@@ -31,6 +31,7 @@ TEST(Simulation, EndsWithReasonAndHintIfAWrenchIsNotOk) {
   EXPECT_THAT(error_of(BodyStatus::kUnknownBody), HasSubstr("buoyancyd runs a different scene"));
   EXPECT_THAT(error_of(BodyStatus::kOpenEdgeWet), HasSubstr("its boundary is submerged"));
   EXPECT_THAT(error_of(BodyStatus::kOutOfRange), HasSubstr("Use a smaller --step"));
+  EXPECT_THAT(error_of(BodyStatus::kBadCondition), HasSubstr("correct what publishes BUOYANCY_CONDITION"));
   EXPECT_EQ(
       error_of(BodyStatus::kNoSea),
       "body 1 (crate) at 0.000000 s: status NO_SEA; expected status OK. Likely cause: the scene's waves "

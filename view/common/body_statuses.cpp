@@ -25,6 +25,8 @@ const char* meaning(BodyStatus status) {
       return "the result exceeds the range of double";
     case BodyStatus::kNoSea:
       return "no sea has been received that holds at the request's time";
+    case BodyStatus::kBadCondition:
+      return "a received condition of a compartment or tank cannot be used";
   }
   return "";
 }

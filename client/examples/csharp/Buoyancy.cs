@@ -37,7 +37,8 @@ namespace Buoyancy
     /// <summary>Why a pose has no result. Such a pose has zeros.</summary>
     public enum PoseStatus
     {
-        Ok = 0, NonFinitePose = 2, BadQuaternion = 3, NonFiniteTwist = 4, OpenEdgeWet = 6, OutOfRange = 7, NoSea = 8
+        Ok = 0, NonFinitePose = 2, BadQuaternion = 3, NonFiniteTwist = 4, OpenEdgeWet = 6, OutOfRange = 7, NoSea = 8,
+        BadCondition = 9
     }
 
     /// <summary>What Library says about itself.</summary>

@@ -32,6 +32,7 @@ class Status(enum.IntEnum):
     OPEN_EDGE_WET = 6
     OUT_OF_RANGE = 7
     NO_SEA = 8
+    BAD_CONDITION = 9
 
 class Wrenches:
     @property
