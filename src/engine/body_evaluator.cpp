@@ -72,6 +72,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
   last_twists_.assign(scene.bodies_with_hydrodynamics() > 0 ? scene.bodies().size() : 0, {});
   conditions_.assign(scene.bodies_with_subdivision() > 0 ? scene.bodies().size() : 0, {});
+  unknown_conditions_.assign(conditions_.size(), false);
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const Subdivision* subdivision = scene.bodies()[i].subdivision;
     if (subdivision != nullptr) conditions_[i] = initial_condition(*subdivision);
@@ -80,6 +81,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
 
 void BodyEvaluator::set_condition(std::size_t body, const BodyCondition& condition) {
   conditions_[body] = condition;
+  unknown_conditions_[body] = false;
   last_[body].cached = Cached::kNothing;
 }
 
@@ -186,6 +188,10 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
   }
   if (water_.at_rest == nullptr) {
     outcome.status = BodyStatus::kNoSea;
+    return Progress::kDone;
+  }
+  if (!unknown_conditions_.empty() && unknown_conditions_[*body]) {
+    outcome.status = BodyStatus::kBadCondition;
     return Progress::kDone;
   }
   if (water_.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves) {

@@ -50,6 +50,10 @@ class BodyEvaluator {
   // Replaces the condition of a body with compartments or tanks, and discards its cached result. At first a
   // body has the condition of the scene file. body: index into the scene's.
   void set_condition(std::size_t body, const BodyCondition& condition);
+  // Makes it unknown until the next set_condition(): the body has the status kBadCondition and no wrench.
+  void set_condition_unknown(std::size_t body) { unknown_conditions_[body] = true; }
+  // Precondition: the body has compartments or tanks.
+  bool is_condition_known(std::size_t body) const { return !unknown_conditions_[body]; }
   // nullptr: the body has neither compartments nor tanks.
   const BodyCondition* condition(std::size_t body) const {
     return conditions_.empty() || example_of(body).subdivision == nullptr ? nullptr : &conditions_[body];
@@ -145,6 +149,7 @@ class BodyEvaluator {
   bool has_loads_ = false;                 // does any body have drag, added mass or the loads output?
   std::vector<BodyTwist> last_twists_;     // by body; empty if no body has drag or added mass
   std::vector<BodyCondition> conditions_;  // by body; empty if no body has compartments or tanks
+  std::vector<bool> unknown_conditions_;   // likewise
   std::uint32_t request_number_ = 0;
 
   // Of the current request. Chunk c's part of pending_ and repeated_ begins at the chunk's first state.

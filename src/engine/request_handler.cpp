@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <utility>
 
 #include "engine/body_evaluation.h"
 #include "messages/wire_views.h"
@@ -26,11 +27,14 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
       max_sessions_(options.max_sessions),
       evaluator_(scene, options.threads),
       water_(scene),
+      conditions_(scene),
       cached_hydrostatics_(hydrostatics_cache_size(scene)) {
   assert(max_sessions_ >= 1);
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
+  conditions_.set_scene(*scene_, scene);
+  applied_conditions_.reset();
   scene_ = &scene;
   evaluator_.set_scene(scene);
   water_.set_scene(scene);
@@ -73,6 +77,18 @@ Expected<void> RequestHandler::receive_sea(Bytes message) {
   Expected<void> received = water_.receive_sea(message);
   ++(received ? counters_.seas_received : counters_.seas_rejected);
   return received;
+}
+
+Expected<void> RequestHandler::receive_condition(Bytes message) {
+  Expected<void> received = conditions_.receive(message, *scene_);
+  applied_conditions_.reset();
+  ++(received ? counters_.conditions_received : counters_.conditions_rejected);
+  return received;
+}
+
+void RequestHandler::set_conditions(ConditionTimeline conditions) {
+  conditions_ = std::move(conditions);
+  applied_conditions_.reset();
 }
 
 void RequestHandler::reset() {
@@ -126,6 +142,7 @@ void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& s
   ResponseWriter response(request.id(), request.size(), session.last_response);
   const WaterAtTime::Change now = water_.move_to(request.id().utime, request.lead_time());
   if (now.changed) evaluator_.clear_cache();
+  apply_conditions(request.id().utime);
   evaluator_.evaluate_all(request, now.water, response, counters_);
   compute_hydrostatics(request, response);
   session.last_hydrostatics.clear();
@@ -134,6 +151,24 @@ void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& s
   session.last_loads.clear();
   if (!loads_.bodies.empty()) encode(loads_, session.last_loads);
   session.last_request.assign(bytes.begin(), bytes.end());
+}
+
+void RequestHandler::apply_conditions(std::int64_t utime) {
+  if (applied_conditions_ && applied_conditions_->contains(utime)) return;
+  UtimeRange range;
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    const std::size_t body = conditions_.body(i);
+    const bool known = conditions_.condition_at(utime, i, *scene_, condition_, range);
+    const bool was_known = evaluator_.is_condition_known(body);
+    if (known == was_known && (!known || condition_ == *evaluator_.condition(body))) continue;
+    if (known) {
+      evaluator_.set_condition(body, condition_);
+    } else {
+      evaluator_.set_condition_unknown(body);
+    }
+    if (!cached_hydrostatics_.empty()) cached_hydrostatics_[body].valid = false;
+  }
+  applied_conditions_ = range;
 }
 
 void RequestHandler::compute_hydrostatics(const RequestView& request, const ResponseWriter& response) {

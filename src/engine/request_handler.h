@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/body_evaluator.h"
+#include "engine/condition_timeline.h"
 #include "engine/sea_timeline.h"
 #include "engine/water_at_time.h"
 #include "messages/status.h"
@@ -65,9 +66,17 @@ class RequestHandler {
   void receive_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)), ++counters_.seas_received; }
   void record_rejected_sea() { ++counters_.seas_rejected; }
 
+  // Receives a body_condition_t, see ConditionTimeline, and counts it. Errors: those of
+  // ConditionTimeline::receive(), some of which take effect too. No heap allocation once the history of the
+  // compartment or tank is as long as it gets, except for errors.
+  Expected<void> receive_condition(Bytes message);
+  // For a replay that divides a recording: replaces the conditions received so far.
+  void set_conditions(ConditionTimeline conditions);
+  const ConditionTimeline& conditions() const { return conditions_; }
+
   // Evaluates new requests in this scene, which must outlive the handler or the next call. The previous scene
-  // is not accessed again. For received seas see WaterAtTime::set_scene(). O(bodies of both scenes),
-  // independent of their meshes.
+  // is not accessed again. For received seas see WaterAtTime::set_scene(), for conditions
+  // ConditionTimeline::set_scene(). O(bodies of both scenes), independent of their meshes.
   void set_scene(const Scene& scene);
 
   // Mode latest: counts a request that was superseded before it was handled.
@@ -101,6 +110,7 @@ class RequestHandler {
   void count_decode_error(DecodeError error);
   Session& start_session(const RequestId& first);  // evicts the least recently used session if necessary
   void compute(Bytes bytes, const RequestView& request, Session& session);
+  void apply_conditions(std::int64_t utime);
   void compute_hydrostatics(const RequestView& request, const ResponseWriter& response);
   void collect_loads(const RequestView& request, const ResponseWriter& response);
 
@@ -111,6 +121,10 @@ class RequestHandler {
   ServiceCounters counters_;
   BodyEvaluator evaluator_;
   WaterAtTime water_;
+  ConditionTimeline conditions_;
+  // Where the conditions that evaluator_ has hold; nullopt: those of the scene file, or outdated ones.
+  std::optional<UtimeRange> applied_conditions_;
+  BodyCondition condition_;          // reused
   BodiesHydrostatics hydrostatics_;  // reused
   BodiesLoads loads_;                // reused
   struct CachedHydrostatics {

@@ -19,6 +19,9 @@ class InProcessClient {
   Expected<const WrenchResponse*> request(const WrenchRequest& request);
   const ClientStats& statistics() const { return statistics_; }
 
+  // See RequestHandler::receive_condition().
+  Expected<void> receive_condition(Bytes message) { return handler_.receive_condition(message); }
+
  private:
   RequestHandler handler_;
   std::vector<std::uint8_t> bytes_;
