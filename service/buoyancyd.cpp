@@ -63,7 +63,7 @@ int run(int argc, char** argv) {
   Expected<PoseChannels> poses =
       resolve_pose_channels(options.poses, *scene,
                             {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                             channels.sea, channels.status});
+                             channels.sea, channels.condition, channels.status});
   if (!poses) {
     print_error(app, poses.error());
     return kUsageError;

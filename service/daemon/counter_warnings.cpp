@@ -16,6 +16,9 @@ const char* remedy_for(BodyStatus status) {
     return "no sea has been received that holds at the time of the requests: start what publishes it before "
            "the clients";
   }
+  if (status == BodyStatus::kBadCondition) {
+    return "a received condition of a compartment or tank cannot be used: see the warning about its message";
+  }
   if (status == BodyStatus::kNonFiniteTwist) {
     return "a velocity is NaN or infinite where it is needed: with a lead_time, and for bodies with drag or "
            "added mass";

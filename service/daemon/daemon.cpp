@@ -120,9 +120,17 @@ Expected<void> Daemon::subscribe() {
   if (!subscribed) return subscribed;
   subscribed =
       connection_.subscribe(channels_.sea, [this](Bytes message, std::string_view) { on_sea(message); });
+  if (subscribed) subscribed = subscribe_to_conditions();
   if (!subscribed) return subscribed;
   return connection_.subscribe(channels_.status,
                                [this](Bytes status, std::string_view) { instances_.observe(status); });
+}
+
+Expected<void> Daemon::subscribe_to_conditions() {
+  if (receives_conditions_ || scene_->bodies_with_subdivision() == 0) return {};
+  receives_conditions_ = true;
+  return connection_.subscribe(channels_.condition,
+                               [this](Bytes message, std::string_view) { on_condition(message); });
 }
 
 void Daemon::prepare_for_messages() {
@@ -161,6 +169,9 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   for (const PoseChannel& pose : poses_.channels()) {
     spdlog::info("poses of body {} on {}, responses on {}", pose.body_id, pose.channel,
                  pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
+  }
+  if (receives_conditions_) {
+    spdlog::info("conditions of compartments and tanks on {}", channels_.condition);
   }
   publish_status();
   systemd_.ready();
@@ -231,6 +242,13 @@ void Daemon::on_sea(Bytes message) {
   if (!scene_->receives_sea()) return;  // it may be our own
   if (const Expected<void> received = handler_.receive_sea(message); !received) {
     warnings_.add({"messages of the sea rejected", 1, received.error().message()}, seconds_now());
+  }
+}
+
+void Daemon::on_condition(Bytes message) {
+  if (scene_->bodies_with_subdivision() == 0) return;  // an earlier scene had compartments or tanks
+  if (const Expected<void> received = handler_.receive_condition(message); !received) {
+    warnings_.add({"conditions rejected", 1, received.error().message()}, seconds_now());
   }
 }
 
@@ -343,6 +361,9 @@ void Daemon::end_reload() {
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
     prepare_for_messages();
+    if (const Expected<void> subscribed = subscribe_to_conditions(); !subscribed) {
+      spdlog::error("conditions are not received: {}", subscribed.error().message());
+    }
     publish_sea();
   }
   if (!loader_.is_loading()) systemd_.ready();

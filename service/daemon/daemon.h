@@ -7,6 +7,8 @@
 // In waves, the sea of the scene is published when the scene is loaded and once a second. Where the scene
 // says that waves are received, its sea is that of the messages on the same channel (SeaTimeline).
 //
+// In a scene with compartments or tanks, messages change their condition (ConditionTimeline).
+//
 // SIGHUP makes a SceneLoader read the scene file again while requests are handled with the current scene. The
 // new scene replaces it between two messages; sessions, stored responses and counters are kept. A scene that
 // cannot be used is logged as an error and changes nothing.
@@ -52,6 +54,7 @@ struct ChannelNames {
   std::string hydrostatics{kHydrostaticsChannel};
   std::string loads{kLoadsChannel};
   std::string sea{kSeaChannel};
+  std::string condition{kConditionChannel};
   std::string status{kStatusChannel};
 };
 
@@ -77,11 +80,13 @@ class Daemon {
 
  private:
   Expected<void> subscribe();
+  Expected<void> subscribe_to_conditions();  // once, and if the scene has compartments or tanks
   void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
   void receive();
   void record_queue_delay();
   void on_request(Bytes request);
   void on_sea(Bytes message);
+  void on_condition(Bytes message);
   void on_pose(std::size_t channel, Bytes pose);  // channel: an index into poses_.channels()
   void enqueue(Bytes request, double arrival);
   void handle_next();  // the request at the front of latest_, if there is one
@@ -107,6 +112,7 @@ class Daemon {
   ServiceMode mode_;
   ChannelNames channels_;
   LcmConnection connection_;
+  bool receives_conditions_ = false;  // subscribed to
   RequestHandler handler_;
   PoseRequestAdapter poses_;
   LatestRequestQueue latest_;

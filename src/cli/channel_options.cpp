@@ -48,6 +48,14 @@ CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel) {
       ->capture_default_str();
 }
 
+CLI::Option* add_condition_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--condition-channel", channel,
+                  "LCM channel for changes of compartments and tanks (body_condition_t), received for scenes "
+                  "that have some")
+      ->capture_default_str();
+}
+
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel) {
   return app.add_option("--status-channel", channel, "LCM channel for the status (service_status_t), 1 Hz")
       ->capture_default_str();

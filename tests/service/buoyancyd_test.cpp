@@ -73,7 +73,9 @@ TEST(Buoyancyd, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   expect_failure(run({"--scene", scene, "--states-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--hydrostatics-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--loads-channel", "BUOYANCY_WRENCHES"}), 2, "two are equal");
+  expect_failure(run({"--scene", scene, "--condition-channel", "BUOYANCY_SEA"}), 2, "two are equal");
   expect_failure(run({"--scene", scene, "--pose", "BUOYANCY_LOADS=1"}), 2, "used for two purposes");
+  expect_failure(run({"--scene", scene, "--pose", "BUOYANCY_CONDITION=1"}), 2, "used for two purposes");
   expect_failure(run({"--scene", scene, "--inject", ""}), 2, "no fault");
   expect_failure(run({"--scene", scene, "--inject", "drop=2"}), 2, "a probability from 0 to 1");
   expect_failure(run({"--scene", scene, "--inject", "dorp=0.1"}), 2, "The nearest is 'drop'");

@@ -49,6 +49,16 @@ TEST(CounterWarnings, SayWhatToDoWithoutSea) {
   EXPECT_THAT(warnings[0].detail, HasSubstr("start what publishes it before the clients"));
 }
 
+TEST(CounterWarnings, PointToTheMessageOfAnUnusableCondition) {
+  ServiceCounters now;
+  now.conditions_rejected = 1;
+  count(now, BodyStatus::kBadCondition) = 2;
+  const std::vector<LogEvent> warnings = warnings_since({}, now);
+  ASSERT_EQ(warnings.size(), 1U) << "the message has a warning of its own";
+  EXPECT_EQ(warnings[0].message, "bodies with status BAD_CONDITION");
+  EXPECT_THAT(warnings[0].detail, HasSubstr("see the warning about its message"));
+}
+
 TEST(CounterWarnings, SayWhereTwistsAreNeeded) {
   ServiceCounters now;
   count(now, BodyStatus::kNonFiniteTwist) = 3;
