@@ -123,8 +123,8 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
 }
 
 void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
-  service::ReplayChannels channels =
-      value_or_exit(service::ReplayChannels::make(std::string(kStatesChannel), "", {}, {}, {}));
+  service::ReplayChannels channels = value_or_exit(service::ReplayChannels::make(
+      {.states = std::string(kStatesChannel), .sea = "", .condition = ""}, {}, {}, {}));
   PoseRequestAdapter poses({}, 1);
   service::ReplayInput reader = value_or_exit(service::ReplayInput::open(
       input, service::FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));

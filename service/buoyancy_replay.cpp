@@ -10,6 +10,7 @@
 #include "cli/termination_signals.h"
 #include "recording/file_window.h"
 #include "scene/scene.h"
+#include "service/replay/earlier_conditions.h"
 #include "service/replay/part_output.h"
 #include "service/replay/replay.h"
 #include "service/replay/replay_join.h"
@@ -144,13 +145,20 @@ int run_join(const CLI::App& app, const ReplayOptions& options) {
   return summary.complete() ? kSuccess : kFailure;
 }
 
-// The channels that are searched for the beginning of a part are not seen in it.
-Expected<void> restrict_input(const ReplayOptions& options, const Part& part, const ReplayFacts& facts,
-                              ReplayInput& input, ReplayChannels& channels) {
+// Restricts the input to a part. Returns the conditions of compartments and tanks where it begins. The
+// channels that are read to find them, and to find the beginning of the part, are not seen in it.
+Expected<ConditionTimeline> restrict_input(const ReplayOptions& options, const Part& part,
+                                           const ReplayFacts& facts, const Scene& scene, ReplayInput& input,
+                                           ReplayChannels& channels) {
   const ReplayChannels unseen = channels;
-  Expected<void> restricted = input.restrict_to(part, end_of_part_before(part, options.output, facts));
+  const Expected<void> restricted = input.restrict_to(part, end_of_part_before(part, options.output, facts));
+  if (!restricted) return make_error(restricted.error());
+  Expected<ConditionTimeline> conditions(scene);
+  if (input.begin() > 0 && input.format() == FileFormat::kLcmLog && scene.bodies_with_subdivision() > 0) {
+    conditions = conditions_before(input.begin(), options.input, channels, scene);
+  }
   channels = unseen;
-  return restricted;
+  return conditions;
 }
 
 int run(int argc, char** argv) {
@@ -187,6 +195,7 @@ int run(int argc, char** argv) {
     if (!opened) return fail(opened.error(), kUsageError);
     comparison = *std::move(opened);
   }
+  ConditionTimeline conditions(*scene);
   const auto run_with = [&](ReplayOutput& output, ReplayOutput* loads, PartOutput* part) {
     return run_replay(app, options,
                       {.scene = *scene,
@@ -197,14 +206,17 @@ int run(int argc, char** argv) {
                        .layout = layout,
                        .loads = loads,
                        .comparison = comparison ? &*comparison : nullptr,
-                       .jobs = options.jobs},
+                       .jobs = options.jobs,
+                       .conditions = &conditions},
                       part);
   };
   if (plan->part) {
     const Expected<ReplayFacts> facts = replay_facts(options, *scene, poses.channels(), input->size());
     if (!facts) return fail(facts.error(), kUsageError);
-    const Expected<void> restricted = restrict_input(options, *plan->part, *facts, *input, channels);
-    if (!restricted) return fail(restricted.error(), kUsageError);
+    Expected<ConditionTimeline> earlier =
+        restrict_input(options, *plan->part, *facts, *scene, *input, channels);
+    if (!earlier) return fail(earlier.error(), kUsageError);
+    conditions = *std::move(earlier);
     Expected<PartOutput> part = PartOutput::create(options.output, plan->output_format, *plan->part, *facts);
     if (!part) return fail(part.error(), kFailure);
     return run_with(part->responses(), nullptr, &*part);

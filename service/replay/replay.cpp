@@ -21,24 +21,34 @@ struct Round {
   std::size_t filled = 0;  // the first `filled` batches are in use
 };
 
+// What the messages that were read so far have brought.
+struct Received {
+  SeaTimeline seas;
+  ConditionTimeline conditions;
+};
+
 bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
   if (poses.channels().empty()) return false;
   const auto id = peek_request_id(request);
   return id && poses.channel_of_session(id->session_id) != nullptr;
 }
 
-void add_event(const ReplayTask& task, const RecordedEvent& event, SeaTimeline& seas, ReplayBatch& batch,
+void add_event(const ReplayTask& task, const RecordedEvent& event, Received& received, ReplayBatch& batch,
                ReplaySummary& summary) {
   // CSV has no channels: every event is a request.
   const ReplayChannels::Role role = event.channel.empty() ? ReplayChannels::Role{.request = true, .pose = {}}
                                                           : task.channels.role_of(event.channel);
   if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
   if (role.sea) {
-    if (const Expected<void> received = seas.receive(event.bytes, task.scene)) {
-      batch.add_seas(event.timestamp, seas);
+    if (const Expected<void> used = received.seas.receive(event.bytes, task.scene)) {
+      batch.add_seas(event.timestamp, received.seas);
     } else {
-      batch.add_rejected_sea(event.timestamp, received.error());
+      batch.add_rejected_sea(event.timestamp, used.error());
     }
+  }
+  if (role.condition) {
+    batch.add_condition(event.timestamp, event.bytes);
+    received.conditions.receive(event.bytes, task.scene);  // for later batches; this one reports errors
   }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
@@ -52,9 +62,9 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, SeaTimeline& 
   }
 }
 
-// Fills the batch with items of one block. False: the input has ended. seas: those received so far.
-bool fill(const ReplayTask& task, SeaTimeline& seas, ReplayBatch& batch, ReplaySummary& summary) {
-  batch.start(seas);
+// Fills the batch with items of one block. False: the input has ended.
+bool fill(const ReplayTask& task, Received& received, ReplayBatch& batch, ReplaySummary& summary) {
+  batch.start(received.seas, received.conditions);
   while (!batch.full()) {
     LogItem item = task.input.next();
     if (std::holds_alternative<EndOfLog>(item)) return false;
@@ -64,7 +74,7 @@ bool fill(const ReplayTask& task, SeaTimeline& seas, ReplayBatch& batch, ReplayS
       ++summary.corrupt_sections;
       batch.add_input_error(std::move(corrupt->description));
     } else {
-      add_event(task, std::get<RecordedEvent>(item), seas, batch, summary);
+      add_event(task, std::get<RecordedEvent>(item), received, batch, summary);
     }
   }
   return true;
@@ -74,14 +84,14 @@ enum class ReadState { kReading, kAtEnd, kStopped };
 
 // Fills the round's batches until the input ends or a signal arrives. The signal stays pending, so that the
 // writing thread sees it too.
-void read(const ReplayTask& task, const TerminationSignals& signals, SeaTimeline& seas, Round& round,
+void read(const ReplayTask& task, const TerminationSignals& signals, Received& received, Round& round,
           ReplaySummary& summary, ReadState& state) {
   round.filled = 0;
   while (state == ReadState::kReading && round.filled < round.batches.size()) {
     if (signals.pending()) {
       state = ReadState::kStopped;
     } else {
-      const bool more = fill(task, seas, round.batches[round.filled++], summary);
+      const bool more = fill(task, received, round.batches[round.filled++], summary);
       if (!more) state = ReadState::kAtEnd;
     }
   }
@@ -138,8 +148,9 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   task.output.give_up_after(signals.fileno());
   if (task.loads != nullptr) task.loads->give_up_after(signals.fileno());
   ReadState state = ReadState::kReading;
-  SeaTimeline seas(task.scene);
-  read(task, signals, seas, rounds[0], summary, state);
+  Received received{SeaTimeline(task.scene),
+                    task.conditions != nullptr ? *task.conditions : ConditionTimeline(task.scene)};
+  read(task, signals, received, rounds[0], summary, state);
   Expected<void> written;
   std::size_t number = 0;
   for (; rounds[number % 3].filled > 0; ++number) {
@@ -149,7 +160,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
     report_input_errors(previous, callbacks);
     workers.run(current.filled + 2, 1, [&](std::size_t i) {
       if (i == 0) {
-        read(task, signals, seas, next, summary, state);
+        read(task, signals, received, next, summary, state);
       } else if (i == 1) {
         written = write(task, previous);
       } else {

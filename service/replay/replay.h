@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "cli/termination_signals.h"
+#include "engine/condition_timeline.h"
 #include "engine/pose_request_adapter.h"
 #include "messages/status.h"
 #include "scene/scene.h"
@@ -28,10 +29,11 @@ struct ReplaySummary {
   const char* stopped_by = "";  // the name of a signal; empty: the end of the input
   double seconds = 0.0;
 
-  // Does the output hold a response to every request of the input, with every sea of the input in force?
+  // Does the output hold a response to every request of the input, with every sea and every condition of the
+  // input in force?
   bool complete() const {
     return corrupt_sections == 0 && counters.rejected() == 0 && counters.seas_rejected == 0 &&
-           *stopped_by == '\0';
+           counters.conditions_rejected == 0 && *stopped_by == '\0';
   }
 };
 
@@ -48,9 +50,10 @@ struct ReplayTask {
   PoseRequestAdapter& poses;
   ReplayOutput& output;
   OutputLayout layout;
-  ReplayOutput* loads = nullptr;           // with layout.loads_csv: the file of its rows
-  ReplayComparison* comparison = nullptr;  // nullptr: none
-  unsigned jobs = 0;                       // threads; 0: number of hardware threads
+  ReplayOutput* loads = nullptr;                  // with layout.loads_csv: the file of its rows
+  ReplayComparison* comparison = nullptr;         // nullptr: none
+  unsigned jobs = 0;                              // threads; 0: number of hardware threads
+  const ConditionTimeline* conditions = nullptr;  // received before the input; nullptr: none
 };
 
 // Stops at the end of the input or, between two requests, after a signal. Memory: jobs times a bounded number

@@ -3,17 +3,26 @@
 #include <utility>
 
 namespace buoyancy::service {
+namespace {
+
+std::string event_error(std::int64_t timestamp, const Error& error) {
+  return "event at " + std::to_string(timestamp) + " us: " + error.message();
+}
+
+}  // namespace
 
 ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
     : handler_(scene, {.threads = 1}),
       loads_csv_(layout.loads_csv),
       keep_responses_(keep_responses),
+      conditions_(scene),
       records_(layout) {}
 
-void ReplayBatch::start(SeaTimeline seas) {
+void ReplayBatch::start(SeaTimeline seas, ConditionTimeline conditions) {
   items_.clear();
   seas_.clear();
   seas_.push_back(std::move(seas));
+  conditions_ = std::move(conditions);
   bytes_.clear();
   records_.clear();
   loads_records_.clear();
@@ -51,8 +60,11 @@ void ReplayBatch::add_seas(std::int64_t timestamp, SeaTimeline seas) {
 }
 
 void ReplayBatch::add_rejected_sea(std::int64_t timestamp, const Error& error) {
-  add(Kind::kRejectedSea, timestamp, {}).text =
-      "event at " + std::to_string(timestamp) + " us: " + error.message();
+  add(Kind::kRejectedSea, timestamp, {}).text = event_error(timestamp, error);
+}
+
+void ReplayBatch::add_condition(std::int64_t timestamp, Bytes message) {
+  add(Kind::kCondition, timestamp, message);
 }
 
 void ReplayBatch::add_input_error(std::string error) {
@@ -62,6 +74,7 @@ void ReplayBatch::add_input_error(std::string error) {
 void ReplayBatch::evaluate() {
   handler_.reset();
   handler_.set_seas(seas_.front());
+  handler_.set_conditions(std::move(conditions_));
   for (Item& item : items_) {
     switch (item.kind) {
       case Kind::kRequest:
@@ -81,6 +94,11 @@ void ReplayBatch::evaluate() {
       case Kind::kRejectedSea:
         handler_.record_rejected_sea();
         input_errors_.push_back(std::move(item.text));
+        break;
+      case Kind::kCondition:
+        if (const Expected<void> received = handler_.receive_condition(message_of(item)); !received) {
+          input_errors_.push_back(event_error(item.timestamp, received.error()));
+        }
         break;
       case Kind::kInputError:
         input_errors_.push_back(std::move(item.text));

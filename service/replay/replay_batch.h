@@ -2,8 +2,9 @@
 // in order.
 //
 // The handler is reset before each evaluation, so that responses and counters depend on the batch alone and
-// not on earlier batches, except for received seas, which the reader hands from batch to batch. (A retry of a
-// request of the previous batch is computed again: it gives the same bytes and is counted as computed.)
+// not on earlier batches, except for received seas and conditions, which the reader hands from batch to
+// batch. (A retry of a request of the previous batch is computed again: it gives the same bytes and is
+// counted as computed.)
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "engine/condition_timeline.h"
 #include "engine/request_handler.h"
 #include "engine/sea_timeline.h"
 #include "scene/scene.h"
@@ -24,8 +26,8 @@ class ReplayBatch {
   // scene must outlive the batch. keep_responses: for each_response(), each_hydrostatics() and each_loads().
   ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses);
 
-  // seas: those received before the batch's events.
-  void start(SeaTimeline seas);
+  // seas, conditions: those received before the batch's events.
+  void start(SeaTimeline seas, ConditionTimeline conditions);
   bool empty() const { return items_.empty(); }
   // Is the batch large enough to be evaluated on a thread? Then no further event should be added.
   bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
@@ -38,6 +40,7 @@ class ReplayBatch {
   // seas: with the one that the event brings.
   void add_seas(std::int64_t timestamp, SeaTimeline seas);
   void add_rejected_sea(std::int64_t timestamp, const Error& error);
+  void add_condition(std::int64_t timestamp, Bytes message);
   void add_input_error(std::string error);
 
   void evaluate();
@@ -69,7 +72,7 @@ class ReplayBatch {
   static constexpr std::size_t kMaxItems = 1024;
   static constexpr std::size_t kMaxBytes = 262'144;
 
-  enum class Kind { kRequest, kRejectedPose, kCopy, kSeas, kRejectedSea, kInputError };
+  enum class Kind { kRequest, kRejectedPose, kCopy, kSeas, kRejectedSea, kCondition, kInputError };
   struct Item {
     Kind kind = Kind::kRequest;
     std::int64_t timestamp = 0;
@@ -117,6 +120,7 @@ class ReplayBatch {
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
   std::vector<SeaTimeline> seas_;  // the first is that at the start
+  ConditionTimeline conditions_;   // at the start
   OutputRecords records_;
   LoadsRecords loads_records_;
   std::vector<std::string> input_errors_;

@@ -10,8 +10,7 @@ constexpr std::size_t kMaxCachedRoles = 4096;  // a corrupt log may hold any num
 
 }  // namespace
 
-Expected<ReplayChannels> ReplayChannels::make(std::string states_channel, std::string sea_channel,
-                                              const std::vector<PoseChannel>& poses,
+Expected<ReplayChannels> ReplayChannels::make(Names names, const std::vector<PoseChannel>& poses,
                                               const std::vector<std::string>& copied,
                                               std::vector<std::string> responses) {
   std::vector<std::regex> expressions;
@@ -23,17 +22,12 @@ Expected<ReplayChannels> ReplayChannels::make(std::string states_channel, std::s
           {"--copy " + text, error.what(), "a regular expression, '.*' for every channel", "", ""});
     }
   }
-  return ReplayChannels(std::move(states_channel), std::move(sea_channel), poses, std::move(expressions),
-                        std::move(responses));
+  return ReplayChannels(std::move(names), poses, std::move(expressions), std::move(responses));
 }
 
-ReplayChannels::ReplayChannels(std::string states_channel, std::string sea_channel,
-                               const std::vector<PoseChannel>& poses, std::vector<std::regex> copied,
-                               std::vector<std::string> responses)
-    : states_channel_(std::move(states_channel)),
-      sea_channel_(std::move(sea_channel)),
-      copied_(std::move(copied)),
-      responses_(std::move(responses)) {
+ReplayChannels::ReplayChannels(Names names, const std::vector<PoseChannel>& poses,
+                               std::vector<std::regex> copied, std::vector<std::string> responses)
+    : names_(std::move(names)), copied_(std::move(copied)), responses_(std::move(responses)) {
   for (const PoseChannel& pose : poses) poses_.push_back(pose.channel);
   saw_poses_.resize(poses_.size());
 }
@@ -50,8 +44,8 @@ ReplayChannels::Role ReplayChannels::role_of(std::string_view channel) {
 
 std::vector<std::string> ReplayChannels::unseen_channels() const {
   std::vector<std::string> names;
-  if (poses_.empty() && !saw_states_) names.push_back(states_channel_);
-  if (!sea_channel_.empty() && !saw_sea_) names.push_back(sea_channel_);
+  if (poses_.empty() && !saw_states_) names.push_back(names_.states);
+  if (!names_.sea.empty() && !saw_sea_) names.push_back(names_.sea);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (!saw_poses_[i]) names.push_back(poses_[i]);
   }
@@ -60,8 +54,9 @@ std::vector<std::string> ReplayChannels::unseen_channels() const {
 
 ReplayChannels::Role ReplayChannels::compute_role(std::string_view channel) const {
   Role role;
-  role.request = channel == states_channel_;
-  role.sea = !sea_channel_.empty() && channel == sea_channel_;
+  role.request = channel == names_.states;
+  role.sea = !names_.sea.empty() && channel == names_.sea;
+  role.condition = !names_.condition.empty() && channel == names_.condition;
   if (const auto pose = std::ranges::find(poses_, channel); pose != poses_.end()) {
     role.pose = static_cast<std::size_t>(pose - poses_.begin());
   }

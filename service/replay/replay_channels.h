@@ -20,17 +20,22 @@ class ReplayChannels {
     bool request = false;             // body_states_t
     std::optional<std::size_t> pose;  // index of the channel in the PoseRequestAdapter
     bool sea = false;                 // sea_state_t, of a scene that receives its sea
+    bool condition = false;           // body_condition_t, of a scene with compartments or tanks
     bool copied = false;
 
-    bool any() const { return request || pose || sea || copied; }
+    bool any() const { return request || pose || sea || condition || copied; }
   };
 
-  // sea_channel: empty unless the scene receives its sea. copied: regular expressions; an event is copied if
-  // one of them matches the full channel name, as in LCM's tools. responses: the channels that the replay
-  // writes; they are never copied, since recorded and new responses could not be distinguished. Errors: an
-  // invalid regular expression.
-  static Expected<ReplayChannels> make(std::string states_channel, std::string sea_channel,
-                                       const std::vector<PoseChannel>& poses,
+  struct Names {
+    std::string states;
+    std::string sea;        // empty unless the scene receives its sea
+    std::string condition;  // empty unless the scene has compartments or tanks
+  };
+
+  // copied: regular expressions; an event is copied if one of them matches the full channel name, as in LCM's
+  // tools. responses: the channels that the replay writes; they are never copied, since recorded and new
+  // responses could not be distinguished. Errors: an invalid regular expression.
+  static Expected<ReplayChannels> make(Names names, const std::vector<PoseChannel>& poses,
                                        const std::vector<std::string>& copied,
                                        std::vector<std::string> responses);
 
@@ -38,7 +43,8 @@ class ReplayChannels {
   Role role_of(std::string_view channel);
 
   // The configured channels of requests, poses and the sea that role_of() was never called with, perhaps
-  // because they are misspelt. The request channel is included only if there are no pose channels.
+  // because they are misspelt. The request channel is included only if there are no pose channels; that of
+  // conditions never, since a run need not change any.
   std::vector<std::string> unseen_channels() const;
 
  private:
@@ -46,15 +52,14 @@ class ReplayChannels {
     using is_transparent = void;
   };
 
-  ReplayChannels(std::string states_channel, std::string sea_channel, const std::vector<PoseChannel>& poses,
-                 std::vector<std::regex> copied, std::vector<std::string> responses);
+  ReplayChannels(Names names, const std::vector<PoseChannel>& poses, std::vector<std::regex> copied,
+                 std::vector<std::string> responses);
   Role compute_role(std::string_view channel) const;
 
   bool saw_states_ = false;
   std::vector<bool> saw_poses_;  // parallel to poses_
-  std::string states_channel_;
   bool saw_sea_ = false;
-  std::string sea_channel_;  // empty: none
+  Names names_;
   std::vector<std::string> poses_;
   std::vector<std::regex> copied_;
   std::vector<std::string> responses_;

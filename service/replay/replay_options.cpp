@@ -160,6 +160,7 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_hydrostatics_channel_option(app, options.hydrostatics_channel);
   add_loads_channel_option(app, options.loads_channel);
   add_sea_channel_option(app, options.sea_channel);
+  add_condition_channel_option(app, options.condition_channel);
   add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
@@ -223,9 +224,9 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   if (const Expected<void> checked = check_loads_file(options); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (const Expected<void> checked =
-          check_channels_distinct({options.states_channel, options.wrenches_channel,
-                                   options.hydrostatics_channel, options.loads_channel, options.sea_channel});
+  if (const Expected<void> checked = check_channels_distinct(
+          {options.states_channel, options.wrenches_channel, options.hydrostatics_channel,
+           options.loads_channel, options.sea_channel, options.condition_channel});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -303,7 +304,7 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel,
                                      options.loads_channel};
   std::vector<std::string> reserved = responses;
-  reserved.insert(reserved.end(), {options.states_channel, options.sea_channel});
+  reserved.insert(reserved.end(), {options.states_channel, options.sea_channel, options.condition_channel});
   Expected<PoseChannels> poses = resolve_pose_channels(options.poses, scene, reserved);
   if (!poses) return tl::unexpected(poses.error());
   if (const Expected<void> checked = check_velocities_usable(*poses, scene); !checked) {
@@ -314,9 +315,11 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   for (const PoseChannel& pose : poses->channels) {
     if (!pose.force_torque_channel.empty()) responses.push_back(pose.force_torque_channel);
   }
-  Expected<ReplayChannels> channels =
-      ReplayChannels::make(options.states_channel, scene.receives_sea() ? options.sea_channel : std::string(),
-                           poses->channels, options.copied, std::move(responses));
+  Expected<ReplayChannels> channels = ReplayChannels::make(
+      {.states = options.states_channel,
+       .sea = scene.receives_sea() ? options.sea_channel : "",
+       .condition = scene.bodies_with_subdivision() > 0 ? options.condition_channel : ""},
+      poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }

@@ -32,6 +32,7 @@ struct ReplayOptions {
   std::string hydrostatics_channel{kHydrostaticsChannel};
   std::string loads_channel{kLoadsChannel};
   std::string sea_channel{kSeaChannel};
+  std::string condition_channel{kConditionChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions
   std::filesystem::path loads;      // CSV file for the loads; empty: none

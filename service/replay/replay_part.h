@@ -14,6 +14,8 @@
 //   session: a part that finds one fails, so that the session tells which messages count.
 // - Warnings about channels without events, and which input errors are shown. A part puts both into its
 //   manifest instead.
+// - The condition of compartments and tanks. A part of a log reads the messages before it
+//   (earlier_conditions.h).
 // The join adds what the parts before have counted (replay_join.h). Parts as CSV files, whose rows hold no
 // such count, are pieces of the whole as they are. A part has one output: the CSV file of loads is for a
 // replay of the whole.

@@ -98,6 +98,11 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
     text += fmt::format("{:<22}{:>12}\n", "seas", counters.seas_received + counters.seas_rejected);
     line("rejected", counters.seas_rejected);
   }
+  if (counters.conditions_received + counters.conditions_rejected > 0) {
+    text += fmt::format("{:<22}{:>12}\n", "conditions",
+                        counters.conditions_received + counters.conditions_rejected);
+    line("rejected", counters.conditions_rejected);
+  }
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
   text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
@@ -124,6 +129,8 @@ nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
             {"count", counters.rejected_count},
             {"length", counters.rejected_length}}},
           {"bodies", bodies},
+          {"conditions_received", counters.conditions_received},
+          {"conditions_rejected", counters.conditions_rejected},
           {"copied", summary.copied},
           {"corrupt_sections", summary.corrupt_sections},
           {"seconds", summary.seconds},
@@ -144,6 +151,8 @@ ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     json.at("bodies").at(to_string(static_cast<BodyStatus>(i))).get_to(counters.bodies[i]);
   }
+  json.at("conditions_received").get_to(counters.conditions_received);
+  json.at("conditions_rejected").get_to(counters.conditions_rejected);
   json.at("copied").get_to(summary.copied);
   json.at("corrupt_sections").get_to(summary.corrupt_sections);
   json.at("seconds").get_to(summary.seconds);

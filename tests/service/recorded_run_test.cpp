@@ -6,6 +6,7 @@
 
 #include "tests/service/replay_fixture.h"
 #include "tests/service/running_service.h"
+#include "tests/support/damaged_boxes.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -18,16 +19,27 @@ std::vector<RawBytes> events(const std::string& path, const std::string& channel
   return found;
 }
 
-// With a body 3 that has drag and requests its loads.
+// With a body 3 that has drag and requests its loads, and can be damaged.
 const std::string kScene = kHydrostaticBoxScene + R"([[body]]
 id = 3
 shape = { type = "box", size = [2, 3, 4], segments = [2, 2, 2] }
 outputs = ["wrench", "loads"]
+[[body.compartment]]
+shape = { type = "box", size = [1, 1, 1] }
+flooded = 0
+[[body.tank]]
+shape = { type = "box", size = [1, 1, 1] }
+position = [0, 0, -1]
+fill = 0.5
 [body.drag]
 quadratic = [18, 22, 37, 1.5, 1.5, 1.5]
 [body.added_mass]
 matrix = [5, 126, 126, 0.1, 33, 33]
 )";
+
+void send_condition(RawLcmSocket& socket, const ConditionChange& change) {
+  socket.send("BUOYANCY_CONDITION", encoded_condition(change));
+}
 
 TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   const TempDir directory;
@@ -65,6 +77,11 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
     if (seq % kCheckpoint == 0) {
       ASSERT_TRUE(wait_for_logger()) << logger.standard_error();
     }
+    // Changes that hold from the next request on; one of them cannot be used.
+    const auto next_utime = one_body(0, seq + 1, 0.0).utime;
+    if (seq % 40 == 7)
+      send_condition(socket, flooded(next_utime, 0, 0.01 * static_cast<double>(seq % 99), 3));
+    if (seq % 60 == 8) send_condition(socket, filled(next_utime, 0, seq == 188 ? 2.0 : 0.25, 3));
     RawStates states = one_body(seq / 100, seq, 0.01 * static_cast<double>(seq) - 1.0);
     states.bodies.resize(static_cast<std::size_t>(1 + seq % 7), states.bodies[0]);
     states.bodies.back().body_id = static_cast<std::int32_t>(seq % 4);  // some of them unknown
@@ -83,7 +100,8 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
 
   const FinishedProcess finished =
       run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene, recorded, replayed}), kWaitTimeout);
-  ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+  ASSERT_EQ(finished.exit_code, 1) << "one condition cannot be used";
+  EXPECT_NE(finished.standard_error.find("liquid_volume = 2"), std::string::npos) << finished.standard_error;
   const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");
   EXPECT_EQ(live.size(), 330U);
   EXPECT_EQ(events(replayed, "BUOYANCY_WRENCHES"), live);
