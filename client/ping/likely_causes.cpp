@@ -81,6 +81,10 @@ void add_status_causes(const Samples& samples, std::vector<std::string>& causes)
         "the service's scene says waves = \"received\", and it has received no sea for the time of the "
         "requests");
   }
+  if (const Samples bad = with(BodyStatus::kBadCondition); !bad.empty()) {
+    causes.push_back("the service has received a condition of a compartment or tank that it cannot use, of " +
+                     list_bodies(bad));
+  }
   const Samples open = select(samples, [](const DifferingWrench& sample) {
     return (sample.expected.status == BodyStatus::kOpenEdgeWet) !=
            (sample.received.status == BodyStatus::kOpenEdgeWet);

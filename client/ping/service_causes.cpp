@@ -55,6 +55,15 @@ std::vector<std::string> causes_from_service(const Scene& scene, const ServiceIn
       causes.push_back("the service is version " + status.version + ", this program " BUOYANCY_VERSION);
     }
   }
+  if (service.status && scene.bodies_with_subdivision() > 0) {
+    const ServiceCounters& counters = service.status->counters;
+    const std::int64_t conditions = counters.conditions_received + counters.conditions_rejected;
+    if (conditions > 0) {
+      causes.push_back("the service has received " + pluralize(conditions, "condition", "conditions") +
+                       " of compartments and tanks, which need not be as in the scene file: restart it, or "
+                       "send them as they are there");
+    }
+  }
   if (scene.sea() == nullptr && !scene.receives_sea() && service.sea) {
     causes.emplace_back("the service has waves, and this scene has none");
   } else if (scene.sea() != nullptr && service.sea) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/ping/two_scenes.h"
+#include "tests/support/damaged_boxes.h"
+#include "tests/support/scene_of.h"
 
 namespace buoyancy::ping {
 namespace {
@@ -46,6 +48,17 @@ TEST(ServiceCauses, CompareSeasOfBothSides) {
   const std::string found = joined(causes_from_service(scene, service));
   EXPECT_NE(found.find("another level: 0.25 instead of 0 m"), std::string::npos) << found;
   EXPECT_NE(found.find("other waves"), std::string::npos) << found;
+}
+
+TEST(ServiceCauses, NameConditionsThatTheServiceReceived) {
+  const Scene scene = scene_of(damaged_boxes());
+  ServiceInfo service;
+  service.status.emplace();
+  service.status->version = BUOYANCY_VERSION;
+  service.status->scene_bodies = 3;
+  EXPECT_TRUE(causes_from_service(scene, service).empty());
+  service.status->counters.conditions_received = 2;
+  EXPECT_NE(joined(causes_from_service(scene, service)).find("has received 2 conditions"), std::string::npos);
 }
 
 TEST(ServiceCauses, DistinguishSilentServiceFromNone) {
