@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <span>
 #include <vector>
 
 namespace buoyancy {
@@ -32,18 +34,46 @@ struct Crossing {
   std::int8_t first = 0, second = 0;  // by which the winding number of either mesh changes there
 };
 
+// The places across the columns, in one direction: kColumns of equal width, divided at the vertices of the
+// meshes where these have few different coordinates, so that faces along the axes lie between columns.
+std::vector<double> places_between(double low, double high, std::span<const OffsetMesh> meshes,
+                                   Eigen::Index axis) {
+  std::vector<double> places;
+  for (int i = 0; i <= kColumns; ++i) places.push_back(low + (high - low) * i / kColumns);
+  std::vector<double> coordinates;
+  for (const OffsetMesh& mesh : meshes) {
+    for (std::size_t i = 0; i < mesh.mesh->vertex_count(); ++i) {
+      coordinates.push_back(mesh.mesh->vertex(static_cast<std::int32_t>(i))[axis] + mesh.offset_B[axis]);
+    }
+    std::sort(coordinates.begin(), coordinates.end());
+    coordinates.erase(std::unique(coordinates.begin(), coordinates.end()), coordinates.end());
+    if (coordinates.size() > kColumns) return places;
+  }
+  std::copy_if(coordinates.begin(), coordinates.end(), std::back_inserter(places),
+               [&](double place) { return place > low && place < high; });
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 // Columns over a box, along its longest side.
 class Columns {
  public:
-  explicit Columns(const BoundingBox& box) : box_(box) {
+  Columns(const BoundingBox& box, std::span<const OffsetMesh> meshes) {
     (box.max_B - box.min_B).maxCoeff(&along_);
     across_ = {(along_ + 1) % 3, (along_ + 2) % 3};
     for (std::size_t i = 0; i < 2; ++i) {
-      spacing_[i] = (box.max_B[across_[i]] - box.min_B[across_[i]]) / kColumns;
+      places_[i] = places_between(box.min_B[across_[i]], box.max_B[across_[i]], meshes, across_[i]);
+      for (std::size_t column = 0; column + 1 < places_[i].size(); ++column) {
+        axes_[i].push_back(places_[i][column] + kAxisAt[i] * (places_[i][column + 1] - places_[i][column]));
+      }
     }
   }
 
-  double area() const { return spacing_[0] * spacing_[1]; }  // [m^2], of a column
+  // [m^2]
+  double area_of(std::uint32_t column) const {
+    const auto width = [&](std::size_t i, std::size_t n) { return places_[i][n + 1] - places_[i][n]; };
+    return width(0, column % axes_[0].size()) * width(1, column / axes_[0].size());
+  }
 
   // Adds the crossings of a surface.
   void add(const OffsetMesh& mesh, bool is_first) {
@@ -60,18 +90,12 @@ class Columns {
   using Point2 = Eigen::Vector2d;
 
   Point2 across(const Vec3& point) const { return {point[across_[0]], point[across_[1]]}; }
-  double axis(std::size_t direction, int number) const {
-    return box_.min_B[across_[direction]] + (number + kAxisAt[direction]) * spacing_[direction];
-  }
-
-  // The first and the last column whose axis lies between two coordinates.
-  std::array<int, 2> range(std::size_t direction, double low, double high) const {
-    const double first =
-        std::ceil((low - box_.min_B[across_[direction]]) / spacing_[direction] - kAxisAt[direction]);
-    const double last =
-        std::floor((high - box_.min_B[across_[direction]]) / spacing_[direction] - kAxisAt[direction]);
-    return {static_cast<int>(std::clamp(first, 0.0, double{kColumns})),
-            static_cast<int>(std::clamp(last, -1.0, kColumns - 1.0))};
+  // The columns whose axes lie between two coordinates: from the first to before the second.
+  std::array<std::size_t, 2> range(std::size_t direction, double low, double high) const {
+    const std::vector<double>& axes = axes_[direction];
+    const auto first = std::lower_bound(axes.begin(), axes.end(), low);
+    const auto last = std::upper_bound(first, axes.end(), high);
+    return {static_cast<std::size_t>(first - axes.begin()), static_cast<std::size_t>(last - axes.begin())};
   }
 
   // Is the point on the left of the directed edge? The same edge the other way gives the opposite, so that a
@@ -89,18 +113,18 @@ class Columns {
     const Point2 b = across(corners[1]);
     const Point2 c = across(corners[2]);
     const double twice_area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-    const std::array<int, 2> rows =
+    const std::array<std::size_t, 2> rows =
         range(1, std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}));
-    const std::array<int, 2> columns =
+    const std::array<std::size_t, 2> columns =
         range(0, std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}));
-    for (int row = rows[0]; row <= rows[1]; ++row) {
-      for (int column = columns[0]; column <= columns[1]; ++column) {
-        const Point2 point(axis(0, column), axis(1, row));
+    for (std::size_t row = rows[0]; row < rows[1]; ++row) {
+      for (std::size_t column = columns[0]; column < columns[1]; ++column) {
+        const Point2 point(axes_[0][column], axes_[1][row]);
         const bool left = is_left(a, b, point);
         if (is_left(b, c, point) != left || is_left(c, a, point) != left) continue;
         // From below, the surface leads in where its normal points down, which is where it turns clockwise.
         const auto change = static_cast<std::int8_t>(left ? -1 : 1);
-        crossings_.push_back({static_cast<std::uint32_t>(row * kColumns + column),
+        crossings_.push_back({static_cast<std::uint32_t>(row * axes_[0].size() + column),
                               height_at(corners, {a, b, c}, twice_area, point),
                               is_first ? change : std::int8_t{0}, is_first ? std::int8_t{0} : change});
       }
@@ -122,10 +146,10 @@ class Columns {
     return std::clamp(height, bottom, top);
   }
 
-  BoundingBox box_;
   Eigen::Index along_ = 2;
   std::array<Eigen::Index, 2> across_{0, 1};
-  std::array<double, 2> spacing_{};
+  std::array<std::vector<double>, 2> places_;  // [m], the sides of the columns
+  std::array<std::vector<double>, 2> axes_;    // [m]
   std::vector<Crossing> crossings_;
 };
 
@@ -134,14 +158,15 @@ template <typename Counts>
 double volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
                     const Counts& counts) {
   if (!((box.max_B - box.min_B).minCoeff() > 0.0)) return 0.0;
-  Columns columns(box);
+  const std::array<OffsetMesh, 2> meshes{first, second};
+  Columns columns(box, meshes);
   columns.add(first, true);
   columns.add(second, false);
   std::vector<Crossing>& crossings = columns.crossings();
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.column != b.column ? a.column < b.column : a.height < b.height;
   });
-  double length = 0.0;
+  double volume = 0.0;
   int first_winding = 0;
   int second_winding = 0;
   for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
@@ -152,9 +177,10 @@ double volume_where(const BoundingBox& box, const OffsetMesh& first, const Offse
       second_winding = 0;
       continue;
     }
-    if (counts(first_winding, second_winding)) length += crossings[i + 1].height - crossings[i].height;
+    if (!counts(first_winding, second_winding)) continue;
+    volume += columns.area_of(crossings[i].column) * (crossings[i + 1].height - crossings[i].height);
   }
-  return length * columns.area();
+  return volume;
 }
 
 }  // namespace

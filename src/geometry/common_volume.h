@@ -4,8 +4,8 @@
 // The meshes are cut into columns along their longest common direction. On the axis of a column the crossings
 // of each surface, with their directions, say where it is inside (winding number above 0), so that nested,
 // touching and coincident surfaces need no special case. Lengths along the axes are exact; the sum over the
-// columns is a midpoint rule: exact for boxes along the axes, otherwise within some 1e-3 of the mesh's
-// volume.
+// columns is a midpoint rule, of 256 columns and more per direction: exact for faces along the axes,
+// otherwise within some 1e-3 of the mesh's volume.
 #pragma once
 
 #include "geometry/triangle_mesh.h"

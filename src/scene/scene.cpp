@@ -17,7 +17,7 @@ Error with_body(const BodyDescription& body, Error error) {
 }
 
 MeshUser user_of(const BodyDescription& body) {
-  return {body.source_location, "body " + std::to_string(body.id)};
+  return {body.source_location, "body " + std::to_string(body.id), ""};
 }
 
 MeshUser user_of(const BodyDescription& body, const std::string& section, const std::string& name,
@@ -26,7 +26,7 @@ MeshUser user_of(const BodyDescription& body, const std::string& section, const 
   user += ", ";
   user += section;
   user += " '" + name + "'";
-  return {source_location, std::move(user)};
+  return {source_location, std::move(user), "Close the holes in a mesh editor"};
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {

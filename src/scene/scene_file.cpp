@@ -196,6 +196,10 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
   table.finish();
   if (!has_id) table.fail_missing("id", "a unique whole number for each body");
   body.is_parts_only = !has_source && !body.parts.empty();
+  if (body.is_parts_only && table.has("scale")) {
+    table.fail_at("scale", "a scale only with a mesh file", "the body has no mesh beside its parts",
+                  "Give each part its own scale");
+  }
   if (!has_source && body.parts.empty()) {
     table.fail("neither 'mesh' nor 'shape'", "one of them, or sections [[body.part]]", {},
                "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");

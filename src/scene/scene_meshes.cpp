@@ -22,6 +22,8 @@ Expected<ImportedMesh> read_source(const MeshDescription& mesh, const ImportLimi
 }  // namespace
 
 Error MeshUser::error(Error error) const {
+  if (!hint_if_open.empty() && error.hint.find("dry_boundary") != std::string::npos)
+    error.hint = hint_if_open;
   if (source_location.empty()) return error;
   error.subject.insert(0, source_location + ": " + name + ", ");
   return error;

@@ -15,6 +15,7 @@ namespace buoyancy {
 struct MeshUser {
   std::string source_location;  // "scene.toml:12"; empty without a scene file
   std::string name;             // "body 3", "body 3, tank 'ballast 1'"
+  std::string hint_if_open;     // instead of advice to accept an open mesh; empty: the user may accept one
 
   // The error with the user before its subject.
   Error error(Error error) const;

@@ -158,6 +158,17 @@ TEST(Tank, PullsWithItsWeightAlsoInTheAir) {
   EXPECT_LT(result.torque_error_bound, 1e-11 * weight);
 }
 
+// The share is of the tank as it is, whose volume rounding makes a little wrong.
+TEST(Tank, BoundsTheErrorOfAVolumeGivenAsAShare) {
+  const Scene scene =
+      scene_of(kWater + body(1, "[40, 40, 40]") + "[[body.tank]]\ndensity = 1000.0\nfill = 0.5\n" +
+               box("[1, 1, 0.001]", "[11, -9, 8]") + "orientation = [0.9, 0.3, 0.1, 0.2]\n");
+  const Pose high{.p_WB = {0.0, 0.0, 100.0}, .q_WB = Eigen::Quaterniond::Identity()};
+  const BuoyancyResult result = evaluated(scene, 1, high).outcome.result;
+  EXPECT_LE(std::abs(result.force_W.z() + 0.5 * 9.80665), result.force_error_bound);
+  EXPECT_LE(result.force_error_bound, 1e-9);
+}
+
 // The torque about a horizontal axis is minus the derivative of the energies of displaced water and liquid.
 TEST(Tank, HasTheWrenchOfAnEnergy) {
   const Scene scene =

@@ -35,8 +35,9 @@ const TriangleMesh kFineBox = make_shape(BoxShape{.size = {2.0, 1.0, 1.0}, .segm
 TEST(CommonVolume, IsExactForBoxesAlongTheAxes) {
   EXPECT_NEAR(common(kBox, kFineBox), 2.0, 1e-12);
   EXPECT_NEAR(common(kBox, kFineBox, {0.5, 0.25, -0.125}), 1.5 * 0.75 * 0.875, 1e-12);
-  EXPECT_NEAR(outside(kBox, kFineBox, {0.5, 0.25, -0.125}), 2.0 - 1.5 * 0.75 * 0.875, 1e-2);
+  EXPECT_NEAR(outside(kBox, kFineBox, {0.5, 0.25, -0.125}), 2.0 - 1.5 * 0.75 * 0.875, 1e-12);
   EXPECT_NEAR(outside(kBox, kFineBox), 0.0, 1e-12);
+  EXPECT_NEAR(outside(kBox, kFineBox, {0.0, 1e-4, 0.0}), 2e-4, 1e-12);
 }
 
 TEST(CommonVolume, IsZeroForMeshesThatTouch) {
@@ -62,7 +63,7 @@ TEST(CommonVolume, IsThatOfWhateverIsInside) {
   const TriangleMesh hull = make_shape(SphereShape{.radius = 4.0, .segments = 24});
   for (const Shape& shape : {Shape(TorusKnotShape{}), Shape(RockShape{.frequency = 6}), Shape(ConeShape{}),
                              Shape(BoxShape{.size = {1.0, 2.0, 3.0}})}) {
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 4; ++i) {
       const TriangleMesh inner = turned(make_shape(shape), random.rotation(), random.direction());
       const double volume = mass_properties(inner).volume;
       EXPECT_NEAR(common(inner, hull), volume, 2e-3 * volume);

@@ -96,11 +96,19 @@ TEST(Subdivision, RejectsOpenMeshes) {
         preparation_error(scene_with_crate("[[body." + section + "]]\nmesh = \"" + open + "\"\n" + fill));
     EXPECT_NE(message.find("body 7, " + section + " '" + section + " 0', "), std::string::npos) << message;
     EXPECT_NE(message.find("open"), std::string::npos) << message;
+    EXPECT_EQ(message.find("dry_boundary"), std::string::npos) << message;
   }
   const std::string hull =
       preparation_error("[[body]]\nid = 1\nmesh = \"" + open +
                         "\"\nopen = \"dry_boundary\"\n[[body.tank]]\nfill = 0.5\n" + kBox);
   EXPECT_NE(hull.find("an open mesh; expected a closed mesh"), std::string::npos) << hull;
+}
+
+TEST(Subdivision, RejectsAScaleWithoutAMesh) {
+  const std::string message = preparation_error("[[body]]\nid = 7\nscale = 2\n[[body.part]]\n" + kBox);
+  EXPECT_NE(message.find("pool.toml:3: body 7: scale = 2; expected a scale only with a mesh file"),
+            std::string::npos)
+      << message;
 }
 
 TEST(Subdivision, SharesMeshesOfEqualBodies) {
