@@ -70,6 +70,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   last_.assign(scene.bodies().size(), {});
   results_.assign(scene.bodies().size(), {});
   has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
+  checks_bodies_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_subdivision() > 0;
   last_twists_.assign(scene.bodies_with_hydrodynamics() > 0 ? scene.bodies().size() : 0, {});
   conditions_.assign(scene.bodies_with_subdivision() > 0 ? scene.bodies().size() : 0, {});
   unknown_conditions_.assign(conditions_.size(), false);
@@ -182,16 +183,12 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
     outcome.quaternion_normalised = validated.quaternion_normalised;
     return Progress::kDone;
   }
-  if (has_loads_ && scene_->bodies()[*body].hydrodynamics != nullptr && !twist_of(state).is_finite()) {
-    outcome.status = BodyStatus::kNonFiniteTwist;
-    return Progress::kDone;
+  if (checks_bodies_) {
+    outcome.status = check_body(*body, state);
+    if (outcome.status != BodyStatus::kOk) return Progress::kDone;
   }
   if (water_.at_rest == nullptr) {
     outcome.status = BodyStatus::kNoSea;
-    return Progress::kDone;
-  }
-  if (!unknown_conditions_.empty() && unknown_conditions_[*body]) {
-    outcome.status = BodyStatus::kBadCondition;
     return Progress::kDone;
   }
   if (water_.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves) {
@@ -205,6 +202,14 @@ BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, 
              .body = static_cast<std::uint32_t>(*body),
              .quaternion_normalised = validated.quaternion_normalised};
   return done ? Progress::kDone : Progress::kPending;
+}
+
+BodyStatus BodyEvaluator::check_body(std::size_t body, const BodyState& state) const {
+  if (scene_->bodies()[body].hydrodynamics != nullptr && !twist_of(state).is_finite()) {
+    return BodyStatus::kNonFiniteTwist;
+  }
+  const bool is_unknown = !unknown_conditions_.empty() && unknown_conditions_[body];
+  return is_unknown ? BodyStatus::kBadCondition : BodyStatus::kOk;
 }
 
 bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome) {

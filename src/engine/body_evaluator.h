@@ -117,6 +117,8 @@ class BodyEvaluator {
   // and if done with kOk in a scene that has loads.
   Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
                             BodyOutcome& outcome);
+  // Of a state with a valid pose: what speaks against a wrench, or kOk. Only with checks_bodies_.
+  BodyStatus check_body(std::size_t body, const BodyState& state) const;
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
   bool evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
   void compute_pending(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
@@ -147,6 +149,7 @@ class BodyEvaluator {
   std::vector<LastPose> last_;             // by body
   std::vector<BodyOutcome> results_;       // by body
   bool has_loads_ = false;                 // does any body have drag, added mass or the loads output?
+  bool checks_bodies_ = false;             // has any body drag, added mass, compartments or tanks?
   std::vector<BodyTwist> last_twists_;     // by body; empty if no body has drag or added mass
   std::vector<BodyCondition> conditions_;  // by body; empty if no body has compartments or tanks
   std::vector<bool> unknown_conditions_;   // likewise
