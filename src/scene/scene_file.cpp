@@ -96,6 +96,19 @@ void read_inertia(TomlTable& table, DynamicsSpec& dynamics) {
   dynamics.inertia_B = inertia_B;
 }
 
+// Reads `start`, once the velocities are known.
+void read_start(TomlTable& table, DynamicsSpec& dynamics) {
+  constexpr std::array<std::string_view, 2> kWords{"pose", "equilibrium"};
+  if (table.choice("start", kWords) != 1U) return;
+  dynamics.start = StartKind::kEquilibrium;
+  for (const auto& [key, velocity] : {std::pair{"linear_velocity", &dynamics.linear_velocity},
+                                      std::pair{"angular_velocity", &dynamics.angular_velocity}}) {
+    if (*velocity == Vec3::Zero()) continue;
+    table.fail_at(key, "no velocity with start = \"equilibrium\"", "a body at equilibrium is at rest",
+                  "Remove it, or start = \"equilibrium\"");
+  }
+}
+
 void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
   dynamics.given = true;
   table.read("mass", dynamics.mass, NumberRange::above_zero("kg"));
@@ -108,6 +121,7 @@ void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
   table.read("position", dynamics.position, "m");
   table.read("linear_velocity", dynamics.linear_velocity, "m/s");
   table.read("angular_velocity", dynamics.angular_velocity, "rad/s");
+  read_start(table, dynamics);
   table.read("linear_damping", dynamics.linear_damping, NumberRange::from_zero("N/(m/s)"));
   table.read("linear_damping_quadratic", dynamics.linear_damping_quadratic,
              NumberRange::from_zero("N/(m/s)^2"));

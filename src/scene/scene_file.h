@@ -25,6 +25,9 @@
 
 namespace buoyancy {
 
+// Where the simulation of a body starts: see start_pose.h.
+enum class StartKind { kPose, kEquilibrium };
+
 // Dynamics of a body, which only a simulator needs: section [body.client]. At most one of mass and density is
 // given; without either, the density is half the water's.
 struct DynamicsSpec {
@@ -35,6 +38,7 @@ struct DynamicsSpec {
   std::optional<Mat3> inertia_B;         // [kg m^2], about the centre of mass, physically possible;
                                          // default: the enclosed volume's, scaled to the mass. In the file:
                                          // [Ixx, Iyy, Izz] or [Ixx, Iyy, Izz, Ixy, Ixz, Iyz]
+  StartKind start = StartKind::kPose;    // kEquilibrium: without velocities
   Vec3 position = Vec3::Zero();          // initial position of B's origin [m], W
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // initial q_WB, normalised
   Vec3 linear_velocity = Vec3::Zero();                              // of B's origin [m/s], W
