@@ -9,7 +9,12 @@
 #include <utility>
 
 #include "hydrodynamics/small_motions.h"
+#include "hydrostatics/buoyancy.h"
 #include "hydrostatics/displacement_moments.h"
+#include "scene/body_key.h"
+#include "scene/floating_bodies.h"
+#include "scene/loaded_mass.h"
+#include "scene/start_pose.h"
 
 namespace buoyancy {
 namespace {
@@ -120,21 +125,85 @@ double stiffness_error(const HydrostaticMesh& mesh, const Water& water) {
   return 64.0 * kEpsilon * water.density * water.gravity * mesh.area;
 }
 
-State floating_state(const HydrostaticMesh& mesh, const Hydrostatics& hydrostatics) {
-  return {.volume_fraction = mesh.is_open() ? 1.0 : std::min(1.0, hydrostatics.volume / mesh.volume),
-          .area_fraction = std::min(1.0, hydrostatics.wetted_area / mesh.area),
-          .stiffness_W = hydrostatics.stiffness};
-}
+// What a body displaces fully submerged.
+struct Displaced {
+  double volume = 0.0;          // [m^3]
+  Vec3 lever_B = Vec3::Zero();  // [m], from the centre of mass to its centroid
+};
 
-State submerged_state(const HydrostaticMesh& mesh, const Vec3& centroid_from_mass_W, const Water& water) {
-  DisplacementMoments<double> moments;
-  moments.volume = mesh.volume;
-  moments.moment = mesh.volume * centroid_from_mass_W;
-  State state{.stiffness_W = water.density * water.gravity * stiffness(moments, water.up_W)};
-  const double rounding = stiffness_error(mesh, water) * mesh.diagonal * mesh.diagonal;
-  if (state.stiffness_W.cwiseAbs().maxCoeff() <= rounding) state.stiffness_W.setZero();
-  return state;
-}
+// A body as it floats: its mesh, without the compartments that are open to the sea, and its mass, with the
+// liquids frozen at one attitude.
+class LoadedBody {
+ public:
+  LoadedBody(const Body& body, const HydrostaticMesh& mesh, const BodyMass& own, const Vec3& up_B)
+      : mesh_(&mesh),
+        own_(own),
+        total_(mass_with_liquids(body, own, nullptr, up_B)),
+        tanks_(tanks_of(body)),
+        compartments_(open_compartments(body)) {}
+
+  const HydrostaticMesh& mesh() const { return *mesh_; }
+  const BodyMass& total() const { return total_; }
+
+  Displaced submerged() const {
+    const auto lever_of = [&](const HydrostaticMesh& mesh) {
+      return Vec3(mesh.center_B - total_.center_of_mass_B + mesh.centroid);
+    };
+    Displaced sum{mesh_->volume, lever_of(*mesh_)};
+    if (compartments_.empty()) return sum;
+    Vec3 moment = sum.volume * sum.lever_B;
+    for (const PlacedMesh& compartment : compartments_) {
+      const double lost = -compartment.factor * compartment.mesh->volume;
+      sum.volume -= lost;
+      moment -= lost * lever_of(*compartment.mesh);
+    }
+    sum.lever_B = moment / sum.volume;
+    return sum;
+  }
+
+  // About the centre of mass. q_WB: unit.
+  std::optional<FloatingPose> afloat(const Eigen::Quaterniond& q_WB, const Water& water) const {
+    if (compartments_.empty()) {
+      return find_floating_pose(*mesh_, q_WB, total_.mass / water.density, water, total_.center_of_mass_B);
+    }
+    std::vector<PlacedMesh> meshes = compartments_;
+    meshes.insert(meshes.begin(), {.mesh = mesh_});
+    const Expected<FloatingBody> floating = FloatingBody::make(meshes, total_.mass, total_.center_of_mass_B);
+    return floating ? find_floating_pose(*floating, q_WB, water) : std::nullopt;
+  }
+
+  State floating_state(const FloatingPose& floating, const Water& water) const {
+    double volume = floating.hydrostatics.volume;
+    if (!compartments_.empty()) {
+      volume = buoyancy(Solver(*mesh_, Method::kHierarchical), floating.pose, water, Vec3::Zero()).volume;
+    }
+    return {.volume_fraction = mesh_->is_open() ? 1.0 : std::min(1.0, volume / mesh_->volume),
+            .area_fraction = std::min(1.0, floating.hydrostatics.wetted_area / mesh_->area),
+            .stiffness_W = floating.hydrostatics.stiffness + of_weights(floating.pose.q_WB, water)};
+  }
+
+  State submerged_state(const Displaced& displaced, const Eigen::Quaterniond& q_WB,
+                        const Water& water) const {
+    DisplacementMoments<double> moments;
+    moments.volume = displaced.volume;
+    moments.moment = displaced.volume * (q_WB * displaced.lever_B);
+    State state{.stiffness_W =
+                    water.density * water.gravity * stiffness(moments, water.up_W) + of_weights(q_WB, water)};
+    const double rounding = stiffness_error(*mesh_, water) * mesh_->diagonal * mesh_->diagonal;
+    if (state.stiffness_W.cwiseAbs().maxCoeff() <= rounding) state.stiffness_W.setZero();
+    return state;
+  }
+
+ private:
+  Mat6 of_weights(const Eigen::Quaterniond& q_WB, const Water& water) const {
+    return stiffness_of_weights(own_, tanks_, total_.center_of_mass_B, q_WB, water);
+  }
+
+  const HydrostaticMesh* mesh_;
+  BodyMass own_, total_;  // without and with the liquids
+  std::vector<Tank> tanks_;
+  std::vector<PlacedMesh> compartments_;
+};
 
 // coordinate: of x that gives the motion its name. Stiffness within its rounding error counts as none.
 NaturalMotion natural_motion(const MotionMatrices& matrices, const State& state, const MotionMode& mode,
@@ -196,19 +265,9 @@ bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& 
 }
 
 // Everything that the motions of a body depend on, beside the scene's water and current.
-using BodyKey = std::vector<double>;
-
-template <typename Derived>
-void append(const Eigen::MatrixBase<Derived>& matrix, BodyKey& key) {
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) key.push_back(matrix(i, j));
-  }
-}
-
-BodyKey key_of(const Body& body, std::size_t mesh_index, const BodyMass& rigid) {
-  BodyKey key{static_cast<double>(mesh_index), rigid.mass};
-  append(rigid.center_of_mass_B, key);
-  append(rigid.inertia_B, key);
+BodyKey key_of(const Body& body, const BodyKeys& keys, const BodyMass& own) {
+  BodyKey key = keys.floating(body, own);
+  append(own.inertia_B, key);
   append(body.dynamics.orientation.coeffs(), key);
   append(body.dynamics.linear_velocity, key);
   append(body.dynamics.angular_velocity, key);
@@ -228,23 +287,6 @@ BodyKey key_of(const Body& body, std::size_t mesh_index, const BodyMass& rigid) 
   }
   return key;
 }
-
-// Gives access to meshes with trees: those of the scene, or copies where their methods need no trees.
-class MeshesWithTrees {
- public:
-  const HydrostaticMesh& of(const PreparedMesh& prepared) {
-    if (prepared.mesh.tree) return prepared.mesh;
-    const auto [copy, is_new] = copies_.try_emplace(&prepared);
-    if (is_new) {
-      copy->second = prepared.mesh;
-      copy->second.tree = build_moment_tree(copy->second);
-    }
-    return copy->second;
-  }
-
- private:
-  std::map<const PreparedMesh*, HydrostaticMesh> copies_;
-};
 
 }  // namespace
 
@@ -270,9 +312,12 @@ std::optional<BodyMass> mass_of_body(const Body& body, const Water& water) {
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W) {
-  const std::optional<BodyMass> rigid = mass_of_body(body, water);
-  if (!rigid) return std::nullopt;
-  const MotionMatrices matrices(body, *rigid, water, current_W);
+  const std::optional<BodyMass> own = mass_of_body(body, water);
+  if (!own) return std::nullopt;
+  const Eigen::Quaterniond q_WB = body.dynamics.orientation.normalized();
+  const LoadedBody loaded(body, mesh, *own, q_WB.conjugate() * water.up_W);
+  const BodyMass& rigid = loaded.total();
+  const MotionMatrices matrices(body, rigid, water, current_W);
   const Vec3 up_B = matrices.R_WB().transpose() * water.up_W;
 
   BodyMotions motions;
@@ -281,20 +326,18 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
   if (!ratio) return std::nullopt;
   motions.added_mass_ratio = *ratio;
 
-  const double displaced = water.density * mesh.volume;  // [kg], of a closed mesh
-  const bool neutral = !mesh.is_open() && std::abs(displaced - rigid->mass) <= kNeutral * rigid->mass;
+  const Displaced whole = loaded.submerged();
+  const double displaced = water.density * whole.volume;  // [kg], of a closed mesh
+  const bool neutral = !mesh.is_open() && std::abs(displaced - rigid.mass) <= kNeutral * rigid.mass;
   if (!neutral) {
-    const std::optional<FloatingPose> floating =
-        find_floating_pose(mesh, body.dynamics.orientation.normalized(), rigid->mass / water.density, water,
-                           rigid->center_of_mass_B);
-    if (floating) {
+    if (const std::optional<FloatingPose> floating = loaded.afloat(q_WB, water)) {
       motions.balance = VerticalBalance::kFloats;
       motions.draft = floating->draft;
       const Vec3 lever_W =
-          floating->hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid->center_of_mass_B;
+          floating->hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid.center_of_mass_B;
       motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
-      const State state = floating_state(mesh, floating->hydrostatics);
-      motions.natural = natural_motions(matrices, state, mesh, rigid->center_of_mass_B, water);
+      const State state = loaded.floating_state(*floating, water);
+      motions.natural = natural_motions(matrices, state, mesh, rigid.center_of_mass_B, water);
       if (!limit_step(matrices, state, matrices.given_twist_B(), StepLimit::kFloating, motions)) {
         return std::nullopt;
       }
@@ -303,14 +346,13 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
   if (mesh.is_open()) return motions;
 
   if (!motions.draft) motions.balance = neutral ? VerticalBalance::kNeutral : VerticalBalance::kSinks;
-  const Vec3 centroid_B = mesh.center_B - rigid->center_of_mass_B + mesh.centroid;
-  const State state = submerged_state(mesh, matrices.R_WB() * centroid_B, water);
+  const State state = loaded.submerged_state(whole, q_WB, water);
   if (!motions.draft) {
-    motions.natural = natural_motions(matrices, state, mesh, rigid->center_of_mass_B, water);
-    const Vec3 lever_W = matrices.R_WB() * centroid_B;
+    motions.natural = natural_motions(matrices, state, mesh, rigid.center_of_mass_B, water);
+    const Vec3 lever_W = matrices.R_WB() * whole.lever_B;
     motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
   }
-  const double force = neutral ? 0.0 : (displaced - rigid->mass) * water.gravity;
+  const double force = neutral ? 0.0 : (displaced - rigid.mass) * water.gravity;
   motions.terminal_velocity = terminal_velocity_of(body, up_B, force);
   bool finite = limit_step(matrices, state, matrices.given_twist_B(), StepLimit::kSubmerged, motions);
   if (motions.terminal_velocity) {
@@ -323,17 +365,19 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
 }
 
 std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_vertices) {
-  std::map<const PreparedMesh*, std::size_t> mesh_index;
-  for (const auto& mesh : scene.meshes()) mesh_index.emplace(mesh.get(), mesh_index.size());
+  const BodyKeys keys(scene);
+  StartFinder starts(scene);
   std::vector<MotionsOfBody> bodies;
   MeshesWithTrees meshes;
   std::map<BodyKey, std::shared_ptr<const BodyMotions>> known;
   std::size_t vertices = 0;
-  for (const Body& body : scene.bodies()) {
+  for (const Body& given : scene.bodies()) {
     MotionsOfBody& entry = bodies.emplace_back();
-    const std::optional<BodyMass> rigid = mass_of_body(body, scene.water());
-    if (!body.dynamics.given || !rigid) continue;
-    BodyKey key = key_of(body, mesh_index.at(body.prepared_mesh), *rigid);
+    const std::optional<BodyMass> own = mass_of_body(given, scene.water());
+    if (!given.dynamics.given || !own) continue;
+    Body body = given;
+    if (const Expected<DynamicsSpec> start = starts.start_of(given)) body.dynamics = *start;
+    BodyKey key = key_of(body, keys, *own);
     auto found = known.find(key);
     if (found == known.end()) {
       vertices += body.prepared_mesh->mesh.surface.x.size();

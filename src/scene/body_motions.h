@@ -1,11 +1,13 @@
 // How a body moves in water at rest: where it floats, how fast it sinks or rises, its natural periods, and
 // the largest step of an explicit integrator.
 //
-// All of it is for the attitude of [body.client] orientation. The axes are E = (e1, e2, up), with e1 the
-// body's x axis projected on the horizontal plane (its y axis where |up . x| > 0.9) and e2 = up x e1: heave
-// is along up, roll about e1, pitch about e2, about the centre of mass C. M is the mass and the inertia about
-// C, s A the added mass about C with s of the present immersion, D = s (D1 + 2 D2 diag(|nu|)) the damping, K
-// the hydrostatic stiffness about C (hydrostatics/hydrostatics.h), to which weight adds nothing.
+// All of it is for the attitude at which a simulation of the body starts (start_pose.h), and for the
+// condition of compartments and tanks in the scene file: the liquids in the tanks are frozen as they lie
+// there, but for their free surfaces, which take from K. The axes are E = (e1, e2, up), with e1 the body's x
+// axis projected on the horizontal plane (its y axis where |up . x| > 0.9) and e2 = up x e1: heave is along
+// up, roll about e1, pitch about e2, about the centre of mass C. M is the mass and the inertia about C, s A
+// the added mass about C with s of the present immersion, D = s (D1 + 2 D2 diag(|nu|)) the damping, K the
+// hydrostatic stiffness about C (hydrostatics/hydrostatics.h), to which weight adds nothing.
 //
 // The drag is that of [body.drag] alone: the damping keys of [body.client] are not the water's. Formulas:
 // hydrodynamics/small_motions.h and docs/mathematics.md, "Small motions".
@@ -22,15 +24,15 @@
 
 namespace buoyancy {
 
-// The mass of a body as the simulator uses it.
+// The mass of a body as the simulator uses it; see loaded_mass.h for the liquids in its tanks.
 struct BodyMass {
   double mass = 0.0;                     // [kg], > 0
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], C
   Mat3 inertia_B = Mat3::Zero();         // [kg m^2], about C
 };
 
-// What [body.client] gives, the rest derived from the mesh as it says. nullopt where an open mesh leaves
-// something unknown, and where a value is not above 0 or not finite.
+// What [body.client] gives, without the liquids; the rest derived from the mesh as it says. nullopt where an
+// open mesh leaves something unknown, and where a value is not above 0 or not finite.
 std::optional<BodyMass> mass_of_body(const Body& body, const Water& water);
 
 // Heave, roll or pitch.
@@ -79,8 +81,8 @@ struct BodyMotions {
   double added_mass_ratio = 0.0;
 };
 
-// mesh: the body's, with its tree. Returns nullopt without a mass, and where a number is beyond double's
-// range. Complexity: O(vertices).
+// mesh: the body's, with its tree. The attitude is that of the body's `orientation`. Returns nullopt without
+// a mass, and where a number is beyond double's range. Complexity: O(vertices).
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W);
 

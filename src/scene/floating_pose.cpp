@@ -88,6 +88,26 @@ class RootSearch {
   std::size_t rounds_ = 0;
 };
 
+// Returns the height at which `excess_at` vanishes within the tolerance; nullopt: the bracket holds none.
+template <typename Excess>
+std::optional<double> find_height(const Bracket& bracket, double volume, double tolerance,
+                                  const Excess& excess_at) {
+  const double largest_excess = excess_at(bracket.low);
+  if (!(volume > 0.0) || !(largest_excess >= 0.0)) return std::nullopt;
+
+  constexpr int kMaxRounds = 200;
+  RootSearch search(bracket, largest_excess, -volume);
+  double height = bracket.low;
+  double excess = largest_excess;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (std::abs(excess) <= tolerance || search.is_narrow()) break;
+    height = search.next();
+    excess = excess_at(height);
+    search.narrow(height, excess);
+  }
+  return height;
+}
+
 }  // namespace
 
 std::optional<FloatingPose> find_floating_pose(const HydrostaticMesh& mesh, const Eigen::Quaterniond& q_WB,
@@ -100,24 +120,33 @@ std::optional<FloatingPose> find_floating_pose(const HydrostaticMesh& mesh, cons
     const BuoyancyResult result = buoyancy(solver, pose_at(height), water, center_of_mass_B);
     return result.status == BuoyancyStatus::kOk ? result.volume - volume : -volume;
   };
-  const Bracket bracket = bracket_of(mesh, up_B);
-  const double largest_excess = excess_at(bracket.low);
-  if (!(volume > 0.0) || !(largest_excess >= 0.0)) return std::nullopt;
-
-  constexpr int kMaxRounds = 200;
-  RootSearch search(bracket, largest_excess, -volume);
-  double height = bracket.low;
-  double excess = largest_excess;
-  for (int round = 0; round < kMaxRounds; ++round) {
-    if (std::abs(excess) <= mesh.volume_tolerance() || search.is_narrow()) break;
-    height = search.next();
-    excess = excess_at(height);
-    search.narrow(height, excess);
-  }
+  const std::optional<double> height =
+      find_height(bracket_of(mesh, up_B), volume, mesh.volume_tolerance(), excess_at);
+  if (!height) return std::nullopt;
   std::optional<Hydrostatics> found =
-      hydrostatics(mesh, pose_at(height), water, center_of_mass_B, center_of_mass_B);
+      hydrostatics(mesh, pose_at(*height), water, center_of_mass_B, center_of_mass_B);
   if (!found) return std::nullopt;
-  return FloatingPose{pose_at(height), depth_under_origin(mesh, up_B) - height, *found};
+  return FloatingPose{pose_at(*height), depth_under_origin(mesh, up_B) - *height, *found};
+}
+
+std::optional<FloatingPose> find_floating_pose(const FloatingBody& body, const Eigen::Quaterniond& q_WB,
+                                               const Water& water) {
+  const Vec3 up_B = q_WB.conjugate() * water.up_W;
+  const double center = up_B.dot(body.center_B());
+  const double lowest = center + lowest_along(body, up_B);
+  const double margin = 1e-9 * body.reach();
+  const Bracket bracket{-(center - lowest_along(body, -up_B)) - margin, -lowest + margin};
+  const double volume = body.total_mass() / water.density;
+  const auto pose_at = [&](double height) { return Pose{water.up_W * (water.level + height), q_WB}; };
+  const auto excess_at = [&](double height) {
+    const std::optional<FloatingState> state = floating_state(body, pose_at(height), water);
+    return state ? state->hydrostatics.volume - volume : -volume;
+  };
+  const std::optional<double> height = find_height(bracket, volume, body.volume_tolerance(), excess_at);
+  if (!height) return std::nullopt;
+  const std::optional<FloatingState> found = floating_state(body, pose_at(*height), water);
+  if (!found) return std::nullopt;
+  return FloatingPose{pose_at(*height), -lowest - *height, found->hydrostatics};
 }
 
 }  // namespace buoyancy

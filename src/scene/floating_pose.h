@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "flotation/floating_body.h"
 #include "hydrostatics/hydrostatics.h"
 
 namespace buoyancy {
@@ -27,5 +28,10 @@ struct FloatingPose {
 std::optional<FloatingPose> find_floating_pose(const HydrostaticMesh& mesh, const Eigen::Quaterniond& q_WB,
                                                double volume, const Water& water,
                                                const Vec3& center_of_mass_B);
+
+// The same for a closed body with compartments and tanks: it displaces its mass, with the liquids. The
+// hydrostatics are those of floating_state(). Complexity: some ten of floating_state().
+std::optional<FloatingPose> find_floating_pose(const FloatingBody& body, const Eigen::Quaterniond& q_WB,
+                                               const Water& water);
 
 }  // namespace buoyancy

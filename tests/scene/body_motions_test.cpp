@@ -309,5 +309,83 @@ TEST(SceneMotions, EqualBodiesShareTheirMotions) {
   EXPECT_FALSE(scene_motions(scene, 16)[2].left_out);
 }
 
+// The box of floating_box.h with 100 kg of liquid in a tank on its bottom.
+std::string box_with_tank(const std::string& fill_and_density, double own_mass) {
+  return kWorld + "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 1, 0.5] }\n" +
+         "[[body.tank]]\nshape = { type = \"box\", size = [1, 0.5, 0.2] }\nposition = [0, 0, -0.15]\n" +
+         fill_and_density + "\n[body.client]\nmass = " + format_number(own_mass) +
+         "\ninertia = [60, 200, 210]\ncenter_of_mass = [0, 0, 0]\n";
+}
+
+TEST(BodyMotions, TanksWithFreeSurfacesLengthenRollAndPitch) {
+  const BodyMotions motions = motions_of(box_with_tank("fill = 0.5\ndensity = 2000", 500.0));
+  const NaturalMotions& natural = motions.natural.value();
+  expect_relative(motions.draft.value(), kDraft, 1e-12, "draft");
+  expect_relative(natural.heave.period(), period(600.0, kDensity * kGravity * kWaterplane), 1e-9, "heave");
+  const double liquid_height = -0.2;  // [m], of its centroid in B
+  const double center = 100.0 * liquid_height / 600.0;
+  const auto rotation = [&](double breadth, double own_inertia, double tank_breadth) {
+    const double other = 0.5 / tank_breadth;  // [m], of the tank across the axis
+    const double free_surface = 2000.0 * other * std::pow(tank_breadth, 3) / 12.0;
+    const double height = (0.5 * kDraft - 0.5 * kDepth) - center + breadth * breadth / (12.0 * kDraft);  // GM
+    const double stiffness = kGravity * (600.0 * height - free_surface);
+    const double inertia = own_inertia + 500.0 * center * center +
+                           100.0 * ((tank_breadth * tank_breadth + 0.01) / 12.0 +
+                                    (liquid_height - center) * (liquid_height - center));
+    return period(inertia, stiffness);
+  };
+  expect_relative(natural.roll.period(), rotation(kBeam, 60.0, 0.5), 1e-9, "roll");
+  expect_relative(natural.pitch.period(), rotation(kLength, 200.0, 1.0), 1e-9, "pitch");
+}
+
+TEST(BodyMotions, FullTanksAreBallast) {
+  // The same masses as one rigid body: 500 kg, and 100 kg of 1 x 0.5 x 0.2 m.
+  const BodyMotions tank = motions_of(box_with_tank("fill = 1\ndensity = 1000", 500.0));
+  const double center = 100.0 * -0.15 / 600.0;
+  const double moved = 500.0 * center * center + 100.0 * std::pow(-0.15 - center, 2);
+  const Vec3 inertia(60.0 + 100.0 / 12.0 * 0.29 + moved, 200.0 + 100.0 / 12.0 * 1.04 + moved,
+                     210.0 + 100.0 / 12.0 * 1.25);
+  const BodyMotions rigid = motions_of(
+      kWorld +
+      "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 1, 0.5] }\n[body.client]\nmass = 600\n" +
+      "center_of_mass = [0, 0, -0.025]\ninertia = [" + format_vector(inertia, 17) + "]\n");
+  expect_relative(tank.natural->heave.period(), rigid.natural->heave.period(), 1e-9, "heave");
+  expect_relative(tank.natural->roll.period(), rigid.natural->roll.period(), 1e-9, "roll");
+  expect_relative(tank.natural->pitch.period(), rigid.natural->pitch.period(), 1e-9, "pitch");
+  expect_relative(tank.max_explicit_step, rigid.max_explicit_step, 1e-9, "step");
+}
+
+TEST(BodyMotions, FloodedCompartmentsAreCutOut) {
+  const std::string client =
+      "[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\nimmersion = \"none\"\n[body.client]\nmass = 300\n"
+      "center_of_mass = [-0.4, 0, -0.1]\ninertia = [60, 200, 210]\n";
+  const BodyMotions flooded = motions_of(
+      kWorld + "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 1, 0.5] }\n[[body.compartment]]\n" +
+      "shape = { type = \"box\", size = [0.8, 1, 0.5] }\nposition = [0.6, 0, 0]\n" + client);
+  const BodyMotions cut =
+      motions_of(kWorld + "[[body]]\nid = 1\n[[body.part]]\n" +
+                 "shape = { type = \"box\", size = [1.2, 1, 0.5] }\nposition = [-0.4, 0, 0]\n" + client);
+  EXPECT_EQ(flooded.balance, VerticalBalance::kFloats);
+  expect_relative(flooded.draft.value(), 0.25, 1e-12, "draft");
+  expect_relative(flooded.natural->heave.period(), cut.natural->heave.period(), 1e-9, "heave");
+  expect_relative(flooded.natural->roll.period(), cut.natural->roll.period(), 1e-9, "roll");
+  expect_relative(flooded.natural->pitch.period(), cut.natural->pitch.period(), 1e-9, "pitch");
+  expect_relative(flooded.terminal_velocity.value(), cut.terminal_velocity.value(), 1e-9, "terminal");
+  expect_relative(flooded.max_explicit_step, cut.max_explicit_step, 1e-9, "step");
+}
+
+TEST(BodyMotions, AreThoseOfTheAttitudeAtWhichABodyStarts) {
+  // A bar of square section that floats on its edge: it rolls about a GM of 0.2357 m.
+  const std::string bar =
+      kWorld +
+      "[[body]]\nid = 1\nshape = { type = \"box\", size = [4, 1, 1] }\n[body.client]\ndensity = 500\n";
+  EXPECT_EQ(motions_of(bar).natural->roll.frequency, 0.0);
+  const BodyMotions motions = motions_of(bar + "start = \"equilibrium\"\n");
+  expect_relative(motions.draft.value(), std::sqrt(0.5), 1e-9, "draft");
+  EXPECT_LT(motions.turning_lever, 1e-9);
+  expect_relative(motions.natural->roll.period(),
+                  period(2000.0 / 6.0, 2000.0 * kGravity * std::sqrt(2.0) / 6.0), 1e-6, "roll");
+}
+
 }  // namespace
 }  // namespace buoyancy
