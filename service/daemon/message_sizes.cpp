@@ -39,9 +39,11 @@ Json to_json(const std::optional<LargestMessage>& message) {
   return message ? to_json(*message) : Json(nullptr);
 }
 
-std::vector<Warning> warnings_of(const Scene& scene, const LargestMessages& messages,
+std::vector<Warning> warnings_of(const Scene& scene, const std::vector<FlotationOfBody>& flotation,
+                                 const LargestMessages& messages,
                                  const std::optional<ReceiveBuffer>& buffer) {
   std::vector<Warning> warnings = scene_warnings(scene);
+  std::ranges::move(flotation_warnings(scene, flotation), std::back_inserter(warnings));
   if (buffer) std::ranges::move(size_warnings(messages, *buffer), std::back_inserter(warnings));
   return warnings;
 }
@@ -98,7 +100,8 @@ std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& mess
 
 std::string check_report_text(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer) {
-  std::string text = scene_report_text(scene, {.motions = true}) + "\nmessages\n";
+  const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
+  std::string text = scene_report_text(scene, {.motions = true, .flotation = &flotation}) + "\nmessages\n";
   text += to_text(messages.request) + to_text(messages.response);
   if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
   if (messages.loads) text += to_text(*messages.loads);
@@ -106,7 +109,7 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
     text += "  receive buffer that this machine grants this user: " + std::to_string(buffer->max_message) +
             " bytes\n";
   }
-  for (const Warning& warning : warnings_of(scene, messages, buffer)) {
+  for (const Warning& warning : warnings_of(scene, flotation, messages, buffer)) {
     text += "warning: " + warning.message() + "\n";
   }
   return text;
@@ -114,14 +117,15 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
 
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
                               const std::optional<ReceiveBuffer>& buffer) {
-  Json report = Json::parse(scene_report_json(scene, {.motions = true}));
+  const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
+  Json report = Json::parse(scene_report_json(scene, {.motions = true, .flotation = &flotation}));
   report["messages"] = {{"request", to_json(messages.request)},
                         {"response", to_json(messages.response)},
                         {"hydrostatics", to_json(messages.hydrostatics)},
                         {"loads", to_json(messages.loads)}};
   report["receive_buffer"] = buffer ? Json(buffer->max_message) : Json(nullptr);
   report["warnings"] = Json::array();
-  for (const Warning& warning : warnings_of(scene, messages, buffer)) {
+  for (const Warning& warning : warnings_of(scene, flotation, messages, buffer)) {
     report["warnings"].push_back(warning.message());
   }
   return report.dump(2) + "\n";

@@ -8,6 +8,7 @@
 
 #include "base/format.h"
 #include "hydrodynamics/coefficient_checks.h"
+#include "scene/body_warning_list.h"
 
 namespace buoyancy {
 namespace {
@@ -18,36 +19,6 @@ constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "about x", "about
 std::string format_rounded(double value) {
   return format_number(value, 4);
 }
-
-// Collects warnings without their subjects, each with the bodies to which it applies.
-class WarningList {
- public:
-  void add(const Body& body, Warning warning) {
-    const auto [entry, is_new] = index_.try_emplace(warning.message(), entries_.size());
-    if (is_new) entries_.push_back({std::move(warning), body.id, 0});
-    ++entries_[entry->second].bodies;
-  }
-
-  std::vector<Warning> with_subjects(const std::string& scene_name) {
-    std::vector<Warning> warnings;
-    for (Entry& entry : entries_) {
-      entry.warning.subject = scene_name + ": body " + std::to_string(entry.first_id);
-      if (entry.bodies > 1) entry.warning.subject += " and " + pluralize(entry.bodies - 1, "other", "others");
-      warnings.push_back(std::move(entry.warning));
-    }
-    return warnings;
-  }
-
- private:
-  struct Entry {
-    Warning warning;
-    std::int32_t first_id = 0;
-    std::int64_t bodies = 0;
-  };
-
-  std::map<std::string, std::size_t> index_;
-  std::vector<Entry> entries_;
-};
 
 // Searches matrices that it has searched before only once.
 class DrivingTwists {
@@ -66,7 +37,8 @@ class DrivingTwists {
   std::map<std::array<double, 36>, std::optional<Vec6>> found_;
 };
 
-void warn_of_driving_drag(const Body& body, const Mat6& quadratic, DrivingTwists& twists, WarningList& list) {
+void warn_of_driving_drag(const Body& body, const Mat6& quadratic, DrivingTwists& twists,
+                          BodyWarningList& list) {
   const std::optional<Vec6> twist = twists.find(quadratic);
   if (!twist) return;
   list.add(body,
@@ -79,7 +51,8 @@ void warn_of_driving_drag(const Body& body, const Mat6& quadratic, DrivingTwists
 }
 
 // Is the centre farther from the box of the mesh than the mesh is large?
-void warn_of_far_center(const Body& body, std::string_view table, const Vec3& center_B, WarningList& list) {
+void warn_of_far_center(const Body& body, std::string_view table, const Vec3& center_B,
+                        BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const Vec3 from_center = center_B - mesh.center_B;
   const Vec3 nearest = from_center.cwiseMax(mesh.box_min).cwiseMin(mesh.box_max);
@@ -98,7 +71,7 @@ void warn_of_far_center(const Body& body, std::string_view table, const Vec3& ce
 // reported.
 void warn_of_size(const Body& body, const std::string& name, const Mat6& matrix, const Vec6& limit,
                   std::string_view unit, std::string_view rotation_unit, std::string_view expected,
-                  WarningList& list) {
+                  BodyWarningList& list) {
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!(matrix(i, i) > limit[i])) continue;
     std::string suffix{' '};
@@ -117,7 +90,7 @@ void warn_of_size(const Body& body, const std::string& name, const Mat6& matrix,
 
 // In numbers of a sphere around the mesh, and of 100 times the displaced water: a thin plate exceeds the
 // latter.
-void warn_of_added_mass(const Body& body, const Mat6& matrix, const Water& water, WarningList& list) {
+void warn_of_added_mass(const Body& body, const Mat6& matrix, const Water& water, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const double L = mesh.diagonal;
   const double mass = water.density * std::max(100.0 * std::abs(mesh.volume), L * L * L);
@@ -128,7 +101,7 @@ void warn_of_added_mass(const Body& body, const Mat6& matrix, const Water& water
 }
 
 // A drag coefficient of 100 on the whole surface.
-void warn_of_quadratic_drag(const Body& body, const Mat6& matrix, const Water& water, WarningList& list) {
+void warn_of_quadratic_drag(const Body& body, const Mat6& matrix, const Water& water, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const double L = mesh.diagonal;
   const double drag = 100.0 * 0.5 * water.density * mesh.area;
@@ -138,7 +111,7 @@ void warn_of_quadratic_drag(const Body& body, const Mat6& matrix, const Water& w
                "a drag coefficient of at most 100 on the whole surface", list);
 }
 
-void warn_of_missing_bound(const Body& body, WarningList& list) {
+void warn_of_missing_bound(const Body& body, BodyWarningList& list) {
   const Method method = body.solver.method();
   if (method == Method::kHierarchical) return;
   list.add(body, {"", "method = \"" + std::string(to_string(method)) + "\" with drag or added mass in waves",
@@ -151,7 +124,7 @@ void warn_of_missing_bound(const Body& body, WarningList& list) {
 }  // namespace
 
 std::vector<Warning> coefficient_warnings(const Scene& scene) {
-  WarningList list;
+  BodyWarningList list;
   DrivingTwists twists;
   const bool has_waves = scene.sea() != nullptr || scene.receives_sea();
   for (const Body& body : scene.bodies()) {

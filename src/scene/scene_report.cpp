@@ -15,7 +15,9 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "scene/body_motions.h"
 #include "scene/coefficient_warnings.h"
+#include "scene/flotation_report.h"
 #include "scene/motion_report.h"
+#include "scene/subdivision_report.h"
 #include "scene/subdivision_warnings.h"
 
 namespace buoyancy {
@@ -81,7 +83,21 @@ std::string body_text(const Body& body, const Scene& scene) {
   } else {
     text += "  mass          unknown: the mesh is open\n";
   }
+  text += subdivision_text(body);
   return text + coefficients_text(body);
+}
+
+// "body 4, 6; tank 'ballast 1' of body 2"
+std::string users_text(const PreparedMesh& mesh, const Scene& scene) {
+  std::string text;
+  for (const Body* body : users_of(mesh, scene)) {
+    text += (text.empty() ? "body " : ", ") + std::to_string(body->id);
+  }
+  for (const SectionUser& user : section_users_of(mesh, scene)) {
+    if (!text.empty()) text += "; ";
+    text += to_text(user);
+  }
+  return text;
 }
 
 double shortest_wavelength(const Sea& sea) {
@@ -244,6 +260,7 @@ Json to_json(const Body& body, const Scene& scene) {
             {"outputs", outputs_of(body)},
             {"mass", to_json(mass_of(body, scene.water()))},
             {"density", to_json(density_of(body, scene.water()))}};
+  add_subdivision(body, scene, json);
   if (body.hydrodynamics == nullptr) return json;
   const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
   if (coefficients.drag) json["drag"] = to_json(*coefficients.drag);
@@ -280,14 +297,10 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
     text += '\n';
     text += body_text(body, scene);
     if (options.motions) text += motions_text(motions[i], body, scene.water());
+    if (options.flotation != nullptr) text += flotation_text((*options.flotation)[i], body);
   }
   for (const auto& mesh : scene.meshes()) {
-    text += "\nmesh " + to_text(mesh->report) + "\n  used by       ";
-    const std::vector<const Body*> users = users_of(*mesh, scene);
-    for (std::size_t i = 0; i < users.size(); ++i) {
-      text += (i == 0 ? "body " : ", ") + std::to_string(users[i]->id);
-    }
-    text += "\n";
+    text += "\nmesh " + to_text(mesh->report) + "\n  used by       " + users_text(*mesh, scene) + "\n";
   }
   return text;
 }
@@ -299,14 +312,23 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
     bodies.push_back(to_json(body, scene));
-    if (!options.motions || !body.dynamics.given) continue;
-    bodies.back()["motions"] = motions[i].motions ? to_json(*motions[i].motions) : Json(nullptr);
+    if (!body.dynamics.given) continue;
+    if (options.motions) {
+      bodies.back()["motions"] = motions[i].motions ? to_json(*motions[i].motions) : Json(nullptr);
+    }
+    if (options.flotation != nullptr) {
+      const FlotationOfBody& entry = (*options.flotation)[i];
+      bodies.back()["flotation"] =
+          entry.flotation ? to_json(*entry.flotation, body, scene.water()) : Json(nullptr);
+    }
   }
   Json meshes = Json::array();
   for (const auto& mesh : scene.meshes()) {
     Json report = to_json(mesh->report);
     report["bodies"] = Json::array();
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
+    for (const SectionUser& user : section_users_of(*mesh, scene))
+      report["sections"].push_back(to_json(user));
     meshes.push_back(std::move(report));
   }
   Json water = to_json(scene.water());

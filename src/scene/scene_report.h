@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "scene/body_flotation.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
@@ -14,6 +15,9 @@ struct SceneReportOptions {
   // How the bodies with [body.client] move, see body_motions.h. Takes seconds for 10,000 large bodies that
   // all differ.
   bool motions = false;
+  // Of the scene (scene_flotation()): the attitudes at which its bodies float; nullptr: they are not
+  // reported.
+  const std::vector<FlotationOfBody>* flotation = nullptr;
 };
 
 // Returns lines for a terminal, with a final newline.
@@ -36,6 +40,16 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // with [body.client]. "motions" is null where it is unknown. Else it holds the fields of BodyMotions by name,
 // with "heave", "roll" and "pitch" as objects, null where nothing restores the motion: "period" and, by name,
 // the other fields of NaturalMotion. Infinite numbers are null.
+//
+// With options.flotation "flotation" of a body with [body.client], null where it is unknown or left out:
+// "outcome" ("floats", "sinks", "neutrally_buoyant", "takes_in_water", "out_of_range"), "start" ("pose" or
+// "equilibrium"), "mass" [kg] with the liquids in its tanks, "attitudes", "truncated", "turn" [degrees]
+// (null: it reaches none) and "starts_unstable". An attitude has "reached" (the body turns to it from its
+// `orientation`), "position" and "quaternion_wxyz" (at the place and heading of [body.client]), "draft",
+// "heel" and "trim" [degrees], "metacentric_heights", "energy" [J] and "family", see equilibrium.h.
+//
+// "parts", "compartments" and "tanks" of a body, and "sections" of a mesh, which lists those that use it,
+// exist only where the scene has them.
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
 // Warnings about a scene that can be used: a sea that is too steep for linear theory; a full quadratic drag
