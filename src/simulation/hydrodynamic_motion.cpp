@@ -73,7 +73,8 @@ HydrodynamicMotion::HydrodynamicMotion(const Body& body, const RigidBody& rigid,
   }
 }
 
-HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double volume, const Pose& pose) const {
+HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, const Pose& pose) const {
+  const double volume = displaced + flooded_volume(rigid_, pose, water_);  // of the hull
   const HydrostaticMesh& mesh = body_->solver.mesh();
   const HydrodynamicCoefficients& coefficients = body_->hydrodynamics->coefficients();
   const auto area = [&] { return wetted_area(mesh, pose, water_).value; };
@@ -244,7 +245,8 @@ std::optional<double> HydrodynamicMotion::added_kinetic_energy_at_pose(const Rig
   const Pose pose = pose_of(rigid_, state);
   const BuoyancyResult result = buoyancy(body_->solver, pose, water_, body_->reference_B);
   if (result.status != BuoyancyStatus::kOk) return std::nullopt;
-  return added_kinetic_energy(state, immersions(result.volume, pose).added_mass);
+  const double displaced = result.volume - flooded_volume(rigid_, pose, water_);
+  return added_kinetic_energy(state, immersions(displaced, pose).added_mass);
 }
 
 }  // namespace buoyancy

@@ -58,7 +58,8 @@ class HydrodynamicMotion {
     double drag = 0.0;
     double added_mass = 0.0;
   };
-  Immersions immersions(double volume, const Pose& pose) const;
+  // displaced: [m^3], without what open compartments take from it; of these, the water at rest is taken.
+  Immersions immersions(double displaced, const Pose& pose) const;
   double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
 
   Vec6 relative_twist(const RigidBodyState& state) const;

@@ -7,9 +7,11 @@
 
 #include <Eigen/Core>
 
+#include "flotation/floating_body.h"
 #include "geometry/rotation_between.h"
 #include "hydrodynamics/symmetric_eigenvalues.h"
 #include "hydrostatics/hydrostatics.h"
+#include "scene/loaded_mass.h"
 #include "simulation/hydrodynamic_motion.h"
 
 namespace buoyancy {
@@ -54,11 +56,44 @@ struct AddedMass {
   ImmersionScaling scaling;
 };
 
-double frequency_at(const HydrostaticMesh& mesh, const RigidBody& rigid,
-                    const std::optional<AddedMass>& added_mass, const RigidBodyState& state,
-                    const Water& water) {
-  const std::optional<Hydrostatics> result =
-      hydrostatics(mesh, pose_of(rigid, state), water, rigid.center_of_mass_B, std::nullopt);
+// What the water does to a body: with its compartments and tanks, if it has them.
+class WaterLoad {
+ public:
+  WaterLoad(const HydrostaticMesh& mesh, const RigidBody& rigid, const Water& water)
+      : mesh_(&mesh), rigid_(&rigid), water_(&water) {
+    if (!rigid.contents) return;
+    std::vector<PlacedMesh> meshes = rigid.contents->compartments;
+    meshes.insert(meshes.begin(), {.mesh = &mesh});
+    const Expected<FloatingBody> body = FloatingBody::make(meshes, rigid.mass, rigid.center_of_mass_B);
+    if (body) loaded_ = *body;
+  }
+
+  // About the centre of mass C, with what weights add to the stiffness. The volume is that of the hull.
+  std::optional<Hydrostatics> at(const Pose& pose) const {
+    if (!rigid_->contents) {
+      return hydrostatics(*mesh_, pose, *water_, rigid_->center_of_mass_B, std::nullopt);
+    }
+    if (!loaded_) return std::nullopt;
+    const std::optional<FloatingState> state = floating_state(*loaded_, pose, *water_);
+    if (!state) return std::nullopt;
+    const BodyContents& contents = *rigid_->contents;
+    Hydrostatics result = state->hydrostatics;
+    result.volume += flooded_volume(*rigid_, pose, *water_);
+    result.stiffness +=
+        stiffness_of_weights(contents.own, contents.tanks, rigid_->center_of_mass_B, pose.q_WB, *water_);
+    return result;
+  }
+
+ private:
+  const HydrostaticMesh* mesh_;
+  const RigidBody* rigid_;
+  const Water* water_;
+  std::optional<FloatingBody> loaded_;
+};
+
+double frequency_at(const WaterLoad& load, const HydrostaticMesh& mesh, const RigidBody& rigid,
+                    const std::optional<AddedMass>& added_mass, const RigidBodyState& state) {
+  const std::optional<Hydrostatics> result = load.at(pose_of(rigid, state));
   if (!result) return 0.0;
   if (added_mass) {
     const double s =
@@ -123,9 +158,25 @@ double natural_frequency_bound(const Body& body, const RigidBody& rigid, const W
   // K is the sum of a waterplane term, whose scaled trace is at most rho g A (1/m + l^2/I), and of a buoyancy
   // lever term, at most rho g V l / I. No waterplane is larger than the whole surface A, and V <= A l / 3.
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
-  const double lever = mesh.max_lever_arm(rigid.center_of_mass_B);
-  const double levers = 4.0 / 3.0 * lever * lever / rigid.principal_inertia[0];
-  return std::sqrt(water.density * water.gravity * mesh.area * (1.0 / rigid.mass + levers));
+  const double inertia = rigid.principal_inertia[0];
+  const auto from_water = [&](const HydrostaticMesh& displacing) {
+    const double lever = displacing.max_lever_arm(rigid.center_of_mass_B);
+    const double levers = 4.0 / 3.0 * lever * lever / inertia;
+    return water.density * water.gravity * displacing.area * (1.0 / rigid.mass + levers);
+  };
+  double square = from_water(mesh);
+  if (rigid.contents) {
+    // Flooding adds at most what a compartment would displace, and a weight at most g m l / I twice.
+    for (const PlacedMesh& compartment : rigid.contents->compartments)
+      square += from_water(*compartment.mesh);
+    const BodyMass& own = rigid.contents->own;
+    double moment = own.mass * (own.center_of_mass_B - rigid.center_of_mass_B).norm();  // [kg m]
+    for (const Tank& tank : rigid.contents->tanks) {
+      moment += tank.liquid_mass() * tank.mesh->max_lever_arm(rigid.center_of_mass_B);
+    }
+    square += 2.0 * water.gravity * moment / inertia;
+  }
+  return std::sqrt(square);
 }
 
 HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidBody& rigid,
@@ -143,9 +194,10 @@ HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidB
                    .value_or(0.0);
   }
 
+  const WaterLoad load(mesh, rigid, water);
   HighestNaturalFrequency highest;
   const auto consider = [&](const RigidBodyState& candidate, double draft) {
-    const double frequency = frequency_at(mesh, rigid, added_mass, candidate, water);
+    const double frequency = frequency_at(load, mesh, rigid, added_mass, candidate);
     if (frequency > highest.frequency) highest = {frequency, draft};
   };
   const double height = water.up_W.dot(state.center_W) - water.level;

@@ -2,14 +2,14 @@
 //
 // Small motions about a pose obey M x'' = -K x with M = diag(m, I) about the centre of mass, for a body with
 // added mass M = diag(m, I) + s A with the immersion of that pose, and K the hydrostatic stiffness about it
-// (hydrostatics/hydrostatics.h); weight adds nothing to K there. The frequency
-// of a pose is the square root of the largest eigenvalue of the symmetric part of M^-1/2 K M^-1/2, or 0 where
-// no eigenvalue is positive. The maximum is taken over the present pose and a sweep of others: 16 levels from
-// the lowest to the highest vertex, with up along the body's principal axes, their bisectors and the present
-// up direction, as far as the body's mechanical energy allows. A body that is still dry therefore gets the
-// frequency that it will have in the water, and a deck that stays dry does not contribute. The sweep is a
-// sample: between its poses the frequency may be a little higher. It is exact for a wall-sided body in its
-// upright range.
+// (hydrostatics/hydrostatics.h), less what open compartments take from it; weight adds nothing to K there,
+// but for the liquids in tanks (stiffness_of_weights()). The frequency of a pose is the square root of the
+// largest eigenvalue of the symmetric part of M^-1/2 K M^-1/2, or 0 where no eigenvalue is positive. The
+// maximum is taken over the present pose and a sweep of others: 16 levels from the lowest to the highest
+// vertex, with up along the body's principal axes, their bisectors and the present up direction, as far as
+// the body's mechanical energy allows. A body that is still dry therefore gets the frequency that it will
+// have in the water, and a deck that stays dry does not contribute. The sweep is a sample: between its poses
+// the frequency may be a little higher. It is exact for a wall-sided body in its upright range.
 #pragma once
 
 #include "simulation/rigid_body.h"

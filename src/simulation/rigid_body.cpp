@@ -8,7 +8,10 @@
 #include <Eigen/Eigenvalues>
 
 #include "hydrostatics/buoyancy.h"
+#include "hydrostatics/hierarchical.h"
 #include "messages/conversions.h"
+#include "scene/floating_bodies.h"
+#include "scene/loaded_mass.h"
 
 namespace buoyancy {
 namespace {
@@ -22,6 +25,54 @@ std::string number(double value) {
 Error open_mesh_error(const std::string& subject) {
   return {subject, "an open mesh without mass, center_of_mass and inertia", "all three in [body.client]",
           "an open mesh encloses no volume to derive them from", "Set all three, or close the mesh"};
+}
+
+// Sets mass, centre of mass and inertia. Returns false where the inertia is not positive definite.
+bool set_mass(const BodyMass& mass, RigidBody& rigid) {
+  rigid.mass = mass.mass;
+  rigid.center_of_mass_B = mass.center_of_mass_B;
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(mass.inertia_B);
+  rigid.principal_inertia = principal.eigenvalues();
+  rigid.principal_axes_B = principal.eigenvectors();
+  return rigid.principal_inertia.minCoeff() > 0.0 && rigid.principal_inertia.allFinite();
+}
+
+// The liquids, and the first moment [kg m] of them and of the body, about C in B's axes.
+struct Weights {
+  double mass = 0.0;  // [kg]
+  Vec3 moment = Vec3::Zero();
+};
+
+Weights weights_at(const RigidBody& body, const BodyContents& contents, const Vec3& up_B) {
+  LiquidSum liquids;
+  for (const Tank& tank : contents.tanks) {
+    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B, liquids);
+  }
+  const BodyMass& own = contents.own;
+  return {own.mass + liquids.mass,
+          own.mass * (own.center_of_mass_B - body.center_of_mass_B) + liquids.moment};
+}
+
+// [J], potential of what the body weighs, with its liquids.
+double weight_potential(const RigidBody& body, const RigidBodyState& state, const Water& water) {
+  const double center_height = water.up_W.dot(state.center_W) - water.level;
+  if (!body.contents) return body.mass * water.gravity * center_height;
+  const Vec3 up_B = state.q_WB.conjugate() * water.up_W;
+  const Weights weights = weights_at(body, *body.contents, up_B);
+  return water.gravity * (weights.mass * center_height + up_B.dot(weights.moment));
+}
+
+// Calls add(volume, point) for what each open compartment takes from the displaced volume: [m^3], and [m] its
+// centroid in B.
+template <typename Add>
+void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& water, const Add& add) {
+  if (!body.contents) return;
+  for (const PlacedMesh& compartment : body.contents->compartments) {
+    const HydrostaticMesh& mesh = *compartment.mesh;
+    const Displacement displaced = hierarchical(mesh, water_plane_in_body(pose, water, mesh.center_B));
+    if (!(displaced.volume > 0.0)) continue;
+    add(-compartment.factor * displaced.volume, Vec3(mesh.center_B + displaced.moment / displaced.volume));
+  }
 }
 
 }  // namespace
@@ -44,17 +95,20 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
                        "Set mass or density in [body.client]"});
   }
 
-  rigid.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
+  BodyMass own;
+  own.mass = rigid.mass;
+  own.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
+  own.inertia_B = spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (own.mass / enclosed.volume));
   rigid.reference_B = body.reference_B;
   rigid.linear_damping = {spec.linear_damping, spec.linear_damping_quadratic};
   rigid.angular_damping = {spec.angular_damping, spec.angular_damping_quadratic};
-
-  const Mat3 inertia_B =
-      spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (rigid.mass / enclosed.volume));
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(inertia_B);
-  rigid.principal_inertia = principal.eigenvalues();
-  rigid.principal_axes_B = principal.eigenvectors();
-  if (!(rigid.principal_inertia.minCoeff() > 0.0) || !rigid.principal_inertia.allFinite()) {
+  BodyMass total = own;
+  if (body.subdivision != nullptr) {
+    const Vec3 up_B = spec.orientation.normalized().conjugate() * water.up_W;
+    total = mass_with_liquids(body, own, nullptr, up_B);
+    rigid.contents = {own, tanks_of(body), open_compartments(body)};
+  }
+  if (!set_mass(total, rigid)) {
     return make_error({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),
                        "a positive definite inertia matrix (kg m^2)", "",
                        "Set or correct inertia in [body.client]"});
@@ -100,8 +154,15 @@ Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWr
                 const Water& water) {
   const Vec3 buoyancy_W = to_vec3(wrench.force);
   const Vec3 reference_from_center_W = state.q_WB * Vec3(body.reference_B - body.center_of_mass_B);
-  return {buoyancy_W - body.mass * water.gravity * water.up_W,
-          to_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
+  const double weighed_mass = body.contents ? body.contents->own.mass : body.mass;
+  Load load{buoyancy_W - weighed_mass * water.gravity * water.up_W,
+            to_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
+  if (body.contents) {
+    const BodyMass& own = body.contents->own;
+    const Vec3 lever_W = state.q_WB * Vec3(own.center_of_mass_B - body.center_of_mass_B);
+    load.torque_W -= own.mass * water.gravity * lever_W.cross(water.up_W);
+  }
+  return load;
 }
 
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
@@ -109,23 +170,34 @@ double kinetic_energy(const RigidBody& body, const RigidBodyState& state) {
          0.5 * state.angular_momentum_W.dot(angular_velocity_W(body, state));
 }
 
+double flooded_volume(const RigidBody& body, const Pose& pose, const Water& water) {
+  double sum = 0.0;
+  for_each_flooded(body, pose, water, [&](double volume, const Vec3& /*centroid_B*/) { sum += volume; });
+  return sum;
+}
+
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water) {
-  const double center_height = water.up_W.dot(state.center_W) - water.level;
   const Vec3 center_of_buoyancy_W = pose_of(body, state).p_WB + to_vec3(wrench.center_of_buoyancy);
   const double buoyancy_height = water.up_W.dot(center_of_buoyancy_W) - water.level;
-  return kinetic_energy(body, state) + body.mass * water.gravity * center_height -
+  return kinetic_energy(body, state) + weight_potential(body, state, water) -
          water.density * water.gravity * wrench.submerged_volume * buoyancy_height;
 }
 
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water) {
-  const BuoyancyResult result = buoyancy(solver, pose_of(body, state), water, body.reference_B);
+  const Pose pose = pose_of(body, state);
+  const BuoyancyResult result = buoyancy(solver, pose, water, body.reference_B);
   if (result.status != BuoyancyStatus::kOk) return std::nullopt;
   BodyWrench wrench;
   wrench.submerged_volume = result.volume;
   wrench.center_of_buoyancy = to_array(result.center_of_buoyancy_W);
-  return mechanical_energy(body, state, wrench, water);
+  double energy = mechanical_energy(body, state, wrench, water);
+  for_each_flooded(body, pose, water, [&](double volume, const Vec3& centroid_B) {
+    const double height = water.up_W.dot(pose.p_WB + pose.q_WB * centroid_B) - water.level;
+    energy += water.density * water.gravity * volume * height;
+  });
+  return energy;
 }
 
 }  // namespace buoyancy

@@ -4,16 +4,23 @@
 // the angular momentum about C, both in W. No gyroscopic term appears: without torque L is constant in W,
 // while w = I_W^-1 L is not. Messages refer to B's origin and to the body's reference point r: the velocity
 // of B's origin is v - w x (R c), and tau about C = tau about r + (r - C) x F.
+//
+// The liquids in the tanks of a body are frozen in its mass, in C and in its inertia (scene/loaded_mass.h),
+// so that it falls with g. Their weight is part of the wrench, where they are at the present attitude; that
+// of the body without them acts at its own centre of mass, which is not C.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "base/error.h"
+#include "flotation/floating_body.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
 #include "messages/request.h"
+#include "scene/body_motions.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
@@ -24,6 +31,13 @@ struct Damping {
   double quadratic = 0.0;  // [N/(m/s)^2] or [N m/(rad/s)^2], >= 0
 };
 
+// What a body with compartments or tanks consists of beside its mesh.
+struct BodyContents {
+  BodyMass own;                          // without the liquids
+  std::vector<Tank> tanks;               // their meshes are owned by the scene
+  std::vector<PlacedMesh> compartments;  // that are open to the sea; likewise
+};
+
 struct RigidBody {
   double mass = 1.0;                         // [kg], > 0
   Vec3 center_of_mass_B = Vec3::Zero();      // [m]
@@ -32,6 +46,7 @@ struct RigidBody {
   Mat3 principal_axes_B = Mat3::Identity();  // column i: unit axis of principal_inertia[i]
   Damping linear_damping;                    // resists the velocity of C
   Damping angular_damping;                   // resists the angular velocity
+  std::optional<BodyContents> contents;      // set if the body has compartments or tanks
 };
 
 struct RigidBodyState {
@@ -49,11 +64,12 @@ struct Load {
 
 // Makes the body that [body.client] describes. Values that are not given are derived from the mesh: the mass
 // from the enclosed volume and the density (half the water's density by default), the centre of mass and the
-// inertia from the enclosed volume at uniform density. Errors: an open mesh, which encloses no volume,
-// without mass, center_of_mass and inertia; a mass or a principal inertia that is not above 0.
+// inertia from the enclosed volume at uniform density. The liquids are those of the scene file, frozen at the
+// `orientation` of [body.client]. Errors: an open mesh, which encloses no volume, without mass,
+// center_of_mass and inertia; a mass or a principal inertia that is not above 0.
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water);
 
-// Initial state. [body.client] gives position and velocity of B's origin.
+// Initial state. [body.client] gives position and velocity of B's origin, `start` plays no part.
 RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec);
 
 Vec3 angular_velocity_W(const RigidBody& body, const RigidBodyState& state);  // [rad/s]
@@ -67,10 +83,14 @@ Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWr
 // Kinetic energy [J]: 1/2 m v^2 + 1/2 L . w.
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state);
 
+// [m^3], by which the compartments that are open to the sea reduce what the body displaces at a pose in water
+// at rest.
+double flooded_volume(const RigidBody& body, const Pose& pose, const Water& water);
+
 // Mechanical energy [J]: kinetic energy + m g z_C - rho g V z_b, with z_C and z_b the heights of C and of the
 // centre of buoyancy over the water's level. It is 0 for a body at rest with z_C = 0 that displaces nothing.
 // The last term is the potential of the buoyancy: bringing dV to the depth d below the surface takes rho g d
-// dV.
+// dV. With liquids in tanks, z_C is the height of the centre of mass of all at the present attitude.
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water);
 // Same, with the wrench computed by the solver, for a state whose pose has no wrench yet. nullopt: the

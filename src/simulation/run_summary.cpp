@@ -45,8 +45,10 @@ BodySummary summarize(const SimulatedBody& body, const Water& water) {
   const Vec3& up_B = plane.up_B;
   summary.roll = std::atan2(up_B.y(), up_B.z());
   summary.pitch = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
+  // A body at rest has the kinetic energy of rounding, of which no share says anything.
+  constexpr double kRounding = 1e-14;  // of m g L
   const EnergyStats& energy = body.energy;
-  if (energy.max_kinetic > 0.0) {
+  if (energy.max_kinetic > kRounding * body.rigid.mass * water.gravity * mesh.diagonal) {
     summary.energy_drift = (energy.current - energy.initial) / energy.max_kinetic;
     summary.energy_range = (energy.max - energy.min) / energy.max_kinetic;
   }

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "scene/start_pose.h"
+
 namespace buoyancy {
 namespace {
 
@@ -75,14 +77,19 @@ Error not_ok_error(const SimulatedBody& body, double time) {
 
 Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOptions& options) {
   Simulation simulation(scene, options);
+  StartFinder starts(scene);
   for (const Body& body : scene.bodies()) {
     if (!body.dynamics.given) continue;
-    Expected<RigidBody> rigid = make_rigid_body(body, scene.water());
+    const Expected<DynamicsSpec> start = starts.start_of(body);
+    if (!start) return make_error(start.error());
+    Body started = body;
+    started.dynamics = *start;
+    Expected<RigidBody> rigid = make_rigid_body(started, scene.water());
     if (!rigid) return make_error(rigid.error());
     SimulatedBody simulated;
     simulated.body = &body;
     simulated.rigid = *rigid;
-    simulated.state = initial_state(*rigid, body.dynamics);
+    simulated.state = initial_state(*rigid, *start);
     if (body.hydrodynamics != nullptr) {
       simulated.hydrodynamics =
           std::make_unique<HydrodynamicMotion>(body, *rigid, scene.water(), scene.current_W());

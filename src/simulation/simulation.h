@@ -50,7 +50,8 @@ struct SimulatedBody {
 
 class Simulation {
  public:
-  // scene must outlive the simulation. Errors: no body with a [body.client]; those of make_rigid_body().
+  // scene must outlive the simulation. Bodies start as StartFinder says (scene/start_pose.h). Errors: no body
+  // with a [body.client]; those of make_rigid_body() and of StartFinder::start_of().
   static Expected<Simulation> make(const Scene& scene, const SimulationOptions& options);
 
   // Returns the request for the current poses, valid until the next call. The velocities of
