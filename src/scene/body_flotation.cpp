@@ -144,7 +144,7 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
     const std::optional<BodyMass> own = mass_of_body(body, scene.water());
     if (!body.dynamics.given || !own) continue;
     BodyKey key = keys.floating(body, *own);
-    append(body.dynamics.orientation.coeffs(), key);
+    append_direction(body.dynamics.orientation.normalized().conjugate() * scene.water().up_W, key);
     auto found = known.find(key);
     if (found == known.end()) {
       vertices += std::max(body.prepared_mesh->mesh.surface.x.size(), kMinVertices);

@@ -1,6 +1,13 @@
 #include "scene/body_key.h"
 
+#include <cmath>
+
 namespace buoyancy {
+
+void append_direction(const Vec3& direction, BodyKey& key) {
+  constexpr double kPerUnit = 1e12;
+  for (const double component : direction) key.push_back(std::round(kPerUnit * component) + 0.0);  // no -0
+}
 
 BodyKeys::BodyKeys(const Scene& scene) {
   for (const auto& mesh : scene.meshes()) {

@@ -18,6 +18,9 @@ void append(const Eigen::MatrixBase<Derived>& matrix, BodyKey& key) {
   }
 }
 
+// Of a unit vector: equal within some 1e-12, so that bodies of any heading share what depends on up alone.
+void append_direction(const Vec3& direction, BodyKey& key);
+
 // Keys of the bodies of one scene, which outlives it.
 class BodyKeys {
  public:

@@ -111,7 +111,7 @@ const ReachedEquilibrium* StartFinder::reached_from_orientation(const Body& body
   const std::optional<BodyMass> own = mass_of_body(body, scene_->water());
   if (!own) return nullptr;
   BodyKey key = keys_.floating(body, *own);
-  append(Vec3(body.dynamics.orientation.normalized().conjugate() * scene_->water().up_W), key);
+  append_direction(body.dynamics.orientation.normalized().conjugate() * scene_->water().up_W, key);
   const auto [found, is_new] = known_.try_emplace(std::move(key));
   if (is_new) {
     const Expected<FloatingBody> floating = floating_body_of(body, meshes_.of(*body.prepared_mesh), *own);
