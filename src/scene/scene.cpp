@@ -186,16 +186,36 @@ std::optional<Error> prepare_queries(PreparedMesh& prepared, const QueryNeeds& n
   return std::nullopt;
 }
 
-Expected<double> liquid_volume_of(const TankDescription& tank, const PreparedMesh& prepared,
-                                  const MeshUser& user) {
-  constexpr double kRounding = 1e-9;  // relative, of a volume that a user wrote down
-  const double capacity = prepared.mesh.volume;
-  if (tank.fill) return *tank.fill * capacity;
-  const double volume = tank.liquid_volume.value_or(0.0);
+// volume: [m^3], as a user wrote it down.
+Expected<double> check_liquid_volume(double volume, double capacity, const MeshUser& user) {
+  constexpr double kRounding = 1e-9;  // relative
   if (volume <= capacity * (1.0 + kRounding)) return std::min(volume, capacity);
   return make_error(user.error({"liquid_volume", format_shortest(volume) + " m^3",
                                 "at most the tank's volume, " + format_number(capacity) + " m^3",
                                 "a tank in another unit, or litres", "Set scale, or give fill (0 to 1)"}));
+}
+
+Expected<double> liquid_volume_of(const TankDescription& tank, const PreparedMesh& prepared,
+                                  const MeshUser& user) {
+  const double capacity = prepared.mesh.volume;
+  if (tank.fill) return *tank.fill * capacity;
+  return check_liquid_volume(tank.liquid_volume.value_or(0.0), capacity, user);
+}
+
+// Events in which a tank gets more than it can hold are errors.
+Expected<void> check_events(const BodyDescription& body, const Subdivision& subdivision,
+                            std::vector<ConditionEvent>& events) {
+  for (ConditionEvent& event : events) {
+    if (!event.is_tank) continue;
+    const auto index = static_cast<std::size_t>(event.index);
+    const TankDescription& described = body.tanks[index];
+    const Expected<double> volume =
+        check_liquid_volume(event.value, subdivision.tanks[index].capacity(),
+                            user_of(body, "event of tank", described.name, described.source_location));
+    if (!volume) return make_error(volume.error());
+    event.value = *volume;
+  }
+  return {};
 }
 
 Expected<Subdivision> prepare_subdivision(const BodyDescription& body, double tolerance,
@@ -264,6 +284,10 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     const double tolerance = body.tolerance.value_or(default_tolerance);
     Expected<Subdivision> subdivision = prepare_subdivision(body, tolerance, needs, meshes);
     if (!subdivision) return make_error(std::move(subdivision.error()));
+    DynamicsSpec dynamics = body.dynamics;
+    if (const Expected<void> checked = check_events(body, *subdivision, dynamics.events); !checked) {
+      return make_error(checked.error());
+    }
     if (body.hydrostatics) ++scene.bodies_with_hydrostatics_;
     if (body.loads) ++scene.bodies_with_loads_;
     const HydrodynamicModel* hydrodynamics = nullptr;
@@ -274,7 +298,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     Body& added = scene.bodies_.emplace_back(
         Body{body.id, body.name, &prepared, Solver(prepared.mesh, body.method, tolerance), body.reference_B,
              body.hydrostatics, body.loads, hydrodynamics, center_of_mass(body.dynamics, prepared),
-             body.dynamics, nullptr, nullptr});
+             std::move(dynamics), nullptr, nullptr});
     if (!mesh->parts.empty()) {
       scene.parts_.push_back(std::make_unique<std::vector<BodyPart>>(std::move(mesh->parts)));
       added.parts = scene.parts_.back().get();

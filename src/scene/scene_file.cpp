@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "base/spelling_suggestion.h"
 #include "base/text_file.h"
+#include "scene/event_toml.h"
 #include "scene/loads_toml.h"
 #include "scene/sea_toml.h"
 #include "scene/subdivision_toml.h"
@@ -109,7 +110,10 @@ void read_start(TomlTable& table, DynamicsSpec& dynamics) {
   }
 }
 
-void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
+// body: read but for this section.
+void read_dynamics(TomlTable table, const std::string& body_name, SceneParseContext& context,
+                   BodyDescription& body) {
+  DynamicsSpec& dynamics = body.dynamics;
   dynamics.given = true;
   table.read("mass", dynamics.mass, NumberRange::above_zero("kg"));
   table.read("density", dynamics.density, NumberRange::above_zero("kg/m^3"));
@@ -131,6 +135,7 @@ void read_dynamics(TomlTable table, DynamicsSpec& dynamics) {
 
   parse_orientation(table, dynamics.orientation);
   dynamics.orientation.normalize();
+  parse_events(table, body_name, context, body);
   table.finish();
   if (dynamics.mass && dynamics.density) {
     table.fail("both 'mass' and 'density'",
@@ -219,7 +224,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
                "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
   }
   if (client != nullptr) {
-    read_dynamics(TomlTable(*client, body_name + ", [body.client]", context), body.dynamics);
+    read_dynamics(TomlTable(*client, body_name + ", [body.client]", context), body_name, context, body);
   }
   return body;
 }

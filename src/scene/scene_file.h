@@ -28,6 +28,14 @@ namespace buoyancy {
 // Where the simulation of a body starts: see start_pose.h.
 enum class StartKind { kPose, kEquilibrium };
 
+// A change of a compartment or a tank during a run: section [[body.client.event]].
+struct ConditionEvent {
+  double time = 0.0;       // [s], > 0, from the start of the run
+  bool is_tank = false;    // else a compartment
+  std::int32_t index = 0;  // among the body's compartments or tanks, in the order of the file
+  double value = 0.0;      // the share that is flooded, 0 to 1; or the volume of liquid [m^3]
+};
+
 // Dynamics of a body, which only a simulator needs: section [body.client]. At most one of mass and density is
 // given; without either, the density is half the water's.
 struct DynamicsSpec {
@@ -47,6 +55,7 @@ struct DynamicsSpec {
   double linear_damping_quadratic = 0.0;   // [N/(m/s)^2], >= 0: force -c |v| v
   double angular_damping = 0.0;            // [N m/(rad/s)], >= 0: torque -c w
   double angular_damping_quadratic = 0.0;  // [N m/(rad/s)^2], >= 0: torque -c |w| w
+  std::vector<ConditionEvent> events;      // by time
 };
 
 // Sections [body.drag] and [body.added_mass]: coefficients.h, with a centre that may be left out.

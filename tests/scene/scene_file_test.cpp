@@ -373,5 +373,48 @@ TEST(SceneFile, RemovesControlCharactersFromErrors) {
   }
 }
 
+TEST(SceneFile, ReadsEventsInTheOrderOfTime) {
+  const std::string inside =
+      "[[body.compartment]]\nshape = { type = \"box\" }\n[[body.tank]]\nshape = { type = \"box\" }\nfill = "
+      "0\n[body.client]\n";
+  const auto scene =
+      parse(scene_with_crate(
+          inside + "[[body.client.event]]\ntime = 5\ncompartment = 0\nflooded = 0.5\n[[body.client.event]]\n"
+                   "time = 2.5\ntank = 0\nliquid_volume = 0.25\n"));
+  ASSERT_TRUE(scene) << scene.error().message();
+  const std::vector<ConditionEvent>& events = scene->bodies[0].dynamics.events;
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].time, 2.5);
+  EXPECT_TRUE(events[0].is_tank);
+  EXPECT_EQ(events[0].value, 0.25);
+  EXPECT_EQ(events[1].time, 5.0);
+  EXPECT_FALSE(events[1].is_tank);
+  EXPECT_EQ(events[1].index, 0);
+  EXPECT_EQ(events[1].value, 0.5);
+  for (const auto& [event, expected] : {
+           std::pair{"time = 0\ncompartment = 0\nflooded = 1", "above 0"},
+           std::pair{"compartment = 0\nflooded = 1", "time"},
+           std::pair{"time = 1", "neither 'compartment' nor 'tank'"},
+           std::pair{"time = 1\ncompartment = 0\ntank = 0\nflooded = 1\nliquid_volume = 1",
+                     "both 'compartment' and 'tank'"},
+           std::pair{"time = 1\ncompartment = 1\nflooded = 1", "an index from 0 to 0"},
+           std::pair{"time = 1\ntank = -1\nliquid_volume = 0", "an index from 0 to 0"},
+           std::pair{"time = 1\ncompartment = 0", "flooded"},
+           std::pair{"time = 1\ntank = 0", "liquid_volume"},
+           std::pair{"time = 1\ncompartment = 0\nflooded = 1.5", "1.5"},
+           std::pair{"time = 1\ncompartment = 0\nliquid_volume = 1", "liquid_volume"},
+       }) {
+    const std::string error =
+        parse_error(scene_with_crate(inside + "[[body.client.event]]\n" + event + "\n"));
+    EXPECT_NE(error.find(expected), std::string::npos) << event << ": " << error;
+  }
+  EXPECT_NE(parse_error(scene_with_crate("[body.client]\n[[body.client.event]]\ntime = 1\ntank = 0\n"
+                                         "liquid_volume = 1\n"))
+                .find("the body has none"),
+            std::string::npos);
+  EXPECT_NE(parse_error(scene_with_crate("[body.client.event]\ntime = 1\n")).find("double brackets"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -348,5 +348,20 @@ TEST(Scene, PreparesNothingForWavesInWaterAtRest) {
   EXPECT_FALSE(scene->bodies()[0].prepared_mesh->wave_mesh);
 }
 
+TEST(Scene, RefusesEventsThatOverfillATank) {
+  const auto with_volume = [](const std::string& volume) {
+    const Expected<SceneDescription> description = parse(scene_with_crate(
+        "[[body.tank]]\nname = \"fuel\"\nshape = { type = \"box\" }\nfill = 0\n[body.client]\n"
+        "[[body.client.event]]\ntime = 1\ntank = 0\nliquid_volume = " +
+        volume + "\n"));
+    const Expected<Scene> scene = Scene::prepare(description.value());
+    return scene ? std::string("accepted") : scene.error().message();
+  };
+  EXPECT_EQ(with_volume("1.0"), "accepted");
+  const std::string error = with_volume("1.5");
+  EXPECT_NE(error.find("event of tank 'fuel'"), std::string::npos) << error;
+  EXPECT_NE(error.find("at most the tank's volume, 1 m^3"), std::string::npos) << error;
+}
+
 }  // namespace
 }  // namespace buoyancy
