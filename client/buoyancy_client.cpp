@@ -95,6 +95,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_retries_option(app, arguments.retry_policy.max_retries, "the run fails");
   add_states_channel_option(app, arguments.channel.states_channel);
   add_wrenches_channel_option(app, arguments.channel.wrenches_channel);
+  add_condition_channel_option(app, arguments.channel.condition_channel)
+      ->description("LCM channel for the events of the scene (body_condition_t)");
   app.add_flag("--no-spin", arguments.no_spin,
                "Block immediately while waiting for a response instead of spinning for up to 50 us first: "
                "uses less processor time, but each step takes longer")
@@ -111,12 +113,18 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
     return make_error({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
   }
   const ChannelOptions& channel = arguments.channel;
-  for (const std::string& name : {channel.states_channel, channel.wrenches_channel}) {
+  for (const std::string& name :
+       {channel.states_channel, channel.wrenches_channel, channel.condition_channel}) {
     if (Expected<void> checked = check_channel(name); !checked) return checked;
   }
   if (channel.states_channel == channel.wrenches_channel) {
     return make_error({"channels", "both are " + channel.states_channel, "two different names",
                        "requests would be taken for responses", ""});
+  }
+  if (channel.condition_channel == channel.states_channel ||
+      channel.condition_channel == channel.wrenches_channel) {
+    return make_error({"channels", "two are " + channel.condition_channel, "three different names",
+                       "messages of one type would be taken for another", ""});
   }
   return check_lcm_url(channel.lcm_url);
 }

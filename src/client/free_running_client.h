@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
 
 #include "client/client_stats.h"
 #include "client/lcm_request_channel.h"
@@ -19,6 +20,11 @@ class FreeRunningClient {
  public:
   // interval: [s], > 0.
   FreeRunningClient(LcmRequestChannel channel, RetryPolicy retry_policy, double interval);
+
+  // See LcmRequestChannel::set_conditions().
+  void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated) {
+    channel_.set_conditions(announced, repeated);
+  }
 
   // See LcmRequestChannel::reserve().
   Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }

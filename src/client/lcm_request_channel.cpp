@@ -146,11 +146,29 @@ Expected<void> LcmRequestChannel::send(const BorrowedRequest& request) {
   inbox_->session_id = request.id.session_id;
   inbox_->last_sent = request.id.seq;
   encode(request, request_bytes_);
-  return resend();
+  return publish(announced_);
 }
 
 Expected<void> LcmRequestChannel::resend() {
+  return publish(repeated_);
+}
+
+Expected<void> LcmRequestChannel::publish(const std::vector<std::vector<std::uint8_t>>& conditions) {
+  for (const std::vector<std::uint8_t>& bytes : conditions) {
+    if (Expected<void> sent = connection_.publish(options_.condition_channel, bytes); !sent) return sent;
+  }
   return connection_.publish(options_.states_channel, request_bytes_);
+}
+
+void LcmRequestChannel::set_conditions(std::span<const ConditionChange> announced,
+                                       std::span<const ConditionChange> repeated) {
+  const auto encode_all = [](std::span<const ConditionChange> changes,
+                             std::vector<std::vector<std::uint8_t>>& encoded) {
+    encoded.resize(changes.size());
+    for (std::size_t i = 0; i < changes.size(); ++i) encode(changes[i], encoded[i]);
+  };
+  encode_all(announced, announced_);
+  encode_all(repeated, repeated_);
 }
 
 bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {

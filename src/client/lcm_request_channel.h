@@ -12,9 +12,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "messages/condition_change.h"
 #include "messages/wire.h"
 #include "transport/lcm_connection.h"
 
@@ -32,6 +34,7 @@ struct ChannelOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
+  std::string condition_channel{kConditionChannel};  // for set_conditions()
   // Receive the loads of every response as well, and wait for them. At least one body of each request must
   // have the output "loads" in the service's scene: else none are published, and no request succeeds.
   bool wait_for_loads = false;
@@ -54,6 +57,10 @@ class LcmRequestChannel {
   // warning if responses may lose packets because the kernel grants a smaller buffer. send() does the same,
   // without the warning. Errors: those of check_size().
   Expected<std::optional<Warning>> reserve(std::size_t bodies);
+
+  // Sets what is published before every request, and what before every one that is sent again, until the next
+  // call. At first nothing is.
+  void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated);
 
   // Encodes and publishes the request. Precondition: session_id is constant, seq does not decrease. Errors:
   // those of check_size() and of LcmConnection::publish.
@@ -115,12 +122,14 @@ class LcmRequestChannel {
   };
 
   LcmRequestChannel(ChannelOptions options, LcmConnection connection);
+  Expected<void> publish(const std::vector<std::vector<std::uint8_t>>& conditions);  // and the last request
 
   ChannelOptions options_;
   const std::atomic<bool>* cancelled_;
   std::unique_ptr<Inbox> inbox_;
   LcmConnection connection_;
   std::vector<std::uint8_t> request_bytes_;
+  std::vector<std::vector<std::uint8_t>> announced_, repeated_;  // encoded
   std::size_t reserved_bodies_ = 0;
   std::optional<Warning> buffer_warning_;  // of the last reserve()
 };

@@ -5,6 +5,8 @@
 // retry_policy.h.
 #pragma once
 
+#include <span>
+
 #include "client/client_stats.h"
 #include "client/lcm_request_channel.h"
 #include "client/retry_policy.h"
@@ -14,6 +16,11 @@ namespace buoyancy {
 class LockstepClient {
  public:
   LockstepClient(LcmRequestChannel channel, RetryPolicy retry_policy);
+
+  // See LcmRequestChannel::set_conditions().
+  void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated) {
+    channel_.set_conditions(announced, repeated);
+  }
 
   // See LcmRequestChannel::reserve().
   Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }

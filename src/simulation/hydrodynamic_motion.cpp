@@ -63,14 +63,26 @@ HydrodynamicMotion::HydrodynamicMotion(const Body& body, const RigidBody& rigid,
       current_W_(current_W),
       added_mass_B_(added_mass_at_center(body, rigid)),
       modes_(rigid, added_mass_B_) {
-  mass_B_.diagonal().head<3>().setConstant(rigid.mass);
-  mass_B_.bottomRightCorner<3, 3>() =
-      rigid.principal_axes_B * rigid.principal_inertia.asDiagonal() * rigid.principal_axes_B.transpose();
+  set_mass();
   const auto& drag = body.hydrodynamics->coefficients().drag;
   quadratic_drag_is_diagonal_ = !drag || is_diagonal(drag->quadratic);
   for (const Damping& damping : {rigid.linear_damping, rigid.angular_damping}) {
     has_damping_ = has_damping_ || damping.linear > 0.0 || damping.quadratic > 0.0;
   }
+}
+
+void HydrodynamicMotion::set_rigid_body(const RigidBody& rigid) {
+  rigid_ = rigid;
+  added_mass_B_ = added_mass_at_center(*body_, rigid);
+  modes_ = AddedMassModes(rigid, added_mass_B_);
+  set_mass();
+  half_jump_.setZero();
+}
+
+void HydrodynamicMotion::set_mass() {
+  mass_B_.diagonal().head<3>().setConstant(rigid_.mass);
+  mass_B_.bottomRightCorner<3, 3>() =
+      rigid_.principal_axes_B * rigid_.principal_inertia.asDiagonal() * rigid_.principal_axes_B.transpose();
 }
 
 HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, const Pose& pose) const {

@@ -38,6 +38,9 @@ class HydrodynamicMotion {
   // body: has a hydrodynamic model; it must outlive this object.
   HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water, const Vec3& current_W);
 
+  // Replaces the rigid body, whose compartments or tanks have another condition from now on.
+  void set_rigid_body(const RigidBody& rigid);
+
   // Takes the wrench of a response to the state that was sent, evaluated lead_time later, and changes the
   // velocities by S. The first wrench changes none.
   void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, RigidBodyState& state);
@@ -61,6 +64,7 @@ class HydrodynamicMotion {
   // displaced: [m^3], without what open compartments take from it; of these, the water at rest is taken.
   Immersions immersions(double displaced, const Pose& pose) const;
   double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
+  void set_mass();  // of the rigid body
 
   Vec6 relative_twist(const RigidBodyState& state) const;
   void set_relative_twist(const Vec6& twist, RigidBodyState& state) const;

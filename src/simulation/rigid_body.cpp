@@ -37,6 +37,11 @@ bool set_mass(const BodyMass& mass, RigidBody& rigid) {
   return rigid.principal_inertia.minCoeff() > 0.0 && rigid.principal_inertia.allFinite();
 }
 
+Vec3 angular_momentum_of(const RigidBody& body, const Eigen::Quaterniond& q_WB, const Vec3& w_W) {
+  const Vec3 w_P = body.principal_axes_B.transpose() * (q_WB.conjugate() * w_W);
+  return q_WB * Vec3(body.principal_axes_B * body.principal_inertia.cwiseProduct(w_P));
+}
+
 // The liquids, and the first moment [kg m] of them and of the body, about C in B's axes.
 struct Weights {
   double mass = 0.0;  // [kg]
@@ -116,15 +121,27 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
   return rigid;
 }
 
+void set_condition(const Body& body, const BodyCondition& condition, const Water& water, RigidBody& rigid,
+                   RigidBodyState& state) {
+  BodyContents& contents = rigid.contents.value();
+  contents.tanks = tanks_of(body, &condition);
+  contents.compartments = open_compartments(body, &condition);
+  const Vec3 w_W = angular_velocity_W(rigid, state);
+  const Vec3 before_B = rigid.center_of_mass_B;
+  set_mass(mass_with_liquids(body, contents.own, &condition, state.q_WB.conjugate() * water.up_W), rigid);
+  const Vec3 moved_W = state.q_WB * Vec3(rigid.center_of_mass_B - before_B);
+  state.center_W += moved_W;
+  state.velocity_W += w_W.cross(moved_W);
+  state.angular_momentum_W = angular_momentum_of(rigid, state.q_WB, w_W);
+}
+
 RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec) {
   RigidBodyState state;
   state.q_WB = spec.orientation.normalized();
   const Vec3 center_from_origin_W = state.q_WB * body.center_of_mass_B;
   state.center_W = spec.position + center_from_origin_W;
   state.velocity_W = spec.linear_velocity + spec.angular_velocity.cross(center_from_origin_W);
-  const Vec3 w_P = body.principal_axes_B.transpose() * (state.q_WB.conjugate() * spec.angular_velocity);
-  state.angular_momentum_W =
-      state.q_WB * Vec3(body.principal_axes_B * body.principal_inertia.cwiseProduct(w_P));
+  state.angular_momentum_W = angular_momentum_of(body, state.q_WB, spec.angular_velocity);
   return state;
 }
 

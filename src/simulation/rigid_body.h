@@ -69,6 +69,12 @@ struct Load {
 // center_of_mass and inertia; a mass or a principal inertia that is not above 0.
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water);
 
+// Gives a body with compartments or tanks another condition, its liquids frozen at the state's attitude. What
+// is added moves with the body, and what is taken out too: its velocities stay, those of C and the angular
+// momentum follow. body: of which rigid was made.
+void set_condition(const Body& body, const BodyCondition& condition, const Water& water, RigidBody& rigid,
+                   RigidBodyState& state);
+
 // Initial state. [body.client] gives position and velocity of B's origin, `start` plays no part.
 RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec);
 

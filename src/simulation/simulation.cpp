@@ -90,6 +90,7 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
     simulated.body = &body;
     simulated.rigid = *rigid;
     simulated.state = initial_state(*rigid, *start);
+    if (body.subdivision != nullptr) simulated.condition = initial_condition(*body.subdivision);
     if (body.hydrodynamics != nullptr) {
       simulated.hydrodynamics =
           std::make_unique<HydrodynamicMotion>(body, *rigid, scene.water(), scene.current_W());
@@ -109,7 +110,8 @@ Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
     : water_(scene.water()),
       current_W_(scene.current_W()),
       has_waves_(scene.sea() != nullptr || scene.receives_sea()),
-      options_(options) {
+      options_(options),
+      conditions_(scene, options.step) {
   if (options.delay_steps > 0) delay_line_.resize(static_cast<std::size_t>(options.delay_steps) + 1);
 }
 
@@ -150,7 +152,8 @@ void Simulation::accept(const WrenchResponse& latest) {
       body.hydrodynamics->take(body.wrench, sent_.front().bodies[i], options_.lead_time, body.state);
     }
     if (in_step_) finish_step(body, body.state);
-    record_energy(body, !in_step_, wrenches_are_current, water_);
+    record_energy(body, !in_step_ || body.condition_changed, wrenches_are_current, water_);
+    body.condition_changed = false;
   }
   in_step_ = false;
 }
@@ -174,6 +177,21 @@ void Simulation::advance() {
   }
   ++step_number_;
   in_step_ = true;
+  for (const ConditionSchedule::Event& event : conditions_.events_at(step_number_)) apply(event);
+}
+
+void Simulation::apply(const ConditionSchedule::Event& event) {
+  const ConditionChange& change = event.change;
+  const auto body = std::ranges::find(bodies_, event.body, &SimulatedBody::body);
+  const auto index = static_cast<std::size_t>(change.index);
+  if (change.kind == ConditionKind::kTank) {
+    body->condition.liquid_volumes[index] = change.liquid_volume;
+  } else {
+    body->condition.flooded[index] = change.flooded;
+  }
+  set_condition(*body->body, body->condition, water_, body->rigid, body->state);
+  if (body->hydrodynamics) body->hydrodynamics->set_rigid_body(body->rigid);
+  body->condition_changed = true;
 }
 
 Expected<void> Simulation::check_wrenches() const {
@@ -199,6 +217,11 @@ Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::
                          const std::atomic<bool>& stop,
                          const std::function<Expected<void>(const Simulation&)>& after_step) {
   while (true) {
+    if (ConditionSchedule& conditions = simulation.conditions(); !conditions.empty()) {
+      const std::int64_t step = simulation.step_number();
+      const std::vector<ConditionChange>& repeated = conditions.repeated_at(step);
+      set_conditions(client, conditions.announced_at(step), repeated);
+    }
     const Expected<const WrenchResponse*> response = buoyancy::request(client, simulation.request());
     if (!response && stop.load()) return RunOutcome::kInterrupted;
     if (!response) return make_error(response.error());

@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "simulation/condition_schedule.h"
 #include "simulation/hydrodynamic_motion.h"
 #include "simulation/integrator.h"
 #include "simulation/simulation_client.h"
@@ -30,7 +31,8 @@ struct SimulationOptions {
 
 // Mechanical energy [J] over the run (rigid_body.h), with the kinetic energy of added mass, computed for the
 // present poses whatever the delay of their wrenches. It is conserved only without damping and drag, in water
-// at rest and with wrenches that are not late.
+// at rest and with wrenches that are not late. An event of the scene changes it: all of these begin anew with
+// the response to the first request after an event of the body.
 struct EnergyStats {
   double initial = 0.0;
   double current = 0.0;
@@ -45,6 +47,8 @@ struct SimulatedBody {
   RigidBodyState state;
   BodyWrench wrench;                                  // in use
   std::unique_ptr<HydrodynamicMotion> hydrodynamics;  // of a body with drag or added mass
+  BodyCondition condition;                            // of its compartments and tanks
+  bool condition_changed = false;                     // in the step whose response is next
   EnergyStats energy;
 };
 
@@ -57,9 +61,11 @@ class Simulation {
   // Returns the request for the current poses, valid until the next call. The velocities of
   // velocity_verlet are predicted with the load of the last response.
   const WrenchRequest& request();
+  // The events of the scene, which are announced with the requests.
+  ConditionSchedule& conditions() { return conditions_; }
   // Takes the wrenches and completes the velocities. response: one wrench per body, in order.
   void accept(const WrenchResponse& response);
-  // Moves the poses to the next step. Precondition: accept() was called.
+  // Moves the poses to the next step, and applies the events at it. Precondition: accept() was called.
   void advance();
 
   // Errors: a body whose wrench is not OK. A simulator must not continue without its force.
@@ -86,12 +92,14 @@ class Simulation {
 
   const WrenchResponse& delayed_response(const WrenchResponse& latest);
   void finish_step(const SimulatedBody& body, RigidBodyState& state) const;
+  void apply(const ConditionSchedule::Event& event);
 
   Water water_;
   Vec3 current_W_;
   bool has_waves_ = false;
   bool has_hydrodynamics_ = false;  // does a simulated body have drag or added mass?
   SimulationOptions options_;
+  ConditionSchedule conditions_;
   std::vector<SimulatedBody> bodies_;
   std::int64_t step_number_ = 0;
   bool in_step_ = false;   // between advance() and accept()

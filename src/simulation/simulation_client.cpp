@@ -15,6 +15,20 @@ Expected<const WrenchResponse*> InProcessClient::request(const WrenchRequest& re
   return &response_;
 }
 
+void InProcessClient::set_conditions(std::span<const ConditionChange> announced,
+                                     std::span<const ConditionChange> /*repeated*/) {
+  for (const ConditionChange& change : announced) {
+    encode(change, bytes_);
+    [[maybe_unused]] const Expected<void> received = handler_.receive_condition(bytes_);
+    assert(received);  // the scene has been checked
+  }
+}
+
+void set_conditions(SimulationClient& client, std::span<const ConditionChange> announced,
+                    std::span<const ConditionChange> repeated) {
+  std::visit([&](auto& alternative) { alternative.set_conditions(announced, repeated); }, client);
+}
+
 Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRequest& request) {
   return std::visit([&](auto& alternative) { return alternative.request(request); }, client);
 }

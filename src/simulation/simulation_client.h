@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -19,8 +20,8 @@ class InProcessClient {
   Expected<const WrenchResponse*> request(const WrenchRequest& request);
   const ClientStats& statistics() const { return statistics_; }
 
-  // See RequestHandler::receive_condition().
-  Expected<void> receive_condition(Bytes message) { return handler_.receive_condition(message); }
+  // See RequestHandler::receive_condition(). Nothing is lost here: `repeated` plays no part.
+  void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated);
 
  private:
   RequestHandler handler_;
@@ -34,6 +35,9 @@ using SimulationClient = std::variant<InProcessClient, LockstepClient, FreeRunni
 // The response holds as many bodies as the request, in the same order, and is valid until the next call.
 // Errors: those of the client in use.
 Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRequest& request);
+// What is sent with the next request, and with every repetition of it: see LcmRequestChannel.
+void set_conditions(SimulationClient& client, std::span<const ConditionChange> announced,
+                    std::span<const ConditionChange> repeated);
 ClientStats statistics(const SimulationClient& client);
 
 }  // namespace buoyancy

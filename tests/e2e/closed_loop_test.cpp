@@ -186,6 +186,36 @@ TEST(ClosedLoop, UndampedBoxKeepsPeriodAndEnergyOver100000Steps) {
   });
 }
 
+constexpr const char* kBargeWithTank = R"(
+[water]
+density = 1000
+[[body]]
+id = 1
+shape = { type = "box", size = [4, 2, 1] }
+[[body.tank]]
+shape = { type = "box", size = [2, 1.6, 0.6] }
+position = [0, 0, -0.1]
+fill = 0.5
+[body.client]
+mass = 2400
+center_of_mass = [0, 0, -0.2]
+position = [0, 0, 0.1]
+orientation = [0.9659258262890683, 0.25881904510252074, 0, 0]
+)";
+
+TEST(ClosedLoop, HalfFullTankKeepsEnergy) {
+  const TempDir directory;
+  const std::string path = directory.write("barge.toml", kBargeWithTank);
+  const Options options = {"--duration", "10", "--step", "0.01"};
+  const nlohmann::json over_udp = simulate_with_service(path, options);
+  EXPECT_EQ(body(over_udp, 1)["mass"], 2400.0 + 960.0);
+  EXPECT_LT(double{body(over_udp, 1)["energy_range"]}, 1e-3);
+  // Some 500 periods of roll.
+  const nlohmann::json longer = simulate(path, {"--embedded", "--duration", "1000", "--step", "0.01"});
+  EXPECT_LT(double{body(longer, 1)["energy_range"]}, 1e-3);
+  EXPECT_LT(std::abs(double{body(longer, 1)["energy_drift"]}), 1e-3);
+}
+
 TEST(ClosedLoop, AddedMassLengthensHeavePeriod) {
   // m = 200 kg and A33 = 20 m, at the step that the client uses by default.
   const TempDir directory;

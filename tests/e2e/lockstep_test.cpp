@@ -68,6 +68,55 @@ TEST_F(Lockstep, ProducesSameBytesEmbeddedOverUdpAndOverLossyNetwork) {
   EXPECT_EQ(summary_["unanswered"], 0);
 }
 
+constexpr const char* kDamagedScene = R"(
+[[body]]
+id = 7
+shape = { type = "box", size = [4, 2, 1] }
+[[body.compartment]]
+shape = { type = "box", size = [1, 2, 1] }
+position = [1.5, 0, 0]
+flooded = 0
+[[body.tank]]
+shape = { type = "box", size = [1, 1, 0.5] }
+position = [-1, 0.3, -0.2]
+fill = 0.5
+[body.client]
+density = 400
+start = "equilibrium"
+[[body.client.event]]
+time = 0.3
+compartment = 0
+flooded = 1.0
+[[body.client.event]]
+time = 0.31
+compartment = 0
+flooded = 0.5
+[[body.client.event]]
+time = 0.5
+tank = 0
+liquid_volume = 0.1
+)";
+
+// The second run over UDP meets a service that has the first one's damage.
+TEST_F(Lockstep, ProducesSameBytesWithEventsOverLossyNetwork) {
+  scene_ = directory_.write("damaged.toml", kDamagedScene);
+  const std::string embedded = csv_of_run("embedded.csv", {"--embedded", "--duration", "1"});
+  const std::vector<double> volumes = csv_column(embedded, "volume");
+  ASSERT_EQ(volumes.size(), 501U);
+  EXPECT_NEAR(volumes[149], volumes[0], 1e-9) << "at rest until then";
+  EXPECT_LT(volumes[150], volumes[0] - 0.3);
+  const RunningProgram service(service_command(scene_, {"-l", kServiceUrl}));
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_TRUE(csv_of_run("udp.csv", {"-l", kServiceUrl, "--duration", "1"}) == embedded) << run;
+  }
+  const LossyRelay relay({kClientUrl, kServiceUrl, 0.05, 0.0, 20251125});
+  const Options short_timeout = {"-l",        kClientUrl, "--duration", "1",
+                                 "--timeout", "0.005",    "--retries",  "10000"};
+  EXPECT_TRUE(csv_of_run("lossy.csv", short_timeout) == embedded);
+  EXPECT_GT(relay.lost_requests(), 5);
+  EXPECT_GT(relay.lost_conditions(), 0);
+}
+
 TEST_F(Lockstep, ProducesSameBytesAcrossServiceRestart) {
   auto service = std::make_unique<ChildProcess>(service_command(scene_, {"-l", kServiceUrl}));
   const std::string csv = directory_.path("udp.csv");

@@ -20,11 +20,16 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kReorderingDelay{12};
 
-enum class Message { kRequest, kResponse, kLoads };
+enum class Message { kRequest, kCondition, kResponse, kLoads };
 
 std::string channel_of(Message message) {
   if (message == Message::kRequest) return std::string(kStatesChannel);
+  if (message == Message::kCondition) return std::string(kConditionChannel);
   return std::string(message == Message::kResponse ? kWrenchesChannel : kLoadsChannel);
+}
+
+bool is_for_service(Message message) {
+  return message == Message::kRequest || message == Message::kCondition;
 }
 
 struct Delayed {
@@ -54,9 +59,11 @@ struct LossyRelay::Forwarder {
         client_side(open(given.client_url)),
         service_side(open(given.service_url)),
         random(given.seed) {
-    require(client_side.subscribe(channel_of(Message::kRequest), [this](Bytes bytes, std::string_view) {
-      forward(Message::kRequest, bytes, relay.lost_requests_);
-    }));
+    for (const Message message : {Message::kRequest, Message::kCondition}) {
+      require(client_side.subscribe(channel_of(message), [this, message](Bytes bytes, std::string_view) {
+        forward(message, bytes, message == Message::kRequest ? relay.lost_requests_ : relay.lost_conditions_);
+      }));
+    }
     for (const Message message : {Message::kResponse, Message::kLoads}) {
       require(service_side.subscribe(channel_of(message), [this, message](Bytes bytes, std::string_view) {
         forward(message, bytes, relay.lost_responses_);
@@ -82,7 +89,7 @@ struct LossyRelay::Forwarder {
   void forward(Message message, Bytes bytes, std::atomic<std::int64_t>& lost) {
     if (happens(options.loss, lost)) return;
     Clock::duration delay{0};
-    if (message != Message::kRequest) {
+    if (!is_for_service(message)) {
       delay =
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.response_delay));
     }
@@ -103,7 +110,7 @@ struct LossyRelay::Forwarder {
   }
 
   void send(Message message, Bytes bytes) {
-    LcmConnection& receiver = message == Message::kRequest ? service_side : client_side;
+    LcmConnection& receiver = is_for_service(message) ? service_side : client_side;
     require(receiver.publish(channel_of(message), bytes));
   }
 

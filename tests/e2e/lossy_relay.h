@@ -1,6 +1,6 @@
-// Simulates a bad network between client and service: forwards requests from one LCM network to another and
-// the responses and loads back, with loss, duplication, reordering and a delay of the responses. The random
-// generator is seeded: the same messages of a sequence are lost every time.
+// Simulates a bad network between client and service: forwards requests and conditions from one LCM network
+// to another and the responses and loads back, with loss, duplication, reordering and a delay of the
+// responses. The random generator is seeded: the same messages of a sequence are lost every time.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace buoyancy {
 struct RelayOptions {
   std::string client_url;
   std::string service_url;
-  double loss = 0.0;            // probability, for requests, responses and loads
+  double loss = 0.0;            // probability, for every message
   double response_delay = 0.0;  // [s]
   std::uint64_t seed = 1;
   double duplication = 0.0;  // probability, likewise
@@ -30,6 +30,7 @@ class LossyRelay {
 
   std::int64_t lost_requests() const { return lost_requests_; }
   std::int64_t lost_responses() const { return lost_responses_; }
+  std::int64_t lost_conditions() const { return lost_conditions_; }
   std::int64_t duplicated() const { return duplicated_; }
   std::int64_t reordered() const { return reordered_; }
 
@@ -38,6 +39,7 @@ class LossyRelay {
 
   std::atomic<bool> stop_{false};
   std::atomic<std::int64_t> lost_requests_{0};
+  std::atomic<std::int64_t> lost_conditions_{0};
   std::atomic<std::int64_t> lost_responses_{0};
   std::atomic<std::int64_t> duplicated_{0};
   std::atomic<std::int64_t> reordered_{0};

@@ -1,0 +1,52 @@
+// When the simulator applies and announces the events of a scene ([[body.client.event]]).
+//
+// An event takes effect at the first step whose time is not before its own, and holds from that step's utime
+// on. It is announced with the request of that step and of the kAnnouncedSteps before, so that the loss of
+// messages does not change a run. No announcement can take back a later one: an event of the same
+// compartment or tank is announced only when the one before has taken effect. At step 0 the condition in the
+// scene file is announced, in place of what an earlier run left behind in the service.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "messages/condition_change.h"
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+inline constexpr std::int64_t kAnnouncedSteps = 16;
+
+class ConditionSchedule {
+ public:
+  struct Event {
+    const Body* body = nullptr;       // of the scene
+    std::int64_t step = 0;            // at which it takes effect
+    std::int64_t announced_from = 0;  // the first step with whose request it is announced
+    ConditionChange change;
+  };
+
+  // Of the bodies with [body.client]. step: [s].
+  ConditionSchedule(const Scene& scene, double step);
+
+  bool empty() const { return events_.empty(); }
+
+  // What takes effect at a step, in the order of time. Steps ascend from call to call.
+  std::span<const Event> events_at(std::int64_t step);
+
+  // What is sent with the request of a step; at step 0 several times, since nothing can be sent earlier.
+  // Valid until the next call. O(events).
+  const std::vector<ConditionChange>& announced_at(std::int64_t step);
+  // What is sent with that request when it is sent again, perhaps to a service that has been restarted: also
+  // what holds at the step.
+  const std::vector<ConditionChange>& repeated_at(std::int64_t step);
+
+ private:
+  std::vector<Event> initial_;  // the scene file's condition of what the events change
+  std::vector<Event> events_;   // by step
+  std::size_t next_ = 0;        // of events_, the first that has not taken effect
+  std::vector<ConditionChange> announced_, repeated_;
+};
+
+}  // namespace buoyancy

@@ -1,0 +1,195 @@
+#include "simulation/condition_schedule.h"
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/condition_timeline.h"
+#include "messages/conversions.h"
+#include "simulation/run_warnings.h"
+#include "tests/simulation/in_process_run.h"
+#include "tests/support/scene_of.h"
+
+namespace buoyancy {
+namespace {
+
+constexpr double kStep = 0.01;
+
+// A box of 4 x 2 x 1 m with two compartments and a tank. events: sections of [body.client].
+Scene box_with(const std::string& events, const std::string& client = "") {
+  return scene_of(
+      "[water]\ndensity = 1000\n[[body]]\nid = 7\nshape = { type = \"box\", size = [4, 2, 1] }\n"
+      "[[body.compartment]]\nshape = { type = \"box\", size = [1, 2, 1] }\nposition = [1.5, 0, 0]\nflooded = "
+      "0\n[[body.compartment]]\nshape = { type = \"box\", size = [1, 2, 1] }\nposition = [-1.5, 0, 0]\n"
+      "flooded = 0.25\n[[body.tank]]\nshape = { type = \"box\", size = [1, 1, 0.5] }\n"
+      "position = [0.5, 0, -0.2]\nfill = 0.5\n[body.client]\nmass = 3000\nposition = [0, 0, 0.1]\n" +
+      client + events);
+}
+
+std::string flood(double time, int compartment, double flooded) {
+  return "[[body.client.event]]\ntime = " + std::to_string(time) +
+         "\ncompartment = " + std::to_string(compartment) + "\nflooded = " + std::to_string(flooded) + "\n";
+}
+
+std::string pump(double time, double volume) {
+  return "[[body.client.event]]\ntime = " + std::to_string(time) +
+         "\ntank = 0\nliquid_volume = " + std::to_string(volume) + "\n";
+}
+
+TEST(ConditionSchedule, AppliesAnEventAtTheFirstStepThatIsNotBeforeIt) {
+  const Scene scene = box_with(pump(0.305, 0.1) + flood(0.3, 1, 1.0) + flood(0.001, 0, 0.5));
+  ConditionSchedule schedule(scene, kStep);
+  std::map<std::int64_t, std::size_t> applied;
+  for (std::int64_t step = 0; step < 100; ++step) {
+    const std::size_t count = schedule.events_at(step).size();
+    if (count > 0) applied[step] = count;
+  }
+  EXPECT_EQ(applied, (std::map<std::int64_t, std::size_t>{{1, 1}, {30, 1}, {31, 1}}));
+  EXPECT_TRUE(ConditionSchedule(box_with(""), kStep).empty());
+}
+
+TEST(ConditionSchedule, UsesTheLastOfSeveralEventsAtAStep) {
+  const Scene scene = box_with(flood(0.301, 0, 0.5) + flood(0.302, 0, 0.75) + flood(0.302, 1, 0.5));
+  ConditionSchedule schedule(scene, kStep);
+  const auto events = schedule.events_at(31);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].change.flooded, 0.75);
+  EXPECT_EQ(events[1].change.index, 1);
+}
+
+// The service must know the condition of each step whatever is lost or comes in another order before it.
+TEST(ConditionSchedule, AnnouncesEveryConditionInTimeInSpiteOfLosses) {
+  const Scene scene =
+      box_with(flood(0.02, 0, 0.5) + flood(0.05, 0, 0.75) + flood(0.5, 0, 0.0) + flood(0.55, 1, 1.0) +
+               flood(0.6, 0, 1.0) + pump(0.3, 0.4) + pump(0.31, 0.1) + pump(0.9, 0.5));
+  std::uint32_t random = 1;
+  const auto is_lost = [&random] { return ((random = 1664525U * random + 1013904223U) >> 16U) % 4U == 0U; };
+  for (int run = 0; run < 20; ++run) {
+    ConditionSchedule schedule(scene, kStep);
+    ConditionTimeline timeline(scene);
+    BodyCondition expected = initial_condition(*scene.bodies()[0].subdivision);
+    for (std::int64_t step = 0; step < 120; ++step) {
+      std::vector<ConditionChange> sent = schedule.announced_at(step);
+      std::vector<std::uint8_t> bytes;
+      for (const ConditionSchedule::Event& event : schedule.events_at(step)) {
+        if (event.change.kind == ConditionKind::kTank) {
+          expected.liquid_volumes[0] = event.change.liquid_volume;
+        } else {
+          expected.flooded[static_cast<std::size_t>(event.change.index)] = event.change.flooded;
+        }
+      }
+      // These are announced for a few steps alone, and may depend on the repetition of their request.
+      const bool is_repeated = step == 2 || step == 5 || step == 31;
+      if (is_repeated) sent = schedule.repeated_at(step);
+      if (step % 2 == 1) std::ranges::reverse(sent);
+      for (const ConditionChange& change : sent) {
+        if (!is_repeated && is_lost()) continue;
+        encode(change, bytes);
+        ASSERT_TRUE(timeline.receive(bytes, scene));
+      }
+      BodyCondition known;
+      UtimeRange range;
+      ASSERT_TRUE(timeline.condition_at(step * 10'000, 0, scene, known, range));
+      EXPECT_EQ(known, expected) << "run " << run << ", step " << step;
+    }
+  }
+}
+
+TEST(ConditionSchedule, ReplacesWhatAnEarlierRunLeftBehind) {
+  const Scene scene = box_with(flood(0.5, 0, 1.0) + pump(0.2, 0.0));
+  InProcessClient client(scene);
+  SimulationClient service{std::move(client)};
+  std::vector<double> first;
+  std::vector<double> second;
+  for (std::vector<double>* forces : {&first, &second}) {
+    SimulationOptions options;
+    options.step = kStep;
+    options.session_id = forces == &first ? 1 : 2;
+    Simulation simulation = simulation_of(scene, options);
+    const std::atomic<bool> never{false};
+    const auto outcome = run(simulation, service, 100, never, [&](const Simulation& now) {
+      forces->push_back(now.bodies()[0].wrench.force[2]);
+      return Expected<void>{};
+    });
+    ASSERT_TRUE(outcome);
+    const ConditionChange earlier{
+        .utime = 100'000, .body_id = 7, .kind = ConditionKind::kCompartment, .index = 0, .flooded = 0.5};
+    set_conditions(service, std::vector{earlier}, {});
+  }
+  EXPECT_EQ(first, second);
+}
+
+TEST(SimulatedEvents, FloodTheBodyAtTheirTime) {
+  const Scene scene = box_with(flood(0.5, 0, 1.0));
+  const Scene intact = box_with("");
+  SimulationOptions options;
+  options.step = kStep;
+  Simulation damaged = simulation_of(scene, options);
+  Simulation undamaged = simulation_of(intact, options);
+  std::vector<double> volumes;
+  std::vector<double> expected;
+  run_in_process(scene, damaged, 50,
+                 [&](const Simulation& now) { volumes.push_back(now.bodies()[0].wrench.submerged_volume); });
+  run_in_process(intact, undamaged, 50,
+                 [&](const Simulation& now) { expected.push_back(now.bodies()[0].wrench.submerged_volume); });
+  for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ(volumes[i], expected[i]) << i;
+  EXPECT_LT(volumes[50], 0.8 * expected[50]);
+}
+
+TEST(SimulatedEvents, PumpLiquidWithoutAPush) {
+  // The velocities of the body stay, and so do those of its origin and its pose in the request of that step.
+  const std::string spin = "linear_velocity = [1, 2, 0.5]\nangular_velocity = [0.3, -0.2, 0.1]\n";
+  const Scene scene = box_with(pump(0.01, 0.0), spin);
+  const Scene still = box_with("", spin);
+  SimulationOptions options;
+  options.step = kStep;
+  Simulation pumped = simulation_of(scene, options);
+  Simulation same = simulation_of(still, options);
+  for (const auto& [simulation, of] : {std::pair{&pumped, &scene}, std::pair{&same, &still}}) {
+    run_in_process(*of, *simulation, 0);
+    simulation->advance();
+  }
+  const SimulatedBody& a = pumped.bodies()[0];
+  const SimulatedBody& b = same.bodies()[0];
+  EXPECT_NEAR(a.rigid.mass, 3000.0, 1e-9);
+  EXPECT_NEAR(b.rigid.mass, 3250.0, 1e-9);
+  const BodyState after = to_body_state(7, a.rigid, a.state);
+  const BodyState before = to_body_state(7, b.rigid, b.state);
+  EXPECT_LE((to_vec3(after.position) - to_vec3(before.position)).norm(), 1e-14);
+  EXPECT_EQ(after.quaternion_wxyz, before.quaternion_wxyz);
+  EXPECT_LE((to_vec3(after.linear_velocity) - to_vec3(before.linear_velocity)).norm(), 1e-14);
+  EXPECT_LE((to_vec3(after.angular_velocity) - to_vec3(before.angular_velocity)).norm(), 1e-14);
+}
+
+TEST(SimulatedEvents, BeginTheEnergyAnew) {
+  const Scene scene = box_with(flood(1.0, 0, 1.0) + pump(2.0, 0.5));
+  SimulationOptions options;
+  options.step = 0.002;
+  Simulation simulation = simulation_of(scene, options);
+  run_in_process(scene, simulation, 5000);
+  EXPECT_FALSE(energy_warning(simulation));
+  const EnergyStats& energy = simulation.bodies()[0].energy;
+  EXPECT_LT(energy.max - energy.min, 1e-3 * energy.max_kinetic);
+  EXPECT_NEAR(simulation.bodies()[0].rigid.mass, 3500.0, 1e-9);
+}
+
+TEST(SimulatedEvents, KeepAddedMassAndDragInStep) {
+  const Scene scene = scene_of(
+      "[water]\ndensity = 1000\n[[body]]\nid = 7\nshape = { type = \"box\", size = [4, 2, 1] }\n"
+      "[[body.tank]]\nshape = { type = \"box\", size = [1, 1, 0.5] }\nposition = [0, 0, -0.25]\nfill = 0\n"
+      "[body.added_mass]\nmatrix = [500, 500, 3000, 300, 900, 900]\nimmersion = \"none\"\n"
+      "[body.client]\ndensity = 400\nstart = \"equilibrium\"\n" +
+      pump(1.0, 0.5));
+  SimulationOptions options;
+  options.step = 0.002;
+  Simulation simulation = simulation_of(scene, options);
+  run_in_process(scene, simulation, 10'000);
+  const EnergyStats& energy = simulation.bodies()[0].energy;
+  EXPECT_GT(energy.max_kinetic, 1.0) << "it bobs after the tank is filled";
+  EXPECT_LT(energy.max - energy.min, 1e-3 * energy.max_kinetic);
+}
+
+}  // namespace
+}  // namespace buoyancy
