@@ -82,7 +82,7 @@ void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& wate
 
 }  // namespace
 
-Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
+Expected<RigidBody> make_rigid_body(const Body& body, const Water& water, const BodyCondition* condition) {
   const DynamicsSpec& spec = body.dynamics;
   const MassProperties& enclosed = body.prepared_mesh->mass_properties;
   const std::string subject = "body " + std::to_string(body.id) + " (" + body.name + ")";
@@ -110,8 +110,8 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water) {
   BodyMass total = own;
   if (body.subdivision != nullptr) {
     const Vec3 up_B = spec.orientation.normalized().conjugate() * water.up_W;
-    total = mass_with_liquids(body, own, nullptr, up_B);
-    rigid.contents = {own, tanks_of(body), open_compartments(body)};
+    total = mass_with_liquids(body, own, condition, up_B);
+    rigid.contents = {own, tanks_of(body, condition), open_compartments(body, condition)};
   }
   if (!set_mass(total, rigid)) {
     return make_error({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),

@@ -64,10 +64,11 @@ struct Load {
 
 // Makes the body that [body.client] describes. Values that are not given are derived from the mesh: the mass
 // from the enclosed volume and the density (half the water's density by default), the centre of mass and the
-// inertia from the enclosed volume at uniform density. The liquids are those of the scene file, frozen at the
-// `orientation` of [body.client]. Errors: an open mesh, which encloses no volume, without mass,
-// center_of_mass and inertia; a mass or a principal inertia that is not above 0.
-Expected<RigidBody> make_rigid_body(const Body& body, const Water& water);
+// inertia from the enclosed volume at uniform density. The liquids are those of `condition`, or of the scene
+// file if it is nullptr, frozen at the `orientation` of [body.client]. Errors: an open mesh, which encloses
+// no volume, without mass, center_of_mass and inertia; a mass or a principal inertia that is not above 0.
+Expected<RigidBody> make_rigid_body(const Body& body, const Water& water,
+                                    const BodyCondition* condition = nullptr);
 
 // Gives a body with compartments or tanks another condition, its liquids frozen at the state's attitude. What
 // is added moves with the body, and what is taken out too: its velocities stay, those of C and the angular
