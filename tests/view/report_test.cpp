@@ -304,7 +304,7 @@ TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
                           "3000000,1,0,0,0.4,1,0,0,0,0,0,0,4e5,0,0,0,1,0,0,0,5\n"
                           "4000000,1,nan,0,0.5,1,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0\n"
                           "5000000,1,0,0,0.6,0,0,0,0,3,0,0,0,0,0,0,0,0,0,0,0\n"
-                          "6000000,1,0,0,0.7,1,0,0,0,9,0,0,0,0,0,0,0,0,0,0,0\n";
+                          "6000000,1,0,0,0.7,1,0,0,0,99,0,0,0,0,0,0,0,0,0,0,0\n";
   const FinishedProcess made = report({"--scene", directory.write("box.toml", kBobbingBox),
                                        directory.write("run.csv", run), directory.path("run.html")});
   ASSERT_EQ(made.exit_code, 0) << made.standard_error;
@@ -340,7 +340,7 @@ TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
   EXPECT_EQ(at(3.5), nlohmann::json({"OK", true, true, true})) << "until the invalid pose";
   EXPECT_EQ(at(4.5), nlohmann::json({"NON_FINITE_POSE", false, false, false}));
   EXPECT_EQ(at(5.5), nlohmann::json({"BAD_QUATERNION", false, false, false}));
-  EXPECT_EQ(at(6.0), nlohmann::json({"status 9", true, true, false}));
+  EXPECT_EQ(at(6.0), nlohmann::json({"status 99", true, true, false}));
 
   const nlohmann::json counted = browser().run(R"(
     const table = Array.from(document.querySelectorAll('#tables table')).find((one) => one.caption.textContent.includes('by the status'));
@@ -350,7 +350,7 @@ TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
   };
   EXPECT_EQ(counted,
             nlohmann::json::array({row("OK", "3"), row("NON_FINITE_POSE", "1"), row("BAD_QUATERNION", "1"),
-                                   row("OPEN_EDGE_WET", "1"), row("status 9", "1")}));
+                                   row("OPEN_EDGE_WET", "1"), row("status 99", "1")}));
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
