@@ -50,6 +50,7 @@ decimated; its extremes are kept.
   add_wrenches_channel_option(app, arguments.file.wrenches_channel);
   add_loads_channel_option(app, arguments.file.loads_channel);
   add_sea_channel_option(app, arguments.file.sea_channel);
+  add_condition_channel_option(app, arguments.file.condition_channel);
   add_status_channel_option(app, arguments.file.status_channel);
   add_viewer_options(app, arguments.poses);
   app.add_option(
@@ -108,7 +109,7 @@ int report_main(int argc, char** argv) {
   Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene,
       {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.loads_channel,
-       arguments.file.sea_channel, arguments.file.status_channel});
+       arguments.file.sea_channel, arguments.file.condition_channel, arguments.file.status_channel});
   if (!poses) return fail(poses.error(), kUsageError);
   arguments.file.poses = *std::move(poses);
 
@@ -143,7 +144,9 @@ int report_main(int argc, char** argv) {
                                                    {.file = arguments.run.filename().string(),
                                                     .version = BUOYANCY_VERSION,
                                                     .selected = !arguments.file.bodies.empty()}),
-                                       *three, std::ranges::any_of(scene->bodies(), has_loads));
+                                       *three,
+                                       {.loads = std::ranges::any_of(scene->bodies(), has_loads),
+                                        .subdivision = scene->bodies_with_subdivision() > 0});
   if (const Expected<void> written = write_page(arguments.output, page); !written) {
     return fail(written.error(), kFailure);
   }

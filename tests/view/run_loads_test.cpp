@@ -308,7 +308,7 @@ TEST(RunLoads, AddNothingToPageWithoutSuchBodies) {
   EXPECT_EQ(data.find("loads"), std::string::npos);
   EXPECT_EQ(report_page(data, "three.js").find("class LoadPlots"), std::string::npos);
   EXPECT_EQ(report_page(data, "three.js").find("<!-- loads"), std::string::npos);
-  EXPECT_NE(report_page(data, "three.js", true).find("class LoadPlots"), std::string::npos);
+  EXPECT_NE(report_page(data, "three.js", {.loads = true}).find("class LoadPlots"), std::string::npos);
 }
 
 }  // namespace

@@ -32,6 +32,10 @@ struct SceneModelOptions {
 //   of such a body "loads": {"drag_center": [3] [m], B, or null without drag
 //                            "added_mass": whether it has any
 //                            "published": whether its outputs include "loads"}
+// The meshes of the parts of a body are left out, as are its "parts" and the "sections" of meshes: a page
+// draws the mesh that they are together. "mesh" of bodies, compartments and tanks is an index into what
+// remains.
+//
 // positions and indices are base64 of little-endian numbers. A mesh with more triangles than its share of
 // max_triangles is reduced for drawing only (meshoptimizer).
 nlohmann::ordered_json scene_model(const Scene& scene, const SceneModelOptions& options = {});

@@ -43,7 +43,7 @@ std::string_view to_string(ServiceState state) {
 }
 
 BusMonitor::BusMonitor(const Scene& scene, double now, PoseChannels poses)
-    : scene_(&scene), seas_(scene), poses_(std::move(poses)), second_start_(now) {
+    : scene_(&scene), seas_(scene), conditions_(scene), poses_(std::move(poses)), second_start_(now) {
   for (const Body& body : scene.bodies()) {
     bodies_.emplace_back().id = body.id;
   }
@@ -176,6 +176,14 @@ void BusMonitor::on_status(Bytes bytes, double now) {
 
 void BusMonitor::on_sea(Bytes bytes) {
   if (!seas_.receive(bytes, *scene_)) ++counts_.seas_rejected;
+}
+
+void BusMonitor::on_condition(Bytes bytes) {
+  if (!conditions_.receive(bytes)) ++counts_.conditions_rejected;
+}
+
+std::shared_ptr<const BodyCondition> BusMonitor::condition(std::size_t body) const {
+  return request_time_ ? conditions_.at(body, request_time_->utime) : nullptr;
 }
 
 std::shared_ptr<const SeaPeriod> BusMonitor::sea_period() const {

@@ -23,6 +23,7 @@
 #include "messages/wire.h"
 #include "scene/scene.h"
 #include "transport/udpm_receiver.h"
+#include "view/common/condition_tracker.h"
 #include "view/common/pose_tracker.h"
 #include "view/live/request_tracker.h"
 
@@ -92,6 +93,7 @@ class BusMonitor {
     std::int64_t bodies_not_in_scene = 0;  // bodies of requests
     std::int64_t statuses = 0;
     std::int64_t seas_rejected = 0;
+    std::int64_t conditions_rejected = 0;
     std::int64_t services_started = 0;  // instance_ids that were not known yet, including the first
   };
 
@@ -108,12 +110,14 @@ class BusMonitor {
   void on_loads(Bytes bytes);
   void on_status(Bytes bytes, double now);
   void on_sea(Bytes bytes);                    // of a scene that receives its sea
+  void on_condition(Bytes bytes);              // of a scene with compartments or tanks
   void record_drops(const DropCounts& drops);  // totals since the start
 
   // Drops expired requests and closes a second that is over; to be called many times per second.
   void tick(double now);
 
   const std::vector<BodyMonitor>& bodies() const { return bodies_; }  // in the scene's order
+  const Scene& scene() const { return *scene_; }
   const Counts& counts() const { return counts_; }
   const RequestTracker::Counts& tracker() const { return tracker_.counts(); }
   LatencyPercentiles latency() const { return latency_.percentiles(); }             // [s], since the start
@@ -127,6 +131,11 @@ class BusMonitor {
   // The sea of the latest request; nullptr: no request yet, or no sea has been received that holds at its
   // time.
   std::shared_ptr<const SeaPeriod> sea_period() const;
+  // Was a condition of compartments or tanks received?
+  bool has_conditions() const { return conditions_.has_received(); }
+  // The condition of a body, by its index, at the time of the latest request. nullptr: it is unknown, or the
+  // body has neither compartments nor tanks.
+  std::shared_ptr<const BodyCondition> condition(std::size_t body) const;
   std::vector<std::int64_t> services(double now) const;  // instance_ids seen within kStatusTimeout
   ServiceState service_state(double now) const;
 
@@ -145,6 +154,7 @@ class BusMonitor {
 
   const Scene* scene_;
   SeaTimeline seas_;
+  mutable ConditionTracker conditions_;  // it caches what is asked for
   PoseTracker poses_;
   std::vector<BodyMonitor> bodies_;
   RequestTracker tracker_;

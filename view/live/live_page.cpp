@@ -20,11 +20,15 @@ std::string model_json(const Scene& scene, const std::string& version) {
 }
 
 // One file: a browser opens a connection for each, and gives up those that a busy machine serves late.
-std::string page_script() {
+std::string page_script(bool subdivision) {
   std::string script;
-  for (const char* name : {"format.js", "sea.js", "water_materials.js", "wave_surface.js", "water_scene.js",
-                           "plots.js", "loads.js", "live.js"}) {
-    script += page_text(name);
+  std::vector<const char*> names{"format.js",       "sea.js",         "water_materials.js",
+                                 "wave_surface.js", "water_scene.js", "plots.js",
+                                 "loads.js"};
+  if (subdivision) names.push_back("subdivision.js");
+  names.push_back("live.js");
+  for (const char* name : names) {
+    script += page_text(name, subdivision);
     script += '\n';
   }
   return script;
@@ -37,7 +41,7 @@ Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::s
   Expected<std::string> three_text = three_js(three);
   if (!three_text) return tl::unexpected(three_text.error());
   std::vector<StaticResource> resources{
-      {"/", "text/html; charset=utf-8", std::string(page_text("live.html"))},
+      {"/", "text/html; charset=utf-8", page_text("live.html")},
       {"/model", "application/json", model_json(scene, version)},
       {"/three.js", "text/javascript; charset=utf-8", std::move(*three_text)},
   };
@@ -45,10 +49,11 @@ Expected<std::vector<StaticResource>> live_page(const Scene& scene, const std::s
     for (const char* name : names) {
       std::string path = "/";
       path += name;
-      resources.push_back({std::move(path), content_type, std::string(page_text(name))});
+      resources.push_back({std::move(path), content_type, page_text(name)});
     }
   };
-  resources.push_back({"/page.js", "text/javascript; charset=utf-8", page_script()});
+  resources.push_back(
+      {"/page.js", "text/javascript; charset=utf-8", page_script(scene.bodies_with_subdivision() > 0)});
   add("text/css; charset=utf-8", {"style.css", "live.css"});
   return resources;
 }

@@ -88,6 +88,9 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
       {channels.loads, {MessageKind::kLoads}},
       {channels.status, {MessageKind::kStatus}}};
   if (scene.receives_sea()) subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
+  if (scene.bodies_with_subdivision() > 0) {
+    subscriptions.emplace_back(channels.condition, Route{MessageKind::kCondition});
+  }
   // Several pose channels of one body may share its force-torque channel.
   std::set<std::string> force_torque_channels;
   for (std::size_t i = 0; i < channels.poses.channels.size(); ++i) {
@@ -151,6 +154,8 @@ void LiveView::dispatch(const Route& route, Bytes bytes, ArrivalTime arrival) {
       return monitor_.on_status(bytes, arrival.now);
     case MessageKind::kSea:
       return monitor_.on_sea(bytes);
+    case MessageKind::kCondition:
+      return monitor_.on_condition(bytes);
     case MessageKind::kPose:
       return monitor_.on_pose(route.index, bytes, arrival);
     case MessageKind::kForceTorque:

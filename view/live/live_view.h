@@ -29,6 +29,7 @@ struct ObservedChannels {
   std::string loads{kLoadsChannel};
   std::string status{kStatusChannel};
   std::string sea{kSeaChannel};
+  std::string condition{kConditionChannel};
   PoseChannels poses;
 };
 
@@ -52,7 +53,17 @@ class LiveView {
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
  private:
-  enum class MessageKind { kRequest, kResponse, kHydrostatics, kLoads, kStatus, kSea, kPose, kForceTorque };
+  enum class MessageKind {
+    kRequest,
+    kResponse,
+    kHydrostatics,
+    kLoads,
+    kStatus,
+    kSea,
+    kCondition,
+    kPose,
+    kForceTorque
+  };
   struct Route {
     MessageKind kind;
     std::size_t index = 0;  // of the pose channel

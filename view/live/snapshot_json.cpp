@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,10 @@ class BodyWriter {
     text_.append(digits.data(), end);
     return *this;
   }
+  BodyWriter& list(const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) plain(i == 0 ? "[" : ",").number_as<double>(values[i]);
+    return plain(values.empty() ? "[]" : "]");
+  }
   BodyWriter& number(double value) { return number_as<float>(value); }
   BodyWriter& whole_number(std::int64_t value) { return plain(std::to_string(value)); }
   template <std::size_t kSize>
@@ -64,7 +69,19 @@ void append(BodyWriter& out, const BodyLoads& loads) {
   out.plain(R"(,"water_velocity":)").numbers(loads.water_velocity).plain("}");
 }
 
-void append(std::string& text, const BodyMonitor& body, double now) {
+// condition: nullptr: unknown.
+void append(BodyWriter& out, const BodyCondition* condition) {
+  out.plain(R"(,"condition":)");
+  if (condition == nullptr) {
+    out.plain("null");
+    return;
+  }
+  out.plain(R"({"flooded":)").list(condition->flooded);
+  out.plain(R"(,"liquid_volumes":)").list(condition->liquid_volumes).plain("}");
+}
+
+void append(std::string& text, const BusMonitor& monitor, std::size_t index, double now) {
+  const BodyMonitor& body = monitor.bodies()[index];
   const bool overdue = body.response_overdue(BusMonitor::kResponseTimeout);
   const BodyWrench* const wrench = body.wrench && !overdue ? &*body.wrench : nullptr;
   const bool complete = wrench != nullptr && !body.force_torque_only;
@@ -99,6 +116,9 @@ void append(std::string& text, const BodyMonitor& body, double now) {
     out.plain(R"(,"m":null,"gm":null)");
   }
   if (body.loads && !overdue) append(out, *body.loads);
+  if (monitor.has_conditions() && monitor.scene().bodies()[index].subdivision != nullptr) {
+    append(out, monitor.condition(index).get());
+  }
   out.plain(R"(,"age":)").number(now - *body.last_request).plain("}");
 }
 
@@ -216,14 +236,21 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
         period ? json(sea_time(*period, monitor.request_time()->utime, monitor.request_time()->lead_time))
                : json();
   }
+  if (monitor.scene().bodies_with_subdivision() > 0) {
+    rest["counts"]["conditions_rejected"] = monitor.counts().conditions_rejected;
+    if (monitor.status()) {
+      rest["status"]["conditions_received"] = monitor.status()->counters.conditions_received;
+      rest["status"]["conditions_rejected"] = monitor.status()->counters.conditions_rejected;
+    }
+  }
   std::string text = dump(rest);
   text.back() = ',';  // replaces the closing brace
   text += R"("bodies":[)";
   bool first = true;
-  for (const BodyMonitor& body : monitor.bodies()) {
-    if (!body.pose) continue;
+  for (std::size_t i = 0; i < monitor.bodies().size(); ++i) {
+    if (!monitor.bodies()[i].pose) continue;
     if (!std::exchange(first, false)) text += ',';
-    append(text, body, now);
+    append(text, monitor, i, now);
   }
   text += "]}";
   return text;

@@ -28,6 +28,9 @@ namespace buoyancy::view {
 //                                 "water_velocity": [3] [m/s]. Absent as long as the latest loads have a
 //                                 status other than OK or numbers that are not finite, or are overdue like a
 //                                 response
+//                    condition    only of a body with compartments or tanks, and only if a condition was
+//                                 received for any: "flooded": [0 to 1], "liquid_volumes": [m^3], at the time
+//                                 of the latest request; null: unknown
 //                    age          [s] since the latest request for the body
 //                  b and m are relative to p in W's axes. From f to torque_bound, null means: no response
 //                  yet, or none since BusMonitor::kResponseTimeout; status, b, volume and the bounds are also
@@ -41,7 +44,8 @@ namespace buoyancy::view {
 //   sea_time       [s], in waves only: the time t of the sea at the latest request; null without a request,
 //   or
 //                  if no sea has been received that holds at its time
-//   counts         BusMonitor::Counts and RequestTracker::Counts
+//   counts         BusMonitor::Counts and RequestTracker::Counts; "conditions_rejected" only if the scene has
+//                  compartments or tanks
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
                           double now);
 

@@ -241,6 +241,7 @@
       ...Object.entries(counts.malformed).map(([cause, count]) => [`malformed: ${cause}`, count]),
       ['packets dropped by the kernel', counts.packets_dropped], ['fragments of incomplete messages', counts.fragments_dropped], ['services started', counts.services_started],
       ['seas rejected', counts.seas_rejected],
+      ['conditions rejected', counts.conditions_rejected],  // only with subdivision
     ];
     const tables = [table_of('Observed on the bus', ['since this view was started', ''], observed)];
     if (!now.status) return tables;
@@ -249,6 +250,7 @@
       ['requests', status.requests], ['computed', status.computed], ['retries', status.retries], ['conflicting retries', status.conflicting_retries],
       ['stale', status.stale], ['superseded', status.superseded], ['rejected', status.rejected], ['send failures', status.send_failures],
       ['seas received', status.seas_received], ['seas rejected', status.seas_rejected],
+      ['conditions received', status.conditions_received], ['conditions rejected', status.conditions_rejected],  // only with subdivision
       ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
       ['sessions', status.sessions], ['sessions evicted', status.sessions_evicted], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
@@ -277,6 +279,7 @@
     fill_strip(strip_entries(now));
     element('subtitle').textContent = now.status ? `${model.scene}, instance ${now.status.instance_id}` : model.scene;
     element('body_facts').replaceChildren(body_table(now));
+    show_observed_condition(element('body_facts'), described(), now);  // only with subdivision
     element('counters').replaceChildren(...counter_tables(now));
   }
 
@@ -353,6 +356,7 @@
   document.title = `buoyancy: ${model.scene}, live`;
   element('footer').textContent = `buoyancy-view ${version}. Rendered with three.js. Publishes nothing on the bus.`;
   fill_legend(element('legend'), model.bodies.some((body) => body.center_of_mass !== null), model.bodies.some((body) => body.outputs.includes('hydrostatics')), with_loads);
+  fill_subdivision_legend(element('legend'), model.bodies);  // only with subdivision
 
   function connect() {
     const events = new EventSource('events');

@@ -23,16 +23,29 @@ std::string element(std::string_view tag, std::string_view text) {
   return html;
 }
 
-std::string insertion(std::string_view name, std::string_view three) {
+std::string insertion(std::string_view name, std::string_view three, bool subdivision) {
   if (name == "three.js") return element("script", three);
-  return element(name.ends_with(".css") ? "style" : "script", page_text(name));
+  return element(name.ends_with(".css") ? "style" : "script", page_text(name, subdivision));
+}
+
+std::string without_lines_of(std::string_view comment, std::string_view text) {
+  std::string kept;
+  kept.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end == std::string_view::npos ? end : end + 1);
+    if (line.find(comment) == std::string_view::npos) kept += line;
+    text.remove_prefix(line.size());
+  }
+  return kept;
 }
 
 }  // namespace
 
-std::string_view page_text(std::string_view file_name) {
+std::string page_text(std::string_view file_name, bool subdivision) {
   for (const PageFile& file : kPageFiles) {
-    if (file.name == file_name) return file.text;
+    if (file.name != file_name) continue;
+    return subdivision ? std::string(file.text) : without_lines_of("only with subdivision", file.text);
   }
   return {};
 }
@@ -57,15 +70,16 @@ Expected<std::string> three_js(const std::filesystem::path& path) {
   return text;
 }
 
-std::string self_contained_page(std::string_view file_name, std::string_view three) {
+std::string self_contained_page(std::string_view file_name, std::string_view three, bool subdivision) {
   std::string page;
-  std::string_view rest = page_text(file_name);
+  const std::string text = page_text(file_name, subdivision);
+  std::string_view rest = text;
   while (true) {
     const std::size_t start = rest.find(kInsert);
     const std::size_t end = rest.find(kInsertEnd, start);
     page += rest.substr(0, start);
     if (start == std::string_view::npos) return page;
-    page += insertion(rest.substr(start + kInsert.size(), end - start - kInsert.size()), three);
+    page += insertion(rest.substr(start + kInsert.size(), end - start - kInsert.size()), three, subdivision);
     rest.remove_prefix(end + kInsertEnd.size());
   }
 }

@@ -45,6 +45,7 @@
              q: from.map((value, i) => (1 - fraction) * value + sign * fraction * to[i]),
              f: at(['fx', 'fy', 'fz']), t: at(['tx', 'ty', 'tz']), b: at(['bx', 'by', 'bz']),
              loads: body.loads && body.loads.at(row),
+             condition: condition_of_row(body, row),  // only with subdivision
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
@@ -105,6 +106,7 @@
     const status = selected.columns.status[row_at(selected.columns.time, time)];
     element('status').textContent = `Body ${selected.id} ${selected.description.name}: ${status_text(data.body_statuses, status)}`;
     element('status').classList.toggle('not-ok', status !== 0);
+    show_recorded_condition(element('subdivision'), selected, time);  // only with subdivision
     for (const plot of Object.values(plots)) plot.show(time);
   }
 
@@ -188,6 +190,7 @@
     element('notices').append(line);
   }
   report_tables(data, bodies, seas);
+  fill_subdivision_legend(element('legend'), data.model.bodies);  // only with subdivision
   element('footer').textContent = `buoyancy-report ${data.version}. Rendered with three.js. Requires no network.`;
   // page.html#t=12.5 opens at that time.
   function seek_to_hash() {

@@ -10,6 +10,7 @@ function hull_material(up, diagonal) {
     extensions: { derivatives: true },
     side: THREE.DoubleSide,
     uniforms: { up: { value: up }, dry: colour('dry'), wet: colour('wet'), waterline: colour('waterline'),
+                opacity: { value: 1 },  // only with subdivision
                 min_line_width: { value: 0.002 * diagonal } },
     vertexShader: `
       varying vec3 position_W, position_view;
@@ -31,6 +32,7 @@ function hull_material(up, diagonal) {
     fragmentShader: `
       uniform vec3 up, dry, wet, waterline;
       uniform float min_line_width;
+      uniform float opacity;  // only with subdivision
       varying vec3 position_W, position_view;
       #ifdef WAVES
         varying float height;
@@ -44,6 +46,7 @@ function hull_material(up, diagonal) {
         float line = max(1.6 * fwidth(height), min_line_width);
         vec3 colour = (height > 0.0 ? dry : wet) * light;
         gl_FragColor = vec4(abs(height) < line ? waterline : colour, 1.0);
+        if (abs(height) >= line) gl_FragColor.a = opacity;  // only with subdivision
       }`,
   });
 }

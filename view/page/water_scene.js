@@ -71,7 +71,9 @@ class WaterScene {
       body.group.visible = true;
       body.group.position.copy(this.local(state.p));
       body.group.quaternion.set(state.q[1], state.q[2], state.q[3], state.q[0]).normalize();
+      if (body.group.inside) body.group.inside.show(this.up, state.condition);  // only with subdivision
       this.place_markers(body, state);
+      if (body.group.inside) body.group.inside.place_weight(this, body, state);  // only with subdivision
     }
   }
 
@@ -165,6 +167,7 @@ class WaterScene {
     drawn.mesh_index = description.mesh;
     const group = new THREE.Group();
     group.add(drawn);
+    if (description.tanks) group.inside = new SubdivisionDrawing(group, drawn, description, this.model, this.geometries);  // only with subdivision
     group.visible = false;
     this.scene.add(group);
     const size = mesh.diagonal;

@@ -23,6 +23,8 @@ struct KeptRow {
   std::int64_t number = 0;  // the position among all rows
   RunRow values{};
   std::shared_ptr<RowLoads> loads;  // nullptr: the body has none
+  // nullptr: the body has neither compartments nor tanks, or their condition is unknown.
+  std::shared_ptr<const BodyCondition> condition = nullptr;
 };
 
 class DecimatedRows {

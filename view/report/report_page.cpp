@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/body_evaluation.h"
+#include "engine/subdivision_load.h"
 #include "hydrostatics/hydrostatics.h"
 #include "view/common/body_statuses.h"
 #include "view/common/scene_model.h"
@@ -66,7 +67,7 @@ Json evaluations_json(const Body& body, const BodyRun& run, const Water& water) 
                        })},
           {"query_ns", median_time(body, run, [&](const ValidatedPose& pose) {
              evaluate(body, {&water, nullptr}, pose, outcome);
-             return outcome.result.immersion == Immersion::kPiercing;
+             return body.subdivision != nullptr || outcome.result.immersion == Immersion::kPiercing;
            })}};
 }
 
@@ -85,15 +86,38 @@ std::string encode_rows(const std::vector<RunRow>& rows, std::size_t columns) {
   return base64_of<double>(numbers);
 }
 
+// nullptr: that of the scene file, or unknown.
+const BodyCondition* condition_of(const BodyRun& run, std::size_t row) {
+  if (run.conditions.empty()) return nullptr;
+  const std::optional<BodyCondition>& condition = run.conditions[run.condition_of_row[row]];
+  return condition ? &*condition : nullptr;
+}
+
+Json conditions_json(const BodyRun& run) {
+  Json list = Json::array();
+  for (const std::optional<BodyCondition>& condition : run.conditions) {
+    if (condition) {
+      list.push_back({{"flooded", condition->flooded}, {"liquid_volumes", condition->liquid_volumes}});
+    } else {
+      list.push_back(nullptr);
+    }
+  }
+  return {{"list", std::move(list)}, {"rows", base64_of<std::uint32_t>(run.condition_of_row)}};
+}
+
 // Base64 of two points per row [m], W axes, relative to B's origin; NaN if there are none.
 std::string encode_metacenters(const Body& body, const BodyRun& run, const Water& water) {
   std::vector<float> numbers;
   numbers.reserve(run.rows.size() * 6);
-  for (const RunRow& row : run.rows) {
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    const RunRow& row = run.rows[i];
     const ValidatedPose pose = validate_pose(body_state(body, row), 0.0);
     std::optional<Hydrostatics> found;
     if (pose.status == BodyStatus::kOk && row[kStatus] == 0.0) {
-      found = hydrostatics(body.solver.mesh(), pose.pose, water, body.reference_B, body.center_of_mass_B);
+      found =
+          body.subdivision == nullptr
+              ? hydrostatics(body.solver.mesh(), pose.pose, water, body.reference_B, body.center_of_mass_B)
+              : subdivided_hydrostatics(body, condition_of(run, i), water, pose.pose);
     }
     const Hydrostatics shown = found.value_or(Hydrostatics{});
     for (const Vec3& center : shown.metacenters_W) {
@@ -171,19 +195,19 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
       if (!has_waves(scene)) described["evaluations"] = evaluations_json(body, body_run, scene.water());
       if (body.hydrostatics) described["metacenters"] = encode_metacenters(body, body_run, scene.water());
       if (has_loads(body)) described["loads"] = loads_json(body_run);
+      if (!body_run.conditions.empty()) described["conditions"] = conditions_json(body_run);
     }
     data["bodies"].push_back(std::move(described));
   }
   return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string report_page(const std::string& data, std::string_view three, bool loads) {
-  std::string page = self_contained_page("report.html", three);
+std::string report_page(const std::string& data, std::string_view three, const PageParts& parts) {
+  std::string page = self_contained_page("report.html", three, parts.subdivision);
   const auto fill_in = [&page](std::string_view placeholder, const std::string& text) {
     page.replace(page.find(placeholder), placeholder.size(), text);
   };
-  const std::string script(loads ? page_text("loads.js") : std::string_view());
-  fill_in("<!-- loads -->\n", loads ? "<script>\n" + script + "\n</script>\n" : "");
+  fill_in("<!-- loads -->\n", parts.loads ? "<script>\n" + page_text("loads.js") + "\n</script>\n" : "");
   fill_in("<!-- data -->",
           "<script type=\"application/json\" id=\"data\">" + escaped_for_script(data) + "</script>");
   return page;

@@ -17,10 +17,17 @@ struct ReportOptions {
 // The JSON data that the page's script reads (view/page/report.js). For bodies with the output "hydrostatics"
 // the metacentres of every kept row are computed. O(rows * cost of a query). Only bodies with loads have
 // "loads": {"data": base64 of float32, the columns of LoadRow one after the other, "recorded", "computed":
-// rows, "without_velocities"}.
+// rows, "without_velocities"}. Only bodies with BodyRun::conditions have "conditions": {"list": these, each
+// {"flooded": [], "liquid_volumes": []} or null, "rows": base64 of uint32, the index of each row into the
+// list}.
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options);
 
-// loads: whether a body has loads, so that the page contains the script that plots them.
-std::string report_page(const std::string& data, std::string_view three, bool loads = false);
+// What a page contains besides that which every page contains.
+struct PageParts {
+  bool loads = false;        // a body has loads, which the page plots
+  bool subdivision = false;  // a body has compartments or tanks, which the page draws
+};
+
+std::string report_page(const std::string& data, std::string_view three, const PageParts& parts = {});
 
 }  // namespace buoyancy::view

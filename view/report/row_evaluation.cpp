@@ -1,6 +1,7 @@
 #include "view/report/row_evaluation.h"
 
 #include <algorithm>
+#include <map>
 
 #include "engine/load_evaluation.h"
 #include "engine/water_at_time.h"
@@ -39,7 +40,8 @@ CurrentWater water_of(const RowLoads& row, const Scene& scene, WaterAtTime& wate
 }  // namespace
 
 RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
-                           const BodyState& state, const ValidatedPose& pose) {
+                           const BodyState& state, const ValidatedPose& pose,
+                           const BodyCondition* condition) {
   BodyOutcome outcome;
   outcome.status = pose.status;
   const BodyTwist twist = twist_of(state);
@@ -47,7 +49,10 @@ RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Ve
     outcome.status = BodyStatus::kNonFiniteTwist;
   }
   if (outcome.status == BodyStatus::kOk && water.at_rest == nullptr) outcome.status = BodyStatus::kNoSea;
-  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome);
+  if (outcome.status == BodyStatus::kOk && body.subdivision != nullptr && condition == nullptr) {
+    outcome.status = BodyStatus::kBadCondition;
+  }
+  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome, condition);
   RowEvaluation evaluation{.wrench = to_wrench(body.id, outcome), .loads = std::nullopt};
   BodyWrench& wrench = evaluation.wrench;
   if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
@@ -77,11 +82,29 @@ void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>&
     }
     const std::optional<BodyLoads> computed =
         evaluate_row(body, water_of(source, scene, water), scene.current_W(), source.state,
-                     validate_pose(source.state, source.lead_time))
+                     validate_pose(source.state, source.lead_time), row.condition.get())
             .loads;
     if (!computed) continue;
     run.loads.back() = to_row(*computed);
     ++run.loads_computed;
+  }
+}
+
+void add_conditions(const Subdivision& subdivision, const std::vector<KeptRow>& rows, BodyRun& run) {
+  const BodyCondition initial = initial_condition(subdivision);
+  const auto is_initial = [&initial](const KeptRow& row) {
+    return row.condition && *row.condition == initial;
+  };
+  if (std::ranges::all_of(rows, is_initial)) return;
+  std::map<const BodyCondition*, std::uint32_t> places;
+  run.condition_of_row.reserve(rows.size());
+  for (const KeptRow& row : rows) {
+    const auto [place, is_new] =
+        places.emplace(row.condition.get(), static_cast<std::uint32_t>(run.conditions.size()));
+    if (is_new) {
+      run.conditions.push_back(row.condition ? std::optional(*row.condition) : std::nullopt);
+    }
+    run.condition_of_row.push_back(place->second);
   }
 }
 

@@ -17,12 +17,16 @@ struct RowEvaluation {
   std::optional<BodyLoads> loads;  // of a body with loads (view/common/scene_model.h) whose status is kOk
 };
 
-// pose: that of validate_pose(state, lead_time); the lead_time is that of the water too.
+// pose: that of validate_pose(state, lead_time); the lead_time is that of the water too. condition: of the
+// body's compartments and tanks; nullptr: it has none, or their condition is unknown.
 RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
-                           const BodyState& state, const ValidatedPose& pose);
+                           const BodyState& state, const ValidatedPose& pose, const BodyCondition* condition);
 
 // Fills in the loads of a body's rows, which have loads: the recorded ones, and others computed in the water
 // of their time. O(rows * cost of a query).
 void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>& rows, BodyRun& run);
+
+// Fills in the conditions of a body's rows, which has compartments or tanks. O(rows log(rows)).
+void add_conditions(const Subdivision& subdivision, const std::vector<KeptRow>& rows, BodyRun& run);
 
 }  // namespace buoyancy::view

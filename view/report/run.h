@@ -129,6 +129,10 @@ struct BodyRun {
   std::int64_t loads_recorded = 0;        // of these, those that a message of the file holds
   std::int64_t loads_computed = 0;        // of these, those that were computed from the scene
   bool loads_without_velocities = false;  // were some computed as if the body were at rest?
+  // Only of bodies that are shown and have compartments or tanks, and only if a row has another condition
+  // than that of the scene file:
+  std::vector<std::optional<BodyCondition>> conditions;  // different ones; nullopt: unknown
+  std::vector<std::uint32_t> condition_of_row;           // index into `conditions` for each of `rows`
 };
 
 struct RecordedRun {

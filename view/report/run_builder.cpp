@@ -89,7 +89,7 @@ void summarize(BodyRun& body, const RecordedState& recorded, const ValidatedPose
 }  // namespace
 
 RunBuilder::RunBuilder(const Scene& scene, std::size_t max_rows, const std::vector<std::size_t>& selected)
-    : scene_(scene), water_(scene) {
+    : scene_(scene), water_(scene), conditions_(scene) {
   const std::size_t max_shown =
       selected.empty() ? std::min(scene.bodies().size(), kMaxBodies) : selected.size();
   max_rows_of_body_ = std::min(max_rows / max_shown, kMaxRowsOfBody);
@@ -106,15 +106,19 @@ RunBuilder::ShownBody* RunBuilder::show(std::size_t index) {
   bodies_[index] = std::make_unique<ShownBody>(max_rows_of_body_);
   bodies_[index]->mesh_up = mesh_up_of(body);
   run_.bodies[index].shown = true;
-  if (body.dynamics.given) {
-    if (Expected<RigidBody> rigid = make_rigid_body(body, scene_.water())) {
-      bodies_[index]->rigid = *std::move(rigid);
-      if (body.hydrodynamics != nullptr) {
-        bodies_[index]->motion.emplace(body, *bodies_[index]->rigid, scene_.water(), scene_.current_W());
-      }
-    }
-  }
+  if (body.dynamics.given) make_rigid(body, nullptr, *bodies_[index]);
   return bodies_[index].get();
+}
+
+void RunBuilder::make_rigid(const Body& body, const std::shared_ptr<const BodyCondition>& condition,
+                            ShownBody& shown) {
+  shown.condition = condition;
+  Expected<RigidBody> rigid = make_rigid_body(body, scene_.water(), condition.get());
+  if (!rigid) return;
+  shown.rigid = *std::move(rigid);
+  if (body.hydrodynamics != nullptr) {
+    shown.motion.emplace(body, *shown.rigid, scene_.water(), scene_.current_W());
+  }
 }
 
 std::int64_t RunBuilder::time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime) {
@@ -162,6 +166,10 @@ void RunBuilder::count_evaluation(ShownBody& shown, const Body& body, const Vali
     return;
   }
   shown.last_pose = bits;
+  if (body.subdivision != nullptr) {  // bounds do not decide
+    ++shown.evaluations.crossing;
+    return;
+  }
   switch (quick_immersion(body.solver.mesh(), pose.pose, scene_.water())) {
     case Immersion::kDry:
       ++shown.evaluations.dry;
@@ -202,10 +210,11 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   }
   if (!has_waves(scene_)) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
+  const std::shared_ptr<const BodyCondition> condition = conditions_.at(*index, recorded.utime);
   BodyWrench wrench = recorded.wrench
                           ? *recorded.wrench
                           : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
-                                         scene_.current_W(), recorded.state, pose)
+                                         scene_.current_W(), recorded.state, pose, condition.get())
                                 .wrench;
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
@@ -227,6 +236,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   if (recorded.energy) {
     row[kEnergy] = *recorded.energy;
   } else if (recorded.velocities && shown->rigid && wrench.status == BodyStatus::kOk) {
+    if (condition != nullptr && condition != shown->condition) make_rigid(body, condition, *shown);
     row[kEnergy] = energy_of(*shown->rigid, shown->motion, recorded, wrench, scene_.water());
   }
   row[kRoundTrip] = recorded.round_trip;
@@ -240,7 +250,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   row[kSeaTime] = sea ? sea_time(*sea, recorded.utime, recorded.lead_time) : kUnknown;
   row[kSea] = sea ? place_of(sea) : kUnknown;
   std::shared_ptr<RowLoads> loads = make_loads(run_.bodies[*index], body, recorded);
-  shown->rows.add({.number = rows_added_++, .values = row, .loads = loads});
+  shown->rows.add({.number = rows_added_++, .values = row, .loads = loads, .condition = condition});
   return loads;
 }
 
@@ -267,6 +277,13 @@ void RunBuilder::receive_sea(std::int64_t timestamp, Bytes message) {
   }
 }
 
+void RunBuilder::receive_condition(std::int64_t timestamp, Bytes message) {
+  if (scene_.bodies_with_subdivision() == 0) return;
+  if (const Expected<void> received = conditions_.receive(message); !received) {
+    add_warning("event at " + std::to_string(timestamp) + " us: " + received.error().message());
+  }
+}
+
 void RunBuilder::add_warning(std::string warning) {
   if (run_.warnings.size() < kMaxWarnings) {
     run_.warnings.push_back(std::move(warning));
@@ -285,6 +302,8 @@ RecordedRun RunBuilder::finish() {
     std::ranges::stable_sort(rows, {}, [](const KeptRow& row) { return row.values[kTime]; });
     for (const KeptRow& row : rows) body.rows.push_back(row.values);
     if (has_loads(scene_.bodies()[i])) add_loads(scene_, scene_.bodies()[i], rows, body);
+    const Subdivision* const subdivision = scene_.bodies()[i].subdivision;
+    if (subdivision != nullptr) add_conditions(*subdivision, rows, body);
   }
   run_.sessions = static_cast<std::int64_t>(sessions_.size());
   return std::move(run_);

@@ -18,6 +18,7 @@
 #include "scene/scene.h"
 #include "simulation/hydrodynamic_motion.h"
 #include "simulation/rigid_body.h"
+#include "view/common/condition_tracker.h"
 #include "view/report/attitude.h"
 #include "view/report/decimated_rows.h"
 #include "view/report/run.h"
@@ -57,6 +58,8 @@ class RunBuilder {
   std::shared_ptr<RowLoads> add(const RecordedState& recorded);
   // A sea_state_t of a scene that receives its sea: wrenches that are computed afterwards are those in it.
   void receive_sea(std::int64_t timestamp, Bytes message);
+  // A body_condition_t of a scene with compartments or tanks, from whose utime on it holds.
+  void receive_condition(std::int64_t timestamp, Bytes message);
   void add_warning(std::string warning);
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 
@@ -75,7 +78,8 @@ class RunBuilder {
 
     DecimatedRows rows;
     std::optional<RigidBody> rigid;
-    std::optional<HydrodynamicMotion> motion;  // of a rigid body with drag or added mass
+    std::optional<HydrodynamicMotion> motion;        // of a rigid body with drag or added mass
+    std::shared_ptr<const BodyCondition> condition;  // of `rigid`; nullptr: that of the scene file
     MeshUp mesh_up = MeshUp::kZ;
     EvaluationCounts evaluations;
     std::optional<PoseBits> last_pose;
@@ -86,12 +90,15 @@ class RunBuilder {
 
   // Returns nullptr if the body is not shown.
   ShownBody* show(std::size_t index);
+  // Sets the rigid body, with the liquids of this condition; nullptr: those of the scene file.
+  void make_rigid(const Body& body, const std::shared_ptr<const BodyCondition>& condition, ShownBody& shown);
   double place_of(const std::shared_ptr<const SeaPeriod>& sea);  // in run_.seas, see kSea
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
   std::shared_ptr<RowLoads> make_loads(BodyRun& run, const Body& body, const RecordedState& recorded) const;
 
   const Scene& scene_;
   WaterAtTime water_;
+  ConditionTracker conditions_;
   std::size_t max_rows_of_body_;
   std::size_t free_places_ = 0;  // number of bodies that can still be shown
   std::vector<std::unique_ptr<ShownBody>>

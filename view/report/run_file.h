@@ -28,7 +28,8 @@ struct RunFileOptions {
   std::string states_channel{kStatesChannel};
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
-  std::string sea_channel{kSeaChannel};  // of a log, for a scene that receives its sea
+  std::string sea_channel{kSeaChannel};              // of a log, for a scene that receives its sea
+  std::string condition_channel{kConditionChannel};  // of a log, for a scene with compartments or tanks
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log
   std::vector<std::size_t> bodies;  // to show, see RunBuilder; empty: the first in the run

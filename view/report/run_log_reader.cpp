@@ -189,6 +189,8 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
       {options.loads_channel, [&](const RecordedEvent& event) { matcher.on_loads(event.bytes); }},
       {options.sea_channel,
        [&](const RecordedEvent& event) { builder.receive_sea(event.timestamp, event.bytes); }},
+      {options.condition_channel,
+       [&](const RecordedEvent& event) { builder.receive_condition(event.timestamp, event.bytes); }},
       {options.status_channel, [&](const RecordedEvent& event) {
          if (ServiceStatus status; !decode(event.bytes, status)) builder.set_status(std::move(status));
        }}};
