@@ -1,11 +1,16 @@
 // Tests of the scenes that are installed with the project.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "flotation/equilibrium.h"
+#include "flotation/righting_arms.h"
+#include "scene/floating_bodies.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
@@ -77,6 +82,56 @@ TEST(ShippedScenes, ScaleDuckToPlausibleSize) {
   EXPECT_LT(max_z, 3.0);
   const Vec3 head_up_W = duck.dynamics.orientation * Vec3::UnitY();
   EXPECT_GT(head_up_W.z(), 0.7);
+}
+
+FloatingBody floating(const Scene& scene, std::int32_t id) {
+  const Body& body = *scene.find(id);
+  return floating_body_of(body, body.solver.mesh(), mass_of_body(body, scene.water()).value()).value();
+}
+
+double degrees(double radians) {
+  return radians * 180.0 / std::numbers::pi;
+}
+
+TEST(ShippedScenes, HaveFerryThatCapsizesWithWaterOnDeck) {
+  const Scene scene = Scene::load(shipped("ferry_flooding_deck.toml")).value();
+  std::vector<double> heels;
+  for (int degree = 0; degree <= 90; degree += 5) heels.push_back(degree * std::numbers::pi / 180.0);
+  const auto curve_of = [&](std::int32_t id) {
+    return righting_curve(floating(scene, id), scene.water(), heels).value();
+  };
+  const RightingCurve dry = curve_of(1);
+  EXPECT_NEAR(degrees(dry.vanishing_starboard().value()), 57.33, 0.01);
+  EXPECT_NEAR(dry.max_starboard.value().gz, 0.505, 0.001);
+  for (const RightingCurvePoint& point : curve_of(2).points) {
+    if (point.arm.heel == 0.0) continue;
+    EXPECT_LT(point.arm.gz, -0.05) << degrees(point.arm.heel);
+  }
+}
+
+TEST(ShippedScenes, HaveBargeWhoseBulkheadQuartersTheFreeSurface) {
+  const Scene scene = Scene::load(shipped("barge_half_full_tank.toml")).value();
+  const auto upright_gm = [&](std::int32_t id) {
+    const Equilibrium found =
+        find_equilibrium_from(floating(scene, id), scene.water(), Eigen::Quaterniond::Identity()).value();
+    EXPECT_NEAR(degrees(found.angles.heel), 0.0, 1e-6);
+    return found.state.hydrostatics.metacentric_heights[0];
+  };
+  const double mass = floating(scene, 1).total_mass();
+  const double reduction = scene.water().density * 18.0 * std::pow(8.0, 3) / 12.0 / mass;
+  EXPECT_NEAR(reduction, 2.14, 0.005);
+  EXPECT_NEAR(upright_gm(2) - upright_gm(1), 0.75 * reduction, 1e-9);
+  EXPECT_NEAR(upright_gm(1), 0.36, 0.005);
+  EXPECT_NEAR(upright_gm(2), 1.96, 0.005);
+}
+
+TEST(ShippedScenes, HaveLogThatFloatsOnOneEdge) {
+  const Scene scene = Scene::load(shipped("square_log.toml")).value();
+  const Equilibria found = find_equilibria(floating(scene, 1), scene.water());
+  ASSERT_EQ(found.attitudes.size(), 4U);
+  for (const Equilibrium& attitude : found.attitudes) {
+    EXPECT_NEAR(std::fmod(std::abs(degrees(attitude.angles.heel)), 90.0), 45.0, 1e-6);
+  }
 }
 
 }  // namespace
