@@ -14,6 +14,7 @@ constexpr int kMaxSteps = 200;
 constexpr double kFirstRadius = 0.4;  // [rad]
 constexpr double kMaxRadius = 0.6;    // [rad]
 constexpr double kEscape = 0.05;      // [rad], from a saddle point
+constexpr int kMaxRejections = 1;     // of steps from an attitude that does not quite balance
 
 double norm(const Pair& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1]);
@@ -91,6 +92,22 @@ double slack_for(const Balance& balance, double decrease, double length, double 
   return balance.slack(kShare * length * decrease, area);
 }
 
+// [kg m], by how much the energy falls on the great circle along a tangent step: the trapezoidal sum of the
+// gradient. Where rounding hides the difference of the energies, it does not hide this one.
+double fall_along(const BalancedAttitude& from, const BalancedAttitude& to, const Vec3& step) {
+  const double length = step.norm();
+  const Vec3 arrival = std::cos(length) * step - length * std::sin(length) * from.up_B;
+  return -0.5 * (from.gradient.dot(step) + to.gradient.dot(arrival));
+}
+
+// A tangent step, that leads back to the bottom of a valley. A valley of nearly equal energy may be curved: a
+// step along its tangent then climbs its side. curvature: of an attitude nearby, with values[1] > 0.
+Vec3 step_to_bottom(const BalancedAttitude& at, const EnergyCurvature& curvature) {
+  const Vec3& side = curvature.directions_B[1];
+  const Vec3 across = (side - side.dot(at.up_B) * at.up_B).normalized();
+  return -(across.dot(at.gradient) / curvature.values[1]) * across;
+}
+
 }  // namespace
 
 std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& start, const IsKnown& is_known) {
@@ -99,6 +116,7 @@ std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& sta
   EnergyCurvature curvature = balance_->curvature(at);
   if (is_known(at, at.up_B, -1.0)) return std::nullopt;
   double radius = kFirstRadius;
+  int rejections = 0;  // of steps from an attitude that does not quite balance
   for (int count = 0; count < kMaxSteps; ++count) {
     const Pair gradient = components(at, curvature);
     const double size = at.gradient.norm();
@@ -114,33 +132,53 @@ std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& sta
     if (size <= balance_->gradient_rounding() && is_saddle) radius = std::min(radius, kEscape);
 
     const Step step = best_step(gradient, curvature.values, radius, balance_->gradient_rounding());
-    const Vec3 target = turned(at.up_B, tangent(step.along, curvature));
+    const Vec3 turn = tangent(step.along, curvature);
+    const Vec3 target = turned(at.up_B, turn);
     const double length = norm(step.along);
     if (is_known(at, target, step.is_newton ? length : -length)) return std::nullopt;
     if (step.is_tied && is_saddle) {
       further_starts_.push_back(turned(at.up_B, tangent({-step.along[0], step.along[1]}, curvature)));
     }
     const double slack = slack_for(*balance_, step.decrease, length, at.area);
-    const std::optional<BalancedAttitude> next = balance_->at(target, &at, slack);
+    std::optional<BalancedAttitude> next = balance_->at(target, &at, slack);
     const double rounding = balance_->energy_rounding();
     bool accepted = false;
     if (next) {
-      const double fall = at.energy - next->energy;
+      double fall = at.energy - next->energy;
       const bool is_below_rounding = step.decrease <= rounding && std::abs(fall) <= rounding;
-      accepted = is_below_rounding ? next->gradient.norm() < size || (is_saddle && step.is_tied) : fall > 0.0;
+      if (is_below_rounding) {
+        fall = fall_along(at, *next, turn);
+        if (!(fall > 0.0) && size > balance_->gradient_rounding() && curvature.values[1] > 0.0) {
+          const Vec3 back = step_to_bottom(*next, curvature);
+          if (const auto bottom = balance_->at(turned(next->up_B, back), &*next)) {
+            fall += fall_along(*next, *bottom, back);
+            next = bottom;
+          }
+        }
+      }
+      accepted = fall > 0.0;
       const double ratio = fall / step.decrease;
-      if (!is_below_rounding && ratio < 0.25) radius = 0.25 * length;
+      if (ratio < 0.25) radius = 0.25 * length;
       if (ratio > 0.75 && length > 0.9 * radius) radius = std::min(2.0 * radius, kMaxRadius);
-      // No step improves what rounding hides.
-      if (is_below_rounding && !accepted)
-        return size <= balance_->gradient_rounding() ? std::optional<Minimum>({at, curvature}) : std::nullopt;
+      if (is_below_rounding && !accepted && size <= balance_->gradient_rounding()) {
+        return Minimum{at, curvature};
+      }
     } else {
       radius = 0.25 * length;
+    }
+    if (!accepted && !at.is_exact && ++rejections > kMaxRejections) {
+      // What the attitude is off by may hide that energy falls.
+      const std::optional<BalancedAttitude> exact = balance_->at(at.up_B, &at);
+      if (!exact) return std::nullopt;
+      at = *exact;
+      curvature = balance_->curvature(at);
+      continue;
     }
     if (!(radius > 1e-14)) return std::nullopt;
     if (!accepted) continue;
     if (is_known(*next, next->up_B, -1.0)) return std::nullopt;
     at = *next;
+    rejections = 0;
     curvature = balance_->curvature(at);
   }
   return std::nullopt;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "flotation/righting_arms.h"
 #include "geometry/mesh_validation.h"
 #include "hydrostatics/buoyancy.h"
 #include "tests/flotation/bodies.h"
@@ -122,6 +124,84 @@ TEST(Equilibrium, ReportsCylinderThatRollsOnce) {
   for (const Equilibrium& at : flat.attitudes) {
     EXPECT_EQ(at.family, AttitudeFamily::kNone);
     EXPECT_NEAR(std::abs((at.pose.q_WB * Vec3::UnitZ()).z()), 1.0, 1e-12);
+  }
+}
+
+// [rad], between the axis of a body and the vertical.
+double tilt_of(const Equilibrium& at) {
+  return std::acos(std::clamp((at.pose.q_WB * Vec3::UnitZ()).z(), -1.0, 1.0));
+}
+
+// The heels to starboard at which the arm turns the body back, up to 60 degrees, at no trim.
+std::vector<double> rest_heels(const FloatingBody& body) {
+  std::vector<double> heels;
+  for (int i = 0; i <= 30; ++i) heels.push_back(2.0 * i * kDegree);
+  std::vector<double> rests;
+  RightingArmOptions options;
+  options.fixed_trim = 0.0;
+  const RightingCurve curve = righting_curve(body, kWater, heels, options).value();
+  for (const ArmCrossing& crossing : curve.crossings) {
+    if (crossing.returns) rests.push_back(crossing.heel);
+  }
+  return rests;
+}
+
+// A cylinder with facets that is too high to float upright. Its second moments are those of every axis, so
+// that its curve of loll is level, tan^2 = -2 GM/BM, until an edge crosses the water. Beyond that each facet
+// makes a ripple, which is far below the rounding of the energy where there are many.
+TEST(Equilibrium, FindsTheCurveOfLollForAnyNumberOfFacets) {
+  int beyond_an_edge = 0;
+  int dry = 0;
+  for (const int segments : {16, 23, 32, 64, 100, 128, 200, 256, 300, 400, 512, 777, 1024}) {
+    const HydrostaticMesh mesh = mesh_of(CylinderShape{1.0, 1.0, segments, 1});
+    const double density = 1500.0 / (kWater.density * mesh.volume);
+    const double turn = 2.0 * std::numbers::pi / segments;
+    const double radius = segments / 24.0 * std::sin(turn) * (2.0 + std::cos(turn)) / (density * mesh.volume);
+    for (const double height : {0.26, 0.28, 0.3, 0.31, 0.32, 0.33, 0.34}) {
+      SCOPED_TRACE(testing::Message() << segments << " segments, centre of mass at " << height);
+      const FloatingBody body = body_of(mesh, density, Vec3(0, 0, height));
+      const double upright = 0.5 * density - 0.5 + radius - height;  // [m], GM
+      // Below 8 degrees the valley is too shallow to be followed: attitudes on it are reported one by one.
+      if (!(upright < -0.01 * radius)) continue;
+      double loll = std::atan(std::sqrt(-2.0 * upright / radius));
+      double accuracy = 1e-6;
+      if (std::tan(loll) > std::min(density, 1.0 - density)) {
+        if (segments < 64) continue;
+        const std::vector<double> rests = rest_heels(body);
+        ASSERT_EQ(rests.size(), 1U);
+        loll = rests.front();
+        accuracy = 1e-4;
+        ++beyond_an_edge;
+      } else {
+        ++dry;
+      }
+      int found = 0;
+      for (const Equilibrium& at : find_equilibria(body, kWater).attitudes) {
+        if (std::abs(tilt_of(at) - loll) > accuracy) continue;
+        expect_equilibrium(at, body);
+        EXPECT_EQ(at.family, AttitudeFamily::kCurve);
+        ++found;
+      }
+      EXPECT_EQ(found, 1);
+    }
+  }
+  EXPECT_GE(dry, 20);
+  EXPECT_GE(beyond_an_edge, 20);
+}
+
+// The ripples of its facets are below the rounding of the energy.
+TEST(Equilibrium, FindsThatALogOfManyFacetsFloats) {
+  for (const int segments : {64, 256, 500, 762, 1024}) {
+    for (const double density : {0.1, 0.345, 0.55, 0.8}) {
+      SCOPED_TRACE(testing::Message() << segments << " segments, density " << density);
+      const HydrostaticMesh mesh = mesh_of(CylinderShape{1.0, 3.75, segments, 1});
+      const FloatingBody body = body_of(mesh, density, Vec3(0, 0, 0.2));
+      const Equilibria found = find_equilibria(body, kWater);
+      EXPECT_EQ(found.outcome, FlotationOutcome::kFloats);
+      ASSERT_EQ(found.attitudes.size(), 1U);
+      EXPECT_EQ(found.attitudes[0].family, AttitudeFamily::kCurve);
+      expect_equilibrium(found.attitudes[0], body);
+    }
   }
 }
 
