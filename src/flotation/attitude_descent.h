@@ -23,11 +23,12 @@ class AttitudeDescent {
   explicit AttitudeDescent(const Balance& balance) : balance_(&balance) {}
 
   // Descends by a trust region over two angles, with the exact gradient and Hessian; a step is accepted only
-  // if the energy falls or, where the fall is below rounding, if the gradient shrinks. On the way the body
-  // displaces its mass only as nearly as the step needs; at the end, to rounding. Ends where the
-  // gradient is zero to rounding and no curvature is negative. Saddle points are left along their negative
-  // curvature; the other side of each is added to further_starts(). Returns nullopt at a known minimum, where
-  // an open mesh takes in water along the way, and where nothing is found within 200 steps.
+  // if the energy falls. Where rounding hides the fall, it is that of the gradient along the step, and a step
+  // that climbs the side of a curved valley is led back to its bottom. On the way the body displaces its mass
+  // only as nearly as the step needs; at the end, to rounding. Ends where the gradient is zero to rounding
+  // and no curvature is negative. Saddle points are left along their negative curvature; the other side of
+  // each is added to further_starts(). Returns nullopt at a known minimum, where an open mesh takes in water
+  // along the way, and where nothing is found within 200 steps.
   std::optional<Minimum> minimum_from(const BalancedAttitude& start, const IsKnown& is_known);
 
   // The stationary point of any kind that Newton's method on the gradient finds from a start: a step is
