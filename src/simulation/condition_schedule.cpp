@@ -6,7 +6,11 @@
 namespace buoyancy {
 namespace {
 
-constexpr int kInitialCopies = 3;
+// How often an event is sent with each request by which it is announced.
+std::int64_t copies_of(const ConditionSchedule::Event& event) {
+  const std::int64_t requests = event.step - event.announced_from + 1;
+  return (kMinAnnouncements + requests - 1) / requests;
+}
 
 bool is_same_target(const ConditionChange& a, const ConditionChange& b) {
   return a.body_id == b.body_id && a.kind == b.kind && a.index == b.index;
@@ -69,28 +73,30 @@ std::span<const ConditionSchedule::Event> ConditionSchedule::events_at(std::int6
   return std::span(events_).subspan(next_, end - next_);
 }
 
+void ConditionSchedule::add_holding(std::int64_t step, std::vector<ConditionChange>& changes) const {
+  for (const Event& initial : initial_) {
+    const Event* holds = &initial;
+    for (const Event& event : events_) {
+      if (event.step <= step && is_same_target(event.change, initial.change)) holds = &event;
+    }
+    changes.push_back(holds->change);
+  }
+}
+
 const std::vector<ConditionChange>& ConditionSchedule::announced_at(std::int64_t step) {
   announced_.clear();
-  if (step == 0) {
-    for (int copy = 0; copy < kInitialCopies; ++copy) {
-      for (const Event& event : initial_) announced_.push_back(event.change);
-    }
-  }
+  const std::int64_t renewals = step == 0 ? kMinAnnouncements : step % kRenewedSteps == 0 ? 1 : 0;
+  for (std::int64_t copy = 0; copy < renewals; ++copy) add_holding(step, announced_);
   for (const Event& event : events_) {
-    if (event.announced_from <= step && step <= event.step) announced_.push_back(event.change);
+    if (event.announced_from > step || step > event.step) continue;
+    announced_.insert(announced_.end(), static_cast<std::size_t>(copies_of(event)), event.change);
   }
   return announced_;
 }
 
 const std::vector<ConditionChange>& ConditionSchedule::repeated_at(std::int64_t step) {
   repeated_.clear();
-  for (const Event& initial : initial_) {
-    const Event* holds = &initial;
-    for (const Event& event : events_) {
-      if (event.step <= step && is_same_target(event.change, initial.change)) holds = &event;
-    }
-    repeated_.push_back(holds->change);
-  }
+  add_holding(step, repeated_);
   for (const Event& event : events_) {
     if (event.announced_from <= step && step < event.step) repeated_.push_back(event.change);
   }

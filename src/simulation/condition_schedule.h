@@ -3,8 +3,10 @@
 // An event takes effect at the first step whose time is not before its own, and holds from that step's utime
 // on. It is announced with the request of that step and of the kAnnouncedSteps before, so that the loss of
 // messages does not change a run. No announcement can take back a later one: an event of the same
-// compartment or tank is announced only when the one before has taken effect. At step 0 the condition in the
-// scene file is announced, in place of what an earlier run left behind in the service.
+// compartment or tank is announced only when the one before has taken effect. Where this leaves fewer than
+// kMinAnnouncements, it is sent several times with each request. At step 0 the condition in the scene file is
+// announced, in place of what an earlier run left behind in the service. What holds is announced again every
+// kRenewedSteps, for a service that has been restarted.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,8 @@
 namespace buoyancy {
 
 inline constexpr std::int64_t kAnnouncedSteps = 16;
+inline constexpr std::int64_t kMinAnnouncements = 6;
+inline constexpr std::int64_t kRenewedSteps = 64;
 
 class ConditionSchedule {
  public:
@@ -35,14 +39,17 @@ class ConditionSchedule {
   // What takes effect at a step, in the order of time. Steps ascend from call to call.
   std::span<const Event> events_at(std::int64_t step);
 
-  // What is sent with the request of a step; at step 0 several times, since nothing can be sent earlier.
-  // Valid until the next call. O(events).
+  // What is sent with the request of a step, some of it several times. Valid until the next call. O(events^2)
+  // at most, at the steps at which what holds is announced again.
   const std::vector<ConditionChange>& announced_at(std::int64_t step);
   // What is sent with that request when it is sent again, perhaps to a service that has been restarted: also
   // what holds at the step.
   const std::vector<ConditionChange>& repeated_at(std::int64_t step);
 
  private:
+  // Adds the condition that holds at a step.
+  void add_holding(std::int64_t step, std::vector<ConditionChange>& changes) const;
+
   std::vector<Event> initial_;  // the scene file's condition of what the events change
   std::vector<Event> events_;   // by step
   std::size_t next_ = 0;        // of events_, the first that has not taken effect

@@ -80,8 +80,8 @@ TEST(ConditionSchedule, AnnouncesEveryConditionInTimeInSpiteOfLosses) {
           expected.flooded[static_cast<std::size_t>(event.change.index)] = event.change.flooded;
         }
       }
-      // These are announced for a few steps alone, and may depend on the repetition of their request.
-      const bool is_repeated = step == 2 || step == 5 || step == 31;
+      // Lock-step clients send some requests again.
+      const bool is_repeated = step % 17 == 5;
       if (is_repeated) sent = schedule.repeated_at(step);
       if (step % 2 == 1) std::ranges::reverse(sent);
       for (const ConditionChange& change : sent) {
@@ -95,6 +95,37 @@ TEST(ConditionSchedule, AnnouncesEveryConditionInTimeInSpiteOfLosses) {
       EXPECT_EQ(known, expected) << "run " << run << ", step " << step;
     }
   }
+}
+
+TEST(ConditionSchedule, AnnouncesEventsInQuickSuccessionSeveralTimes) {
+  const Scene scene = box_with(pump(1.0, 0.1) + pump(1.01, 0.4) + pump(1.03, 0.2));
+  ConditionSchedule schedule(scene, kStep);
+  std::map<double, int> announced;
+  for (std::int64_t step = 1; step < 110; ++step) {
+    for (const ConditionChange& change : schedule.announced_at(step)) ++announced[change.liquid_volume];
+  }
+  EXPECT_EQ(announced[0.1], kAnnouncedSteps + 1);
+  EXPECT_EQ(announced[0.4], kMinAnnouncements) << "with one request";
+  EXPECT_EQ(announced[0.2], kMinAnnouncements) << "with two requests";
+}
+
+// A client that never sends a request again reaches a service that was restarted all the same.
+TEST(ConditionSchedule, AnnouncesAgainWhatHolds) {
+  const Scene scene = box_with(flood(0.1, 0, 1.0) + pump(0.2, 0.4));
+  ConditionSchedule schedule(scene, kStep);
+  ConditionTimeline restarted(scene);
+  for (std::int64_t step = 100; step < 100 + kRenewedSteps; ++step) {
+    for (const ConditionChange& change : schedule.announced_at(step)) {
+      std::vector<std::uint8_t> bytes;
+      encode(change, bytes);
+      ASSERT_TRUE(restarted.receive(bytes, scene));
+    }
+  }
+  BodyCondition known;
+  UtimeRange range;
+  ASSERT_TRUE(restarted.condition_at(2'000'000, 0, scene, known, range));
+  EXPECT_EQ(known.flooded[0], 1.0);
+  EXPECT_EQ(known.liquid_volumes[0], 0.4);
 }
 
 TEST(ConditionSchedule, ReplacesWhatAnEarlierRunLeftBehind) {
