@@ -43,6 +43,7 @@ std::vector<std::size_t> drawn_meshes(const Scene& scene) {
 std::size_t max_triangles_per_mesh(const Scene& scene, const std::vector<std::size_t>& drawn,
                                    std::size_t max_triangles) {
   std::vector<std::size_t> sizes;
+  sizes.reserve(drawn.size());
   for (const std::size_t i : drawn) sizes.push_back(scene.meshes()[i]->mesh.surface.triangles.size());
   std::ranges::sort(sizes);
   std::size_t remaining = max_triangles;
