@@ -24,22 +24,6 @@ double degrees(double radians) {
   return radians * kDegreesPerRadian;
 }
 
-std::string outcome_name(FlotationOutcome outcome) {
-  switch (outcome) {
-    case FlotationOutcome::kFloats:
-      return "floats";
-    case FlotationOutcome::kSinks:
-      return "sinks";
-    case FlotationOutcome::kNeutral:
-      return "neutrally_buoyant";
-    case FlotationOutcome::kTakesInWater:
-      return "takes_in_water";
-    case FlotationOutcome::kOutOfRange:
-      break;
-  }
-  return "out_of_range";
-}
-
 }  // namespace
 
 std::string outcome_sentence(FlotationOutcome outcome) {
@@ -60,18 +44,6 @@ std::string outcome_sentence(FlotationOutcome outcome) {
 }
 
 namespace {
-
-std::string family_name(AttitudeFamily family) {
-  switch (family) {
-    case AttitudeFamily::kNone:
-      break;
-    case AttitudeFamily::kCurve:
-      return "curve";
-    case AttitudeFamily::kSphere:
-      return "sphere";
-  }
-  return "none";
-}
 
 // Why an attitude is not stable; empty where it is.
 std::string reason(const Equilibrium& at) {
@@ -183,12 +155,12 @@ Json equilibria_json(const Equilibria& equilibria) {
                {"torque_bound", at.torque_bound},
                {"metacentric_heights", at.state.hydrostatics.metacentric_heights},
                {"stiffness", at.stiffness},
-               {"family", family_name(at.family)},
+               {"family", to_string(at.family)},
                {"displacement_volume", at.state.hydrostatics.volume}};
     if (!at.is_stable()) entry["reason"] = reason(at);
     attitudes.push_back(std::move(entry));
   }
-  return {{"outcome", outcome_name(equilibria.outcome)},
+  return {{"outcome", to_string(equilibria.outcome)},
           {"attitudes", std::move(attitudes)},
           {"truncated", equilibria.is_truncated}};
 }

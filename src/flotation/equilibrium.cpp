@@ -283,18 +283,46 @@ std::optional<Equilibrium> equilibrium_at(const Balance& balance, const Minimum&
   return result;
 }
 
-FlotationOutcome outcome_before_search(const FloatingBody& body, const Water& water) {
+}  // namespace
+
+std::string_view to_string(FlotationOutcome outcome) {
+  switch (outcome) {
+    case FlotationOutcome::kFloats:
+      return "floats";
+    case FlotationOutcome::kSinks:
+      return "sinks";
+    case FlotationOutcome::kNeutral:
+      return "neutrally_buoyant";
+    case FlotationOutcome::kTakesInWater:
+      return "takes_in_water";
+    case FlotationOutcome::kOutOfRange:
+      break;
+  }
+  return "out_of_range";
+}
+
+std::string_view to_string(AttitudeFamily family) {
+  switch (family) {
+    case AttitudeFamily::kCurve:
+      return "curve";
+    case AttitudeFamily::kSphere:
+      return "sphere";
+    case AttitudeFamily::kNone:
+      break;
+  }
+  return "none";
+}
+
+FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water) {
   const double displaced = water.density * body.volume();
   if (body.is_open()) return FlotationOutcome::kFloats;
   if (std::abs(body.total_mass() - displaced) <= kNeutral * displaced) return FlotationOutcome::kNeutral;
   return body.total_mass() < displaced ? FlotationOutcome::kFloats : FlotationOutcome::kSinks;
 }
 
-}  // namespace
-
 Equilibria find_equilibria(const FloatingBody& body, const Water& water, const EquilibriumOptions& options) {
   Equilibria result;
-  result.outcome = outcome_before_search(body, water);
+  result.outcome = outcome_by_mass(body, water);
   if (result.outcome != FlotationOutcome::kFloats) return result;
   const Balance balance(body, water);
   EquilibriumSearch search(balance);
@@ -325,7 +353,7 @@ Equilibria find_equilibria(const FloatingBody& body, const Water& water, const E
 
 std::optional<Equilibrium> find_equilibrium_from(const FloatingBody& body, const Water& water,
                                                  const Eigen::Quaterniond& q_WB, const ShipAxes& axes) {
-  if (outcome_before_search(body, water) != FlotationOutcome::kFloats) return std::nullopt;
+  if (outcome_by_mass(body, water) != FlotationOutcome::kFloats) return std::nullopt;
   const Balance balance(body, water);
   EquilibriumSearch search(balance);
   search.descend(q_WB.normalized().conjugate() * water.up_W);

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "flotation/floating_body.h"
@@ -39,6 +40,13 @@ enum class AttitudeFamily {
   kCurve,   // one of a curve of attitudes of equal energy
   kSphere,  // any attitude has the same energy
 };
+
+// The names that programs print: "neutrally_buoyant", "curve".
+std::string_view to_string(FlotationOutcome outcome);
+std::string_view to_string(AttitudeFamily family);
+
+// What the mass alone decides: kSinks or kNeutral, else kFloats. It does not decide about an open mesh.
+FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water);
 
 struct Equilibrium {
   // Directions of rotation in which the energy falls: 0 stable, 1 a saddle point, 2 a maximum.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
 #include "base/format.h"
 #include "scene/start_pose.h"
@@ -14,34 +13,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMaxLines = 12;
-
-std::string_view to_string(FlotationOutcome outcome) {
-  switch (outcome) {
-    case FlotationOutcome::kFloats:
-      return "floats";
-    case FlotationOutcome::kSinks:
-      return "sinks";
-    case FlotationOutcome::kNeutral:
-      return "neutrally_buoyant";
-    case FlotationOutcome::kTakesInWater:
-      return "takes_in_water";
-    case FlotationOutcome::kOutOfRange:
-      break;
-  }
-  return "out_of_range";
-}
-
-std::string_view to_string(AttitudeFamily family) {
-  switch (family) {
-    case AttitudeFamily::kCurve:
-      return "curve";
-    case AttitudeFamily::kSphere:
-      return "sphere";
-    case AttitudeFamily::kNone:
-      break;
-  }
-  return "none";
-}
 
 // Derived numbers are rounded, and what is 0 but for rounding is 0; the JSON report has all digits.
 std::string rounded(double value, double noise) {

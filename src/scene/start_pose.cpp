@@ -10,7 +10,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kNeutral = 1e-9;      // relative difference of mass and displaced mass
 constexpr double kNearVertical = 0.9;  // of |up . axis|
 
 // The horizontal direction by which a heading is compared before and after.
@@ -32,10 +31,9 @@ ReachedEquilibrium reached_by(const Body& body, const FloatingBody& floating, co
     reached.outcome = FlotationOutcome::kFloats;
   } else if (floating.is_open()) {
     reached.outcome = FlotationOutcome::kTakesInWater;
-  } else if (std::abs(reached.mass - reached.displaced) <= kNeutral * reached.displaced) {
-    reached.outcome = FlotationOutcome::kNeutral;
-  } else if (reached.mass > reached.displaced) {
-    reached.outcome = FlotationOutcome::kSinks;
+  } else if (const FlotationOutcome by_mass = outcome_by_mass(floating, water);
+             by_mass != FlotationOutcome::kFloats) {
+    reached.outcome = by_mass;
   }
   return reached;
 }
