@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_integrals-inl.h"
@@ -132,11 +133,17 @@ class Clips {
   }
 
   // Notes a leaf that is to be clipped, which has been removed from the results.
-  void add(const PatchBlock& block, std::size_t place, std::uint32_t models, std::size_t result) {
+  void add(const PatchTree& tree, const PatchBlock& block, std::size_t place, std::uint32_t models,
+           std::size_t result) {
     const auto lane = static_cast<std::uint32_t>(result % kLanes<Number>);
+    const TriangleBlock* const triangles = &tree.triangles[block.child[place]];
     for (std::uint32_t b = 0; b < block.triangle_blocks[place]; ++b) {
       for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
         tasks_.push_back({block.child[place] + b, first, models, lane, result});
+      }
+      // They are read after the other patches of the round have been evaluated.
+      for (std::size_t row = 0; row < triangles[b].corners.size(); row += 4) {
+        hwy::Prefetch(triangles[b].corners[row].data());
       }
     }
     leaves_.push_back({models, lane, result});
@@ -186,10 +193,15 @@ class Clips {
         return tree.triangles[task(n).triangle_block].corners[row].data() + task(n).first;
       });
     };
-    const auto of_model = [&](std::size_t row) HWY_ATTR {
-      return spread_units<Number>(
-          [&](std::size_t n) { return &models_[task(n).models].rows[row][task(n).lane]; });
-    };
+    // Most often all triangles are of one leaf.
+    bool of_one = true;
+    for (std::size_t n = 1; n < count; ++n) of_one &= tasks[n].result == tasks[0].result;
+    std::array<V, kModelRows> model;
+    for (std::size_t row = 0; row < kModelRows; ++row) {
+      const auto place = [&](std::size_t n) { return &models_[task(n).models].rows[row][task(n).lane]; };
+      model[row] = of_one ? hn::Set(LanesOf<Number>(), *place(0)) : spread_units<Number>(place);
+    }
+    const auto of_model = [&](std::size_t row) -> const V& { return model[row]; };
     const auto vector = [&](std::size_t row) HWY_ATTR {
       return Vectors3<Number>{of_model(row), of_model(row + 1), of_model(row + 2)};
     };

@@ -150,7 +150,7 @@ class Descent {
         add_children(block.child[lane], grandchildren);
       } else if (models != kNone &&
                  static_cast<double>(work_.clips.remainder(models, n % kLanes<Number>)) < limit) {
-        work_.clips.add(block, lane, models, n);
+        work_.clips.add(*query_.tree, block, lane, models, n);
       } else {
         work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
       }
