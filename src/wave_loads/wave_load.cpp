@@ -86,7 +86,7 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   query.submerged = height + reach_up < -crest;
   // Single precision where its rounding leaves room for the tolerance.
   const double heights = 2.0 * sea.amplitude_factor() * expansion.typical_elevation +
-                         (query.submerged ? 0.0 : std::abs(height) + reach_up);
+                         (query.submerged ? 0.0 : 0.5 * (std::abs(height) + reach_up));
   const double single_rounding =
       kRoundingFactor * 0.5 * std::numeric_limits<float>::epsilon() * heights * body.tree->area;
   const bool single = body.tolerance >= 1e-4 && single_rounding <= 0.5 * query.budget;
