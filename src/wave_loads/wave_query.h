@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "base/vec3.h"
@@ -18,6 +19,9 @@ namespace buoyancy {
 inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 4'096;
 inline constexpr std::size_t kMaxUnits = 20'000;  // of a round; a result that is replaced may add some more
+
+// No unit, cell or model.
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // The rounding error of an expansion, over the sum of its terms' absolute values and the unit roundoff.
 inline constexpr double kRoundingFactor = 100.0;

@@ -11,7 +11,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -28,8 +27,6 @@ namespace HWY_NAMESPACE {
 // typical values of small patches.
 inline constexpr double kErrorOfChildren = 0.15;
 inline constexpr double kErrorOfClipping = 0.02;
-
-inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // What is evaluated together: kUnit patches of a block of the tree, or as many pieces of triangles.
 struct Unit {

@@ -31,22 +31,30 @@ class CellIndex {
   }
   std::uint32_t count() const { return count_; }
 
-  std::uint32_t find_or_add(std::int32_t i, std::int32_t j, std::int32_t k) {
-    std::uint32_t hash = static_cast<std::uint32_t>(i) * 73856093U ^
-                         static_cast<std::uint32_t>(j) * 19349663U ^
-                         static_cast<std::uint32_t>(k) * 83492791U;
-    hash ^= hash >> 15U;
-    for (;; ++hash) {
-      Slot& slot = slots_[hash % kSlots];
-      if (slot.generation != generation_) {
-        slot = {generation_, i, j, k, count_};
-        return count_++;
-      }
+  // The cell's number; kNone if it has not been used.
+  std::uint32_t find(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    for (std::uint32_t hash = hash_of(i, j, k);; ++hash) {
+      const Slot& slot = slots_[hash % kSlots];
+      if (slot.generation != generation_) return kNone;
       if (slot.i == i && slot.j == j && slot.k == k) return slot.number;
     }
   }
+  // Numbers a cell that has not been used.
+  std::uint32_t add(std::int32_t i, std::int32_t j, std::int32_t k) {
+    std::uint32_t hash = hash_of(i, j, k);
+    while (slots_[hash % kSlots].generation == generation_) ++hash;
+    slots_[hash % kSlots] = {generation_, i, j, k, count_};
+    return count_++;
+  }
 
  private:
+  static std::uint32_t hash_of(std::int32_t i, std::int32_t j, std::int32_t k) {
+    const std::uint32_t hash = static_cast<std::uint32_t>(i) * 73856093U ^
+                               static_cast<std::uint32_t>(j) * 19349663U ^
+                               static_cast<std::uint32_t>(k) * 83492791U;
+    return hash ^ hash >> 15U;
+  }
+
   // More than there can be cells: kMaxCells / 2 before a round, and one for each unit of a round.
   static constexpr std::size_t kSlots = 32'768;
   static_assert(kSlots > kMaxCells / 2 + kMaxUnits + 4'096);
@@ -60,7 +68,8 @@ class CellIndex {
   std::vector<Slot> slots_ = std::vector<Slot>(kSlots);
 };
 
-// Cells are found, which gives a new one its number and centre, and built before they are read.
+// Cells are found, which gives a new one its number and centre, and built before they are read. A patch need
+// not be in the cell that it is given: bounds depend on its distance from the centre.
 template <typename Number>
 class SeaCells {
  public:
@@ -72,6 +81,7 @@ class SeaCells {
     volume_centers_.clear();
     column_of_volume_.clear();
     surfaces_built_ = volumes_built_ = 0;
+    reach_ = kReach * std::hypot(query.grid.edge[0], query.grid.edge[1], query.grid.edge[2]);
     work_.reserve(query.expansion->filled_components);
     set_phases(query, work_.phases);
   }
@@ -79,26 +89,38 @@ class SeaCells {
   std::uint32_t find_surface(double x1, double x2) {
     const std::int32_t i = place(x1, 0);
     const std::int32_t j = place(x2, 1);
-    const std::uint32_t cell = surface_index_.find_or_add(i, j, 0);
-    if (cell == surface_centers_.size()) {
-      surface_centers_.push_back({center_of(i, 0), center_of(j, 1), 0.0});
-    }
-    return cell;
+    std::uint32_t cell = surface_index_.find(i, j, 0);
+    if (cell != kNone) return cell;
+    const std::int32_t next_i = x1 < center_of(i, 0) ? i - 1 : i + 1;
+    const std::int32_t next_j = x2 < center_of(j, 1) ? j - 1 : j + 1;
+    const auto reaches = [&](std::uint32_t other) {
+      return other != kNone &&
+             std::hypot(x1 - surface_centers_[other].x1, x2 - surface_centers_[other].x2) <= reach_;
+    };
+    cell = surface_index_.find(next_i, j, 0);
+    if (reaches(cell)) return cell;
+    cell = surface_index_.find(i, next_j, 0);
+    if (reaches(cell)) return cell;
+    surface_centers_.push_back({center_of(i, 0), center_of(j, 1), 0.0});
+    return surface_index_.add(i, j, 0);
   }
   // Below or above a cell of the surface; z: z' over 1 / k_max.
-  std::uint32_t find_volume(std::uint32_t surface_cell, double z) {
+  std::uint32_t find_volume(std::uint32_t surface_cell, double x1, double x2, double z) {
     // The highest cells reach up to the highest patches. All others are twice as high: short waves, which
     // limit the size of a cell, do not reach down to them.
     const std::int32_t depth = std::max(-1 - place(z, 2), 0);
     const std::int32_t k = (depth + 1) / 2;
-    const std::uint32_t cell = volume_index_.find_or_add(static_cast<std::int32_t>(surface_cell), 0, k);
-    if (cell == volume_centers_.size()) {
-      const CellCenter& above = surface_centers_[surface_cell];
-      const double center = k == 0 ? 0.5 : 2.0 * k;  // in edges, below the top
-      volume_centers_.push_back({above.x1, above.x2, query_->grid.origin[2] - center * query_->grid.edge[2]});
-      column_of_volume_.push_back(surface_cell);
-    }
-    return cell;
+    const auto column = static_cast<std::int32_t>(surface_cell);
+    std::uint32_t cell = volume_index_.find(column, 0, k);
+    if (cell != kNone) return cell;
+    const CellCenter& above = surface_centers_[surface_cell];
+    const double height = query_->grid.origin[2] - (k == 0 ? 0.5 : 2.0 * k) * query_->grid.edge[2];
+    cell = volume_index_.find(column, 0, z < height ? k + 1 : k - 1);
+    if (cell != kNone && std::hypot(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z) <= reach_)
+      return cell;
+    volume_centers_.push_back({above.x1, above.x2, height});
+    column_of_volume_.push_back(surface_cell);
+    return volume_index_.add(column, 0, k);
   }
 
   void build_surface() {
@@ -117,6 +139,10 @@ class SeaCells {
   std::uint32_t column_of_volume(std::size_t cell) const { return column_of_volume_[cell]; }
 
  private:
+  // A patch whose own cell has not been built takes a neighbour within this share of a cell's diagonal: a new
+  // cell costs more than what the neighbour's expansion leaves out there.
+  static constexpr double kReach = 0.475;
+
   std::int32_t place(double x, std::size_t axis) const {
     constexpr double kFarthest = 1e9;
     const CellGrid& grid = query_->grid;
@@ -162,6 +188,7 @@ class SeaCells {
   std::vector<std::uint32_t> column_of_volume_;
   std::vector<SurfaceCell<Number>> surfaces_;
   std::vector<VolumeCell<Number>> volumes_;
+  double reach_ = 0.0;  // of a neighbour's expansion
   std::size_t surfaces_built_ = 0, volumes_built_ = 0;
   CellWorkspace<Number> work_;
 };

@@ -153,7 +153,8 @@ class RoundUnits {
         const double eta = static_cast<double>(place.eta[lane]);
         z += (static_cast<double>(place.zeta[lane]) - eta) / (1.0 + eta * patch_->per_depth);
       }
-      unit.volume_cell = cells_.find_volume(unit.surface_cell, z / static_cast<double>(kUnit<Number>));
+      unit.volume_cell = cells_.find_volume(unit.surface_cell, mean_of(place.x1), mean_of(place.x2),
+                                            z / static_cast<double>(kUnit<Number>));
     }
     cells_.build_volume();
   }
