@@ -113,6 +113,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
     row->resize(filled_components, 0.0);
   }
   double squares = 0.0;
+  double thirds = 0.0;
   for (std::size_t i = 0; i < components; ++i) {
     const double amplitude = prepared.amplitude[i];
     const double k = prepared.wave_number[i] / k_max;
@@ -142,11 +143,16 @@ SeaExpansion::SeaExpansion(const Sea& sea)
     typical_norm = std::hypot(typical_norm, amplitude * next);
     tail += amplitude * table.tail[i];
     squares += 0.5 * amplitude * amplitude;
+    const double third = 0.5 * amplitude * amplitude * std::pow(k, 6);
+    thirds += third;
+    typical_decay += third * k;
     amplitude_sums[0] += amplitude;
     amplitude_sums[1] += amplitude * prepared.wave_number[i];
     amplitude_sums[2] += amplitude * prepared.wave_number[i] * prepared.wave_number[i];
   }
   typical_elevation = std::sqrt(squares);
+  typical_third = std::sqrt(thirds);
+  if (thirds > 0.0) typical_decay /= thirds;
   single_precision.harmonics = narrowed(table.harmonics);
   single_precision.monomials = narrowed(table.monomials);
   single_precision.amplitude = narrowed(table.amplitude);

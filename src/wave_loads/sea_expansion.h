@@ -101,6 +101,10 @@ struct SeaExpansion {
       0.0;            // [m], root mean square of what degree kDegree + 1 adds at a distance of 1 / k_max
   double tail = 0.0;  // [m], sum of a (k / k_max)^(kNormDegree + 1) / (kNormDegree + 1)!
   double typical_elevation = 0.0;  // [m], root mean square of the elevation
+  // [m k_max^3], root mean square of the third derivative along the waves at the level, and the rate [k_max]
+  // at which it begins to fall with the depth.
+  double typical_third = 0.0;
+  double typical_decay = 0.0;
 
   // Sums over components of a k^n [m, rad/m], n from 0 to 2: bounds on elevation, slope and curvature.
   std::array<double, 3> amplitude_sums{};
