@@ -141,7 +141,7 @@ class Descent {
       const F decay = hn::MulAdd(depth, hn::MulAdd(depth, number(0.5), one), one);  // about an exponential
       const F wet = number(kThird * factor * sea.typical_third * k * k * k) * load(block.mu3) / decay;
       const F crossing = number(kCrossing) * load(block.area) * load(block.radius);
-      const F reach = load(block.radius) + number(2.0 * factor * sea.typical_elevation);
+      const F reach = load(block.radius) + number(query_.usual_elevation);
       const F error = wet + hn::IfThenElseZero(hn::Gt(zeta, hn::Neg(reach)), crossing);
       sum = sum + hn::IfThenElseZero(hn::Lt(zeta, reach), error);
     }

@@ -84,9 +84,10 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double crest = sea.amplitude_factor() * expansion.amplitude_sums[0];
   if (height - reach_up > crest) return {};
   query.submerged = height + reach_up < -crest;
+  query.usual_elevation = 2.0 * sea.amplitude_factor() * expansion.typical_elevation;
   // Single precision where its rounding leaves room for the tolerance.
-  const double heights = 2.0 * sea.amplitude_factor() * expansion.typical_elevation +
-                         (query.submerged ? 0.0 : 0.5 * (std::abs(height) + reach_up));
+  const double heights =
+      query.usual_elevation + (query.submerged ? 0.0 : 0.5 * (std::abs(height) + reach_up));
   const double single_rounding =
       kRoundingFactor * 0.5 * std::numeric_limits<float>::epsilon() * heights * body.tree->area;
   const bool single = body.tolerance >= 1e-4 && single_rounding <= 0.5 * query.budget;
@@ -108,9 +109,8 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double reach_2 = extent.dot(query.e2_B.cwiseAbs());
   const double middle_1 = query.e1_B.dot(middle);
   const double middle_2 = query.e2_B.dot(middle);
-  const double usual = 2.0 * sea.amplitude_factor() * expansion.typical_elevation;
-  const double top = std::min(height + reach_up + usual, 0.0);
-  const double bottom = std::min(height - reach_up - usual, top);
+  const double top = std::min(height + reach_up + query.usual_elevation, 0.0);
+  const double bottom = std::min(height - reach_up - query.usual_elevation, top);
   query.grid = grid_over({k * (middle_1 - reach_1), k * (middle_2 - reach_2), k * bottom},
                          {k * (middle_1 + reach_1), k * (middle_2 + reach_2), k * top}, reach);
   WaveLoad load = single ? descend_in_single_precision(query) : descend_in_double_precision(query);

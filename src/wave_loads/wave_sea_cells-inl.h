@@ -116,8 +116,9 @@ class SeaCells {
     const CellCenter& above = surface_centers_[surface_cell];
     const double height = query_->grid.origin[2] - (k == 0 ? 0.5 : 2.0 * k) * query_->grid.edge[2];
     cell = volume_index_.find(column, 0, z < height ? k + 1 : k - 1);
-    if (cell != kNone && std::hypot(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z) <= reach_)
+    if (cell != kNone && std::hypot(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z) <= reach_) {
       return cell;
+    }
     volume_centers_.push_back({above.x1, above.x2, height});
     column_of_volume_.push_back(surface_cell);
     return volume_index_.add(column, 0, k);
