@@ -19,6 +19,7 @@
 #include "fail.h"
 #include "recording/event_log.h"
 #include "recording/record_writer.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/view/browser.h"
 
@@ -104,8 +105,8 @@ ReportRun make_page(const std::string& directory, int bodies, std::int64_t megab
   result.rows = write_log(value_or_exit(Scene::load(scene)), log, megabytes << 20U);
   result.log_megabytes = static_cast<double>(std::filesystem::file_size(log)) / kMegabyte;
   const Clock::time_point start = Clock::now();
-  const FinishedProcess finished =
-      run_to_end(command_of({BUOYANCY_REPORT, "--scene", scene, log, result.page}), kReportTimeout);
+  const FinishedProcess finished = run_to_end(
+      command_of({built_program("buoyancy-report"), "--scene", scene, log, result.page}), kReportTimeout);
   result.seconds = seconds_since(start);
   result.memory = max_memory();
   std::filesystem::remove(log);

@@ -24,6 +24,7 @@
 #include "median.h"
 #include "quick_option.h"
 #include "service_requests.h"
+#include "tests/support/build_paths.h"
 
 namespace buoyancy::bench {
 namespace {
@@ -191,7 +192,8 @@ void print_round_trips(std::size_t requests) {
 
 // Parses the steps per second that bullet_crate prints.
 double crate_steps(int port) {
-  const FinishedProcess finished = run_to_end(command_of({BULLET_CRATE, url_of_port(port)}), 120.0);
+  const FinishedProcess finished =
+      run_to_end(command_of({built_program("bullet_crate"), url_of_port(port)}), 120.0);
   const std::size_t end = finished.standard_output.find(" steps/s");
   if (finished.exit_code != 0 || end == std::string::npos) fail(finished.standard_error);
   const std::size_t line = finished.standard_output.rfind('\n', end) + 1;
@@ -199,7 +201,7 @@ double crate_steps(int port) {
 }
 
 void add_steps(MarkdownTable& table, const std::string& name, std::size_t runs) {
-  const ServiceProcess service(read_file(BUOYANCY_SOURCE_DIR "/scenes/box.toml"));
+  const ServiceProcess service(read_file(source_dir() / "scenes/box.toml"));
   const EchoProcess echo(1);
   std::vector<double> service_steps(runs);
   std::vector<double> echo_steps(runs);

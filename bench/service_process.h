@@ -11,6 +11,7 @@
 
 #include "fail.h"
 #include "scene/scene.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 
@@ -71,7 +72,7 @@ class PinToOneCpu {
 class ServiceProcess {
  public:
   explicit ServiceProcess(const std::string& scene, const std::string& mode = "lockstep")
-      : process_({BUOYANCYD, "--scene", directory_.write("scene.toml", scene), "-l",
+      : process_({built_program("buoyancyd"), "--scene", directory_.write("scene.toml", scene), "-l",
                   url_of_port(kServicePort), "--mode", mode}) {}
   ChildProcess& child() { return process_.child(); }
 
@@ -82,7 +83,8 @@ class ServiceProcess {
 
 class EchoProcess {
  public:
-  explicit EchoProcess(int bodies) : process_({LCM_ECHO, url_of_port(kEchoPort), std::to_string(bodies)}) {}
+  explicit EchoProcess(int bodies)
+      : process_({built_program("lcm_echo"), url_of_port(kEchoPort), std::to_string(bodies)}) {}
 
  private:
   ReadyProcess process_;

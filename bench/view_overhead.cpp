@@ -27,6 +27,7 @@
 #include "median.h"
 #include "quick_option.h"
 #include "service_process.h"
+#include "tests/support/build_paths.h"
 #include "tests/view/http_peer.h"
 
 namespace buoyancy::bench {
@@ -58,7 +59,7 @@ double processor_time(pid_t process) {
 class ConnectedView {
  public:
   explicit ConnectedView(const std::string& scene)
-      : process_({BUOYANCY_VIEW, "--scene", directory_.write("scene.toml", scene), "-l",
+      : process_({built_program("buoyancy-view"), "--scene", directory_.write("scene.toml", scene), "-l",
                   url_of_port(kServicePort), "--port", "0"}),
         reader_(view::port_from_ready_line(process_.child().standard_output())),
         thread_([this] {

@@ -8,6 +8,7 @@
 
 #include "bench/time_queries.h"
 #include "hydrostatics/wetted_tree_sum.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -39,8 +40,8 @@ CsvRow parse(const std::string& line) {
 TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
   const TempDir directory;
   const std::string csv = directory.path("rows.csv");
-  const FinishedProcess program =
-      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);
+  const FinishedProcess program = run_to_end(
+      {{built_program("speed_accuracy"), "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
   for (const char* const heading :
        {"### Speedup over methods that visit the whole mesh", "### Time, caches flushed before every query"})
@@ -81,19 +82,24 @@ TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
 }
 
 TEST(SpeedAccuracy, ReportsUnwritableCsv) {
-  const FinishedProcess program = run_to_end(
-      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/no/such/directory/rows.csv"}, {}, "/dev/null", "", ""},
-      kRunTimeout);
+  const FinishedProcess program =
+      run_to_end({{built_program("speed_accuracy"), "--smoke", "--csv", "/no/such/directory/rows.csv"},
+                  {},
+                  "/dev/null",
+                  "",
+                  ""},
+                 kRunTimeout);
   EXPECT_EQ(program.exit_code, 1);
   EXPECT_NE(program.standard_error.find("/no/such/directory/rows.csv"), std::string::npos);
   const FinishedProcess full = run_to_end(
-      {{BUOYANCY_BENCH_PROGRAM, "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""}, kRunTimeout);
+      {{built_program("speed_accuracy"), "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""},
+      kRunTimeout);
   EXPECT_EQ(full.exit_code, 1);
 }
 
 TEST(SpeedAccuracy, RejectsContradictoryArguments) {
-  const FinishedProcess program =
-      run_to_end({{BUOYANCY_BENCH_PROGRAM, "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
+  const FinishedProcess program = run_to_end(
+      {{built_program("speed_accuracy"), "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
   EXPECT_EQ(program.exit_code, 2);
 }
 

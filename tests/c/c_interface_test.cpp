@@ -20,6 +20,7 @@
 #include "query/query_mesh.h"
 #include "query/query_sea.h"
 #include "tests/query/pose_table.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 
@@ -392,12 +393,9 @@ TEST(CInterface, SaysWhichFileCannotBeRead) {
   const std::string empty = folder + "/empty.obj";
   std::ofstream(empty).close();
   EXPECT_EQ(buoyancy_mesh_load(empty.c_str(), nullptr, &mesh), BUOYANCY_ERROR_MESH);
-  EXPECT_EQ(buoyancy_mesh_load((std::string(BUOYANCY_SOURCE_DIR) + "/README.md").c_str(), nullptr, &mesh),
-            BUOYANCY_ERROR_MESH);
-  EXPECT_EQ(buoyancy_scene_load((std::string(BUOYANCY_SOURCE_DIR) + "/README.md").c_str(), &scene),
-            BUOYANCY_ERROR_SCENE);
-  ASSERT_EQ(buoyancy_scene_load((std::string(BUOYANCY_SOURCE_DIR) + "/scenes/box.toml").c_str(), &scene),
-            BUOYANCY_OK);
+  EXPECT_EQ(buoyancy_mesh_load((source_dir() / "README.md").c_str(), nullptr, &mesh), BUOYANCY_ERROR_MESH);
+  EXPECT_EQ(buoyancy_scene_load((source_dir() / "README.md").c_str(), &scene), BUOYANCY_ERROR_SCENE);
+  ASSERT_EQ(buoyancy_scene_load((source_dir() / "scenes/box.toml").c_str(), &scene), BUOYANCY_OK);
   buoyancy_scene_free(scene);
 }
 

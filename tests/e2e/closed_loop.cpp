@@ -5,19 +5,21 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/support/build_paths.h"
 #include "tests/support/json.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-ChildCommand command(const char* program, const std::string& scene, const Options& options) {
+ChildCommand command(std::string_view program, const std::string& scene, const Options& options) {
   ChildCommand command;
-  command.arguments = {program, "--scene", scene};
+  command.arguments = {built_program(program), "--scene", scene};
   command.arguments.insert(command.arguments.end(), options.begin(), options.end());
   return command;
 }
@@ -25,11 +27,11 @@ ChildCommand command(const char* program, const std::string& scene, const Option
 }  // namespace
 
 ChildCommand client_command(const std::string& scene, const Options& options) {
-  return command(BUOYANCY_CLIENT, scene, options);
+  return command("buoyancy-client", scene, options);
 }
 
 ChildCommand service_command(const std::string& scene, const Options& options) {
-  return command(BUOYANCYD, scene, options);
+  return command("buoyancyd", scene, options);
 }
 
 nlohmann::json simulate_with_warnings(const std::string& scene, const Options& options) {

@@ -13,13 +13,14 @@
 
 #include "scene/scene.h"
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
 
-const std::string kSources = BUOYANCY_SOURCE_DIR;
+const std::string kSources = source_dir().string();
 constexpr double kDensity = 1025.0;   // [kg/m^3], of the water
 constexpr double kGravity = 9.80665;  // [m/s^2]
 // Time step [s]: the 20 s of the crate's motion take 4,000 round trips.

@@ -17,6 +17,7 @@
 
 #include "messages/wire.h"
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -26,7 +27,7 @@ namespace buoyancy {
 namespace {
 
 constexpr const char* kCrateStep = "0.02";  // [s], of 20 s
-const std::string kScenes = std::string(BUOYANCY_SOURCE_DIR) + "/scenes";
+const std::string kScenes = (source_dir() / "scenes").string();
 
 class ClientOfFaultyService : public testing::TestWithParam<const char*> {};
 

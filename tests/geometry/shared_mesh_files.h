@@ -6,14 +6,16 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/build_paths.h"
+
 namespace buoyancy {
 
 inline std::filesystem::path shared_mesh_file(const char* name) {
   const char* directory =
       std::getenv("BUOYANCY_MESHES");  // NOLINT(concurrency-mt-unsafe): never set by the tests
-  const std::filesystem::path meshes =
-      directory != nullptr ? std::filesystem::path(directory)
-                           : std::filesystem::path(BUOYANCY_SOURCE_DIR).parent_path() / "shared" / "meshes";
+  const std::filesystem::path meshes = directory != nullptr
+                                           ? std::filesystem::path(directory)
+                                           : source_dir().parent_path() / "shared" / "meshes";
   return meshes / name;
 }
 

@@ -24,11 +24,6 @@ endforeach()
 add_library(buoyancy_headers OBJECT EXCLUDE_FROM_ALL ${sources})
 target_compile_features(buoyancy_headers PRIVATE cxx_std_20)
 target_compile_options(buoyancy_headers PRIVATE -O0 -g0 -Werror)
-# Programs and folders that headers of tests and benchmarks use; their targets define them.
-foreach(name BUOYANCYD BUOYANCY_PICTURES BUOYANCY_REPLAY BUOYANCY_REPORT BUOYANCY_SOURCE_DIR BUOYANCY_VIEW BULLET_CRATE
-             LCM_ECHO)
-  target_compile_definitions(buoyancy_headers PRIVATE "${name}=\"\"")
-endforeach()
 target_include_directories(buoyancy_headers PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/bench)
 # The headers need the include folders of these targets, including generated ones.
 target_link_libraries(buoyancy_headers PRIVATE buoyancy_cli buoyancy_bot_core buoyancy::lcmtypes GTest::gtest

@@ -11,6 +11,7 @@
 #include "tests/client/fake_service.h"
 #include "tests/ping/two_scenes.h"
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/json.h"
 
@@ -34,7 +35,7 @@ class PingRun {
   explicit PingRun(const std::string& scene = kScene) : scene_(directory_.write("here.toml", scene)) {}
 
   Arguments command(const Arguments& options) const {
-    Arguments arguments{BUOYANCY_PING, "--scene", scene_};
+    Arguments arguments{built_program("buoyancy-ping"), "--scene", scene_};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
   }
@@ -318,7 +319,9 @@ TEST(PingProgram, RefusesWrongArgumentsWithExitCode2) {
       {here.run({"--sea", here.path("here.toml")}), "--sea"},
       {with_received_sea.run(), "--sea FILE"},
       {with_received_sea.run({"--sea", here.path("here.toml")}), "describes no waves"},
-      {run_to_end(command_of({BUOYANCY_PING, "--scene", here.path("none.toml")}), kRunTimeout), "none.toml"}};
+      {run_to_end(command_of({built_program("buoyancy-ping"), "--scene", here.path("none.toml")}),
+                  kRunTimeout),
+       "none.toml"}};
   for (const auto& [ping, expected] : runs) {
     EXPECT_EQ(ping.exit_code, kUsageError) << expected;
     EXPECT_TRUE(contains(ping.standard_error, expected)) << expected << "\n" << ping.standard_error;

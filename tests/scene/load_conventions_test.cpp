@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 
@@ -21,7 +22,7 @@ constexpr int kMotions = 200;
 
 // The first block of code in this language after the heading.
 std::string block_after(const std::string& heading, const std::string& language) {
-  const std::string page = read_file(std::string(BUOYANCY_SOURCE_DIR) + "/docs/loads.md");
+  const std::string page = read_file(source_dir() / "docs/loads.md");
   const std::size_t section = page.find("\n### " + heading + "\n");
   const std::string fence = "```" + language + "\n";
   const std::size_t begin = page.find(fence, section);

@@ -12,12 +12,13 @@
 #include "flotation/righting_arms.h"
 #include "scene/floating_bodies.h"
 #include "scene/scene.h"
+#include "tests/support/build_paths.h"
 
 namespace buoyancy {
 namespace {
 
 std::filesystem::path shipped(const std::string& name) {
-  return std::filesystem::path(BUOYANCY_SOURCE_DIR) / "scenes" / name;
+  return source_dir() / "scenes" / name;
 }
 
 // Not the folder of the meshes beside them.

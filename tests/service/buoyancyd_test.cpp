@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -14,7 +15,7 @@ namespace buoyancy {
 namespace {
 
 FinishedProcess run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), BUOYANCYD);
+  arguments.insert(arguments.begin(), built_program("buoyancyd"));
   return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
 }
 
@@ -109,7 +110,7 @@ TEST(Buoyancyd, PrintsFixForMissingMulticastRoute) {
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const FinishedProcess finished =
       run_to_end(command_of({"unshare", "-n", "sh", "-c", "ip link set lo up && exec \"$0\" --scene \"$1\"",
-                             BUOYANCYD, scene}),
+                             built_program("buoyancyd"), scene}),
                  kWaitTimeout);
   expect_failure(finished, 1, "ip route add 224.0.0.0/4 dev lo");
 }
@@ -156,7 +157,7 @@ TEST_P(LogLevel, LogsItsOwnAndMoreSevereLines) {
   const auto& [level, expected] = GetParam();
   const TempDir directory;
   const std::string scene = directory.write("scene.toml", kBoxScene);
-  ChildProcess child(command_of({BUOYANCYD, "--scene", scene, "--log-level", level}));
+  ChildProcess child(command_of({built_program("buoyancyd"), "--scene", scene, "--log-level", level}));
   RawLcmSocket socket;
   ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it logs
   socket.send("BUOYANCY_STATES", {1, 2, 3});                     // causes a warning
@@ -191,8 +192,8 @@ TEST(Buoyancyd, PrefixesJournalLinesWithTheirLevelWithoutTime) {
   const std::string scene = directory.write("scene.toml", kBoxScene);
   const auto started = [&scene](const std::string& journal_stream) {
     return command_of({"bash", "-c",
-                       "export JOURNAL_STREAM=" + journal_stream + "; exec \"$0\" --scene \"$1\"", BUOYANCYD,
-                       scene});
+                       "export JOURNAL_STREAM=" + journal_stream + "; exec \"$0\" --scene \"$1\"",
+                       built_program("buoyancyd"), scene});
   };
   RunningProgram child(started("$(stat -L -c %d:%i /dev/stderr)"));
   EXPECT_TRUE(child.standard_error().starts_with("<6>ready: 2 bodies;")) << child.standard_error();
@@ -266,8 +267,8 @@ TEST(Buoyancyd, ChecksSceneWithoutNetwork) {
 
 TEST(Buoyancyd, FailsIfItsReportCannotBeWritten) {
   const TempDir directory;
-  ChildCommand command =
-      command_of({BUOYANCYD, "--scene", directory.write("scene.toml", kBoxScene), "--check"});
+  ChildCommand command = command_of(
+      {built_program("buoyancyd"), "--scene", directory.write("scene.toml", kBoxScene), "--check"});
   command.standard_output = "/dev/full";
   expect_failure(run_to_end(command, kWaitTimeout), 1, "standard output");
 }

@@ -16,6 +16,7 @@
 #include "geometry/shapes.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_page.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -32,7 +33,7 @@ struct ProgramRun {
 };
 
 ProgramRun run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), BUOYANCY_HYDROSTATICS);
+  arguments.insert(arguments.begin(), built_program("buoyancy-hydrostatics"));
   ChildProcess program(command_of(std::move(arguments)));
   const std::optional<int> exit_code = program.wait(kWaitTimeout);
   return {exit_code.value_or(-1), program.standard_output(), program.standard_error()};

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -30,9 +31,9 @@ RawStates all_bodies(int bodies, std::int64_t seq) {
 
 FinishedProcess check(const std::string& scene, const std::string& url) {
   const TempDir directory;
-  return run_to_end(
-      command_of({BUOYANCYD, "--scene", directory.write("scene.toml", scene), "--check", "-l", url}),
-      kWaitTimeout);
+  return run_to_end(command_of({built_program("buoyancyd"), "--scene", directory.write("scene.toml", scene),
+                                "--check", "-l", url}),
+                    kWaitTimeout);
 }
 
 // The line of the report or of the log that contains `text`, or "".

@@ -11,6 +11,7 @@
 
 #include "messages/wire.h"
 #include "recording/event_log.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -110,8 +111,8 @@ using Responses = std::map<int, std::string>;
 class ReplayMutatedLogs : public testing::Test {
  protected:
   FinishedProcess replay(const std::string& log) const {
-    return run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene_, directory_.write("in.lcmlog", log),
-                                  directory_.path("out.csv")}),
+    return run_to_end(command_of({built_program("buoyancy-replay"), "--scene", scene_,
+                                  directory_.write("in.lcmlog", log), directory_.path("out.csv")}),
                       kWaitTimeout);
   }
 

@@ -6,6 +6,7 @@
 
 #include "tests/service/replay_fixture.h"
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/damaged_boxes.h"
 #include "tests/support/timeouts.h"
 
@@ -98,8 +99,8 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   logger.send_signal(SIGINT);
   ASSERT_TRUE(logger.wait(kWaitTimeout));
 
-  const FinishedProcess finished =
-      run_to_end(command_of({BUOYANCY_REPLAY, "--scene", scene, recorded, replayed}), kWaitTimeout);
+  const FinishedProcess finished = run_to_end(
+      command_of({built_program("buoyancy-replay"), "--scene", scene, recorded, replayed}), kWaitTimeout);
   ASSERT_EQ(finished.exit_code, 1) << "one condition cannot be used";
   EXPECT_NE(finished.standard_error.find("liquid_volume = 2"), std::string::npos) << finished.standard_error;
   const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");

@@ -11,6 +11,7 @@
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "tests/service/one_box_scene.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -20,7 +21,7 @@ namespace buoyancy {
 class Replay : public testing::Test {
  protected:
   static ChildCommand command(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BUOYANCY_REPLAY);
+    arguments.insert(arguments.begin(), built_program("buoyancy-replay"));
     return command_of(std::move(arguments));
   }
   FinishedProcess run(std::vector<std::string> arguments) const {

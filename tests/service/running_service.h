@@ -12,6 +12,7 @@
 #include "messages/status.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/service/raw_lcm.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/running_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -66,7 +67,7 @@ class RunningService {
  private:
   static ChildCommand command(std::vector<std::string> options, const std::string& scene,
                               std::vector<std::string> environment) {
-    options.insert(options.begin(), {BUOYANCYD, "--scene", scene});
+    options.insert(options.begin(), {built_program("buoyancyd"), "--scene", scene});
     ChildCommand result = command_of(std::move(options));
     result.environment = std::move(environment);
     return result;

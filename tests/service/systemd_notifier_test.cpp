@@ -12,6 +12,7 @@
 
 #include "tests/service/leased_file.h"
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -90,7 +91,7 @@ TEST_F(SystemdNotifierTest, ReportsReadyOnlyAfterSceneIsLoaded) {
   const TempDir directory;
   LeasedFile scene(directory.write("scene.toml", kBoxScene));
   if (!scene.held()) GTEST_SKIP() << no_lease_on(directory.path(""));
-  ChildCommand command = command_of({BUOYANCYD, "--scene", directory.path("scene.toml")});
+  ChildCommand command = command_of({built_program("buoyancyd"), "--scene", directory.path("scene.toml")});
   command.environment = environment();
   ChildProcess child(command);
   while (!scene.awaited()) ASSERT_FALSE(child.wait(0.002)) << child.standard_error();

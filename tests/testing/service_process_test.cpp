@@ -16,6 +16,7 @@
 
 #include "client/client.h"
 #include "testing/private_network.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -25,7 +26,7 @@ namespace {
 
 ServiceOptions box(double density = 1025.0) {
   ServiceOptions options;
-  options.program = BUOYANCYD;
+  options.program = built_program("buoyancyd");
   options.ready_timeout = kWaitTimeout;
   options.scene_text = "[water]\ndensity = " + std::to_string(density) +
                        "\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 1] }\n";
@@ -149,18 +150,18 @@ TEST(ServiceProcess, RemovesTheSceneThatItWrote) {
 FinishedProcess run_example(const std::string& program, std::vector<std::string> wrapper) {
   wrapper.push_back(program);
   ChildCommand command = command_of(std::move(wrapper));
-  command.environment = {"BUOYANCYD=" BUOYANCYD};
+  command.environment = {"BUOYANCYD=" + built_program("buoyancyd")};
   return run_to_end(command, kRunTimeout);
 }
 
 TEST(ServiceRoundTripExample, Passes) {
-  const FinishedProcess run = run_example(SERVICE_ROUND_TRIP_TEST, {});
+  const FinishedProcess run = run_example(built_program("service_round_trip_test"), {});
   EXPECT_EQ(run.exit_code, 0) << run.standard_output << run.standard_error;
   EXPECT_EQ(run.standard_output.find("The log of buoyancyd"), std::string::npos);
 }
 
 TEST(ServiceTest, PrintsTheLogOfAFailedTest) {
-  const FinishedProcess failed = run_example(FAILING_SERVICE_TEST, {});
+  const FinishedProcess failed = run_example(built_program("failing_service_test"), {});
   EXPECT_EQ(failed.exit_code, 1);
   const std::size_t log = failed.standard_output.find("The log of buoyancyd:");
   ASSERT_NE(log, std::string::npos) << failed.standard_output;
@@ -180,7 +181,7 @@ TEST(ServiceRoundTripExample, NeedsNeitherRootNorAMulticastRoute) {
   probe.insert(probe.end(), {"unshare", "--user", "--net"});
   const FinishedProcess permitted = run_example("true", probe);
   if (permitted.exit_code != 0) GTEST_SKIP() << "no user namespaces here: " << permitted.standard_error;
-  const FinishedProcess run = run_example(SERVICE_ROUND_TRIP_TEST, wrapper);
+  const FinishedProcess run = run_example(built_program("service_round_trip_test"), wrapper);
   EXPECT_EQ(run.exit_code, 0) << run.standard_output << run.standard_error;
 }
 

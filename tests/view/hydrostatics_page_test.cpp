@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -40,7 +41,7 @@ density = 512.5
 )";
 
 FinishedProcess hydrostatics(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), BUOYANCY_HYDROSTATICS);
+  arguments.insert(arguments.begin(), built_program("buoyancy-hydrostatics"));
   return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
 }
 

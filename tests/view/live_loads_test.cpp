@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "messages/wire.h"
+#include "tests/support/build_paths.h"
 #include "tests/view/moving_bodies.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
@@ -21,8 +22,8 @@ class LivePageOfLoads : public PageTest {
     service_ = std::make_unique<RunningService>(kChannel, moving_bodies());
     view_ = std::make_unique<RunningView>(moving_bodies(), kChannel);
     client_ = std::make_unique<ChildProcess>(
-        command_of({BUOYANCY_CLIENT, "--scene", service_->path("scene.toml"), "--rate", "200", "--duration",
-                    "1000", "--retries", "100000"}));
+        command_of({built_program("buoyancy-client"), "--scene", service_->path("scene.toml"), "--rate",
+                    "200", "--duration", "1000", "--retries", "100000"}));
     browser().open(view_->url());
   }
   void TearDown() override {

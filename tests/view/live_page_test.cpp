@@ -8,6 +8,7 @@
 #include "messages/request.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/build_paths.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
 
@@ -41,8 +42,8 @@ class LivePage : public PageTest {
     service_ = std::make_unique<RunningService>(kPoseChannels, kScene);
     view_ = std::make_unique<RunningView>(kScene, kPoseChannels);
     client_ = std::make_unique<ChildProcess>(
-        command_of({BUOYANCY_CLIENT, "--scene", service_->path("scene.toml"), "--rate", "200", "--duration",
-                    "1000", "--retries", "100000"}));
+        command_of({built_program("buoyancy-client"), "--scene", service_->path("scene.toml"), "--rate",
+                    "200", "--duration", "1000", "--retries", "100000"}));
     browser().open(view_->url());
   }
   void TearDown() override {
@@ -125,7 +126,7 @@ TEST_F(LivePage, WarnsAboutDifferentSceneName) {
       << "the folder is ignored";
   service_->child().send_signal(SIGKILL);
   service_->write("other.toml", kScene);
-  ChildProcess other(command_of({BUOYANCYD, "--scene", service_->path("other.toml")}));
+  ChildProcess other(command_of({built_program("buoyancyd"), "--scene", service_->path("other.toml")}));
   browser().wait_until(warned);
 }
 

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/build_paths.h"
 #include "tests/view/browser.h"
 
 namespace buoyancy::view {
@@ -35,7 +36,7 @@ class PageTest : public testing::Test {
     }
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     const std::string path =
-        std::string(BUOYANCY_PICTURES) + "/" + test.test_suite_name() + "." + test.name() + ".png";
+        (pictures_dir() / (std::string(test.test_suite_name()) + "." + test.name() + ".png")).string();
     // The next test gets a new browser, since this one may be the cause of the failure.
     const std::unique_ptr<Browser> last = std::move(browser_);
     last->screenshot().save(path);

@@ -11,6 +11,7 @@
 
 #include "engine/request_handler.h"
 #include "messages/conversions.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -35,7 +36,7 @@ class ReportPageOfLoads : public PageTest {
  protected:
   void open(const std::string& scene, const std::string& run) {
     const FinishedProcess made =
-        run_program({BUOYANCY_REPORT, "--scene", scene, run, directory_.path("run.html")});
+        run_program({built_program("buoyancy-report"), "--scene", scene, run, directory_.path("run.html")});
     ASSERT_EQ(made.exit_code, 0) << made.standard_error;
     browser().open_file(directory_.path("run.html"));
     browser().wait_until("window.buoyancy_report !== undefined");
@@ -44,8 +45,8 @@ class ReportPageOfLoads : public PageTest {
   void open_simulation() {
     const std::string scene = directory_.write("moving.toml", moving_bodies());
     const std::string run = directory_.path("run.csv");
-    const FinishedProcess simulated =
-        run_program({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "3", "--csv", run});
+    const FinishedProcess simulated = run_program(
+        {built_program("buoyancy-client"), "--scene", scene, "--embedded", "--duration", "3", "--csv", run});
     ASSERT_EQ(simulated.exit_code, 0) << simulated.standard_error;
     open(scene, run);
   }

@@ -11,6 +11,7 @@
 #include "base/format.h"
 #include "engine/subdivision_load.h"
 #include "scene/scene.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -42,9 +43,9 @@ class ReportPageOfTanks : public PageTest {
     open_run(directory_.write("run.csv", run), 0);
   }
   void open_run(const std::string& run, int exit_code) {
-    const FinishedProcess made =
-        run_to_end(command_of({BUOYANCY_REPORT, "--scene", scene_path_, run, directory_.path("run.html")}),
-                   kWaitTimeout);
+    const FinishedProcess made = run_to_end(command_of({built_program("buoyancy-report"), "--scene",
+                                                        scene_path_, run, directory_.path("run.html")}),
+                                            kWaitTimeout);
     ASSERT_EQ(made.exit_code, exit_code) << made.standard_error;
     browser().open_file(directory_.path("run.html"));
     browser().wait_until("window.buoyancy_report !== undefined");

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/service/one_box_scene.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -29,7 +30,7 @@ linear_damping = 8000
 )";
 
 FinishedProcess report(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{BUOYANCY_REPORT};
+  std::vector<std::string> command{built_program("buoyancy-report")};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_to_end(command_of(std::move(command)), kWaitTimeout);
 }
@@ -39,9 +40,10 @@ class ReportPage : public PageTest {
   static void SetUpTestSuite() {
     directory_ = std::make_unique<TempDir>();
     const std::string scene = directory_->write("box.toml", kBobbingBox);
-    const FinishedProcess simulated = run_to_end(
-        command_of({BUOYANCY_CLIENT, "--scene", scene, "--embedded", "--duration", "5", "--csv", csv()}),
-        kWaitTimeout);
+    const FinishedProcess simulated =
+        run_to_end(command_of({built_program("buoyancy-client"), "--scene", scene, "--embedded", "--duration",
+                               "5", "--csv", csv()}),
+                   kWaitTimeout);
     written_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
   }
   static void TearDownTestSuite() {

@@ -10,6 +10,7 @@
 #include "messages/request.h"
 #include "messages/sea_state.h"
 #include "recording/event_log.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -43,8 +44,8 @@ class ReportPageInWaves : public PageTest {
   }
   void open_run(const std::string& scene, const std::string& run) {
     const FinishedProcess made =
-        run_to_end(command_of({BUOYANCY_REPORT, "--scene", directory_.write("waves.toml", scene), run,
-                               directory_.path("run.html")}),
+        run_to_end(command_of({built_program("buoyancy-report"), "--scene",
+                               directory_.write("waves.toml", scene), run, directory_.path("run.html")}),
                    kWaitTimeout);
     ASSERT_EQ(made.exit_code, 0) << made.standard_error;
     browser().open_file(directory_.path("run.html"));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/service/running_service.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/running_program.h"
 #include "tests/view/http_peer.h"
 
@@ -29,8 +30,8 @@ class RunningView {
  private:
   static ChildCommand command(const std::string& scene, std::vector<std::string> options,
                               std::uint16_t port) {
-    options.insert(options.begin(), {BUOYANCY_VIEW, "--scene", scene, "--port", std::to_string(port),
-                                     "--scheduling", "normal"});
+    options.insert(options.begin(), {built_program("buoyancy-view"), "--scene", scene, "--port",
+                                     std::to_string(port), "--scheduling", "normal"});
     return command_of(std::move(options));
   }
 

@@ -11,6 +11,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/build_paths.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -26,7 +27,7 @@ using nlohmann::json;
 const std::string kScene = kHydrostaticBoxScene;
 
 ChildCommand client(const std::string& scene, std::vector<std::string> options) {
-  options.insert(options.begin(), {BUOYANCY_CLIENT, "--scene", scene});
+  options.insert(options.begin(), {built_program("buoyancy-client"), "--scene", scene});
   return command_of(std::move(options));
 }
 
@@ -227,8 +228,8 @@ std::set<int> policies_of(const ChildProcess& process) {
 
 TEST(ViewProgram, UsesIdleSchedulingByDefault) {
   const TempDir directory;
-  ChildProcess view(
-      command_of({BUOYANCY_VIEW, "--scene", directory.write("scene.toml", kScene), "--port", "0"}));
+  ChildProcess view(command_of(
+      {built_program("buoyancy-view"), "--scene", directory.write("scene.toml", kScene), "--port", "0"}));
   // It is not ready for as long as the machine is busy. Its later threads inherit the policy.
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
   while (policies_of(view) != std::set<int>{SCHED_IDLE} && std::chrono::steady_clock::now() < deadline) {
@@ -256,7 +257,7 @@ TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
   TempDir directory;
   const std::string scene = directory.write("scene.toml", kScene);
   const auto run_view = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), BUOYANCY_VIEW);
+    options.insert(options.begin(), built_program("buoyancy-view"));
     return run_to_end(command_of(std::move(options)), kWaitTimeout);
   };
   for (const std::vector<std::string>& options : {std::vector<std::string>{},
