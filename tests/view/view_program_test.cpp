@@ -1,5 +1,6 @@
 // buoyancy-view as a separate process with the real service and the real client, over UDP.
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -83,19 +84,23 @@ TEST(ViewProgram, ShowsLoadsOfRealPrograms) {
   const FinishedProcess run =
       run_to_end(client(service.path("scene.toml"), {"--duration", "0.05"}), kWaitTimeout);
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
-  const json snapshot = wait_for_snapshot(events, [](const json& now) {
+  // Wrench and loads are two messages; a snapshot taken between them has those of different steps.
+  const auto loads_add_up = [](const json& body) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      double sum = 0.0;
+      for (const char* part : {"buoyancy", "drag", "added_mass"}) sum += body["loads"][part][i].get<double>();
+      if (std::abs(sum - body["f"][i].get<double>()) > 0.01) return false;
+    }
+    return true;
+  };
+  const json snapshot = wait_for_snapshot(events, [&](const json& now) {
     return now["counts"]["responses"].get<int>() > 50 && now["bodies"].size() == 1 &&
-           now["bodies"][0].contains("loads");
+           now["bodies"][0].contains("loads") && loads_add_up(now["bodies"][0]);
   });
   const json& body = snapshot["bodies"][0];
   const json& loads = body["loads"];
   EXPECT_EQ(loads["water_velocity"], json({0.5, -0.25, 0.125})) << "the current";
   EXPECT_GT(loads["drag"][2].get<double>(), 100.0) << "it falls into the water at 1 m/s";
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(loads["buoyancy"][i].get<double>() + loads["drag"][i].get<double>() +
-                    loads["added_mass"][i].get<double>(),
-                body["f"][i].get<double>(), 0.01);
-  }
   EXPECT_NEAR(loads["immersion"].get<double>(), body["volume"].get<double>() / 2.0, 1e-6);
 }
 
