@@ -119,6 +119,9 @@ TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
   RawLcmSocket socket;
   socket.send("HULL", pose_at(0.5, 1));
   EXPECT_EQ(receive(socket).bodies.at(0).status, 0);
+  // A status reports the poses since the last one, by the scene of its moment.
+  ASSERT_TRUE(
+      wait_for_status(socket, [](const ServiceStatus& status) { return status.counters.computed == 1; }));
   service.write("scene.toml", kLoadsBoxScene);
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();

@@ -95,6 +95,8 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
       ASSERT_EQ(receive(socket).seq, seq);
     }
   }
+  // The loads of the last request follow its wrench.
+  ASSERT_TRUE(socket.receive("BUOYANCY_LOADS", kWaitTimeout));
   ASSERT_TRUE(wait_for_logger()) << logger.standard_error();
   logger.send_signal(SIGINT);
   ASSERT_TRUE(logger.wait(kWaitTimeout));

@@ -138,6 +138,8 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
   }
   ASSERT_TRUE(service.child().wait_for_text("in progress; queued", kWaitTimeout)) << service.log();
   EXPECT_EQ(service.log().find("reloaded:"), std::string::npos) << service.log();
+  // The service has looked at its signals, the third SIGHUP among them, when it answers once more.
+  EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   mesh.release();
   double force = kForceBefore;
   while (std::abs(force - 0.5 * kForceBefore) > 1e-6 && seq < 100'000) force = vertical_force(socket, seq++);

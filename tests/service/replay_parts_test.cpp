@@ -532,7 +532,10 @@ class InterruptedPart : public ReplayParts {
           "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [20, 20, 20] }\n"
           "method = \"exact\"\n");
     std::string poses = kPoseHeader;
-    for (int i = 0; i < 200'000; ++i) poses += std::to_string(i) + ",1,0,0,0.1,1,0,0,0\n";
+    // Different poses: a repeated one costs nothing, so that the part would soon be complete.
+    for (int i = 0; i < 200'000; ++i) {
+      poses += std::to_string(i) + ",1,0,0," + std::to_string(1e-5 * i) + ",1,0,0,0\n";
+    }
     write("in.csv", poses);
   }
   ChildCommand part_command() const {

@@ -396,12 +396,15 @@ TEST(LatestMode, HandlesNewestPendingRequestOfEachSession) {
 }
 
 TEST(LatestMode, DropsStaleRequestsAndAcceptsRestartedClients) {
-  const RunningService service({"--mode", "latest"});
+  RunningService service({"--mode", "latest"});
   RawLcmSocket socket;
+  // It receives all three at once: after a pause, 99 would be that of a restarted client.
+  service.stop();
   send_request(socket, one_body(1, 100, 0.0));
-  EXPECT_EQ(receive(socket).seq, 100);
   send_request(socket, one_body(1, 99, 0.0));
   send_request(socket, one_body(2, 1, 0.0));
+  service.child().send_signal(SIGCONT);
+  EXPECT_EQ(receive(socket).seq, 100);
   const RawWrenches next = receive(socket);
   EXPECT_EQ(next.session_id, 2) << "99 is stale";
   for (const std::int64_t seq : {0, 1, 2}) {
