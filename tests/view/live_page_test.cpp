@@ -122,7 +122,10 @@ TEST_F(LivePage, WarnsAboutDifferentSceneName) {
       "document.getElementById('notices').textContent.includes(\"The service's scene is other.toml\")";
   browser().wait_until("window.buoyancyView && buoyancyView.last && buoyancyView.last.status");
   browser().wait_until("document.querySelector('#strip').textContent.includes('lockstep')");
-  browser().wait_until("document.getElementById('notices').textContent === ''");  // the folder is ignored
+  browser().wait_until("document.getElementById('notices').textContent === ''");
+  wait_for_snapshots(15);  // longer than until notices are drawn again
+  EXPECT_EQ(browser().run("return document.getElementById('notices').textContent;"), "")
+      << "the folder is ignored";
   service_->child().send_signal(SIGKILL);
   service_->write("other.toml", kScene);
   ChildProcess other(command_of({built_program("buoyancyd"), "--scene", service_->path("other.toml")}));
