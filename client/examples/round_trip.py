@@ -104,6 +104,8 @@ def main():
                         help="height of the body's origin in metres (default: %(default)s)")
     parser.add_argument("--velocity", type=float, nargs=3, default=[0.0, 0.0, 0.0], metavar=("VX", "VY", "VZ"),
                         help="velocity of the body's origin in m/s, which drag depends on (default: 0 0 0)")
+    parser.add_argument("--retries", type=int, default=50,
+                        help="how often a request is sent again, every 0.1 s (default: %(default)s)")
     parser.add_argument("--loads", action="store_true", help="print the body's drag and added mass in heave too")
     arguments = parser.parse_args()
 
@@ -112,7 +114,7 @@ def main():
     state.position = [0.0, 0.0, arguments.height]
     state.quaternion_wxyz = [1.0, 0.0, 0.0, 0.0]
     state.linear_velocity = arguments.velocity
-    client = Client()
+    client = Client(retries=arguments.retries)
     if arguments.loads:
         (wrench,), (loads,) = client.request(utime=0, states=[state], loads=True)
     else:

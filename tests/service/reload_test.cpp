@@ -1,4 +1,5 @@
 // SIGHUP during a session over UDP: buoyancyd replaces its scene.
+#include <chrono>
 #include <cmath>
 #include <csignal>
 
@@ -30,6 +31,16 @@ double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kH
   EXPECT_EQ(response.session_id, 1);
   EXPECT_EQ(response.seq, seq);
   return response.bodies.at(0).force[2];
+}
+
+// Sends requests until the condition holds for the last force. Returns false if it does not in time.
+template <typename Condition>
+bool request_until(RawLcmSocket& socket, std::int64_t& seq, double height, const Condition& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  while (!condition(vertical_force(socket, seq++, height))) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+  }
+  return true;
 }
 
 void reload(RunningService& service, const std::string& scene, const std::string& until) {
@@ -125,8 +136,8 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
   if (!mesh.held()) GTEST_SKIP() << no_lease_on(service.path(""));
   service.child().send_signal(SIGHUP);
   std::int64_t seq = 0;
-  while (!mesh.awaited() && seq < 100'000) vertical_force(socket, seq++);
-  ASSERT_TRUE(mesh.awaited()) << service.log();
+  ASSERT_TRUE(request_until(socket, seq, kHalfSubmerged, [&mesh](double) { return mesh.awaited(); }))
+      << service.log();
   for (const std::int64_t end = seq + 100; seq < end; ++seq) {
     ASSERT_NEAR(vertical_force(socket, seq), kForceBefore, 1e-6);
   }
@@ -141,9 +152,9 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
   // The service has looked at its signals, the third SIGHUP among them, when it answers once more.
   EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   mesh.release();
-  double force = kForceBefore;
-  while (std::abs(force - 0.5 * kForceBefore) > 1e-6 && seq < 100'000) force = vertical_force(socket, seq++);
-  EXPECT_NEAR(force, 0.5 * kForceBefore, 1e-6) << "the scene file as of the last SIGHUP: " << service.log();
+  EXPECT_TRUE(request_until(socket, seq, kHalfSubmerged,
+                            [](double force) { return std::abs(force - 0.5 * kForceBefore) < 1e-6; }))
+      << "the scene file as of the last SIGHUP: " << service.log();
   expect_clean_exit(service);
   EXPECT_LE(lines_with("reloaded:", service.log()), 2U) << "one load for the three requests during the first";
 }
@@ -170,9 +181,9 @@ TEST(Reload, ImportsMeshesWhileWorkerThreadsRun) {
                       std::to_string(scale) + "\n");
     const std::size_t before = lines_with("reloaded:", service.log());
     service.child().send_signal(SIGHUP);
-    while (lines_with("reloaded:", service.log()) == before && seq < 100'000) {
-      vertical_force(socket, seq++, kSubmerged);
-    }
+    EXPECT_TRUE(request_until(socket, seq, kSubmerged, [&service, before](double) {
+      return lines_with("reloaded:", service.log()) > before;
+    }));
     EXPECT_NEAR(vertical_force(socket, seq++, kSubmerged), 1e4 * scale * scale * scale / 6, 1e-6)
         << service.log();
   }
