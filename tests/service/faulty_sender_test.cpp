@@ -1,6 +1,7 @@
 #include "service/daemon/faulty_sender.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
