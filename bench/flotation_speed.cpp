@@ -61,8 +61,8 @@ void require(bool holds, const std::string& reason) {
 }
 
 struct Hull {
-  Hull(std::string name_, const Shape& shape)
-      : name(std::move(name_)), source(make_shape(shape)), mesh(make_hydrostatic_mesh({source, {}})) {}
+  Hull(std::string hull_name, const Shape& shape)
+      : name(std::move(hull_name)), source(make_shape(shape)), mesh(make_hydrostatic_mesh({source, {}})) {}
 
   FloatingBody body(double mass, const Vec3& center_of_mass_B) const {
     const PlacedMesh placed{.mesh = &mesh};

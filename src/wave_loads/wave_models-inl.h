@@ -310,13 +310,13 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     stretch = q_max;
     const V w_max = hn::Max(hn::MulAdd(l, place.zeta + r, one), hn::MulSub(l, r - place.zeta, one));
     const V qq = q_max * q_max;
-    const V lL1 = l * L1;
-    const V slope2 = hn::MulAdd(two * q_max * lL1, L1, L2) * qq;
+    const V l_L1 = l * L1;
+    const V slope2 = hn::MulAdd(two * q_max * l_L1, L1, L2) * qq;
     const V Q1 = l * qq * L1;
     const V Q2 = l * slope2;
     const V b_1 = w_max * qq * L1;
     const V b_2 = w_max * slope2;
-    const V b_3 = w_max * qq * (L3 + set<Number>(6.0) * q_max * lL1 * hn::MulAdd(q_max * lL1, L1, L2));
+    const V b_3 = w_max * qq * (L3 + set<Number>(6.0) * q_max * l_L1 * hn::MulAdd(q_max * l_L1, L1, L2));
     const V trace = one + qq + b_1 * b_1;
     const V root = hn::Sqrt(hn::Max(trace * trace - set<Number>(4.0) * qq, zero));
     const V V1 = hn::Max(hn::Sqrt(half * (trace + root)), one);
@@ -326,14 +326,14 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V shift = w_max * qq * epsilon;
     const ReachBounds<Number> inside =
         bounds_at<Number>(volume_bounds, volume_reach + hn::MulAdd(r, V1, shift));
-    const Symmetric<Number> Df2{f.f_11, f_22, f.f_33, f.f_12, f.f_13, f.f_23};
+    const Symmetric<Number> D_f2{f.f_11, f_22, f.f_33, f.f_12, f.f_13, f.f_23};
     const V F3 = third_within<Number>(f.third, inside, r * V1, rounding);
     // The largest eigenvalue of a traceless symmetric matrix is at most sqrt(2/3) times its Frobenius norm.
-    const V F2_at_point = hn::Sqrt(set<Number>(2.0 / 3.0) * frobenius_squared<Number>(Df2));
+    const V F2_at_point = hn::Sqrt(set<Number>(2.0 / 3.0) * frobenius_squared<Number>(D_f2));
     const V F2 = hn::MulAdd(r * V1, F3, F2_at_point);
-    const V Df = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
-    const V F1 = hn::MulAdd(r * V1, F2, Df);
-    M3_at_point = f.third + three * F2_at_point * range.L2_at_point + Df * surface.third;
+    const V D_f = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
+    const V F1 = hn::MulAdd(r * V1, F2, D_f);
+    M3_at_point = f.third + three * F2_at_point * range.L2_at_point + D_f * surface.third;
     M3 = F3 * V1 * V1 * V1 + three * F2 * V1 * V2 + F1 * V3;
     delta = hn::MulAdd(F1, shift, inside.truncation) +
             rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +

@@ -134,13 +134,13 @@ TEST(BodyMotions, HeaveAndPitchAreCoupledModes) {
   const BodyMotions motions =
       motions_of(box_scene("", "mass = 600\ncenter_of_mass = [0.3, 0, 0]\ninertia = [80, 250, 300]"));
   const double rho_g = kDensity * kGravity;
-  const double K33 = rho_g * kWaterplane;
-  const double K35 = rho_g * kWaterplane * 0.3;
-  const double K55 = stiffness_of_box(kLength) + rho_g * kWaterplane * 0.09;
+  const double K_33 = rho_g * kWaterplane;
+  const double K_35 = rho_g * kWaterplane * 0.3;
+  const double K_55 = stiffness_of_box(kLength) + rho_g * kWaterplane * 0.09;
   const double a = std::pow(2.0 * kPi / motions.natural->heave.period(), 2);
   const double b = std::pow(2.0 * kPi / motions.natural->pitch.period(), 2);
-  expect_relative(a + b, K33 / kMass + K55 / 250.0, 1e-9, "trace");
-  expect_relative(a * b, (K33 * K55 - K35 * K35) / (kMass * 250.0), 1e-9, "determinant");
+  expect_relative(a + b, K_33 / kMass + K_55 / 250.0, 1e-9, "trace");
+  expect_relative(a * b, (K_33 * K_55 - K_35 * K_35) / (kMass * 250.0), 1e-9, "determinant");
   expect_relative(motions.turning_lever, 0.3, 1e-9, "lever");
 }
 

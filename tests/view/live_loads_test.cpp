@@ -19,8 +19,8 @@ class LivePageOfLoads : public PageTest {
  protected:
   void SetUp() override {
     PageTest::SetUp();
-    service_ = std::make_unique<RunningService>(kChannel, moving_bodies());
-    view_ = std::make_unique<RunningView>(moving_bodies(), kChannel);
+    service_ = std::make_unique<RunningService>(channel_, moving_bodies());
+    view_ = std::make_unique<RunningView>(moving_bodies(), channel_);
     client_ = std::make_unique<ChildProcess>(
         command_of({built_program("buoyancy-client"), "--scene", service_->path("scene.toml"), "--rate",
                     "200", "--duration", "1000", "--retries", "100000"}));
@@ -33,7 +33,7 @@ class LivePageOfLoads : public PageTest {
     service_.reset();
   }
 
-  const std::vector<std::string> kChannel{"--loads-channel", "LOADS"};
+  const std::vector<std::string> channel_{"--loads-channel", "LOADS"};
   std::unique_ptr<RunningService> service_;
   std::unique_ptr<RunningView> view_;
   std::unique_ptr<ChildProcess> client_;
