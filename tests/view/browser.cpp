@@ -51,7 +51,8 @@ ChildCommand chromium(const TempDir& directory) {
           "--disable-dev-shm-usage",
           "--use-angle=swiftshader",
           "--enable-unsafe-swiftshader",
-          // GPU rasterization with software rendering only slows the page down.
+          // GPU rasterization and compositing with software rendering only slow the page down.
+          "--disable-gpu-compositing",
           "--disable-gpu-rasterization",
           // Chromium drops keys and clicks that arrive before the first frame of a page is drawn.
           // chromedriver sets this for each Chromium that it starts itself.
