@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include <cxxabi.h>
 #include <unistd.h>
 
 namespace buoyancy::python {
@@ -66,7 +65,9 @@ void define_exceptions(py::module_& module) {
 void take_gil_again(PyThreadState* state) noexcept {
   try {
     PyEval_RestoreThread(state);
-  } catch (const abi::__forced_unwind&) {  // the C library's, for pthread_exit()
+  } catch (...) {
+    // Not an exception, but the C library's unwinding for pthread_exit(). It has no object: to catch it by
+    // its type, abi::__forced_unwind, would bind a reference to nothing.
     while (true) pause();
   }
 }
