@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace buoyancy {
 namespace {
@@ -92,22 +93,116 @@ const MonomialColumns& monomial_columns() {
   return columns;
 }
 
+namespace {
+
+// The entries of a component's harmonics and monomials of degree l are the power l of its k / k_max times a
+// factor of its direction.
+double harmonic_factor(int m) {
+  return (m == 0 ? 1.0 : 2.0) * sign(m);
+}
+double monomial_factor(int p, int q, double cosine, double sine) {
+  return sign(p + q) * std::pow(cosine, p) * std::pow(sine, q) / (factorial(p) * factorial(q));
+}
+
+// k: over k_max; b: direction [rad].
+void fill_rows(double k, double b, ExpansionRow<double, kHarmonicColumns>& harmonics,
+               ExpansionRow<double, kMonomialColumns>& monomials) {
+  double power = 1.0;
+  for (int l = 0; l <= kNormDegree; ++l, power *= k) {
+    for (int m = 0; m <= l; ++m) {
+      const double factor = power * harmonic_factor(m);
+      harmonics.columns[harmonic_columns()[cosine_place(l, m)]] = factor * std::cos(m * b);
+      if (m > 0) harmonics.columns[harmonic_columns()[sine_place(l, m)]] = factor * std::sin(m * b);
+    }
+    for (int q = 0; q <= l; ++q) {
+      monomials.columns[monomial_columns()[monomial_place(l - q, q)]] =
+          power * monomial_factor(l - q, q, std::cos(b), std::sin(b));
+    }
+  }
+}
+
+SlotFactors<double> slot_factors(double b) {
+  SlotFactors<double> slot;
+  for (int m = 0; m <= kNormDegree; ++m) {
+    slot.cosines[static_cast<std::size_t>(m)] = harmonic_factor(m) * std::cos(m * b);
+    slot.sines[static_cast<std::size_t>(m)] = harmonic_factor(m) * std::sin(m * b);
+  }
+  for (int l = 0; l <= kNormDegree; ++l) {
+    for (int q = 0; q <= l; ++q) {
+      slot.monomials[static_cast<std::size_t>(l)][static_cast<std::size_t>(q)] =
+          monomial_factor(l - q, q, std::cos(b), std::sin(b));
+    }
+  }
+  return slot;
+}
+
+void set_powers(double k, std::size_t lane, StepPowers<double>& powers) {
+  double power = 1.0;
+  for (auto& of_degree : powers.of_degree) {
+    of_degree[2 * lane] = of_degree[2 * lane + 1] = power;
+    power *= k;
+  }
+}
+
+ExpansionTable<float> narrowed(const ExpansionTable<double>& table) {
+  ExpansionTable<float> result;
+  result.harmonics = narrowed(table.harmonics);
+  result.monomials = narrowed(table.monomials);
+  const auto narrow = [](const auto& from, auto& to) {
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]);
+  };
+  result.slots.resize(table.slots.size());
+  for (std::size_t n = 0; n < table.slots.size(); ++n) {
+    narrow(table.slots[n].cosines, result.slots[n].cosines);
+    narrow(table.slots[n].sines, result.slots[n].sines);
+    for (std::size_t l = 0; l <= kNormDegree; ++l) {
+      narrow(table.slots[n].monomials[l], result.slots[n].monomials[l]);
+    }
+  }
+  result.powers.resize(table.powers.size());
+  for (std::size_t n = 0; n < table.powers.size(); ++n) {
+    for (std::size_t l = 0; l <= kNormDegree; ++l) {
+      narrow(table.powers[n].of_degree[l], result.powers[n].of_degree[l]);
+    }
+  }
+  result.amplitude = narrowed(table.amplitude);
+  result.amplitude_in_f = narrowed(table.amplitude_in_f);
+  result.k = narrowed(table.k);
+  result.minus_twice_kh = narrowed(table.minus_twice_kh);
+  result.tail = narrowed(table.tail);
+  return result;
+}
+
+}  // namespace
+
 SeaExpansion::SeaExpansion(const Sea& sea)
-    : components(sea.prepared().size()),
-      filled_components((components + kColumnUnit - 1) / kColumnUnit * kColumnUnit),
-      k_max(sea.max_wave_number()) {
+    : slots(component_slots(sea.prepared().direction)), k_max(sea.max_wave_number()) {
   const PreparedComponents& prepared = sea.prepared();
-  const auto filled = [this](std::vector<double> numbers) {
-    numbers.resize(filled_components, 0.0);
-    return numbers;
+  const std::size_t components = prepared.size();
+  const std::size_t placed = slots.any() ? slots.blocks * slots.steps * kSlotsOfBlock : components;
+  filled_components = (placed + kColumnUnit - 1) / kColumnUnit * kColumnUnit;
+  places = slots.places;
+  if (!slots.any()) {
+    places.resize(components);
+    std::iota(places.begin(), places.end(), 0U);
+  }
+  const auto filled = [this](const std::vector<double>& numbers) {
+    std::vector<double> result(filled_components, 0.0);
+    for (std::size_t i = 0; i < numbers.size(); ++i) result[places[i]] = numbers[i];
+    return result;
   };
   k1_W = filled(prepared.k1);
   k1_rest = filled(prepared.k1_rest);
   k2_W = filled(prepared.k2);
   k2_rest = filled(prepared.k2_rest);
   ExpansionTable<double>& table = double_precision;
-  table.harmonics.resize(filled_components);
-  table.monomials.resize(filled_components);
+  if (slots.any()) {
+    table.slots.resize(slots.blocks * kSlotsOfBlock);
+    table.powers.resize(slots.blocks * slots.steps);
+  } else {
+    table.harmonics.resize(filled_components);
+    table.monomials.resize(filled_components);
+  }
   for (std::vector<double>* row :
        {&k1, &k2, &table.amplitude, &table.amplitude_in_f, &table.k, &table.minus_twice_kh, &table.tail}) {
     row->resize(filled_components, 0.0);
@@ -115,33 +210,26 @@ SeaExpansion::SeaExpansion(const Sea& sea)
   double squares = 0.0;
   double thirds = 0.0;
   for (std::size_t i = 0; i < components; ++i) {
+    const std::size_t place = places[i];
     const double amplitude = prepared.amplitude[i];
     const double k = prepared.wave_number[i] / k_max;
-    k1[i] = prepared.k1[i] / k_max;
-    k2[i] = prepared.k2[i] / k_max;
-    table.k[i] = k;
-    table.minus_twice_kh[i] = -2.0 * prepared.wave_number[i] * sea.depth();
-    table.amplitude[i] = k_max * amplitude;
-    table.amplitude_in_f[i] = table.amplitude[i] / (1.0 + std::exp(table.minus_twice_kh[i]));
+    k1[place] = prepared.k1[i] / k_max;
+    k2[place] = prepared.k2[i] / k_max;
+    table.k[place] = k;
+    table.minus_twice_kh[place] = -2.0 * prepared.wave_number[i] * sea.depth();
+    table.amplitude[place] = k_max * amplitude;
+    table.amplitude_in_f[place] = table.amplitude[place] / (1.0 + std::exp(table.minus_twice_kh[place]));
     const double angle = std::atan2(prepared.k2[i], prepared.k1[i]);
-    double power = 1.0;  // (k / k_max)^l
-    for (int l = 0; l <= kNormDegree; ++l, power *= k) {
-      for (int m = 0; m <= l; ++m) {
-        const double factor = (m == 0 ? 1.0 : 2.0) * power * sign(m);
-        auto& row = table.harmonics[i].columns;
-        row[harmonic_columns()[cosine_place(l, m)]] = factor * std::cos(m * angle);
-        if (m > 0) row[harmonic_columns()[sine_place(l, m)]] = factor * std::sin(m * angle);
-      }
-      for (int q = 0; q <= l; ++q) {
-        const int p = l - q;
-        table.monomials[i].columns[monomial_columns()[monomial_place(p, q)]] =
-            sign(l) * std::pow(k1[i], p) * std::pow(k2[i], q) / (factorial(p) * factorial(q));
-      }
+    if (slots.any()) {
+      table.slots[slots.slot_of(place)] = slot_factors(angle);
+      set_powers(k, place % kSlotsOfBlock, table.powers[place / kSlotsOfBlock]);
+    } else {
+      fill_rows(k, angle, table.harmonics[place], table.monomials[place]);
     }
-    table.tail[i] = power / factorial(kNormDegree + 1);
+    table.tail[place] = std::pow(k, kNormDegree + 1) / factorial(kNormDegree + 1);
     const double next = std::pow(k, kDegree + 1) / factorial(kDegree + 1);
     typical_norm = std::hypot(typical_norm, amplitude * next);
-    tail += amplitude * table.tail[i];
+    tail += amplitude * table.tail[place];
     squares += 0.5 * amplitude * amplitude;
     const double third = 0.5 * amplitude * amplitude * std::pow(k, 6);
     thirds += third;
@@ -153,13 +241,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
   typical_elevation = std::sqrt(squares);
   typical_third = std::sqrt(thirds);
   if (thirds > 0.0) typical_decay /= thirds;
-  single_precision.harmonics = narrowed(table.harmonics);
-  single_precision.monomials = narrowed(table.monomials);
-  single_precision.amplitude = narrowed(table.amplitude);
-  single_precision.amplitude_in_f = narrowed(table.amplitude_in_f);
-  single_precision.k = narrowed(table.k);
-  single_precision.minus_twice_kh = narrowed(table.minus_twice_kh);
-  single_precision.tail = narrowed(table.tail);
+  single_precision = narrowed(table);
 }
 
 double SeaExpansion::reach_within(double error) const {

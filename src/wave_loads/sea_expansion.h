@@ -7,13 +7,17 @@
 //         C_lm + i S_lm = |xi|^l P_l^m e^(i m angle) / (l + m)!
 //   eta = sum over terms (p, q) of e_pq xi_1^p xi_2^q
 // A term's coefficient is the sum over components of its entry in a table times one of the component's
-// weights at c.
+// weights at c. A component's entry is a power of its wave number times a factor of its direction. A sea of a
+// spectrum has few directions: its components are sorted into slots (component_slots.h), and it is summed in
+// two steps, over the components of a slot for every power, then over the slots.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "wave_loads/component_slots.h"
 #include "waves/sea.h"
 
 namespace buoyancy {
@@ -67,12 +71,31 @@ struct alignas(64) ExpansionRow {
   std::array<Number, kColumns> columns{};
 };
 
+// What a component's terms have of its direction b, the same for all components of a slot.
+template <typename Number>
+struct alignas(64) SlotFactors {
+  static constexpr std::size_t kLength = 16;
+  using Row = std::array<Number, kLength>;
+  Row cosines{}, sines{};                        // of m b, with the factors of C_lm and S_lm; by order m
+  std::array<Row, kNormDegree + 1> monomials{};  // by degree and q
+};
+
+// The powers (k / k_max)^l of a step's components, each twice.
+template <typename Number>
+struct alignas(64) StepPowers {
+  std::array<std::array<Number, 2 * kSlotsOfBlock>, kNormDegree + 1> of_degree{};
+};
+
 // Components are filled up to a multiple of kColumnUnit by components without an amplitude.
 // Number: float or double.
 template <typename Number>
 struct ExpansionTable {
-  std::vector<ExpansionRow<Number, kHarmonicColumns>> harmonics;  // per component
+  // Of a sea without slots, per component.
+  std::vector<ExpansionRow<Number, kHarmonicColumns>> harmonics;
   std::vector<ExpansionRow<Number, kMonomialColumns>> monomials;
+  // Of a sea with slots: block after block.
+  std::vector<SlotFactors<Number>> slots;
+  std::vector<StepPowers<Number>> powers;
   // Per component, lengths over 1 / k_max.
   std::vector<Number> amplitude;       // a
   std::vector<Number> amplitude_in_f;  // a / (1 + e^(-2 k h))
@@ -84,9 +107,10 @@ struct ExpansionTable {
 struct SeaExpansion {
   explicit SeaExpansion(const Sea& sea);
 
-  std::size_t components = 0;
+  ComponentSlots slots;               // none where they would cost more
   std::size_t filled_components = 0;  // a multiple of kColumnUnit
   double k_max = 0.0;                 // [rad/m]
+  std::vector<std::uint32_t> places;  // of the sea's components among the filled ones
   // Per component, filled up.
   std::vector<double> k1, k2;                        // over k_max, along the horizontal axes
   std::vector<double> k1_W, k1_rest, k2_W, k2_rest;  // [rad/m], as in PreparedComponents

@@ -66,11 +66,20 @@ struct CellCenter {
 // As many cells are built in one go, at most.
 inline constexpr std::size_t kCellsTogether = 16;
 
+// Sums over the components of each slot of a block, of a weight times a power of k. The numbers of a slot lie
+// side by side: that of the cosine, then that of the sine.
+template <typename Number>
+using PowerSums = StepPowers<Number>;
+
 template <typename Number>
 struct CellWorkspace {
   std::vector<double> phases;  // at the body's centre, filled up
   // By cell, weight and component.
   std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
+  // Of a sea with slots, by cell and place of the component: for even and for odd degrees, the weight of the
+  // cosines of m b and that of the sines of an odd m.
+  std::array<std::array<std::vector<Number>, 2>, kCellsTogether> pairs;
+  std::vector<PowerSums<Number>> power_sums;  // by cell and block
   std::vector<Number> theta;
   struct alignas(64) Sums {
     std::array<Number, kHarmonicColumns> columns;
@@ -78,10 +87,18 @@ struct CellWorkspace {
   std::array<Sums, kCellsTogether> sums;
   std::array<Number, kCellsTogether> tails;
 
-  void reserve(std::size_t components) {
+  void reserve(const SeaExpansion& sea) {
+    const std::size_t components = sea.filled_components;
     theta.resize(components);
-    for (auto& of_cell : weights) {
-      for (auto& of_weight : of_cell) of_weight.resize(components);
+    if (sea.slots.any()) {
+      for (auto& of_cell : pairs) {
+        for (auto& of_parity : of_cell) of_parity.resize(2 * components);
+      }
+      power_sums.resize(kCellsTogether * sea.slots.blocks);
+    } else {
+      for (auto& of_cell : weights) {
+        for (auto& of_weight : of_cell) of_weight.resize(components);
+      }
     }
   }
 };
@@ -104,9 +121,18 @@ HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Numb
     }
   }
   const LanesOf<Number> d;
+  const bool slots = sea.slots.any();
   auto& weights = work.weights[cell];
-  const auto out = [&weights](Weight weight, std::size_t i) {
-    return &weights[static_cast<std::size_t>(weight)][i];
+  auto& pairs = work.pairs[cell];
+  const auto put = [&](std::size_t i, Weight cosine, const VectorOf<Number>& cosines, Weight sine,
+                       const VectorOf<Number>& sines) HWY_ATTR {
+    if (slots) {
+      const auto parity = static_cast<std::size_t>(cosine == Weight::kCosineOdd);
+      hn::StoreInterleaved2(cosines, sines, d, &pairs[parity][2 * i]);
+    } else {
+      hn::StoreU(cosines, d, &weights[static_cast<std::size_t>(cosine)][i]);
+      hn::StoreU(sines, d, &weights[static_cast<std::size_t>(sine)][i]);
+    }
   };
   VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
@@ -116,23 +142,24 @@ HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Numb
     VectorOf<Number> even;
     if constexpr (kSurface) {
       even = set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]);
+      put(i, Weight::kCosineEven, even * cosine, Weight::kSineEven, even * sine);
     } else {
       const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude_in_f[i]);
       const VectorOf<Number> exponent = hn::LoadU(d, &table.k[i]) * set<Number>(center.z);
       const VectorOf<Number> down = amplitude * hn::Exp(d, exponent);
       if (deep_water) {
         even = down;
+        put(i, Weight::kCosineEven, even * cosine, Weight::kSineEven, even * sine);
       } else {
         // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
         const VectorOf<Number> up = amplitude * hn::Exp(d, hn::LoadU(d, &table.minus_twice_kh[i]) - exponent);
         even = down + up;
         const VectorOf<Number> odd = down - up;
-        hn::StoreU(odd * cosine, d, out(Weight::kCosineOdd, i));
-        hn::StoreU(odd * sine, d, out(Weight::kSineOdd, i));
+        // Slots have the terms of even degrees first: those of cosines are even, those of sines are odd.
+        put(i, Weight::kCosineEven, even * cosine, Weight::kSineOdd, odd * sine);
+        put(i, Weight::kCosineOdd, odd * cosine, Weight::kSineEven, even * sine);
       }
     }
-    hn::StoreU(even * cosine, d, out(Weight::kCosineEven, i));
-    hn::StoreU(even * sine, d, out(Weight::kSineEven, i));
     tail = hn::MulAdd(even, hn::LoadU(d, &table.tail[i]), tail);
   }
   work.tails[cell] = hn::GetLane(hn::SumOfLanes(d, tail));
@@ -213,6 +240,77 @@ HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& 
     for (; cell + 4 <= count; cell += 4) add(cell, std::integral_constant<std::size_t, 4>());
     for (; cell + 2 <= count; cell += 2) add(cell, std::integral_constant<std::size_t, 2>());
     for (; cell < count; ++cell) add(cell, std::integral_constant<std::size_t, 1>());
+  }
+}
+
+// Adds to the sums of a block of slots what the steps from `begin` to `end` have, for kCells cells, from
+// number `part` of each step on.
+template <std::size_t kCells, typename Number>
+HWY_INLINE void add_steps(const StepPowers<Number>* powers,
+                          const std::array<std::array<const Number*, 2>, kCells>& pairs, std::size_t part,
+                          std::size_t begin, std::size_t end,
+                          const std::array<PowerSums<Number>*, kCells>& sums) {
+  constexpr std::size_t kPowers = kNormDegree + 1;
+  const LanesOf<Number> d;
+  std::array<std::array<VectorOf<Number>, kPowers>, kCells> sum;
+  for (auto& of_cell : sum) {
+    for (auto& of_power : of_cell) of_power = hn::Zero(d);
+  }
+  for (std::size_t step = begin; step < end; ++step) {
+    const std::size_t first = 2 * kSlotsOfBlock * step + part;
+    std::array<std::array<VectorOf<Number>, 2>, kCells> weights;
+    for (std::size_t c = 0; c < kCells; ++c) {
+      weights[c] = {hn::LoadU(d, pairs[c][0] + first), hn::LoadU(d, pairs[c][1] + first)};
+    }
+#pragma GCC unroll 16
+    for (std::size_t l = 0; l < kPowers; ++l) {
+      const VectorOf<Number> power = hn::Load(d, powers[step].of_degree[l].data() + part);
+      for (std::size_t c = 0; c < kCells; ++c) sum[c][l] = hn::MulAdd(weights[c][l % 2], power, sum[c][l]);
+    }
+  }
+  for (std::size_t c = 0; c < kCells; ++c) {
+    for (std::size_t l = 0; l < kPowers; ++l) {
+      Number* const place = sums[c]->of_degree[l].data() + part;
+      hn::Store(hn::Load(d, place) + sum[c][l], d, place);
+    }
+  }
+}
+
+// Sets the sums of all slots for `count` cells from their pairs of weights. same: whether even and odd
+// degrees have the same.
+template <typename Number>
+HWY_NOINLINE void accumulate_slots(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
+                                   bool same, std::size_t count, CellWorkspace<Number>& work) {
+  // As many sums as the registers hold, with the powers shared between cells where there is room.
+  constexpr std::size_t kLanesOfStep = std::min<std::size_t>(kLanes<Number>, 2 * kSlotsOfBlock);
+  constexpr std::size_t kTogether = kLanes<Number> * sizeof(Number) == 64 ? 2 : 1;
+  // The powers of as many steps stay in the nearest cache while all cells pass. It also keeps the chains of
+  // additions short.
+  constexpr std::size_t kBlock = 24;
+  for (std::size_t n = 0; n < count * slots.blocks; ++n) work.power_sums[n] = {};
+  for (std::size_t block = 0; block < slots.blocks; ++block) {
+    const std::size_t last = (block + 1) * slots.steps;
+    for (std::size_t begin = block * slots.steps; begin < last; begin += kBlock) {
+      const std::size_t end = std::min(begin + kBlock, last);
+      const auto add = [&]<std::size_t kCells>(std::size_t cell,
+                                               std::integral_constant<std::size_t, kCells> /*number*/) {
+        std::array<std::array<const Number*, 2>, kCells> pairs;
+        std::array<PowerSums<Number>*, kCells> sums;
+        for (std::size_t c = 0; c < kCells; ++c) {
+          const auto& of_cell = work.pairs[cell + c];
+          pairs[c] = {of_cell[0].data(), of_cell[same ? 0 : 1].data()};
+          sums[c] = &work.power_sums[(cell + c) * slots.blocks + block];
+        }
+        for (std::size_t part = 0; part < 2 * kSlotsOfBlock; part += kLanesOfStep) {
+          add_steps<kCells>(powers.data(), pairs, part, begin, end, sums);
+        }
+      };
+      std::size_t cell = 0;
+      for (; cell + kTogether <= count; cell += kTogether) {
+        add(cell, std::integral_constant<std::size_t, kTogether>());
+      }
+      for (; cell < count; ++cell) add(cell, std::integral_constant<std::size_t, 1>());
+    }
   }
 }
 

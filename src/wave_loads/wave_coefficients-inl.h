@@ -9,6 +9,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
 
 #include <hwy/highway.h>
 
@@ -77,16 +80,50 @@ struct MonomialFactors {
   }
 };
 
+// The coefficients of the elevation's monomials.
 template <typename Number>
-HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Number tail,
+struct MonomialCoefficients {
+  DegreeRows<Number> e;
+};
+
+template <typename Number>
+HWY_INLINE void set_coefficients(const std::array<Number, kHarmonicColumns>& sums,
+                                 MonomialCoefficients<Number>& of_cell) {
+  const MonomialColumns& columns = monomial_columns();
+  for (int l = 0; l <= kNormDegree; ++l) {
+    for (int q = 0; q <= l; ++q) of_cell.e.number(l, q) = sums[columns[monomial_place(l - q, q)]];
+  }
+}
+
+// sums: block after block.
+template <typename Number>
+HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, const PowerSums<Number>* sums,
+                                 MonomialCoefficients<Number>& of_cell) {
+  const LanesOf<Number> d;
+  for (std::size_t first = 0; first <= kNormDegree; first += kLanes<Number>) {
+    std::array<VectorOf<Number>, kNormDegree + 1> e;
+    for (auto& row : e) row = hn::Zero(d);
+    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+      const PowerSums<Number>& of_block = sums[slot / kSlotsOfBlock];
+      const std::size_t pair = 2 * (slot % kSlotsOfBlock);
+#pragma GCC unroll 16
+      for (std::size_t l = 0; l <= kNormDegree; ++l) {
+        e[l] = hn::MulAdd(hn::Set(d, of_block.of_degree[l][pair + l % 2]),
+                          hn::Load(d, slots[slot].monomials[l].data() + first), e[l]);
+      }
+    }
+    for (int l = 0; l <= kNormDegree; ++l) {
+      hn::StoreU(e[static_cast<std::size_t>(l)], d, &of_cell.e.number(l, static_cast<int>(first)));
+    }
+  }
+}
+
+template <typename Number>
+HWY_NOINLINE void finish(const MonomialCoefficients<Number>& of_cell, Number tail,
                          SurfaceCell<Number>& cell) {
   static const MonomialFactors<Number> factors;
   const LanesOf<Number> d;
-  DegreeRows<Number> e;
-  const MonomialColumns& columns = monomial_columns();
-  for (int l = 0; l <= kNormDegree; ++l) {
-    for (int q = 0; q <= l; ++q) e.number(l, q) = sums[columns[monomial_place(l - q, q)]];
-  }
+  const DegreeRows<Number>& e = of_cell.e;
   const auto place = [](int l, int q) { return monomial_place(l - q, q); };
   for_each_row<Number>(kDegree, [&](int l, int q) { hn::StoreU(e.at(l, q), d, &cell.eta[place(l, q)]); });
   for_each_row<Number>(kDegree - 1, [&](int l, int q) {
@@ -150,20 +187,82 @@ struct HarmonicFactors {
 //   along z:  A'_lm = A_(l+1)m,                             B'_lm = B_(l+1)m
 //   along x1: A'_lm = (A_(l+1)(m+1) - A_(l+1)(m-1)) / 2,    B'_lm = (B_(l+1)(m+1) - B_(l+1)(m-1)) / 2
 //   along x2: A'_lm = (B_(l+1)(m+1) + B_(l+1)(m-1)) / 2,    B'_lm = -(A_(l+1)(m+1) + A_(l+1)(m-1)) / 2
+// The coefficients of the harmonics: of C_lm, twice that of C_l0, and of S_lm.
 template <typename Number>
-HWY_NOINLINE void finish(const std::array<Number, kHarmonicColumns>& sums, Number tail,
-                         VolumeCell<Number>& cell) {
+struct HarmonicCoefficients {
+  DegreeRows<Number> A, B;
+};
+
+template <typename Number>
+HWY_INLINE void set_coefficients(const std::array<Number, kHarmonicColumns>& sums,
+                                 HarmonicCoefficients<Number>& of_cell) {
+  const HarmonicColumns& columns = harmonic_columns();
+  for (int l = 0; l <= kNormDegree; ++l) {
+    of_cell.A.number(l, 0) = sums[columns[cosine_place(l, 0)]];
+    for (int m = 1; m <= l; ++m) {
+      of_cell.A.number(l, m) = sums[columns[cosine_place(l, m)]];
+      of_cell.B.number(l, m) = sums[columns[sine_place(l, m)]];
+    }
+  }
+}
+
+// A pair of numbers again and again; the second alone where a vector has one lane, which is number `first` of
+// a row.
+template <typename Number>
+HWY_INLINE VectorOf<Number> repeated_pair(const Number* pair, std::size_t first) {
+  const LanesOf<Number> d;
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Set(d, pair[first % 2]);
+#else
+  (void)first;
+  if constexpr (sizeof(Number) == sizeof(float)) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, pair, sizeof(bits));
+    return hn::BitCast(d, hn::Set(hn::Repartition<std::uint64_t, LanesOf<Number>>(), bits));
+  } else {
+    return hn::LoadDup128(d, pair);
+  }
+#endif
+}
+
+// sums: block after block.
+template <typename Number>
+HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, const PowerSums<Number>* sums,
+                                 HarmonicCoefficients<Number>& of_cell) {
+  const LanesOf<Number> d;
+  for (std::size_t first = 0; first <= kNormDegree; first += kLanes<Number>) {
+    std::array<VectorOf<Number>, kNormDegree + 1> a, b;
+    for (std::size_t l = 0; l <= kNormDegree; ++l) a[l] = b[l] = hn::Zero(d);
+    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+      const PowerSums<Number>& of_block = sums[slot / kSlotsOfBlock];
+      const std::size_t pair = 2 * (slot % kSlotsOfBlock);
+      const VectorOf<Number> cosines = hn::Load(d, slots[slot].cosines.data() + first);
+      const VectorOf<Number> sines = hn::Load(d, slots[slot].sines.data() + first);
+#pragma GCC unroll 16
+      for (std::size_t l = 0; l <= kNormDegree; ++l) {
+        // Terms of an even m have the first weight.
+        const VectorOf<Number> weight = repeated_pair<Number>(&of_block.of_degree[l][pair], first);
+        a[l] = hn::MulAdd(weight, cosines, a[l]);
+        b[l] = hn::MulAdd(weight, sines, b[l]);
+      }
+    }
+    for (int l = 0; l <= kNormDegree; ++l) {
+      hn::StoreU(a[static_cast<std::size_t>(l)], d, &of_cell.A.number(l, static_cast<int>(first)));
+      hn::StoreU(b[static_cast<std::size_t>(l)], d, &of_cell.B.number(l, static_cast<int>(first)));
+    }
+  }
+}
+
+// of_cell: changed.
+template <typename Number>
+HWY_NOINLINE void finish(HarmonicCoefficients<Number>& of_cell, Number tail, VolumeCell<Number>& cell) {
   static const HarmonicFactors<Number> factors;
   using V = VectorOf<Number>;
   const LanesOf<Number> d;
-  DegreeRows<Number> A, B;
-  const HarmonicColumns& columns = harmonic_columns();
+  DegreeRows<Number>& A = of_cell.A;
+  DegreeRows<Number>& B = of_cell.B;
   for (int l = 0; l <= kNormDegree; ++l) {
-    A.number(l, 0) = Number{2} * sums[columns[cosine_place(l, 0)]];
-    for (int m = 1; m <= l; ++m) {
-      A.number(l, m) = sums[columns[cosine_place(l, m)]];
-      B.number(l, m) = sums[columns[sine_place(l, m)]];
-    }
+    A.number(l, 0) *= Number{2};
     A.number(l, -1) = -A.number(l, 1);
     A.number(l, -2) = A.number(l, 2);
     A.number(l, -3) = -A.number(l, 3);

@@ -59,9 +59,9 @@ HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
 HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) {
   const LanesOf<double> d;
   const SeaExpansion& sea = *query.expansion;
-  phases.resize(sea.filled_components);
-  std::copy(query.sea->phases().begin(), query.sea->phases().end(), phases.begin());
-  std::fill(phases.begin() + static_cast<std::ptrdiff_t>(sea.components), phases.end(), 0.0);
+  phases.assign(sea.filled_components, 0.0);
+  const std::vector<double>& of_components = query.sea->phases();
+  for (std::size_t i = 0; i < of_components.size(); ++i) phases[sea.places[i]] = of_components[i];
   const VectorOf<double> x1 = set<double>(query.x1);
   const VectorOf<double> x2 = set<double>(query.x2);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {

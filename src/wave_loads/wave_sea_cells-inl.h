@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -82,7 +83,7 @@ class SeaCells {
     column_of_volume_.clear();
     surfaces_built_ = volumes_built_ = 0;
     reach_ = kReach * std::hypot(query.grid.edge[0], query.grid.edge[1], query.grid.edge[2]);
-    work_.reserve(query.expansion->filled_components);
+    work_.reserve(*query.expansion);
     set_phases(query, work_.phases);
   }
 
@@ -175,9 +176,20 @@ class SeaCells {
         set_weights<kSurface, Number>(*query_->expansion, table(), query_->sea->amplitude_factor(),
                                       deep_water, centers[built + n], n, work_);
       }
-      accumulate<Number>(rows, of_weight, deep_water, count, work_);
+      const ComponentSlots& slots = query_->expansion->slots;
+      if (slots.any()) {
+        accumulate_slots<Number>(slots, table().powers, kSurface || deep_water, count, work_);
+      } else {
+        accumulate<Number>(rows, of_weight, deep_water, count, work_);
+      }
       for (std::size_t n = 0; n < count; ++n) {
-        finish<Number>(work_.sums[n].columns, work_.tails[n], cells[built + n]);
+        std::conditional_t<kSurface, MonomialCoefficients<Number>, HarmonicCoefficients<Number>> coefficients;
+        if (slots.any()) {
+          set_coefficients<Number>(table().slots, &work_.power_sums[n * slots.blocks], coefficients);
+        } else {
+          set_coefficients<Number>(work_.sums[n].columns, coefficients);
+        }
+        finish<Number>(coefficients, work_.tails[n], cells[built + n]);
       }
       built += count;
     }

@@ -157,6 +157,7 @@ void prepare(const WaveComponent& component, double gravity, double depth, Prepa
   prepared.k1_rest.push_back(k1.lo);
   prepared.k2.push_back(k2.hi);
   prepared.k2_rest.push_back(k2.lo);
+  prepared.direction.push_back(component.direction);
   prepared.phase.push_back(std::remainder(component.phase, 360.0) * (std::numbers::pi / 180.0));
 }
 

@@ -37,7 +37,8 @@ struct PreparedComponents {
   // [rad/m], k times the direction's unit vector: the sum of a number and its rounding error, since k . X has
   // to be accurate to a fraction of a turn far from the origin.
   std::vector<double> k1, k1_rest, k2, k2_rest;
-  std::vector<double> phase;  // [rad]
+  std::vector<double> direction;  // [deg], as described
+  std::vector<double> phase;      // [rad]
 
   std::size_t size() const { return amplitude.size(); }
 };

@@ -1,5 +1,6 @@
 // Changes of a sea and of a body that leave the load as it is, and seas whose load is known from others.
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -118,6 +119,33 @@ TEST_P(WaveIdentity, HoldsForComponentsThatAreSplit) {
   const SeaAtTime sea(sea_of(some_waves(), GetParam()), 2'345'678);
   const SeaAtTime other(sea_of(split, GetParam()), 2'345'678);
   expect_same(sea, floating_pose(), other, floating_pose());
+}
+
+// Components of one direction are summed together; those that differ by a hair are not.
+TEST_P(WaveIdentity, HoldsForDirectionsThatDifferByAHair) {
+  IrregularWaves waves;
+  waves.significant_wave_height = 0.5;
+  waves.peak_period = 3.0;
+  waves.spreading = 10.0;
+  for (const double depth : {kInfinity, 3.0}) {
+    SeaDescription description;
+    description.pressure = GetParam();
+    description.depth = depth;
+    description.systems = {waves};
+    const SeaAtTime sea(description, 2'345'678);
+    WaveComponents components = sea.sea.components();
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      components[i].direction += 1e-9 * static_cast<double>(i);
+    }
+    const SeaAtTime other(sea_of(components, GetParam(), depth), 2'345'678);
+    ASSERT_TRUE(sea.expansion.slots.any());
+    ASSERT_FALSE(other.expansion.slots.any());
+    expect_same(sea, floating_pose(), other, floating_pose(), 1e-7);
+    const WaveLoad one = hierarchical_load(rock(), sea, floating_pose(), 1e-3);
+    const WaveLoad two = hierarchical_load(rock(), other, floating_pose(), 1e-3);
+    EXPECT_LT((one.force - two.force).norm(), 1e-5) << "in single precision";
+    EXPECT_LT((one.torque - two.torque).norm(), 1e-5);
+  }
 }
 
 TEST_P(WaveIdentity, LinearLimitIsTheSumOverTheMeanWettedSurface) {
