@@ -33,7 +33,7 @@ float rounded_up(double x) {
 // A patch's integrals.
 struct Patch {
   Vec3 center = Vec3::Zero();
-  double radius = 0.0, area = 0.0, mu2 = 0.0, mu3 = 0.0;
+  double radius = 0.0, area = 0.0, mu2 = 0.0, mu3 = 0.0, nu3 = 0.0;
   SurfaceMoments<double> moments;
 };
 
@@ -147,41 +147,59 @@ class Builder {
     patch.center = grid_ > 0.0 ? center.unaryExpr([this](double value) { return on_grid(value); }) : center;
     double radius_squared = 0.0;
     double mu4 = 0.0;
+    ThirdMoments third = ThirdMoments::Zero();
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const std::size_t t = items_[i].triangle;
       const std::array<Vec3, 3> y{corner(t, 0) - patch.center, corner(t, 1) - patch.center,
                                   corner(t, 2) - patch.center};
       patch.moments += moments_of_triangle(y[0], y[1], y[2]);
       for (const Vec3& v : y) radius_squared = std::max(radius_squared, v.squaredNorm());
-      const auto [second, fourth] = means_of_distance(y);
-      const double area = area_vector(t).norm();
-      patch.mu2 += area * second;
-      mu4 += area * fourth;
+      const Vec3 normal = area_vector(t);
+      const double area = normal.norm();
+      Cubes cubes = Cubes::Zero();
+      for_each_point_of_rule(y, [&](double weight, const Vec3& p) {
+        const double squared = p.squaredNorm();
+        patch.mu2 += area * weight * squared;
+        mu4 += area * weight * squared * squared;
+        cubes += weight * cubes_of(p);
+      });
+      third += cubes * normal.transpose();
     }
     patch.radius = std::sqrt(radius_squared);
     patch.mu3 = std::sqrt(patch.mu2 * mu4);  // Cauchy's inequality
+    constexpr double kRounding = 1e-12;      // of the sums, which cancel
+    patch.nu3 = third.norm() + kRounding * patch.mu3;
     return patch;
   }
 
-  struct MeansOfDistance {
-    double second, fourth;
-  };
-
-  // The means of |y|^2 and |y|^4 over a triangle, by Dunavant's rule of degree 4: its points lie between the
-  // centroid and the corners.
-  static MeansOfDistance means_of_distance(const std::array<Vec3, 3>& y) {
+  // Calls take(weight, point) for the points of Dunavant's rule of degree 4, which lie between the triangle's
+  // centroid and its corners.
+  template <typename Take>
+  static void for_each_point_of_rule(const std::array<Vec3, 3>& y, const Take& take) {
     constexpr std::array<double, 2> kBarycentric{0.445948490915965, 0.091576213509771};
     constexpr std::array<double, 2> kWeights{0.223381589678011, 0.109951743655322};
     const Vec3 middle = (y[0] + y[1] + y[2]) / 3.0;
-    MeansOfDistance means{0.0, 0.0};
     for (std::size_t ring = 0; ring < 2; ++ring) {
       for (const Vec3& v : y) {
-        const double squared = (middle + (1.0 - 3.0 * kBarycentric[ring]) * (v - middle)).squaredNorm();
-        means.second += kWeights[ring] * squared;
-        means.fourth += kWeights[ring] * squared * squared;
+        take(kWeights[ring], Vec3(middle + (1.0 - 3.0 * kBarycentric[ring]) * (v - middle)));
       }
     }
-    return means;
+  }
+
+  // y_i y_j y_l for i <= j <= l, times the root of the number of their permutations: the sum of their squares
+  // is that over all i, j and l.
+  using Cubes = Eigen::Matrix<double, 10, 1>;
+  using ThirdMoments = Eigen::Matrix<double, 10, 3>;
+  static Cubes cubes_of(const Vec3& y) {
+    constexpr double kRoot3 = 1.7320508075688772;
+    constexpr double kRoot6 = 2.449489742783178;
+    const Vec3 squares = y.cwiseProduct(y);
+    Cubes cubes;
+    cubes.head<3>() = squares.cwiseProduct(y);
+    cubes.segment<3>(3) = kRoot3 * y.x() * Vec3(squares.y(), squares.z(), y.x() * y.y());
+    cubes.segment<3>(6) = kRoot3 * Vec3(squares.x() * y.z(), squares.y() * y.z(), squares.z() * y.y());
+    cubes(9) = kRoot6 * y.x() * y.y() * y.z();
+    return cubes;
   }
 
   void add_block(std::size_t block, const std::vector<Range>& ranges) {
@@ -226,6 +244,7 @@ class Builder {
     block.area[lane] = rounded_up(patch.area);
     block.mu2[lane] = rounded_up(patch.mu2);
     block.mu3[lane] = rounded_up(patch.mu3);
+    block.nu3[lane] = rounded_up(patch.nu3);
     block.child[lane] = 0;
     block.triangle_blocks[lane] = 0;
   }

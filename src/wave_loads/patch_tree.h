@@ -30,6 +30,7 @@ struct alignas(64) PatchBlock {
   FourFloats area;                   // [m^2], rounded up
   FourFloats mu2;                    // [m^4], bound on the integral of |y|^2 dA
   FourFloats mu3;                    // [m^5], bound on the integral of |y|^3 dA
+  FourFloats nu3;                    // [m^5], bound on the norm of the integral of y_i y_j y_l n_k dA
   std::array<FourFloats, 3> S;       // [m^2], integral of n_k dA
   std::array<FourFloats, 9> N;       // [m^3], integral of y_i n_k dA, at 3 i + k
   std::array<FourFloats, 18> P;      // [m^4], integral of y_i y_j n_k dA, at 3 kSymmetricPair[i][j] + k

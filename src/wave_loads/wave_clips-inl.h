@@ -39,6 +39,7 @@ HWY_INLINE PatchMoments<Number> read_moments(const PatchTree& tree, const UnitsO
   m.area = get([](const PatchBlock& b) -> const FourFloats& { return b.area; });
   m.mu2 = get([](const PatchBlock& b) -> const FourFloats& { return b.mu2; });
   m.mu3 = get([](const PatchBlock& b) -> const FourFloats& { return b.mu3; });
+  m.nu3 = get([](const PatchBlock& b) -> const FourFloats& { return b.nu3; });
 #pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     m.S[i] = get([i](const PatchBlock& b) -> const FourFloats& { return b.S[i]; });
@@ -87,7 +88,7 @@ class Clips {
     const V mu1 = hn::Sqrt(moments.area * moments.mu2);
     const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
     const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
-    const V of_volume = volume_remainder<Number>(moments.area, moments.mu3, model);
+    const V of_volume = volume_remainder<Number>(moments.area, distance_moments<Number>(moments), model);
     const std::array<V, kModelRows> all{model.phi.value,
                                         model.phi.gradient.x,
                                         model.phi.gradient.y,

@@ -177,6 +177,15 @@ struct ReachBounds {
   VectorOf<Number> sum;         // [m], sum of sigma_l reach^l
 };
 
+// What the third derivative of degree kThirdDegree leaves out at a distance from the centre [m k_max^3].
+template <typename Number>
+HWY_INLINE VectorOf<Number> third_rest_at(const CellBounds<Number>& bounds, const VectorOf<Number>& reach) {
+  static_assert(kDegree == kThirdDegree + 4, "one degree is left out");
+  const auto squared = reach * reach;
+  return set<Number>(1.0 * kDegree * (kDegree - 1) * (kDegree - 2)) *
+         hn::Set(LanesOf<Number>(), bounds.sigma[kDegree]) * (squared * squared * reach);
+}
+
 template <typename Number>
 HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const VectorOf<Number>& reach) {
   const LanesOf<Number> d;

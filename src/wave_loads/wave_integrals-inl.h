@@ -33,7 +33,7 @@ struct PatchIntegrals {
 template <typename Number>
 struct PatchMoments {
   Vectors3<Number> center;
-  VectorOf<Number> radius, area, mu2, mu3;
+  VectorOf<Number> radius, area, mu2, mu3, nu3;
   std::array<VectorOf<Number>, 3> S;
   std::array<VectorOf<Number>, 9> N;
   std::array<VectorOf<Number>, 18> P;
@@ -144,11 +144,60 @@ HWY_INLINE void clear_where(const hn::Mask<LanesOf<Number>>& mask, PatchIntegral
   }
 }
 
+// Integrals of powers of the distance from m over a patch, and the norm of its third moments: nu3.
+template <typename Number>
+struct DistanceMoments {
+  VectorOf<Number> mu3, mu4, nu3;
+};
+
+// A bound on the integral over a patch, times n, of what a quadratic model leaves out. third: M_3.
+template <typename Number>
+HWY_INLINE VectorOf<Number> cubic_remainder(const DistanceMoments<Number>& m, const VectorOf<Number>& third,
+                                            const CubicBounds<Number>& cubic,
+                                            const hn::Mask<LanesOf<Number>>& wet) {
+  const VectorOf<Number> of_third = third * m.mu3 * set<Number>(1.0 / 6.0);
+  const VectorOf<Number> of_fourth = hn::MulAdd(
+      cubic.norm * set<Number>(1.0 / 6.0), m.nu3,
+      hn::MulAdd(cubic.rest * set<Number>(1.0 / 6.0), m.mu3, cubic.fourth * m.mu4 * set<Number>(1.0 / 24.0)));
+  // The order of the operands matters where the first is not a number.
+  return hn::IfThenElse(wet, hn::Min(of_fourth, of_third), of_third);
+}
+
+// About what of the remainder is left once the patch is replaced by its children.
+template <typename Number>
+HWY_INLINE VectorOf<Number> expected_remainder(const DistanceMoments<Number>& m,
+                                               const PatchModel<Number>& model) {
+  const VectorOf<Number> of_third = model.third_of_parts * m.mu3 * set<Number>(1.0 / 48.0);
+  const VectorOf<Number> of_fourth =
+      hn::MulAdd(model.cubic.norm * set<Number>(1.0 / 48.0), m.nu3,
+                 hn::MulAdd(model.cubic.rest * set<Number>(1.0 / 96.0), m.mu3,
+                            model.cubic.fourth * m.mu4 * set<Number>(0.7 / 384.0)));
+  return hn::IfThenElse(model.wet, hn::Min(of_fourth, of_third), of_third);
+}
+
 // A bound on the integral over a patch of what the model of s leaves out [m^3].
 template <typename Number>
-HWY_INLINE VectorOf<Number> volume_remainder(const VectorOf<Number>& area, const VectorOf<Number>& mu3,
+HWY_INLINE VectorOf<Number> volume_remainder(const VectorOf<Number>& area, const DistanceMoments<Number>& m,
                                              const PatchModel<Number>& model) {
-  return hn::MulAdd(model.s_third * set<Number>(1.0 / 6.0), mu3, model.s_delta * area);
+  return hn::MulAdd(model.s_delta, area, cubic_remainder<Number>(m, model.s_third, model.s_cubic, model.wet));
+}
+
+// A bound on the norm of the integral of y x n times what a quadratic model's linear part leaves out.
+template <typename Number>
+HWY_INLINE VectorOf<Number> offset_remainder(const DistanceMoments<Number>& m, const VectorOf<Number>& radius,
+                                             const PatchModel<Number>& model) {
+  const VectorOf<Number> of_second =
+      set<Number>(0.5) * hn::MulAdd(model.third * radius, set<Number>(1.0 / 3.0), model.curvature) * m.mu3;
+  const VectorOf<Number> of_third = hn::MulAdd(model.curvature * set<Number>(0.70710678), m.nu3,
+                                               model.third * m.mu4 * set<Number>(1.0 / 6.0));
+  return hn::IfThenElse(model.wet, hn::Min(of_third, of_second), of_second);
+}
+
+template <typename Number>
+HWY_INLINE DistanceMoments<Number> distance_moments(const PatchMoments<Number>& m) {
+  // mu3 is the root of mu2 mu4. A patch that is not used has no area.
+  const VectorOf<Number> mean = hn::Min(set<Number>(1.000001) * m.mu3 / m.mu2, m.radius);
+  return {m.mu3, m.mu3 * mean, m.nu3};
 }
 
 // The integrals of a model over whole patches, or over patches that the surface crosses and that are not
@@ -204,21 +253,23 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
                   Vectors3<Number>{along_up(0), along_up(1), along_up(2)} - scaled<Number>(half_square, up);
 
   const V mu1 = hn::Sqrt(m.area * m.mu2);
-  const V remainder = model.third * m.mu3 * set<Number>(1.0 / 6.0) + model.delta * m.area;
+  const DistanceMoments<Number> distances = distance_moments<Number>(m);
+  const V remainder = hn::MulAdd(model.delta, m.area,
+                                 cubic_remainder<Number>(distances, model.third, model.cubic, model.wet));
   const V of_hessian = hn::IfThenElse(model.whole, set<Number>(0.0), set<Number>(0.25));
   const V of_crossing = phi.quadratic_error * m.area + of_hessian * model.curvature * m.mu2;
   result.force_error = remainder + of_crossing;
   // Radii halve, and the surface crosses about half of the children.
   const V quarter = set<Number>(0.25);
   // The order of the operands matters where the first is not a number.
-  result.expected = hn::Min(hn::MulAdd(model.third_of_parts, m.mu3 * set<Number>(1.0 / 48.0),
-                                       quarter * hn::MulAdd(model.delta_of_parts, m.area, of_crossing)),
+  result.expected = hn::Min(expected_remainder<Number>(distances, model) +
+                                quarter * hn::MulAdd(model.delta_of_parts, m.area, of_crossing),
                             quarter * result.force_error);
-  const V local = phi.linear_error * mu1 + model.delta * mu1 +
-                  half * hn::MulAdd(model.third * m.radius, set<Number>(1.0 / 3.0), model.curvature) * m.mu3;
+  const V local =
+      phi.linear_error * mu1 + model.delta * mu1 + offset_remainder<Number>(distances, m.radius, model);
   result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;
   result.volume_error =
-      volume_remainder<Number>(m.area, m.mu3, model) +
+      volume_remainder<Number>(m.area, distances, model) +
       hn::IfThenElse(model.whole, model.s_per_phi * model.delta * m.area,
                      hn::MulAdd(depth.quadratic_error, m.area, quarter * model.s_curvature * m.mu2));
   clear_where<Number>(model.dry, result);

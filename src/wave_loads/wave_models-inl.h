@@ -78,23 +78,43 @@ struct Quadratic {
   Symmetric<Number> hessian;  // [1/m]
 };
 
+// What a quadratic model about m leaves out: C[y, y, y] / 6 with a known norm of C, and the rest.
+template <typename Number>
+struct CubicBounds {
+  VectorOf<Number> norm;    // [1/m^2], Frobenius norm of the third derivative at m as far as it is known
+  VectorOf<Number> rest;    // [1/m^2], operator norm of what is not known of it
+  VectorOf<Number> fourth;  // [1/m^3], M_4
+};
+
 template <typename Number>
 struct PatchModel {
   Quadratic<Number> phi;            // model of the pressure over rho g
   Quadratic<Number> s;              // of the height over the surface
   VectorOf<Number> third;           // [1/m^2], M_3; 0 where the model is linear by intent
+  CubicBounds<Number> cubic;        // 0 as well
   VectorOf<Number> third_of_parts;  // [1/m^2], an estimate of M_3 for patches of half the radius
   VectorOf<Number> delta_of_parts;  // [m], an estimate as well
   VectorOf<Number> curvature;       // [1/m], |H|
   VectorOf<Number> delta;           // [m], error of the model over the whole patch
   VectorOf<Number> s_third;         // [1/m^2], L_3; 0 where the model of s is linear
-  VectorOf<Number> s_curvature;     // [1/m], |D^2 eta|, as s_third
-  VectorOf<Number> s_delta;         // [m], error of the model of s over the whole patch
+  CubicBounds<Number> s_cubic;
+  VectorOf<Number> s_curvature;  // [1/m], |D^2 eta|, as s_third
+  VectorOf<Number> s_delta;      // [m], error of the model of s over the whole patch
   // Bound on |s| over |phi| where the pressure's model alone finds a point wet, or dry.
   VectorOf<Number> s_per_phi;
-  hn::Mask<LanesOf<Number>> dry, whole;  // nothing is wet; all is, so that nothing is clipped
+  hn::Mask<LanesOf<Number>> dry, whole;  // nothing is wet; nothing is clipped
+  hn::Mask<LanesOf<Number>> wet;         // all is wet, and nothing is clipped
   hn::Mask<LanesOf<Number>> too_steep;
 };
+
+template <typename Number>
+HWY_INLINE CubicBounds<Number> in_metres(const PatchQuery<Number>& query, const CubicBounds<Number>& bounds,
+                                         const hn::Mask<LanesOf<Number>>& valid) {
+  const double k = query.k_max;
+  return {hn::IfThenElseZero(valid, bounds.norm) * set<Number>(k * k),
+          hn::IfThenElseZero(valid, bounds.rest) * set<Number>(k * k),
+          hn::IfThenElseZero(valid, bounds.fourth) * set<Number>(k * k * k)};
+}
 
 template <typename Number>
 HWY_INLINE Quadratic<Number> in_body_axes(const PatchQuery<Number>& query, const VectorOf<Number>& value,
@@ -175,9 +195,10 @@ HWY_INLINE VectorOf<Number> third_within(const VectorOf<Number>& at_point, const
 template <typename Number>
 struct SurfaceRange {
   VectorOf<Number> s, low, high;
-  VectorOf<Number> L1, L2, L3, L2_at_point;
-  VectorOf<Number> of_eta;   // error of eta
-  VectorOf<Number> epsilon;  // error of s
+  VectorOf<Number> L1, L2, L3, L4, L2_at_point;
+  VectorOf<Number> third_rest;  // of D^3 eta at the point
+  VectorOf<Number> of_eta;      // error of eta
+  VectorOf<Number> epsilon;     // error of s
 };
 
 // r: radius over 1 / k_max.
@@ -196,6 +217,8 @@ HWY_INLINE SurfaceRange<Number> range_of(const VectorOf<Number>& zeta, const Vec
   const V difference = half * (surface.eta_11 - surface.eta_22);
   const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
   range.L3 = third_within<Number>(surface.third, above, r, rounding);
+  range.L4 = above.fourth;
+  range.third_rest = hn::MulAdd(rounding, above.third, third_rest_at<Number>(bounds, reach));
   range.L2_at_point = hn::Abs(mean) + deviator;
   range.L2 = hn::MulAdd(r, range.L3, range.L2_at_point);
   const V slope_squared = hn::MulAdd(surface.eta_1, surface.eta_1, surface.eta_2 * surface.eta_2);
@@ -261,11 +284,14 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
       (hn::MulAdd(set<Number>(query.integral_rounding), s_size, s_rest) + set<Number>(query.displacement)) *
       set<Number>(1.0 / query.k_max);
   model.s_third = hn::IfThenElseZero(known, L3) * set<Number>(query.k_max * query.k_max);
+  const CubicBounds<Number> of_eta_cubic{two * surface.third, range.third_rest, range.L4};
+  model.s_cubic = in_metres<Number>(query, of_eta_cubic, known);
   model.s_curvature = hn::IfThenElseZero(known, range.L2_at_point) * set<Number>(query.k_max);
 
   const V still = set<Number>(query.submerged ? 0.0 : 1.0);
   V value, g1, g2, g3, M3, delta, gamma;
-  V M3_at_point;    // about M_3 of a small patch
+  V M3_at_point;  // about M_3 of a small patch
+  CubicBounds<Number> cubic = of_eta_cubic;
   V stretch = one;  // bound on q
   Symmetric<Number> H;
   if (query.hydrostatic) {
@@ -316,12 +342,18 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V Q2 = l * slope2;
     const V b_1 = w_max * qq * L1;
     const V b_2 = w_max * slope2;
-    const V b_3 = w_max * qq * (L3 + set<Number>(6.0) * q_max * l_L1 * hn::MulAdd(q_max * l_L1, L1, L2));
+    const V slope3 = qq * (L3 + set<Number>(6.0) * q_max * l_L1 * hn::MulAdd(q_max * l_L1, L1, L2));
+    const V b_3 = w_max * slope3;
     const V trace = one + qq + b_1 * b_1;
     const V root = hn::Sqrt(hn::Max(trace * trace - set<Number>(4.0) * qq, zero));
     const V V1 = hn::Max(hn::Sqrt(half * (trace + root)), one);
     const V V2 = Q1 + b_2;
     const V V3 = hn::MulAdd(set<Number>(1.1547006), Q2, b_3);
+    const V ql_L1 = q_max * l_L1;
+    const V b_4 = w_max * qq *
+                  (range.L4 + q_max * l * hn::MulAdd(set<Number>(8.0) * L1, L3, set<Number>(6.0) * L2 * L2) +
+                   ql_L1 * ql_L1 * hn::MulAdd(set<Number>(24.0) * ql_L1, L1, set<Number>(36.0) * L2));
+    const V V4 = hn::MulAdd(set<Number>(1.2990382) * l, slope3, b_4);
 
     const V shift = w_max * qq * epsilon;
     const ReachBounds<Number> inside =
@@ -334,7 +366,23 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V D_f = hn::Sqrt(hn::MulAdd(f.f_1, f.f_1, hn::MulAdd(f.f_2, f.f_2, f.f_3 * f.f_3)));
     const V F1 = hn::MulAdd(r * V1, F2, D_f);
     M3_at_point = f.third + three * F2_at_point * range.L2_at_point + D_f * surface.third;
-    M3 = F3 * V1 * V1 * V1 + three * F2 * V1 * V2 + F1 * V3;
+    const V V1_cubed = V1 * V1 * V1;
+    M3 = F3 * V1_cubed + three * F2 * V1 * V2 + F1 * V3;
+    const V six = set<Number>(6.0);
+    cubic.fourth = inside.fourth * V1_cubed * V1 + six * F3 * V1 * V1 * V2 +
+                   F2 * hn::MulAdd(set<Number>(4.0) * V1, V3, three * V2 * V2) + F1 * V4;
+    const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
+    // Frobenius norms of the derivatives of the stretched height at m.
+    const V root2 = set<Number>(1.4142136);
+    const V second = qq * hn::MulAdd(root2, range.L2_at_point, two * ql_L1 * L1);
+    const V Z2 = hn::MulAdd(root2, Q1, w_max * second);
+    const V Z3 = hn::MulAdd(
+        three * l, second,
+        w_max * qq * (two * surface.third + six * ql_L1 * hn::MulAdd(root2, range.L2_at_point, ql_L1 * L1)));
+    const V abs_f_3 = hn::Abs(f.f_3);
+    cubic.norm = set<Number>(1.5811389) * f.third * V1_cubed + three * vertical * V1 * Z2 + abs_f_3 * Z3;
+    const V f_rest = hn::MulAdd(rounding, inside.third, third_rest_at<Number>(volume_bounds, volume_reach));
+    cubic.rest = hn::MulAdd(f_rest, V1_cubed, abs_f_3 * w_max * qq * range.third_rest);
     delta = hn::MulAdd(F1, shift, inside.truncation) +
             rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
             set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
@@ -344,7 +392,6 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V column = hn::Max(Z, hn::Abs(z));
     const V R = hn::Sqrt(hn::MulAdd(r, r, column * column));
     const ReachBounds<Number> around = bounds_at<Number>(volume_bounds, volume_reach + R);
-    const V vertical = hn::Sqrt(hn::MulAdd(f.f_13, f.f_13, hn::MulAdd(f.f_23, f.f_23, f.f_33 * f.f_33)));
     const V third = third_within<Number>(f.third, around, R, rounding);
     gamma = q_max * (f.f_3 + R * (vertical + half * R * third) + around.slope);
     // Only where the expansion knows the surface well.
@@ -379,6 +426,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
       {select(g1, eta1, zero), select(g2, eta2, zero), select(g3, hn::Neg(one), hn::Neg(still))}, H);
   const V per_area = set<Number>(query.k_max * query.k_max);
   model.third = hn::IfThenElseZero(use_quadratic, M3) * per_area;
+  model.cubic = in_metres<Number>(query, cubic, use_quadratic);
   // Bounds over a ball grow faster than exponentially with its radius.
   model.third_of_parts = hn::Sqrt(hn::Sqrt(M3 * M3_at_point) * M3_at_point) * per_area;
   model.curvature = hn::Sqrt(frobenius_squared<Number>(H)) * set<Number>(query.k_max);
@@ -396,9 +444,9 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   // the others.
   model.whole = hn::Or(hn::And(hn::Not(flat), wet),
                        hn::And(flat, hn::Or(hn::Lt(highest, zero), set_mask<Number>(query.submerged))));
+  model.wet = hn::And(model.whole, wet);
   const V of_certificate = one / hn::Max(one - gamma - rounding, set<Number>(1e-30));
-  model.s_per_phi =
-      hn::IfThenZeroElse(hn::And(model.whole, wet), hn::IfThenElse(use_quadratic, of_certificate, one));
+  model.s_per_phi = hn::IfThenZeroElse(model.wet, hn::IfThenElse(use_quadratic, of_certificate, one));
   model.dry = hn::Or(model.dry, hn::And(flat, hn::And(hn::Gt(place.zeta - r, amplitude),
                                                       hn::Not(set_mask<Number>(query.submerged)))));
   return model;

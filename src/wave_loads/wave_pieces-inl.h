@@ -30,6 +30,26 @@ struct PieceLanes {
   VectorOf<Number> radius;
 };
 
+// A bound on the norm of the mean of y_i y_j y_l over a triangle. mid: its centroid, which is 0 up to
+// rounding; mean2: the mean of |y|^2. About the centroid the mean is the symmetric part of the product of the
+// corners over 10. The square of that part's norm is the permanent of the corners' Gram matrix over 6, which
+// is at least the product of its diagonal.
+template <typename Number>
+HWY_INLINE VectorOf<Number> norm_of_mean_cubes(const std::array<Vectors3<Number>, 3>& corners,
+                                               const Vectors3<Number>& mid, const VectorOf<Number>& mean2) {
+  using V = VectorOf<Number>;
+  const V aa = dot<Number>(corners[0], corners[0]);
+  const V bb = dot<Number>(corners[1], corners[1]);
+  const V cc = dot<Number>(corners[2], corners[2]);
+  const V ab = dot<Number>(corners[0], corners[1]);
+  const V bc = dot<Number>(corners[1], corners[2]);
+  const V ca = dot<Number>(corners[2], corners[0]);
+  const V permanent =
+      aa * hn::MulAdd(bb, cc, bc * bc) + bb * ca * ca + cc * ab * ab + set<Number>(2.0) * ab * bc * ca;
+  const V about_mid = hn::Sqrt(hn::Max(permanent, set<Number>(0.0)) * set<Number>(1.00001 / 600.0));
+  return hn::MulAdd(set<Number>(3.00001) * hn::Sqrt(dot<Number>(mid, mid)), mean2, about_mid);
+}
+
 // The integrals over pieces, and the bounds on their errors.
 template <typename Number>
 HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, const PieceLanes<Number>& piece,
@@ -58,20 +78,29 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V mean2 = second * set<Number>(1.000001 / 12.0);
   const V mean4 = fourth * set<Number>(1.000001 / 30.0);
   const V mean3 = hn::Sqrt(mean2 * mean4);
-  const V sixth = set<Number>(1.0 / 6.0);
-  const V remainder = area * hn::MulAdd(model.third * mean3, sixth, model.delta);
-  const V local = area * hn::MulAdd(model.delta, hn::Sqrt(mean2), sixth * model.third * piece.radius * mean3);
+  const Vectors3<Number> mid =
+      scaled<Number>(set<Number>(1.0 / 3.0), t.corners[0] + t.corners[1] + t.corners[2]);
+  const DistanceMoments<Number> distances{area * mean3, area * mean4,
+                                          area * norm_of_mean_cubes<Number>(t.corners, mid, mean2)};
+  const V cubic = cubic_remainder<Number>(distances, model.third, model.cubic, model.wet);
+  const V remainder = hn::MulAdd(area, model.delta, cubic);
+  const V local =
+      hn::MulAdd(area * model.delta, hn::Sqrt(mean2), set<Number>(1.0 / 6.0) * model.third * distances.mu4);
+  // Of a whole triangle, the norm of its third moments bounds what the offsets leave out.
+  const V of_offset = set<Number>(0.70710678) * model.curvature * distances.nu3;
+  result.torque_error =
+      hn::IfThenElse(model.wet, hn::Min(of_offset, result.torque_error), result.torque_error);
   const V quarter = set<Number>(0.25);
   result.force_error = result.force_error + remainder;
   const V of_clipping = quarter * quarter * (result.force_error - remainder);
   // The order of the operands matters where the first is not a number.
-  result.expected = hn::Min(hn::MulAdd(area * model.third_of_parts, mean3 * set<Number>(1.0 / 48.0),
-                                       hn::MulAdd(quarter * model.delta_of_parts, area, of_clipping)),
+  result.expected = hn::Min(expected_remainder<Number>(distances, model) +
+                                hn::MulAdd(quarter * model.delta_of_parts, area, of_clipping),
                             quarter * result.force_error);
   result.torque_error =
       result.torque_error + hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local);
   result.volume_error = hn::MulAdd(model.s_per_phi, remainder, result.volume_error) +
-                        volume_remainder<Number>(area, area * mean3, model);
+                        volume_remainder<Number>(area, distances, model);
   return result;
 }
 

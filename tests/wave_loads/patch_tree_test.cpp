@@ -97,18 +97,25 @@ TEST(PatchTree, BoundsHoldForEveryPatch) {
       double area = 0.0;
       double mu2 = 0.0;
       double mu3 = 0.0;
+      Eigen::Matrix<double, 27, 3> third = Eigen::Matrix<double, 27, 3>::Zero();
       for (const Corner& t : triangles) {
-        const double of_triangle = 0.5 * (t.b - t.a).cross(t.c - t.a).norm();
+        const Vec3 normal = 0.5 * (t.b - t.a).cross(t.c - t.a);
+        const double of_triangle = normal.norm();
         area += of_triangle;
         constexpr int kCuts = 8;  // points of the midpoint rule along an edge
         for (int i = 0; i < kCuts; ++i) {
           for (int j = 0; j < kCuts - i; ++j) {
             const double u = (i + 1.0 / 3.0) / kCuts;
             const double v = (j + 1.0 / 3.0) / kCuts;
-            const double distance = (t.a + u * (t.b - t.a) + v * (t.c - t.a) - m).norm();
-            const double share = of_triangle * 2.0 / (kCuts * (kCuts + 1.0));
+            const Vec3 y = t.a + u * (t.b - t.a) + v * (t.c - t.a) - m;
+            const double distance = y.norm();
+            const double of_point = 2.0 / (kCuts * (kCuts + 1.0));
+            const double share = of_triangle * of_point;
             mu2 += share * distance * distance;
             mu3 += share * distance * distance * distance;
+            for (int n = 0; n < 27; ++n) {
+              third.row(n) += of_point * y(n % 3) * y(n / 3 % 3) * y(n / 9) * normal.transpose();
+            }
           }
         }
         for (const Vec3& corner : {t.a, t.b, t.c}) radius = std::max(radius, (corner - m).norm());
@@ -119,6 +126,8 @@ TEST(PatchTree, BoundsHoldForEveryPatch) {
       ASSERT_NEAR(block.mu2[lane], mu2, 0.05 * mu2);
       ASSERT_GE(block.mu3[lane], 0.95 * mu3);
       ASSERT_LE(block.mu3[lane], radius * block.mu2[lane] * (1.0 + 1e-6));
+      ASSERT_NEAR(block.nu3[lane], third.norm(), 0.05 * mu3);
+      ASSERT_GE(block.mu3[lane], block.nu3[lane]);
     }
   }
 }
