@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_places-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

@@ -14,6 +14,7 @@
 
 #include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_places-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

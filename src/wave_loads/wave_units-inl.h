@@ -17,6 +17,7 @@
 
 #include "wave_loads/wave_models-inl.h"
 #include "wave_loads/wave_pieces-inl.h"
+#include "wave_loads/wave_places-inl.h"
 #include "wave_loads/wave_query.h"
 #include "wave_loads/wave_results-inl.h"
 #include "wave_loads/wave_sea_cells-inl.h"
