@@ -182,12 +182,7 @@ struct HarmonicFactors {
   }
 };
 
-// With A_l0 twice the coefficient a_l0, A_l(-m) = (-1)^m A_lm and B_l(-m) = -(-1)^m B_lm, the derivatives of
-// a harmonic function have the coefficients
-//   along z:  A'_lm = A_(l+1)m,                             B'_lm = B_(l+1)m
-//   along x1: A'_lm = (A_(l+1)(m+1) - A_(l+1)(m-1)) / 2,    B'_lm = (B_(l+1)(m+1) - B_(l+1)(m-1)) / 2
-//   along x2: A'_lm = (B_(l+1)(m+1) + B_(l+1)(m-1)) / 2,    B'_lm = -(A_(l+1)(m+1) + A_(l+1)(m-1)) / 2
-// The coefficients of the harmonics: of C_lm, twice that of C_l0, and of S_lm.
+// The coefficients of the harmonics C_lm and S_lm.
 template <typename Number>
 struct HarmonicCoefficients {
   DegreeRows<Number> A, B;
@@ -253,6 +248,11 @@ HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, 
   }
 }
 
+// With A_l0 twice the coefficient a_l0, A_l(-m) = (-1)^m A_lm and B_l(-m) = -(-1)^m B_lm, the derivatives of
+// a harmonic function have the coefficients
+//   along z:  A'_lm = A_(l+1)m,                             B'_lm = B_(l+1)m
+//   along x1: A'_lm = (A_(l+1)(m+1) - A_(l+1)(m-1)) / 2,    B'_lm = (B_(l+1)(m+1) - B_(l+1)(m-1)) / 2
+//   along x2: A'_lm = (B_(l+1)(m+1) + B_(l+1)(m-1)) / 2,    B'_lm = -(A_(l+1)(m+1) + A_(l+1)(m-1)) / 2
 // of_cell: changed.
 template <typename Number>
 HWY_NOINLINE void finish(HarmonicCoefficients<Number>& of_cell, Number tail, VolumeCell<Number>& cell) {
