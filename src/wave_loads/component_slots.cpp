@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace buoyancy {
 namespace {
@@ -33,6 +34,8 @@ ComponentSlots component_slots(const std::vector<double>& directions) {
   std::size_t longest = 0;
   for (const auto& [direction, group] : groups) longest = std::max(longest, group.size());
   ComponentSlots best;
+  best.places.resize(directions.size());
+  std::iota(best.places.begin(), best.places.end(), 0U);
   double least = kCostOfComponent * static_cast<double>(directions.size());
   for (std::size_t steps = 1; steps <= longest; ++steps) {
     const std::size_t slots = slots_of(groups, steps);
@@ -46,7 +49,6 @@ ComponentSlots component_slots(const std::vector<double>& directions) {
     }
   }
   if (!best.any()) return best;
-  best.places.resize(directions.size());
   std::size_t slot = 0;
   for (const auto& [direction, group] : groups) {
     for (std::size_t n = 0; n < group.size(); ++n) {

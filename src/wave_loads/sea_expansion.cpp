@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 namespace buoyancy {
 namespace {
@@ -97,8 +96,9 @@ namespace {
 
 // The entries of a component's harmonics and monomials of degree l are the power l of its k / k_max times a
 // factor of its direction.
+// That of C_l0 is taken twice, as the derivatives of the coefficients are simpler then.
 double harmonic_factor(int m) {
-  return (m == 0 ? 1.0 : 2.0) * sign(m);
+  return 2.0 * sign(m);
 }
 double monomial_factor(int p, int q, double cosine, double sine) {
   return sign(p + q) * std::pow(cosine, p) * std::pow(sine, q) / (factorial(p) * factorial(q));
@@ -179,16 +179,10 @@ SeaExpansion::SeaExpansion(const Sea& sea)
     : slots(component_slots(sea.prepared().direction)), k_max(sea.max_wave_number()) {
   const PreparedComponents& prepared = sea.prepared();
   const std::size_t components = prepared.size();
-  const std::size_t placed = slots.any() ? slots.blocks * slots.steps * kSlotsOfBlock : components;
-  filled_components = (placed + kColumnUnit - 1) / kColumnUnit * kColumnUnit;
-  places = slots.places;
-  if (!slots.any()) {
-    places.resize(components);
-    std::iota(places.begin(), places.end(), 0U);
-  }
+  filled_components = (slots.place_count() + kColumnUnit - 1) / kColumnUnit * kColumnUnit;
   const auto filled = [this](const std::vector<double>& numbers) {
     std::vector<double> result(filled_components, 0.0);
-    for (std::size_t i = 0; i < numbers.size(); ++i) result[places[i]] = numbers[i];
+    for (std::size_t i = 0; i < numbers.size(); ++i) result[slots.places[i]] = numbers[i];
     return result;
   };
   k1_W = filled(prepared.k1);
@@ -210,7 +204,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
   double squares = 0.0;
   double thirds = 0.0;
   for (std::size_t i = 0; i < components; ++i) {
-    const std::size_t place = places[i];
+    const std::size_t place = slots.places[i];
     const double amplitude = prepared.amplitude[i];
     const double k = prepared.wave_number[i] / k_max;
     k1[place] = prepared.k1[i] / k_max;
@@ -221,7 +215,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
     table.amplitude_in_f[place] = table.amplitude[place] / (1.0 + std::exp(table.minus_twice_kh[place]));
     const double angle = std::atan2(prepared.k2[i], prepared.k1[i]);
     if (slots.any()) {
-      table.slots[slots.slot_of(place)] = slot_factors(angle);
+      if (slots.begins_slot(place)) table.slots[slots.slot_of(place)] = slot_factors(angle);
       set_powers(k, place % kSlotsOfBlock, table.powers[place / kSlotsOfBlock]);
     } else {
       fill_rows(k, angle, table.harmonics[place], table.monomials[place]);

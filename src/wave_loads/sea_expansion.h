@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "wave_loads/component_slots.h"
@@ -110,7 +109,6 @@ struct SeaExpansion {
   ComponentSlots slots;               // none where they would cost more
   std::size_t filled_components = 0;  // a multiple of kColumnUnit
   double k_max = 0.0;                 // [rad/m]
-  std::vector<std::uint32_t> places;  // of the sea's components among the filled ones
   // Per component, filled up.
   std::vector<double> k1, k2;                        // over k_max, along the horizontal axes
   std::vector<double> k1_W, k1_rest, k2_W, k2_rest;  // [rad/m], as in PreparedComponents

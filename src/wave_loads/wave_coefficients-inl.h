@@ -182,7 +182,7 @@ struct HarmonicFactors {
   }
 };
 
-// The coefficients of the harmonics C_lm and S_lm.
+// The coefficients of the harmonics C_lm and S_lm, and twice that of C_l0.
 template <typename Number>
 struct HarmonicCoefficients {
   DegreeRows<Number> A, B;
@@ -262,7 +262,6 @@ HWY_NOINLINE void finish(HarmonicCoefficients<Number>& of_cell, Number tail, Vol
   DegreeRows<Number>& A = of_cell.A;
   DegreeRows<Number>& B = of_cell.B;
   for (int l = 0; l <= kNormDegree; ++l) {
-    A.number(l, 0) *= Number{2};
     A.number(l, -1) = -A.number(l, 1);
     A.number(l, -2) = A.number(l, 2);
     A.number(l, -3) = -A.number(l, 3);

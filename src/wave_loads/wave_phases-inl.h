@@ -61,7 +61,7 @@ HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) 
   const SeaExpansion& sea = *query.expansion;
   phases.assign(sea.filled_components, 0.0);
   const std::vector<double>& of_components = query.sea->phases();
-  for (std::size_t i = 0; i < of_components.size(); ++i) phases[sea.places[i]] = of_components[i];
+  for (std::size_t i = 0; i < of_components.size(); ++i) phases[sea.slots.places[i]] = of_components[i];
   const VectorOf<double> x1 = set<double>(query.x1);
   const VectorOf<double> x2 = set<double>(query.x2);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {

@@ -45,7 +45,10 @@ TEST(ComponentSlots, HoldComponentsOfOneDirectionEach) {
 TEST(ComponentSlots, AreLeftOutWhereDirectionsDiffer) {
   std::vector<double> directions;
   for (int i = 0; i < 200; ++i) directions.push_back(1.8 * i);
-  EXPECT_FALSE(component_slots(directions).any());
+  const ComponentSlots slots = component_slots(directions);
+  EXPECT_FALSE(slots.any());
+  EXPECT_EQ(slots.place_count(), directions.size());
+  EXPECT_EQ(slots.places.back(), directions.size() - 1);
   EXPECT_FALSE(component_slots({}).any());
 }
 
