@@ -18,8 +18,11 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_clips-inl.h"
+#include "wave_loads/wave_inherited-inl.h"
 #include "wave_loads/wave_integrals-inl.h"
+#include "wave_loads/wave_kept_models-inl.h"
 #include "wave_loads/wave_load.h"
+#include "wave_loads/wave_patches-inl.h"
 #include "wave_loads/wave_pieces-inl.h"
 #include "wave_loads/wave_query.h"
 #include "wave_loads/wave_refinement-inl.h"
@@ -36,7 +39,9 @@ struct DescentWorkspace {
   Results<Number> results;
   std::vector<Number> roots;  // of the results' expected errors
   Pieces<Number> pieces;
+  KeptModels<Number> kept;
   Clips<Number> clips;
+  InheritedUnits<Number> inherited;
   std::vector<std::uint32_t> level;  // blocks
 };
 
@@ -50,7 +55,9 @@ class Descent {
     work_.units.start(query_, patch_, work_.pieces);
     work_.results.start(query.max_lever);
     work_.pieces.clear();
-    work_.clips.clear();
+    work_.kept.clear();
+    work_.clips.start(work_.kept);
+    work_.inherited.start(work_.kept);
   }
 
   WaveLoad run() {
@@ -76,6 +83,8 @@ class Descent {
  private:
   // The descent begins with about as many blocks at most.
   static constexpr std::size_t kMaxFirst = 1'000;
+  // Children inherit a model that leaves out at most this share of the limit: chosen for the least time.
+  static constexpr double kInheritedShare = 0.3;
 
   const SeaCells<Number>& cells() const { return work_.units.cells(); }
 
@@ -170,7 +179,9 @@ class Descent {
       if (units_of_next_round() > kMaxUnits) break;
       const Unit unit = work_.results.unit_of(n);
       const std::size_t lane = unit.first + n % kUnit<Number>;
-      const std::uint32_t models = work_.results.clip_models(n);
+      const KeptModel kept{work_.results.kept_models(n), static_cast<std::uint32_t>(n % kLanes<Number>)};
+      const double remainder = kept.models == kNone ? std::numeric_limits<double>::infinity()
+                                                    : static_cast<double>(work_.kept.remainder(kept));
       // Where children are expected to be above the limit as well.
       const bool grandchildren = static_cast<double>(work_.results.expected()[n]) > kChildrenAbove * limit;
       work_.results.remove(n);
@@ -180,10 +191,10 @@ class Descent {
       }
       const PatchBlock& block = query_.tree->blocks[unit.block];
       if (block.triangle_blocks[lane] == 0) {
-        add_children(block.child[lane], grandchildren);
-      } else if (models != kNone &&
-                 static_cast<double>(work_.clips.remainder(models, n % kLanes<Number>)) < limit) {
-        work_.clips.add(*query_.tree, block, lane, models, n);
+        const bool inherit = remainder < kInheritedShare * limit;
+        add_children(block.child[lane], grandchildren, inherit ? kept : KeptModel{});
+      } else if (remainder < limit) {
+        work_.clips.add(*query_.tree, block, lane, kept, n);
       } else {
         work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
       }
@@ -192,18 +203,26 @@ class Descent {
   }
 
   std::size_t units_of_next_round() const {
-    return work_.units.count() + work_.pieces.new_count() / kUnit<Number>;
+    return work_.units.count() + work_.inherited.count() + work_.pieces.new_count() / kUnit<Number>;
   }
 
-  void add_children(std::uint32_t b, bool grandchildren) {
+  // kept: the model that they inherit, or none.
+  void add_children(std::uint32_t b, bool grandchildren, const KeptModel& kept) {
+    const auto add = [&](std::uint32_t of_children) {
+      if (kept.models != kNone) {
+        work_.inherited.add_block(*query_.tree, of_children, kept);
+      } else {
+        work_.units.add_block(of_children);
+      }
+    };
     const PatchBlock& block = query_.tree->blocks[b];
     bool all_inner = true;
     for (std::size_t lane = 0; lane < block.patches; ++lane) all_inner &= block.triangle_blocks[lane] == 0;
     if (!grandchildren || !all_inner) {
-      work_.units.add_block(b);
+      add(b);
       return;
     }
-    for (std::size_t lane = 0; lane < block.patches; ++lane) work_.units.add_block(block.child[lane]);
+    for (std::size_t lane = 0; lane < block.patches; ++lane) add(block.child[lane]);
   }
 
   // Evaluates the units of the round and appends their results.
@@ -218,6 +237,7 @@ class Descent {
       });
     }
     work_.clips.finish(*query_.tree, patch_, work_.results);
+    patches_ += work_.inherited.finish(*query_.tree, patch_, work_.results);
     work_.units.clear();
   }
 
@@ -279,9 +299,10 @@ class Descent {
       counts = hn::AndNot(model.dry, in_use);
       integrals = integrate<Number>(patch_, moments, model);
       const auto crossing = hn::AndNot(model.whole, counts);
-      if (!hn::AllFalse(LanesOf<Number>(), crossing)) {
-        clippable.lanes = bits_of<Number>(hn::And(crossing, leaves<Number>(*query_.tree, units)));
-        if (clippable.lanes != 0) clippable.models = work_.clips.keep(patch_, moments, model);
+      clippable.lanes = bits_of<Number>(crossing);
+      if (clippable.lanes != 0) {
+        clippable.leaves = clippable.lanes & leaves<Number>(*query_.tree, units);
+        clippable.models = work_.kept.keep(patch_, moments, model, moments.center);
       }
     }
     patches_ += hn::CountTrue(LanesOf<Number>(), counts);

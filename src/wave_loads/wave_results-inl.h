@@ -41,9 +41,10 @@ struct Unit {
 template <typename Number>
 using UnitsOfVector = std::array<Unit, kUnitsPerVector<Number>>;
 
-// The patches of a batch whose triangles can be clipped.
+// The patches of a batch whose models are kept.
 struct Clippable {
-  std::uint32_t lanes = 0;  // bits
+  std::uint32_t lanes = 0;   // bits
+  std::uint32_t leaves = 0;  // those of them whose triangles can be clipped
   std::uint32_t models = kNone;
 };
 
@@ -55,7 +56,7 @@ class Results {
   // max_lever: [m], L_r.
   void start(double max_lever) {
     per_lever_ = 1.0 / max_lever;
-    batches_.clear();
+    batch_count_ = 0;
     units_.clear();
     clippable_.clear();
     errors_.clear();
@@ -66,8 +67,8 @@ class Results {
   std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals,
                   const Clippable& clippable) {
     const LanesOf<Number> d;
-    batches_.emplace_back();
-    auto& rows = batches_.back().rows;
+    if (batch_count_ == batches_.size()) batches_.emplace_back();
+    auto& rows = batches_[batch_count_++].rows;
     const std::array<VectorOf<Number>, kRows> all{
         integrals.force.x,     integrals.force.y,  integrals.force.z,     integrals.torque.x,
         integrals.torque.y,    integrals.torque.z, integrals.moment.x,    integrals.moment.y,
@@ -84,7 +85,7 @@ class Results {
     hn::StoreU(error, d, &errors_[first]);
     hn::StoreU(error * share, d, &expected_[first]);
     total_ += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, error)));
-    for (std::uint32_t lanes = clippable.lanes; lanes != 0; lanes &= lanes - 1) {
+    for (std::uint32_t lanes = clippable.leaves; lanes != 0; lanes &= lanes - 1) {
       const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
       expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
     }
@@ -131,8 +132,8 @@ class Results {
   // to.
   const std::vector<Number>& expected() const { return expected_; }
   double total() const { return total_; }
-  // The models that the patch can be clipped with; kNone if there are none.
-  std::uint32_t clip_models(std::size_t result) const {
+  // The models that were kept of the patch; kNone if there are none.
+  std::uint32_t kept_models(std::size_t result) const {
     const Clippable& of_batch = clippable_[result / kLanes<Number>];
     return (of_batch.lanes >> (result % kLanes<Number>)&1U) != 0 ? of_batch.models : kNone;
   }
@@ -142,7 +143,8 @@ class Results {
     const LanesOf<double> d;
     std::array<VectorOf<double>, kRows> sums;
     for (auto& of_row : sums) of_row = hn::Zero(d);
-    for (const BatchRows& batch : batches_) {
+    for (std::size_t b = 0; b < batch_count_; ++b) {
+      const BatchRows& batch = batches_[b];
       for (std::size_t row = 0; row < kRows; ++row) {
         for (std::size_t lane = 0; lane < kLanes<Number>; lane += kLanes<double>) {
           const Number* const numbers = &batch.rows[row][lane];
@@ -176,7 +178,9 @@ class Results {
   struct BatchRows {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
   };
+  // Kept from query to query, so that no batch is set to zero before it is written.
   std::vector<BatchRows> batches_;
+  std::size_t batch_count_ = 0;
   std::vector<Unit> units_;           // kUnitsPerVector of each batch
   std::vector<Clippable> clippable_;  // per batch
   std::vector<Number> errors_, expected_;

@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_patches-inl.h"
 #include "wave_loads/wave_pieces-inl.h"
 #include "wave_loads/wave_places-inl.h"
 #include "wave_loads/wave_query.h"
@@ -59,6 +60,7 @@ class RoundUnits {
   void clear() { units_.clear(); }
 
   void add_block(std::uint32_t block) {
+    prefetch(query_->tree->blocks[block]);
     for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
       if (first < query_->tree->blocks[block].patches) {
         Unit unit;

@@ -231,6 +231,33 @@ TEST(WaveLoad, BoundsFewLargePatchesUnderWaves) {
   }
 }
 
+// On a fine mesh in long waves, the patches along the waterline inherit the models of patches that hold them.
+TEST(WaveLoad, BoundsTheWaterlineOfFineMeshes) {
+  for (const WavePressure pressure : {WavePressure::kWheeler, WavePressure::kHydrostatic}) {
+    RandomCases random(17);
+    double largest_ratio = 0.0;
+    for (int i = 0; i < 8; ++i) {
+      const RockShape rock{1.0, 39, 0.3, random.generator()()};
+      SeaDescription description;
+      description.pressure = pressure;
+      description.systems = {random.waves(random.uniform(10.0, 40.0), 4, 0.1, kInfinity)};
+      const Case one(rock, description, 1e-3);
+      Pose pose = random.pose(1.0);
+      pose.p_WB.z() = random.uniform(-0.3, 0.3);
+      const WaveLoad load = one.load(pose);
+      const BruteForceLoad truth =
+          brute_force_load(one.mesh.surface, one.mesh.center_B, one.snapshot, pose, Vec3::Zero(), 2);
+      const double force_error = (load.force - truth.force).norm();
+      ASSERT_LE(load.force_bound, 1e-3 * one.mesh.volume) << "case " << i;
+      ASSERT_LE(force_error, load.force_bound + truth.force_error) << "case " << i;
+      ASSERT_LE((load.torque - truth.torque).norm(), load.torque_bound + truth.torque_error) << "case " << i;
+      ASSERT_LE(std::abs(load.volume - truth.volume), load.volume_bound + truth.volume_error) << "case " << i;
+      largest_ratio = std::max(largest_ratio, force_error / load.force_bound);
+    }
+    EXPECT_GT(largest_ratio, 0.001);
+  }
+}
+
 TEST(WaveLoad, InShortGentleWavesHasAVolumeAndNoSteepSurface) {
   // Waves of a twentieth of the body, far shorter than the patches of its deep parts.
   SeaDescription description;
