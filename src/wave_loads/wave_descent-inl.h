@@ -280,7 +280,7 @@ class Descent {
     const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kUnit<Number>);
     const UnitsOfVector<Number> units = work_.units.units_of(batch);
     PatchIntegrals<Number> integrals;
-    Clippable clippable;
+    KeptOfBatch kept;
     hn::Mask<LanesOf<Number>> counts;
     if constexpr (kPieces) {
       const PieceLanes<Number> piece = work_.pieces.lanes(units);
@@ -298,16 +298,12 @@ class Descent {
       too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
       counts = hn::AndNot(model.dry, in_use);
       integrals = integrate<Number>(patch_, moments, model);
-      const auto crossing = hn::AndNot(model.whole, counts);
-      clippable.lanes = bits_of<Number>(crossing);
-      if (clippable.lanes != 0) {
-        clippable.leaves = clippable.lanes & leaves<Number>(*query_.tree, units);
-        clippable.models = work_.kept.keep(patch_, moments, model, moments.center);
-      }
+      kept = work_.kept.keep_crossing(*query_.tree, units, hn::AndNot(model.whole, counts), patch_, moments,
+                                      model, moments.center);
     }
     patches_ += hn::CountTrue(LanesOf<Number>(), counts);
     clear_where<Number>(hn::Not(counts), integrals);
-    work_.results.add(units, integrals, clippable);
+    work_.results.add(units, integrals, kept);
   }
 
   const WaveQuery& query_;

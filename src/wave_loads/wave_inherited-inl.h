@@ -115,10 +115,9 @@ class InheritedUnits {
 
   // Adds a block of patches that the patch of the model holds.
   void add_block(const PatchTree& tree, std::uint32_t block, const KeptModel& model) {
-    prefetch(tree.blocks[block]);
-    for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
-      if (first < tree.blocks[block].patches) tasks_.push_back({block, first, model});
-    }
+    for_each_unit<Number>(tree.blocks[block], [&](std::uint32_t first) {
+      tasks_.push_back({block, first, model});
+    });
   }
 
   // Evaluates what was added and appends the results. Returns the number of patches that are not dry.
@@ -147,7 +146,7 @@ class InheritedUnits {
       const Task& task = tasks[n < count ? n : 0];
       units[n].block = task.block;
       units[n].first = task.first;
-      of_one &= task.model.models == tasks[0].model.models && task.model.lane == tasks[0].model.lane;
+      of_one &= task.model == tasks[0].model;
     }
     const KeptModelLanes<Number> kept = kept_->template lanes<KeptModelLanes<Number>::kRows>(
         of_one, [&](std::size_t n) -> const KeptModel& { return tasks[n < count ? n : 0].model; });
@@ -155,13 +154,9 @@ class InheritedUnits {
     const auto counts = hn::AndNot(inherited.model.dry, hn::FirstN(LanesOf<Number>(), count * kUnit<Number>));
     PatchIntegrals<Number> integrals = integrate<Number>(query, inherited.moments, inherited.model);
     clear_where<Number>(hn::Not(counts), integrals);
-    Clippable clippable;
-    clippable.lanes = bits_of<Number>(hn::AndNot(inherited.model.whole, counts));
-    if (clippable.lanes != 0) {
-      clippable.leaves = clippable.lanes & leaves<Number>(tree, units);
-      clippable.models = kept_->keep(query, inherited.moments, inherited.model, kept.origin());
-    }
-    results.add(units, integrals, clippable);
+    results.add(units, integrals,
+                kept_->keep_crossing(tree, units, hn::AndNot(inherited.model.whole, counts), query,
+                                     inherited.moments, inherited.model, kept.origin()));
     return hn::CountTrue(LanesOf<Number>(), counts);
   }
 

@@ -18,7 +18,9 @@
 #include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_lanes-inl.h"
 #include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_patches-inl.h"
 #include "wave_loads/wave_places-inl.h"
+#include "wave_loads/wave_results-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -28,6 +30,8 @@ namespace HWY_NAMESPACE {
 struct KeptModel {
   std::uint32_t models = kNone;
   std::uint32_t lane = 0;
+
+  bool operator==(const KeptModel&) const = default;
 };
 
 // Kept models in lanes, in rows.
@@ -77,7 +81,49 @@ class KeptModels {
 
   void clear() { count_ = 0; }
 
-  // Keeps the models of a batch and returns their number. origin: as in KeptModelLanes.
+  // Keeps the models of a batch of units if the surface may cross a patch of theirs. origin: as in
+  // KeptModelLanes.
+  HWY_INLINE KeptOfBatch keep_crossing(const PatchTree& tree, const UnitsOfVector<Number>& units,
+                                       const hn::Mask<LanesOf<Number>>& crossing,
+                                       const PatchQuery<Number>& query, const PatchMoments<Number>& moments,
+                                       const PatchModel<Number>& model, const Vectors3<Number>& origin) {
+    KeptOfBatch kept;
+    kept.lanes = bits_of<Number>(crossing);
+    if (kept.lanes == 0) return kept;
+    kept.leaves = kept.lanes & leaves<Number>(tree, units);
+    kept.models = keep(query, moments, model, origin);
+    return kept;
+  }
+
+  // Of the force [m^3].
+  Number remainder(const KeptModel& at) const { return models_[at.models].rows[kRemainder][at.lane]; }
+  Number torque_remainder(const KeptModel& at) const {
+    return models_[at.models].rows[kRemainder + 1][at.lane];
+  }
+  Number volume_remainder_of(const KeptModel& at) const {
+    return models_[at.models].rows[kRemainder + 2][at.lane];
+  }
+
+  // The model at(n) in all lanes of the n-th unit, its first kCount rows. of_one: at(n) is the same for all
+  // n.
+  template <std::size_t kCount, typename At>
+  HWY_INLINE KeptModelLanes<Number> lanes(bool of_one, const At& at) const {
+    KeptModelLanes<Number> kept;
+    for (std::size_t row = 0; row < kCount; ++row) {
+      const auto place = [&](std::size_t n) { return &models_[at(n).models].rows[row][at(n).lane]; };
+      kept.rows[row] = of_one ? hn::Set(LanesOf<Number>(), *place(0)) : spread_units<Number>(place);
+    }
+    return kept;
+  }
+
+ private:
+  static constexpr std::size_t kRows = KeptModelLanes<Number>::kRows;
+  static constexpr std::size_t kRemainder = KeptModelLanes<Number>::kRemainder;
+  struct Models {
+    alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
+  };
+
+  // Keeps the models of a batch and returns their number.
   HWY_INLINE std::uint32_t keep(const PatchQuery<Number>& query, const PatchMoments<Number>& moments,
                                 const PatchModel<Number>& model, const Vectors3<Number>& origin) {
     const Vectors3<Number> lever = moments.center - axis_of<Number>(query.reference);
@@ -131,34 +177,6 @@ class KeptModels {
     for (std::size_t row = 0; row < kRows; ++row) hn::Store(all[row], LanesOf<Number>(), rows[row].data());
     return static_cast<std::uint32_t>(count_++);
   }
-
-  // Of the force [m^3].
-  Number remainder(const KeptModel& at) const { return models_[at.models].rows[kRemainder][at.lane]; }
-  Number torque_remainder(const KeptModel& at) const {
-    return models_[at.models].rows[kRemainder + 1][at.lane];
-  }
-  Number volume_remainder_of(const KeptModel& at) const {
-    return models_[at.models].rows[kRemainder + 2][at.lane];
-  }
-
-  // The model at(n) in all lanes of the n-th unit, its first kCount rows. of_one: at(n) is the same for all
-  // n.
-  template <std::size_t kCount, typename At>
-  HWY_INLINE KeptModelLanes<Number> lanes(bool of_one, const At& at) const {
-    KeptModelLanes<Number> kept;
-    for (std::size_t row = 0; row < kCount; ++row) {
-      const auto place = [&](std::size_t n) { return &models_[at(n).models].rows[row][at(n).lane]; };
-      kept.rows[row] = of_one ? hn::Set(LanesOf<Number>(), *place(0)) : spread_units<Number>(place);
-    }
-    return kept;
-  }
-
- private:
-  static constexpr std::size_t kRows = KeptModelLanes<Number>::kRows;
-  static constexpr std::size_t kRemainder = KeptModelLanes<Number>::kRemainder;
-  struct Models {
-    alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
-  };
 
   // Kept from query to query, so that no models are set to zero before they are written.
   std::vector<Models> models_;

@@ -22,11 +22,14 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Fetches a block that is read once all patches of the round are known.
-HWY_INLINE void prefetch(const PatchBlock& block) {
+// Calls take(first lane) for each unit of a block, and fetches the block, which is read once all units of the
+// round are known.
+template <typename Number, typename Take>
+HWY_INLINE void for_each_unit(const PatchBlock& block, const Take& take) {
   constexpr std::size_t kLine = 64;
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&block);
   for (std::size_t at = 0; at < sizeof(PatchBlock); at += kLine) hwy::Prefetch(bytes + at);
+  for (std::uint32_t first = 0; first < block.patches; first += kUnit<Number>) take(first);
 }
 
 // Reads the moments of the patches of a vector of units.

@@ -42,7 +42,7 @@ template <typename Number>
 using UnitsOfVector = std::array<Unit, kUnitsPerVector<Number>>;
 
 // The patches of a batch whose models are kept.
-struct Clippable {
+struct KeptOfBatch {
   std::uint32_t lanes = 0;   // bits
   std::uint32_t leaves = 0;  // those of them whose triangles can be clipped
   std::uint32_t models = kNone;
@@ -58,14 +58,14 @@ class Results {
     per_lever_ = 1.0 / max_lever;
     batch_count_ = 0;
     units_.clear();
-    clippable_.clear();
+    kept_.clear();
     errors_.clear();
     total_ = 0.0;
   }
 
   // Returns the number of the first result.
   std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals,
-                  const Clippable& clippable) {
+                  const KeptOfBatch& kept) {
     const LanesOf<Number> d;
     if (batch_count_ == batches_.size()) batches_.emplace_back();
     auto& rows = batches_[batch_count_++].rows;
@@ -85,12 +85,12 @@ class Results {
     hn::StoreU(error, d, &errors_[first]);
     hn::StoreU(error * share, d, &expected_[first]);
     total_ += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, error)));
-    for (std::uint32_t lanes = clippable.leaves; lanes != 0; lanes &= lanes - 1) {
+    for (std::uint32_t lanes = kept.leaves; lanes != 0; lanes &= lanes - 1) {
       const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
       expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
     }
     units_.insert(units_.end(), units.begin(), units.end());
-    clippable_.push_back(clippable);
+    kept_.push_back(kept);
     return first;
   }
 
@@ -122,7 +122,7 @@ class Results {
     total_ -= static_cast<double>(errors_[result]);
     errors_[result] = Number{0};
     expected_[result] = Number{0};
-    clippable_[result / kLanes<Number>].lanes &= ~(std::uint32_t{1} << (result % kLanes<Number>));
+    kept_[result / kLanes<Number>].lanes &= ~(std::uint32_t{1} << (result % kLanes<Number>));
     for (auto& row : batches_[result / kLanes<Number>].rows) row[result % kLanes<Number>] = Number{0};
   }
 
@@ -134,7 +134,7 @@ class Results {
   double total() const { return total_; }
   // The models that were kept of the patch; kNone if there are none.
   std::uint32_t kept_models(std::size_t result) const {
-    const Clippable& of_batch = clippable_[result / kLanes<Number>];
+    const KeptOfBatch& of_batch = kept_[result / kLanes<Number>];
     return (of_batch.lanes >> (result % kLanes<Number>)&1U) != 0 ? of_batch.models : kNone;
   }
   const Unit& unit_of(std::size_t result) const { return units_[result / kUnit<Number>]; }
@@ -181,8 +181,8 @@ class Results {
   // Kept from query to query, so that no batch is set to zero before it is written.
   std::vector<BatchRows> batches_;
   std::size_t batch_count_ = 0;
-  std::vector<Unit> units_;           // kUnitsPerVector of each batch
-  std::vector<Clippable> clippable_;  // per batch
+  std::vector<Unit> units_;        // kUnitsPerVector of each batch
+  std::vector<KeptOfBatch> kept_;  // per batch
   std::vector<Number> errors_, expected_;
   double per_lever_ = 1.0;
   double total_ = 0.0;  // of the errors

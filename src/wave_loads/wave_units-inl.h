@@ -60,15 +60,12 @@ class RoundUnits {
   void clear() { units_.clear(); }
 
   void add_block(std::uint32_t block) {
-    prefetch(query_->tree->blocks[block]);
-    for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
-      if (first < query_->tree->blocks[block].patches) {
-        Unit unit;
-        unit.block = block;
-        unit.first = first;
-        units_.push_back(unit);
-      }
-    }
+    for_each_unit<Number>(query_->tree->blocks[block], [&](std::uint32_t first) {
+      Unit unit;
+      unit.block = block;
+      unit.first = first;
+      units_.push_back(unit);
+    });
   }
 
   // Adds the new pieces, and finds what is known of all units of the round from the surface alone.
