@@ -88,15 +88,20 @@ class Descent {
 
   const SeaCells<Number>& cells() const { return work_.units.cells(); }
 
+  // Whether none of a block's patches is a leaf.
+  static bool all_inner(const PatchBlock& block) {
+    bool inner = true;
+    for (std::size_t lane = 0; lane < block.patches; ++lane) inner &= block.triangle_blocks[lane] == 0;
+    return inner;
+  }
+
   // The blocks with which the descent begins: those whose patches are not likely to be refined.
   void add_first_level() {
     std::vector<std::uint32_t>& level = work_.level;
     level.assign(1, 0);
     for (std::size_t n = 0; n < level.size();) {
       const PatchBlock& block = query_.tree->blocks[level[n]];
-      bool all_inner = true;
-      for (std::size_t lane = 0; lane < block.patches; ++lane) all_inner &= block.triangle_blocks[lane] == 0;
-      if (!all_inner || level.size() > kMaxFirst || !is_too_large(block)) {
+      if (!all_inner(block) || level.size() > kMaxFirst || !is_too_large(block)) {
         ++n;
         continue;
       }
@@ -167,8 +172,8 @@ class Descent {
   // Replaces results above a threshold by those of their children, or clips them. Returns whether there are
   // any.
   bool refine() {
-    const double limit =
-        refinement_limit(work_.results.errors(), work_.results.expected(), work_.roots, query_.budget);
+    const double limit = refinement_limit<Number>(work_.results.errors(), work_.results.expected(),
+                                                  work_.roots, query_.budget);
     const std::size_t count = work_.results.errors().size();
     bool any = false;
     for (std::size_t n = 0; n < count; ++n) {
@@ -216,9 +221,7 @@ class Descent {
       }
     };
     const PatchBlock& block = query_.tree->blocks[b];
-    bool all_inner = true;
-    for (std::size_t lane = 0; lane < block.patches; ++lane) all_inner &= block.triangle_blocks[lane] == 0;
-    if (!grandchildren || !all_inner) {
+    if (!grandchildren || !all_inner(block)) {
       add(b);
       return;
     }

@@ -132,49 +132,21 @@ class KeptModels {
     const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
     const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
     const V of_volume = volume_remainder<Number>(moments.area, distance_moments<Number>(moments), model);
-    const std::array<V, kRows> all{model.phi.value,
-                                   model.phi.gradient.x,
-                                   model.phi.gradient.y,
-                                   model.phi.gradient.z,
-                                   model.phi.hessian[0],
-                                   model.phi.hessian[1],
-                                   model.phi.hessian[2],
-                                   model.phi.hessian[3],
-                                   model.phi.hessian[4],
-                                   model.phi.hessian[5],
-                                   model.s.value,
-                                   model.s.gradient.x,
-                                   model.s.gradient.y,
-                                   model.s.gradient.z,
-                                   model.s.hessian[0],
-                                   model.s.hessian[1],
-                                   model.s.hessian[2],
-                                   model.s.hessian[3],
-                                   model.s.hessian[4],
-                                   model.s.hessian[5],
-                                   model.curvature,
-                                   moments.radius,
-                                   lever.x,
-                                   lever.y,
-                                   lever.z,
-                                   moments.center.x,
-                                   moments.center.y,
-                                   moments.center.z,
-                                   remainder,
-                                   hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local),
-                                   hn::MulAdd(model.s_per_phi, remainder, of_volume),
-                                   model.s_per_phi,
-                                   model.third,
-                                   model.delta,
-                                   model.s_third,
-                                   model.s_delta,
-                                   model.s_curvature,
-                                   origin.x,
-                                   origin.y,
-                                   origin.z};
     if (count_ == models_.size()) models_.emplace_back();
     auto& rows = models_[count_].rows;
-    for (std::size_t row = 0; row < kRows; ++row) hn::Store(all[row], LanesOf<Number>(), rows[row].data());
+    std::size_t row = 0;
+    const auto put = [&](const auto&... numbers)
+                         HWY_ATTR { (hn::Store(numbers, LanesOf<Number>(), rows[row++].data()), ...); };
+    const auto put_quadratic = [&](const Quadratic<Number>& q) HWY_ATTR {
+      put(q.value, q.gradient.x, q.gradient.y, q.gradient.z, q.hessian[0], q.hessian[1], q.hessian[2],
+          q.hessian[3], q.hessian[4], q.hessian[5]);
+    };
+    put_quadratic(model.phi);
+    put_quadratic(model.s);
+    put(model.curvature, moments.radius, lever.x, lever.y, lever.z, moments.center.x, moments.center.y,
+        moments.center.z, remainder, hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local),
+        hn::MulAdd(model.s_per_phi, remainder, of_volume), model.s_per_phi, model.third, model.delta,
+        model.s_third, model.s_delta, model.s_curvature, origin.x, origin.y, origin.z);
     return static_cast<std::uint32_t>(count_++);
   }
 

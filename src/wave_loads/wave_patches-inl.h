@@ -29,7 +29,11 @@ HWY_INLINE void for_each_unit(const PatchBlock& block, const Take& take) {
   constexpr std::size_t kLine = 64;
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&block);
   for (std::size_t at = 0; at < sizeof(PatchBlock); at += kLine) hwy::Prefetch(bytes + at);
-  for (std::uint32_t first = 0; first < block.patches; first += kUnit<Number>) take(first);
+  take(0U);  // without a look at the block, which may not be in the cache yet
+  for (std::uint32_t first = kUnit<Number>; first < kSiblings && first < block.patches;
+       first += kUnit<Number>) {
+    take(first);
+  }
 }
 
 // Reads the moments of the patches of a vector of units.

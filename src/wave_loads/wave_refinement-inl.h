@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -29,8 +30,8 @@ inline constexpr double kChildrenAbove = 4.0;
 // another round, of few patches; one that is too high refines all of them too far, which costs more. roots:
 // of the expected errors.
 template <typename Number>
-HWY_INLINE double predicted(const std::vector<Number>& errors, const std::vector<Number>& expected,
-                            const std::vector<Number>& roots, Number limit) {
+HWY_INLINE double predicted(std::span<const Number> errors, std::span<const Number> expected,
+                            std::span<const Number> roots, Number limit) {
   const LanesOf<Number> d;
   constexpr double kShare = 0.25;
   const VectorOf<Number> root_of_limit =
@@ -48,10 +49,10 @@ HWY_INLINE double predicted(const std::vector<Number>& errors, const std::vector
 // The error above which patches are refined, so that the sum of the errors can be expected to fit the budget.
 // roots: room for as many numbers.
 template <typename Number>
-double refinement_limit(const std::vector<Number>& errors, const std::vector<Number>& expected,
+double refinement_limit(std::span<const Number> errors, std::span<const Number> expected,
                         std::vector<Number>& roots, double budget) {
   const LanesOf<Number> d;
-  roots.resize(errors.size());
+  if (roots.size() < errors.size()) roots.resize(errors.size());
   VectorOf<Number> most = hn::Zero(d);
   for (std::size_t n = 0; n < errors.size(); n += kLanes<Number>) {
     most = hn::Max(hn::LoadU(d, &errors[n]), most);  // `most` where an error is not a number
@@ -63,7 +64,7 @@ double refinement_limit(const std::vector<Number>& errors, const std::vector<Num
   constexpr double kMargin = 0.95;
   for (int step = 0; step < 12; ++step) {
     const Number middle = std::sqrt(low * high);
-    (predicted(errors, expected, roots, middle) <= kMargin * budget ? low : high) = middle;
+    (predicted<Number>(errors, expected, roots, middle) <= kMargin * budget ? low : high) = middle;
   }
   return static_cast<double>(low);
 }

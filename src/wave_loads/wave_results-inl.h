@@ -11,6 +11,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -57,9 +58,6 @@ class Results {
   void start(double max_lever) {
     per_lever_ = 1.0 / max_lever;
     batch_count_ = 0;
-    units_.clear();
-    kept_.clear();
-    errors_.clear();
     total_ = 0.0;
   }
 
@@ -67,17 +65,22 @@ class Results {
   std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals,
                   const KeptOfBatch& kept) {
     const LanesOf<Number> d;
-    if (batch_count_ == batches_.size()) batches_.emplace_back();
-    auto& rows = batches_[batch_count_++].rows;
-    const std::array<VectorOf<Number>, kRows> all{
-        integrals.force.x,     integrals.force.y,  integrals.force.z,     integrals.torque.x,
-        integrals.torque.y,    integrals.torque.z, integrals.moment.x,    integrals.moment.y,
-        integrals.moment.z,    integrals.volume,   integrals.force_error, integrals.torque_error,
-        integrals.volume_error};
-    for (std::size_t row = 0; row < kRows; ++row) hn::Store(all[row], d, rows[row].data());
-    const std::size_t first = errors_.size();
-    errors_.resize(first + kLanes<Number>);
-    expected_.resize(errors_.size());
+    const std::size_t first = batch_count_ * kLanes<Number>;
+    if (batch_count_ == batches_.size()) {
+      batches_.emplace_back();
+      errors_.resize(first + kLanes<Number>);
+      expected_.resize(first + kLanes<Number>);
+    }
+    BatchResults& batch = batches_[batch_count_++];
+    batch.units = units;
+    batch.kept = kept;
+    std::size_t row = 0;
+    const auto put = [&](const auto&... numbers)
+                         HWY_ATTR { (hn::Store(numbers, d, batch.rows[row++].data()), ...); };
+    put(integrals.force.x, integrals.force.y, integrals.force.z);
+    put(integrals.torque.x, integrals.torque.y, integrals.torque.z);
+    put(integrals.moment.x, integrals.moment.y, integrals.moment.z);
+    put(integrals.volume, integrals.force_error, integrals.torque_error, integrals.volume_error);
     const VectorOf<Number> error =
         hn::Max(integrals.force_error, set<Number>(per_lever_) * integrals.torque_error);
     // As much less than the error as the force's is.
@@ -89,8 +92,6 @@ class Results {
       const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
       expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
     }
-    units_.insert(units_.end(), units.begin(), units.end());
-    kept_.push_back(kept);
     return first;
   }
 
@@ -122,29 +123,32 @@ class Results {
     total_ -= static_cast<double>(errors_[result]);
     errors_[result] = Number{0};
     expected_[result] = Number{0};
-    kept_[result / kLanes<Number>].lanes &= ~(std::uint32_t{1} << (result % kLanes<Number>));
-    for (auto& row : batches_[result / kLanes<Number>].rows) row[result % kLanes<Number>] = Number{0};
+    BatchResults& batch = batches_[result / kLanes<Number>];
+    batch.kept.lanes &= ~(std::uint32_t{1} << (result % kLanes<Number>));
+    for (auto& row : batch.rows) row[result % kLanes<Number>] = Number{0};
   }
 
   // Per result [m^3], the larger of the bound on the force and of that on the torque / L_r.
-  const std::vector<Number>& errors() const { return errors_; }
+  std::span<const Number> errors() const { return {errors_.data(), count()}; }
   // What the errors of a patch's children, or that of the patch once it is clipped, are expected to add up
   // to.
-  const std::vector<Number>& expected() const { return expected_; }
+  std::span<const Number> expected() const { return {expected_.data(), count()}; }
   double total() const { return total_; }
   // The models that were kept of the patch; kNone if there are none.
   std::uint32_t kept_models(std::size_t result) const {
-    const KeptOfBatch& of_batch = kept_[result / kLanes<Number>];
+    const KeptOfBatch& of_batch = batches_[result / kLanes<Number>].kept;
     return (of_batch.lanes >> (result % kLanes<Number>)&1U) != 0 ? of_batch.models : kNone;
   }
-  const Unit& unit_of(std::size_t result) const { return units_[result / kUnit<Number>]; }
+  const Unit& unit_of(std::size_t result) const {
+    return batches_[result / kLanes<Number>].units[result % kLanes<Number> / kUnit<Number>];
+  }
 
   WaveLoad sum() const {
     const LanesOf<double> d;
     std::array<VectorOf<double>, kRows> sums;
     for (auto& of_row : sums) of_row = hn::Zero(d);
     for (std::size_t b = 0; b < batch_count_; ++b) {
-      const BatchRows& batch = batches_[b];
+      const BatchResults& batch = batches_[b];
       for (std::size_t row = 0; row < kRows; ++row) {
         for (std::size_t lane = 0; lane < kLanes<Number>; lane += kLanes<double>) {
           const Number* const numbers = &batch.rows[row][lane];
@@ -175,14 +179,17 @@ class Results {
   static constexpr std::size_t kForceError = 10;
   static constexpr std::size_t kTorqueError = 11;
   static constexpr std::size_t kVolumeError = 12;
-  struct BatchRows {
+  struct BatchResults {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
+    UnitsOfVector<Number> units;
+    KeptOfBatch kept;
   };
-  // Kept from query to query, so that no batch is set to zero before it is written.
-  std::vector<BatchRows> batches_;
+
+  std::size_t count() const { return batch_count_ * kLanes<Number>; }
+
+  // Kept from query to query, so that nothing is set to zero before it is written.
+  std::vector<BatchResults> batches_;
   std::size_t batch_count_ = 0;
-  std::vector<Unit> units_;        // kUnitsPerVector of each batch
-  std::vector<KeptOfBatch> kept_;  // per batch
   std::vector<Number> errors_, expected_;
   double per_lever_ = 1.0;
   double total_ = 0.0;  // of the errors
