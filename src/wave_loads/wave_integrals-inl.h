@@ -62,16 +62,61 @@ HWY_INLINE Vectors3<Number> integral_with_normal(const PatchMoments<Number>& m, 
   return {sum[0], sum[1], sum[2]};
 }
 
+// The place of y_i y_j in the order of Symmetric.
+inline constexpr std::size_t kPair[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+
 // int (value + gradient . y) y_j n_k dA.
 template <typename Number>
 HWY_INLINE VectorOf<Number> integral_with_offset(const PatchMoments<Number>& m, const VectorOf<Number>& value,
                                                  const Vectors3<Number>& gradient, std::size_t j,
                                                  std::size_t k) {
-  constexpr std::size_t kPair[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   auto sum = value * m.N[3 * j + k];
   sum = hn::MulAdd(gradient.x, m.P[3 * kPair[0][j] + k], sum);
   sum = hn::MulAdd(gradient.y, m.P[3 * kPair[1][j] + k], sum);
   return hn::MulAdd(gradient.z, m.P[3 * kPair[2][j] + k], sum);
+}
+
+// The components along an axis of the moments with the normal.
+template <typename Number>
+struct UprightMoments {
+  VectorOf<Number> S;
+  std::array<VectorOf<Number>, 3> N;
+  Symmetric<Number> P;
+};
+
+template <typename Number>
+HWY_INLINE UprightMoments<Number> upright_moments(const PatchMoments<Number>& m, const Vectors3<Number>& up) {
+  UprightMoments<Number> along;
+  along.S = dot<Number>(up, {m.S[0], m.S[1], m.S[2]});
+#pragma GCC unroll 3
+  for (std::size_t j = 0; j < 3; ++j) {
+    along.N[j] = dot<Number>(up, {m.N[3 * j], m.N[3 * j + 1], m.N[3 * j + 2]});
+  }
+#pragma GCC unroll 6
+  for (std::size_t pair = 0; pair < 6; ++pair) {
+    along.P[pair] = dot<Number>(up, {m.P[3 * pair], m.P[3 * pair + 1], m.P[3 * pair + 2]});
+  }
+  return along;
+}
+
+// int q(y) n_up dA.
+template <typename Number>
+HWY_INLINE VectorOf<Number> integral(const UprightMoments<Number>& m, const Quadratic<Number>& q) {
+  const Symmetric<Number>& h = q.hessian;
+  const auto diagonal = hn::MulAdd(h[0], m.P[0], hn::MulAdd(h[1], m.P[1], h[2] * m.P[2]));
+  auto sum = hn::MulAdd(q.value, m.S, set<Number>(0.5) * diagonal);
+  sum = hn::MulAdd(q.gradient.x, m.N[0],
+                   hn::MulAdd(q.gradient.y, m.N[1], hn::MulAdd(q.gradient.z, m.N[2], sum)));
+  return hn::MulAdd(h[3], m.P[3], hn::MulAdd(h[4], m.P[4], hn::MulAdd(h[5], m.P[5], sum)));
+}
+
+// int (value + gradient . y) y_j n_up dA.
+template <typename Number>
+HWY_INLINE VectorOf<Number> integral_with_offset(const UprightMoments<Number>& m,
+                                                 const VectorOf<Number>& value,
+                                                 const Vectors3<Number>& gradient, std::size_t j) {
+  const auto sum = hn::MulAdd(gradient.x, m.P[kPair[0][j]], value * m.N[j]);
+  return hn::MulAdd(gradient.y, m.P[kPair[1][j]], hn::MulAdd(gradient.z, m.P[kPair[2][j]], sum));
 }
 
 // Polynomials in place of max(q, 0) on a patch of this radius: a quadratic one for the force, and a linear
@@ -222,13 +267,11 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
 
   // (-s)^+ in the place of the pressure; its component along up is minus the volume.
   const Vectors3<Number> up = axis_of<Number>(query.up_B);
+  const UprightMoments<Number> upright = upright_moments<Number>(m, up);
   const ClippedModel<Number> depth = clipped_model<Number>(negative<Number>(model.s), m.radius, model.whole);
-  result.volume = hn::Neg(dot<Number>(up, integral_with_normal<Number>(m, depth.quadratic)));
+  result.volume = hn::Neg(integral<Number>(upright, depth.quadratic));
   const auto along_up = [&](std::size_t j) {
-    const auto of = [&](std::size_t k) {
-      return integral_with_offset<Number>(m, depth.linear_value, depth.linear_gradient, j, k);
-    };
-    return hn::Neg(dot<Number>(up, {of(0), of(1), of(2)}));
+    return integral_with_offset<Number>(upright, depth.linear_value, depth.linear_gradient, j);
   };
   // int (y - s/2 up) s n_z dA; s^2 to second order, as the product of the depth with its clipped model.
   const Vectors3<Number> depth_gradient{hn::Neg(model.s.gradient.x), hn::Neg(model.s.gradient.y),
@@ -249,8 +292,8 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   for (std::size_t i = 0; i < 6; ++i) {
     squared.hessian[i] = hn::NegMulAdd(curvature_factor, model.s.hessian[i], squared.hessian[i]);
   }
-  const V half_square = half * dot<Number>(up, integral_with_normal<Number>(m, squared));
-  result.moment = scaled<Number>(result.volume, m.center) +
+  const V half_square = half * integral<Number>(upright, squared);
+  result.moment = scaled<Number>(result.volume, m.center) -
                   Vectors3<Number>{along_up(0), along_up(1), along_up(2)} - scaled<Number>(half_square, up);
 
   const V mu1 = hn::Sqrt(m.area * m.mu2);

@@ -68,38 +68,56 @@ HWY_INLINE CubicBounds<Number> in_metres(const PatchQuery<Number>& query, const 
           hn::IfThenElseZero(valid, bounds.fourth) * set<Number>(k * k * k)};
 }
 
+// The vectors e1, e2 and up in all lanes.
 template <typename Number>
-HWY_INLINE Quadratic<Number> in_body_axes(const PatchQuery<Number>& query, const VectorOf<Number>& value,
-                                          const Vectors3<Number>& gradient,
-                                          const Symmetric<Number>& hessian) {
-  const LanesOf<Number> d;
-  const auto per_k = set<Number>(1.0 / query.k_max);
+HWY_INLINE std::array<Vectors3<Number>, 3> axes_of(const PatchQuery<Number>& query) {
+  return {axis_of<Number>(query.e1_B), axis_of<Number>(query.e2_B), axis_of<Number>(query.up_B)};
+}
+
+// What follows is given along e1, e2 and up over 1 / k_max, and returned in B axes and metres.
+template <typename Number>
+HWY_INLINE Vectors3<Number> gradient_in_body_axes(const PatchQuery<Number>& query,
+                                                  const Vectors3<Number>& gradient) {
+  const auto [e1, e2, up] = axes_of<Number>(query);
+  const auto along = [](const Vectors3<Number>& g, const auto& a, const auto& b, const auto& c)
+                         HWY_ATTR { return hn::MulAdd(g.x, a, hn::MulAdd(g.y, b, g.z * c)); };
+  return {along(gradient, e1.x, e2.x, up.x), along(gradient, e1.y, e2.y, up.y),
+          along(gradient, e1.z, e2.z, up.z)};
+}
+
+// E^T H E
+template <typename Number>
+HWY_INLINE Symmetric<Number> hessian_in_body_axes(const PatchQuery<Number>& query,
+                                                  const Symmetric<Number>& hessian) {
+  const auto [e1, e2, up] = axes_of<Number>(query);
   const auto k = set<Number>(query.k_max);
-  std::array<std::array<VectorOf<Number>, 3>, 3> e{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    e[0][i] = hn::Set(d, query.e1_B[i]);
-    e[1][i] = hn::Set(d, query.e2_B[i]);
-    e[2][i] = hn::Set(d, query.up_B[i]);
-  }
-  const auto combined = [&](std::size_t i) {
-    return hn::MulAdd(gradient.x, e[0][i], hn::MulAdd(gradient.y, e[1][i], gradient.z * e[2][i]));
-  };
-  Quadratic<Number> q;
-  q.value = value * per_k;
-  q.gradient = {combined(0), combined(1), combined(2)};
-  // E^T H E
-  std::array<std::array<VectorOf<Number>, 3>, 3> he{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vectors3<Number> column = product<Number>(hessian, {e[0][i], e[1][i], e[2][i]});
-    he[0][i] = column.x;
-    he[1][i] = column.y;
-    he[2][i] = column.z;
-  }
-  const auto entry = [&](std::size_t i, std::size_t j) {
-    return k * hn::MulAdd(e[0][i], he[0][j], hn::MulAdd(e[1][i], he[1][j], e[2][i] * he[2][j]));
-  };
-  q.hessian = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
-  return q;
+  const Vectors3<Number> x = product<Number>(hessian, {e1.x, e2.x, up.x});
+  const Vectors3<Number> y = product<Number>(hessian, {e1.y, e2.y, up.y});
+  const Vectors3<Number> z = product<Number>(hessian, {e1.z, e2.z, up.z});
+  const auto entry = [&](const auto& a, const auto& b, const auto& c, const Vectors3<Number>& column)
+                         HWY_ATTR {
+                           return k * dot<Number>({a, b, c}, column);
+                         };
+  return {entry(e1.x, e2.x, up.x, x), entry(e1.y, e2.y, up.y, y), entry(e1.z, e2.z, up.z, z),
+          entry(e1.x, e2.x, up.x, y), entry(e1.x, e2.x, up.x, z), entry(e1.y, e2.y, up.y, z)};
+}
+
+// The same of a function that does not depend on the height, by its second derivatives h_11, h_22 and h_12.
+template <typename Number>
+HWY_INLINE Symmetric<Number> level_hessian_in_body_axes(const PatchQuery<Number>& query,
+                                                        const VectorOf<Number>& h11,
+                                                        const VectorOf<Number>& h22,
+                                                        const VectorOf<Number>& h12) {
+  const Vectors3<Number> e1 = axis_of<Number>(query.e1_B);
+  const Vectors3<Number> e2 = axis_of<Number>(query.e2_B);
+  const auto k = set<Number>(query.k_max);
+  const Vectors3<Number> first = scaled<Number>(k * h11, e1) + scaled<Number>(k * h12, e2);
+  const Vectors3<Number> second = scaled<Number>(k * h12, e1) + scaled<Number>(k * h22, e2);
+  const auto entry = [](const auto& a1, const auto& a2, const auto& b1, const auto& b2)
+                         HWY_ATTR { return hn::MulAdd(a1, b1, a2 * b2); };
+  return {entry(e1.x, e2.x, first.x, second.x), entry(e1.y, e2.y, first.y, second.y),
+          entry(e1.z, e2.z, first.z, second.z), entry(e1.x, e2.x, first.y, second.y),
+          entry(e1.x, e2.x, first.z, second.z), entry(e1.y, e2.y, first.z, second.z)};
 }
 
 // radius: [m]. surface, surface_cells: the cell of the surface; f: of the volume, unused where the pressure
@@ -142,9 +160,11 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V s_error = hn::MulAdd(L3 * set<Number>(1.0 / 6.0), r * r * r, epsilon);
   const auto known = hn::Le(s_error, set<Number>(query.amplitude));
   const auto if_known = [&](const V& number) { return hn::IfThenElseZero(known, hn::Neg(number)); };
-  model.s = in_body_axes<Number>(
-      query, place.zeta + if_known(eta), {if_known(eta1), if_known(eta2), one},
-      {if_known(surface.eta_11), if_known(surface.eta_22), zero, if_known(surface.eta_12), zero, zero});
+  const V per_k = set<Number>(1.0 / query.k_max);
+  model.s.value = per_k * (place.zeta + if_known(eta));
+  model.s.gradient = gradient_in_body_axes<Number>(query, {if_known(eta1), if_known(eta2), one});
+  model.s.hessian = level_hessian_in_body_axes<Number>(query, if_known(surface.eta_11),
+                                                       if_known(surface.eta_22), if_known(surface.eta_12));
   const V s_size = hn::IfThenElse(known, hn::MulAdd(r, L1, hn::Abs(s)), hn::Abs(place.zeta)) + r;
   const V s_rest =
       hn::IfThenElse(known, epsilon, hn::MulAdd(rounding, hn::Abs(place.zeta), set<Number>(query.amplitude)));
@@ -289,9 +309,10 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V minus_zeta = hn::Neg(still * place.zeta);
   for (V& entry : H) entry = hn::IfThenElseZero(use_quadratic, entry);
   const V model_value = select(value, hn::Neg(s), minus_zeta);
-  model.phi = in_body_axes<Number>(
-      query, model_value,
-      {select(g1, eta1, zero), select(g2, eta2, zero), select(g3, hn::Neg(one), hn::Neg(still))}, H);
+  model.phi.value = per_k * model_value;
+  model.phi.gradient = gradient_in_body_axes<Number>(
+      query, {select(g1, eta1, zero), select(g2, eta2, zero), select(g3, hn::Neg(one), hn::Neg(still))});
+  model.phi.hessian = hessian_in_body_axes<Number>(query, H);
   const V per_area = set<Number>(query.k_max * query.k_max);
   model.third = hn::IfThenElseZero(use_quadratic, M3) * per_area;
   model.cubic = in_metres<Number>(query, cubic, use_quadratic);
