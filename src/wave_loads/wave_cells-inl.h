@@ -71,25 +71,63 @@ inline constexpr std::size_t kCellsTogether = 16;
 template <typename Number>
 using PowerSums = StepPowers<Number>;
 
+// Two numbers of every component, set when they are first asked for. Those of the first cells are kept for
+// all cells that share them.
+template <typename Number>
+class ComponentRows {
+ public:
+  struct Row {
+    const Number* first;
+    const Number* second;
+  };
+
+  void start(std::size_t components) {
+    components_ = components;
+    known_.fill(false);
+  }
+
+  // set(first, second): sets row n.
+  template <typename Set>
+  Row get(std::size_t n, const Set& set) {
+    const std::size_t place = std::min(n, kKept);
+    std::vector<Number>& numbers = rows_[place];
+    if (numbers.size() < 2 * components_) numbers.resize(2 * components_);
+    if (!known_[place]) set(numbers.data(), numbers.data() + components_);
+    known_[place] = place < kKept;
+    return {numbers.data(), numbers.data() + components_};
+  }
+
+ private:
+  static constexpr std::size_t kKept = 64;
+  std::size_t components_ = 0;
+  std::array<std::vector<Number>, kKept + 1> rows_;  // the last: of all others in turn
+  std::array<bool, kKept + 1> known_{};
+};
+
 template <typename Number>
 struct CellWorkspace {
   std::vector<double> phases;  // at the body's centre, filled up
+  // By column of cells: the cosines and the sines of the components' phases at its centre.
+  ComponentRows<Number> turns;
+  // Of the surface, then by level of cells: the components' amplitudes, of even and of odd derivatives along
+  // z.
+  ComponentRows<Number> amplitudes;
   // By cell, weight and component.
   std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
   // Of a sea with slots, by cell and place of the component: for even and for odd degrees, the weight of the
   // cosines of m b and that of the sines of an odd m.
   std::array<std::array<std::vector<Number>, 2>, kCellsTogether> pairs;
   std::vector<PowerSums<Number>> power_sums;  // by cell and block
-  std::vector<Number> theta;
   struct alignas(64) Sums {
     std::array<Number, kHarmonicColumns> columns;
   };
   std::array<Sums, kCellsTogether> sums;
   std::array<Number, kCellsTogether> tails;
 
-  void reserve(const SeaExpansion& sea) {
+  void start(const SeaExpansion& sea) {
     const std::size_t components = sea.filled_components;
-    theta.resize(components);
+    turns.start(components);
+    amplitudes.start(components);
     if (sea.slots.any()) {
       for (auto& of_cell : pairs) {
         for (auto& of_parity : of_cell) of_parity.resize(2 * components);
@@ -103,23 +141,68 @@ struct CellWorkspace {
   }
 };
 
-// Sets the weights of all components at a cell's centre.
-template <bool kSurface, typename Number>
-HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Number>& table, double factor,
-                              bool deep_water, const CellCenter& center, std::size_t cell,
-                              CellWorkspace<Number>& work) {
+// phases: at the body's centre.
+template <typename Number>
+HWY_NOINLINE void set_turns(const SeaExpansion& sea, const std::vector<double>& phases,
+                            const CellCenter& center, Number* cosines, Number* sines) {
   const LanesOf<double> dd;
+  Number* const angles = cosines;
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
     const VectorOf<double> along = hn::MulAdd(hn::LoadU(dd, &sea.k1[i]), set<double>(center.x1),
                                               hn::LoadU(dd, &sea.k2[i]) * set<double>(center.x2));
-    const VectorOf<double> phase = within_turn(hn::LoadU(dd, &work.phases[i]) + along);
+    const VectorOf<double> phase = within_turn(hn::LoadU(dd, &phases[i]) + along);
     if constexpr (sizeof(Number) == sizeof(double)) {
-      hn::StoreU(phase, dd, &work.theta[i]);
+      hn::StoreU(phase, dd, angles + i);
     } else {
       const hn::Rebind<float, LanesOf<double>> df;
-      hn::StoreU(hn::DemoteTo(df, phase), df, &work.theta[i]);
+      hn::StoreU(hn::DemoteTo(df, phase), df, angles + i);
     }
   }
+  const LanesOf<Number> d;
+  for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
+    const VectorOf<Number> angle = hn::LoadU(d, angles + i);
+    hn::StoreU(hn::Sin(d, angle), d, sines + i);
+    hn::StoreU(hn::Cos(d, angle), d, cosines + i);
+  }
+}
+
+// The amplitudes of the elevation; there are no derivatives along z.
+template <typename Number>
+HWY_NOINLINE void set_amplitudes(const ExpansionTable<Number>& table, double factor, Number* even) {
+  const LanesOf<Number> d;
+  for (std::size_t i = 0; i < table.amplitude.size(); i += kLanes<Number>) {
+    hn::StoreU(set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]), d, even + i);
+  }
+}
+
+// The amplitudes of f at a height z over 1 / k_max. In deep water those of odd derivatives are the same and
+// are not set.
+template <typename Number>
+HWY_NOINLINE void set_amplitudes(const ExpansionTable<Number>& table, double factor, bool deep_water,
+                                 double z, Number* even, Number* odd) {
+  const LanesOf<Number> d;
+  for (std::size_t i = 0; i < table.k.size(); i += kLanes<Number>) {
+    const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude_in_f[i]);
+    const VectorOf<Number> exponent = hn::LoadU(d, &table.k[i]) * set<Number>(z);
+    const VectorOf<Number> down = amplitude * hn::Exp(d, exponent);
+    if (deep_water) {
+      hn::StoreU(down, d, even + i);
+    } else {
+      // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
+      const VectorOf<Number> up = amplitude * hn::Exp(d, hn::LoadU(d, &table.minus_twice_kh[i]) - exponent);
+      hn::StoreU(down + up, d, even + i);
+      hn::StoreU(down - up, d, odd + i);
+    }
+  }
+}
+
+// Sets the weights of all components at a cell's centre. same: whether odd derivatives have the amplitudes of
+// even ones.
+template <typename Number>
+HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Number>& table,
+                              const typename ComponentRows<Number>::Row& turns,
+                              const typename ComponentRows<Number>::Row& amplitudes, bool same,
+                              std::size_t cell, CellWorkspace<Number>& work) {
   const LanesOf<Number> d;
   const bool slots = sea.slots.any();
   auto& weights = work.weights[cell];
@@ -136,29 +219,16 @@ HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Numb
   };
   VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
-    const VectorOf<Number> angle = hn::LoadU(d, &work.theta[i]);
-    const VectorOf<Number> cosine = hn::Cos(d, angle);
-    const VectorOf<Number> sine = hn::Sin(d, angle);
-    VectorOf<Number> even;
-    if constexpr (kSurface) {
-      even = set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]);
+    const VectorOf<Number> cosine = hn::LoadU(d, turns.first + i);
+    const VectorOf<Number> sine = hn::LoadU(d, turns.second + i);
+    const VectorOf<Number> even = hn::LoadU(d, amplitudes.first + i);
+    if (same) {
       put(i, Weight::kCosineEven, even * cosine, Weight::kSineEven, even * sine);
     } else {
-      const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude_in_f[i]);
-      const VectorOf<Number> exponent = hn::LoadU(d, &table.k[i]) * set<Number>(center.z);
-      const VectorOf<Number> down = amplitude * hn::Exp(d, exponent);
-      if (deep_water) {
-        even = down;
-        put(i, Weight::kCosineEven, even * cosine, Weight::kSineEven, even * sine);
-      } else {
-        // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
-        const VectorOf<Number> up = amplitude * hn::Exp(d, hn::LoadU(d, &table.minus_twice_kh[i]) - exponent);
-        even = down + up;
-        const VectorOf<Number> odd = down - up;
-        // Slots have the terms of even degrees first: those of cosines are even, those of sines are odd.
-        put(i, Weight::kCosineEven, even * cosine, Weight::kSineOdd, odd * sine);
-        put(i, Weight::kCosineOdd, odd * cosine, Weight::kSineEven, even * sine);
-      }
+      const VectorOf<Number> odd = hn::LoadU(d, amplitudes.second + i);
+      // Slots have the terms of even degrees first: those of cosines are even, those of sines are odd.
+      put(i, Weight::kCosineEven, even * cosine, Weight::kSineOdd, odd * sine);
+      put(i, Weight::kCosineOdd, odd * cosine, Weight::kSineEven, even * sine);
     }
     tail = hn::MulAdd(even, hn::LoadU(d, &table.tail[i]), tail);
   }

@@ -81,9 +81,10 @@ class SeaCells {
     surface_centers_.clear();
     volume_centers_.clear();
     column_of_volume_.clear();
+    level_of_volume_.clear();
     surfaces_built_ = volumes_built_ = 0;
     reach_ = kReach * std::hypot(query.grid.edge[0], query.grid.edge[1], query.grid.edge[2]);
-    work_.reserve(*query.expansion);
+    work_.start(*query.expansion);
     set_phases(query, work_.phases);
   }
 
@@ -95,8 +96,7 @@ class SeaCells {
     const std::int32_t next_i = x1 < center_of(i, 0) ? i - 1 : i + 1;
     const std::int32_t next_j = x2 < center_of(j, 1) ? j - 1 : j + 1;
     const auto reaches = [&](std::uint32_t other) {
-      return other != kNone &&
-             std::hypot(x1 - surface_centers_[other].x1, x2 - surface_centers_[other].x2) <= reach_;
+      return other != kNone && within_reach(x1 - surface_centers_[other].x1, x2 - surface_centers_[other].x2);
     };
     cell = surface_index_.find(next_i, j, 0);
     if (reaches(cell)) return cell;
@@ -117,11 +117,12 @@ class SeaCells {
     const CellCenter& above = surface_centers_[surface_cell];
     const double height = query_->grid.origin[2] - (k == 0 ? 0.5 : 2.0 * k) * query_->grid.edge[2];
     cell = volume_index_.find(column, 0, z < height ? k + 1 : k - 1);
-    if (cell != kNone && std::hypot(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z) <= reach_) {
+    if (cell != kNone && within_reach(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z)) {
       return cell;
     }
     volume_centers_.push_back({above.x1, above.x2, height});
     column_of_volume_.push_back(surface_cell);
+    level_of_volume_.push_back(static_cast<std::uint32_t>(k));
     return volume_index_.add(column, 0, k);
   }
 
@@ -145,6 +146,9 @@ class SeaCells {
   // cell costs more than what the neighbour's expansion leaves out there.
   static constexpr double kReach = 0.475;
 
+  bool within_reach(double x1, double x2, double z = 0.0) const {
+    return x1 * x1 + x2 * x2 + z * z <= reach_ * reach_;
+  }
   std::int32_t place(double x, std::size_t axis) const {
     constexpr double kFarthest = 1e9;
     const CellGrid& grid = query_->grid;
@@ -163,24 +167,43 @@ class SeaCells {
     }
   }
 
+  using ComponentRow = typename ComponentRows<Number>::Row;
+  ComponentRow turns_of(std::size_t surface_cell) {
+    return work_.turns.get(surface_cell, [&](Number* cosines, Number* sines) {
+      set_turns<Number>(*query_->expansion, work_.phases, surface_centers_[surface_cell], cosines, sines);
+    });
+  }
+  ComponentRow amplitudes_of_surface() {
+    return work_.amplitudes.get(0, [&](Number* even, Number* /*odd*/) {
+      set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), even);
+    });
+  }
+  ComponentRow amplitudes_of(std::size_t volume_cell) {
+    return work_.amplitudes.get(1 + level_of_volume_[volume_cell], [&](Number* even, Number* odd) {
+      set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), query_->deep_water(),
+                             volume_centers_[volume_cell].z, even, odd);
+    });
+  }
+
   // Builds the cells from number `built` on.
   template <bool kSurface, typename Row, typename Cell>
   void build(const std::vector<CellCenter>& centers, const std::vector<Row>& rows,
              const std::array<ColumnRange, kWeights>& of_weight, std::vector<Cell>& cells,
              std::size_t& built) {
     if (cells.size() < centers.size()) cells.resize(centers.size());
-    const bool deep_water = query_->deep_water();
+    const bool same = kSurface || query_->deep_water();
     while (built < centers.size()) {
       const std::size_t count = std::min(centers.size() - built, kCellsTogether);
       for (std::size_t n = 0; n < count; ++n) {
-        set_weights<kSurface, Number>(*query_->expansion, table(), query_->sea->amplitude_factor(),
-                                      deep_water, centers[built + n], n, work_);
+        set_weights<Number>(*query_->expansion, table(),
+                            turns_of(kSurface ? built + n : column_of_volume_[built + n]),
+                            kSurface ? amplitudes_of_surface() : amplitudes_of(built + n), same, n, work_);
       }
       const ComponentSlots& slots = query_->expansion->slots;
       if (slots.any()) {
-        accumulate_slots<Number>(slots, table().powers, kSurface || deep_water, count, work_);
+        accumulate_slots<Number>(slots, table().powers, same, count, work_);
       } else {
-        accumulate<Number>(rows, of_weight, deep_water, count, work_);
+        accumulate<Number>(rows, of_weight, same, count, work_);
       }
       for (std::size_t n = 0; n < count; ++n) {
         std::conditional_t<kSurface, MonomialCoefficients<Number>, HarmonicCoefficients<Number>> coefficients;
@@ -198,7 +221,7 @@ class SeaCells {
   const WaveQuery* query_ = nullptr;
   CellIndex surface_index_, volume_index_;
   std::vector<CellCenter> surface_centers_, volume_centers_;
-  std::vector<std::uint32_t> column_of_volume_;
+  std::vector<std::uint32_t> column_of_volume_, level_of_volume_;
   std::vector<SurfaceCell<Number>> surfaces_;
   std::vector<VolumeCell<Number>> volumes_;
   double reach_ = 0.0;  // of a neighbour's expansion

@@ -148,13 +148,9 @@ class RoundUnits {
       Unit& unit = units_[n];
       if (unit.dry) continue;
       const UnitPlace<Number>& place = places_[n];
-      double z = 0.0;
-      for (std::size_t lane = 0; lane < kUnit<Number>; ++lane) {
-        const double eta = static_cast<double>(place.eta[lane]);
-        z += (static_cast<double>(place.zeta[lane]) - eta) / (1.0 + eta * patch_->per_depth);
-      }
-      unit.volume_cell = cells_.find_volume(unit.surface_cell, mean_of(place.x1), mean_of(place.x2),
-                                            z / static_cast<double>(kUnit<Number>));
+      const double eta = mean_of(place.eta);
+      const double z = (mean_of(place.zeta) - eta) / (1.0 + eta * patch_->per_depth);
+      unit.volume_cell = cells_.find_volume(unit.surface_cell, mean_of(place.x1), mean_of(place.x2), z);
     }
     cells_.build_volume();
   }
