@@ -280,11 +280,11 @@ HWY_INLINE void add_products(const ExpansionRow<Number, kColumns>* rows, const C
   }
 }
 
-// Sets the sums of all columns for `count` cells from their weights.
+// Sets the sums of all columns for `count` cells from their weights. same: as in set_weights().
 template <typename Number, std::size_t kColumns>
 HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& rows,
-                             const std::array<ColumnRange, kWeights>& of_weight, bool deep_water,
-                             std::size_t count, CellWorkspace<Number>& work) {
+                             const std::array<ColumnRange, kWeights>& of_weight, bool same, std::size_t count,
+                             CellWorkspace<Number>& work) {
   for (std::size_t cell = 0; cell < count; ++cell) work.sums[cell].columns.fill(Number{0});
   // The rows of a block of components stay in the nearest cache while all cells pass. It also keeps the
   // chains of additions short.
@@ -294,9 +294,8 @@ HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& 
     const auto add = [&]<std::size_t kCells>(std::size_t first,
                                              std::integral_constant<std::size_t, kCells> /*number*/) {
       for (std::size_t w = 0; w < kWeights; ++w) {
-        // In deep water the sinh is the cosh.
         const bool odd = w >= static_cast<std::size_t>(Weight::kCosineOdd);
-        const std::size_t from = odd && deep_water ? w - 2 : w;
+        const std::size_t from = odd && same ? w - 2 : w;
         std::array<const Number*, kCells> weights;
         std::array<Number*, kCells> sums;
         for (std::size_t c = 0; c < kCells; ++c) {
@@ -346,8 +345,7 @@ HWY_INLINE void add_steps(const StepPowers<Number>* powers,
   }
 }
 
-// Sets the sums of all slots for `count` cells from their pairs of weights. same: whether even and odd
-// degrees have the same.
+// Sets the sums of all slots for `count` cells from their pairs of weights. same: as in set_weights().
 template <typename Number>
 HWY_NOINLINE void accumulate_slots(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
                                    bool same, std::size_t count, CellWorkspace<Number>& work) {

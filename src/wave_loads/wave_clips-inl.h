@@ -121,7 +121,7 @@ class Clips {
     for (std::size_t row = 0; row < kRows; ++row) {
       V sum = all[row];
       if constexpr (kUnit<Number> == 4) sum = sum + hn::Reverse4(LanesOf<Number>(), sum);
-      if constexpr (kUnit < Number >> 1) sum = sum + hn::Reverse2(LanesOf<Number>(), sum);
+      if constexpr (kUnit<Number> >= 2) sum = sum + hn::Reverse2(LanesOf<Number>(), sum);
       hn::Store(sum, LanesOf<Number>(), numbers[row].data());
     }
     for (std::size_t n = 0; n < count; ++n) {

@@ -89,12 +89,6 @@ HWY_INLINE Place<Number> place_of(const PatchQuery<Number>& query, const Vectors
   return {k * along(query.e1_B), k * along(query.e2_B), k * (along(query.up_B) + set<Number>(query.zeta))};
 }
 
-template <typename Number>
-struct SurfaceAtPatch {
-  SurfaceValues<Number> values;
-  VectorOf<Number> reach;  // distance of m from the cell's centre
-};
-
 // z' of the patches' centroids.
 template <typename Number>
 HWY_INLINE VectorOf<Number> stretched(const PatchQuery<Number>& query, const Place<Number>& place,
