@@ -68,38 +68,34 @@ HWY_INLINE CubicBounds<Number> in_metres(const PatchQuery<Number>& query, const 
           hn::IfThenElseZero(valid, bounds.fourth) * set<Number>(k * k * k)};
 }
 
-// The vectors e1, e2 and up in all lanes.
+// The columns of E, whose rows are e1, e2 and up: each B axis along these.
 template <typename Number>
-HWY_INLINE std::array<Vectors3<Number>, 3> axes_of(const PatchQuery<Number>& query) {
-  return {axis_of<Number>(query.e1_B), axis_of<Number>(query.e2_B), axis_of<Number>(query.up_B)};
+HWY_INLINE std::array<Vectors3<Number>, 3> body_axes_of(const PatchQuery<Number>& query) {
+  const auto column = [&](std::size_t axis) HWY_ATTR {
+    return axis_of<Number>({query.e1_B[axis], query.e2_B[axis], query.up_B[axis]});
+  };
+  return {column(0), column(1), column(2)};
 }
 
 // What follows is given along e1, e2 and up over 1 / k_max, and returned in B axes and metres.
 template <typename Number>
 HWY_INLINE Vectors3<Number> gradient_in_body_axes(const PatchQuery<Number>& query,
                                                   const Vectors3<Number>& gradient) {
-  const auto [e1, e2, up] = axes_of<Number>(query);
-  const auto along = [](const Vectors3<Number>& g, const auto& a, const auto& b, const auto& c)
-                         HWY_ATTR { return hn::MulAdd(g.x, a, hn::MulAdd(g.y, b, g.z * c)); };
-  return {along(gradient, e1.x, e2.x, up.x), along(gradient, e1.y, e2.y, up.y),
-          along(gradient, e1.z, e2.z, up.z)};
+  const auto [x, y, z] = body_axes_of<Number>(query);
+  return {dot<Number>(gradient, x), dot<Number>(gradient, y), dot<Number>(gradient, z)};
 }
 
 // E^T H E
 template <typename Number>
 HWY_INLINE Symmetric<Number> hessian_in_body_axes(const PatchQuery<Number>& query,
                                                   const Symmetric<Number>& hessian) {
-  const auto [e1, e2, up] = axes_of<Number>(query);
+  const auto [x, y, z] = body_axes_of<Number>(query);
   const auto k = set<Number>(query.k_max);
-  const Vectors3<Number> x = product<Number>(hessian, {e1.x, e2.x, up.x});
-  const Vectors3<Number> y = product<Number>(hessian, {e1.y, e2.y, up.y});
-  const Vectors3<Number> z = product<Number>(hessian, {e1.z, e2.z, up.z});
-  const auto entry = [&](const auto& a, const auto& b, const auto& c, const Vectors3<Number>& column)
-                         HWY_ATTR {
-                           return k * dot<Number>({a, b, c}, column);
-                         };
-  return {entry(e1.x, e2.x, up.x, x), entry(e1.y, e2.y, up.y, y), entry(e1.z, e2.z, up.z, z),
-          entry(e1.x, e2.x, up.x, y), entry(e1.x, e2.x, up.x, z), entry(e1.y, e2.y, up.y, z)};
+  const Vectors3<Number> along_x = product<Number>(hessian, x);
+  const Vectors3<Number> along_y = product<Number>(hessian, y);
+  const Vectors3<Number> along_z = product<Number>(hessian, z);
+  return {k * dot<Number>(x, along_x), k * dot<Number>(y, along_y), k * dot<Number>(z, along_z),
+          k * dot<Number>(x, along_y), k * dot<Number>(x, along_z), k * dot<Number>(y, along_z)};
 }
 
 // The same of a function that does not depend on the height, by its second derivatives h_11, h_22 and h_12.
@@ -120,8 +116,9 @@ HWY_INLINE Symmetric<Number> level_hessian_in_body_axes(const PatchQuery<Number>
           entry(e1.x, e2.x, first.z, second.z), entry(e1.y, e2.y, first.z, second.z)};
 }
 
-// radius: [m]. surface, surface_cells: the cell of the surface; f: of the volume, unused where the pressure
-// is hydrostatic.
+// radius: [m]. surface, f: the expansions at the place, of the elevation and of the pressure; *_bounds,
+// *_reach: of the cells they come from, and how far the place is from these cells' centres, over 1 / k_max. f
+// and its cell's are not used where the pressure is hydrostatic.
 template <typename Number>
 HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Place<Number>& place,
                                        const VectorOf<Number>& radius, const SurfaceValues<Number>& surface,
