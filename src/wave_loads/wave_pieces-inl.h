@@ -127,7 +127,7 @@ class Pieces {
           point &= from_center == triangles.corners[row % 3][i];
           piece[row] = static_cast<Number>(block.center[row % 3][lane]) + static_cast<Number>(from_center);
         }
-        if (!point) cut(piece, static_cast<Number>(largest * largest));
+        if (!point) cut(shaped(piece), static_cast<Number>(largest * largest));
       }
     }
     fill_unit();
@@ -136,7 +136,9 @@ class Pieces {
   // Adds the four quarters of a piece: it and its halves are bisected across their longest edges. They are
   // neighbours, so that they fill a unit. unit: of pieces.
   void quarter(const Unit& unit, std::size_t lane) {
-    bisect(read(unit.block, lane), 2, [this](const Piece& piece) { add(piece); });
+    bisect(shaped(read(unit.block, lane)), [this](const ShapedPiece& half) {
+      bisect(half, [this](const ShapedPiece& quarter) { add(quarter.corners); });
+    });
     fill_unit();
   }
 
@@ -200,62 +202,61 @@ class Pieces {
     while (count_ % kUnit<Number> != 0) add(point);
   }
 
-  static Number squared_distance(const Piece& piece, std::size_t from, std::size_t to) {
-    Number squared = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Number difference = piece[3 * to + axis] - piece[3 * from + axis];
-      squared += difference * difference;
+  // With the squares of its edges' lengths: edge i leads from corner i to the next. Those of parts follow
+  // from them, so that nothing else is computed of a part that is cut on.
+  struct ShapedPiece {
+    Piece corners;
+    std::array<Number, 3> squares;
+
+    // From the centroid to the farthest corner, which is opposite the shortest edge.
+    Number squared_radius() const {
+      const Number shortest = std::min(squares[0], std::min(squares[1], squares[2]));
+      return (2 * (squares[0] + squares[1] + squares[2]) - 3 * shortest) / 9;
     }
-    return squared;
+  };
+
+  static ShapedPiece shaped(const Piece& corners) {
+    ShapedPiece piece{corners, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Number difference = corners[3 * ((i + 1) % 3) + axis] - corners[3 * i + axis];
+        piece.squares[i] += difference * difference;
+      }
+    }
+    return piece;
   }
 
   // Adds the parts of a piece in an order in which neighbours follow each other.
-  void cut(const Piece& piece, Number largest_squared) {
+  void cut(const ShapedPiece& piece, Number largest_squared) {
     // A needle of a small area may be longer than any number of pieces.
-    if (squared_radius(piece) <= largest_squared || new_count() > kMaxUnits) {
-      add(piece);
+    if (piece.squared_radius() <= largest_squared || new_count() > kMaxUnits) {
+      add(piece.corners);
     } else {
-      bisect(piece, 1, [&](const Piece& part) { cut(part, largest_squared); });
+      bisect(piece, [&](const ShapedPiece& half) { cut(half, largest_squared); });
     }
   }
 
-  static Number squared_radius(const Piece& piece) {
-    Number largest = 0;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      Number squared = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Number center = (piece[axis] + piece[3 + axis] + piece[6 + axis]) / Number{3};
-        squared += (piece[3 * corner + axis] - center) * (piece[3 * corner + axis] - center);
-      }
-      largest = std::max(largest, squared);
-    }
-    return largest;
-  }
-
-  // Calls take() for the parts of a piece.
+  // Calls take() for the halves on both sides of the median of the longest edge.
   template <typename Take>
-  static void bisect(const Piece& piece, int times, const Take& take) {
-    if (times == 0) return take(piece);
-    std::size_t longest = 0;
-    Number length = -1;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Number squared = squared_distance(piece, i, (i + 1) % 3);
-      if (squared > length) {
-        length = squared;
-        longest = i;
-      }
-    }
-    const std::size_t from = 3 * longest;
-    const std::size_t to = 3 * ((longest + 1) % 3);
-    Piece first = piece;
-    Piece second = piece;
+  static HWY_INLINE void bisect(const ShapedPiece& piece, const Take& take) {
+    const auto& squares = piece.squares;
+    std::size_t longest = squares[1] > squares[0] ? 1 : 0;
+    if (squares[2] > squares[longest]) longest = 2;
+    const std::size_t next = (longest + 1) % 3;
+    const std::size_t last = (longest + 2) % 3;
+    ShapedPiece first = piece;
+    ShapedPiece second = piece;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Number middle = Number{0.5} * (piece[from + axis] + piece[to + axis]);
-      first[to + axis] = middle;
-      second[from + axis] = middle;
+      const Number middle =
+          Number{0.5} * (piece.corners[3 * longest + axis] + piece.corners[3 * next + axis]);
+      first.corners[3 * next + axis] = middle;
+      second.corners[3 * longest + axis] = middle;
     }
-    bisect(first, times - 1, take);
-    bisect(second, times - 1, take);
+    first.squares[longest] = second.squares[longest] = squares[longest] / 4;
+    first.squares[next] = second.squares[last] =
+        std::max((2 * (squares[next] + squares[last]) - squares[longest]) / 4, Number{0});
+    take(first);
+    take(second);
   }
 
   std::vector<Block> blocks_;
