@@ -119,10 +119,7 @@ class Clips {
                                    integrals.volume_error};
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> numbers;
     for (std::size_t row = 0; row < kRows; ++row) {
-      V sum = all[row];
-      if constexpr (kUnit<Number> == 4) sum = sum + hn::Reverse4(LanesOf<Number>(), sum);
-      if constexpr (kUnit<Number> >= 2) sum = sum + hn::Reverse2(LanesOf<Number>(), sum);
-      hn::Store(sum, LanesOf<Number>(), numbers[row].data());
+      hn::Store(sums_of_units<Number>(all[row]), LanesOf<Number>(), numbers[row].data());
     }
     for (std::size_t n = 0; n < count; ++n) {
       results.add_to(tasks[n].result, &numbers[0][n * kUnit<Number>], kLanes<Number>);

@@ -66,8 +66,7 @@ class Descent {
     constexpr int kMaxRounds = 24;
     bool capped = false;
     for (int round = 0; round < kMaxRounds && work_.results.total() > query_.budget; ++round) {
-      capped = patches_ > kMaxPatches || cells().surface_count() > kMaxCells / 2 ||
-               cells().volume_count() > kMaxCells / 2;
+      capped = patches_ > kMaxPatches || cells().full();
       if (capped) break;
       if (!refine()) break;
       evaluate_round();

@@ -82,6 +82,15 @@ HWY_INLINE VectorOf<Number> spread_units(const Place& place) {
   return combine_units<Number>([&](std::size_t n) { return hn::Set(UnitOf<Number>(), *place(n)); });
 }
 
+// The sum over the lanes of each unit, in all lanes of the unit.
+template <typename Number>
+HWY_INLINE VectorOf<Number> sums_of_units(VectorOf<Number> numbers) {
+  const LanesOf<Number> d;
+  if constexpr (kUnit<Number> == 4) numbers = numbers + hn::Reverse4(d, numbers);
+  if constexpr (kUnit<Number> >= 2) numbers = numbers + hn::Reverse2(d, numbers);
+  return numbers;
+}
+
 template <typename Number>
 struct Vectors3 {
   VectorOf<Number> x, y, z;

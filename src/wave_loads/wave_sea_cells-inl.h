@@ -23,107 +23,137 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Numbers of cells by their place in a grid, in the order of their first use.
-class CellIndex {
+// The places in a grid that have been asked for, numbered in the order of their first use, and the cell at
+// each: kNone until one is put there.
+class GridPlaces {
  public:
+  struct Indices {
+    std::int32_t i, j, k;
+    bool operator==(const Indices&) const = default;
+  };
+
   void clear() {
     ++generation_;
-    count_ = 0;
+    indices_.clear();
+    cells_.clear();
   }
-  std::uint32_t count() const { return count_; }
+  std::uint32_t count() const { return static_cast<std::uint32_t>(indices_.size()); }
 
-  // The cell's number; kNone if it has not been used.
-  std::uint32_t find(std::int32_t i, std::int32_t j, std::int32_t k) const {
-    for (std::uint32_t hash = hash_of(i, j, k);; ++hash) {
-      const Slot& slot = slots_[hash % kSlots];
-      if (slot.generation != generation_) return kNone;
-      if (slot.i == i && slot.j == j && slot.k == k) return slot.number;
+  // Numbers a place that has not been asked for.
+  std::uint32_t number_of(const Indices& at) {
+    Slot& slot = slots_[slot_of(at)];
+    if (slot.generation != generation_) {
+      slot = {generation_, count()};
+      indices_.push_back(at);
+      cells_.push_back(kNone);
     }
+    return slot.number;
   }
-  // Numbers a cell that has not been used.
-  std::uint32_t add(std::int32_t i, std::int32_t j, std::int32_t k) {
-    std::uint32_t hash = hash_of(i, j, k);
-    while (slots_[hash % kSlots].generation == generation_) ++hash;
-    slots_[hash % kSlots] = {generation_, i, j, k, count_};
-    return count_++;
+  const Indices& indices(std::uint32_t number) const { return indices_[number]; }
+  std::uint32_t cell(std::uint32_t number) const { return cells_[number]; }
+  std::uint32_t cell_at(const Indices& at) const {
+    const Slot& slot = slots_[slot_of(at)];
+    return slot.generation == generation_ ? cells_[slot.number] : kNone;
   }
+  void put(std::uint32_t number, std::uint32_t cell) { cells_[number] = cell; }
 
  private:
-  static std::uint32_t hash_of(std::int32_t i, std::int32_t j, std::int32_t k) {
-    const std::uint32_t hash = static_cast<std::uint32_t>(i) * 73856093U ^
-                               static_cast<std::uint32_t>(j) * 19349663U ^
-                               static_cast<std::uint32_t>(k) * 83492791U;
-    return hash ^ hash >> 15U;
+  // The slot that holds a place, or would hold it.
+  std::uint32_t slot_of(const Indices& at) const {
+    const std::uint32_t product = static_cast<std::uint32_t>(at.i) * 73856093U ^
+                                  static_cast<std::uint32_t>(at.j) * 19349663U ^
+                                  static_cast<std::uint32_t>(at.k) * 83492791U;
+    std::uint32_t slot = (product ^ product >> 15U) % kSlots;
+    while (slots_[slot].generation == generation_ && indices_[slots_[slot].number] != at) {
+      slot = (slot + 1) % kSlots;
+    }
+    return slot;
   }
 
-  // More than there can be cells: kMaxCells / 2 before a round, and one for each unit of a round.
+  // More than there can be places: kMaxPlaces before a round, and one for each unit of a round.
   static constexpr std::size_t kSlots = 32'768;
-  static_assert(kSlots > kMaxCells / 2 + kMaxUnits + 4'096);
+  static_assert(kSlots > kMaxPlaces + kMaxUnits + 4'096);
   struct Slot {
     std::uint32_t generation = 0;
-    std::int32_t i = 0, j = 0, k = 0;
     std::uint32_t number = 0;
   };
   std::uint32_t generation_ = 0;
-  std::uint32_t count_ = 0;
   std::vector<Slot> slots_ = std::vector<Slot>(kSlots);
+  std::vector<Indices> indices_;
+  std::vector<std::uint32_t> cells_;
 };
 
-// Cells are found, which gives a new one its number and centre, and built before they are read. A patch need
-// not be in the cell that it is given: bounds depend on its distance from the centre.
+// A place in the grid is asked for, which numbers it; a cell is put there or a neighbour is used, and cells
+// are built before they are read. A patch need not be in the cell that it is given: bounds depend on its
+// distance from the centre.
 template <typename Number>
 class SeaCells {
  public:
   void start(const WaveQuery& query) {
     query_ = &query;
-    surface_index_.clear();
-    volume_index_.clear();
+    surface_places_.clear();
+    volume_places_.clear();
     surface_centers_.clear();
     volume_centers_.clear();
     column_of_volume_.clear();
     level_of_volume_.clear();
     surfaces_built_ = volumes_built_ = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) per_edge_[axis] = 1.0 / query.grid.edge[axis];
     reach_ = kReach * std::hypot(query.grid.edge[0], query.grid.edge[1], query.grid.edge[2]);
     work_.start(*query.expansion);
     set_phases(query, work_.phases);
   }
 
-  std::uint32_t find_surface(double x1, double x2) {
-    const std::int32_t i = place(x1, 0);
-    const std::int32_t j = place(x2, 1);
-    std::uint32_t cell = surface_index_.find(i, j, 0);
-    if (cell != kNone) return cell;
-    const std::int32_t next_i = x1 < center_of(i, 0) ? i - 1 : i + 1;
-    const std::int32_t next_j = x2 < center_of(j, 1) ? j - 1 : j + 1;
-    const auto reaches = [&](std::uint32_t other) {
-      return other != kNone && within_reach(x1 - surface_centers_[other].x1, x2 - surface_centers_[other].x2);
-    };
-    cell = surface_index_.find(next_i, j, 0);
-    if (reaches(cell)) return cell;
-    cell = surface_index_.find(i, next_j, 0);
-    if (reaches(cell)) return cell;
-    surface_centers_.push_back({center_of(i, 0), center_of(j, 1), 0.0});
-    return surface_index_.add(i, j, 0);
+  const GridPlaces& surface_places() const { return surface_places_; }
+  const GridPlaces& volume_places() const { return volume_places_; }
+
+  std::uint32_t surface_place(double x1, double x2) {
+    return surface_places_.number_of({place(x1, 0), place(x2, 1), 0});
   }
   // Below or above a cell of the surface; z: z' over 1 / k_max.
-  std::uint32_t find_volume(std::uint32_t surface_cell, double x1, double x2, double z) {
+  std::uint32_t volume_place(std::uint32_t surface_cell, double z) {
     // The highest cells reach up to the highest patches. All others are twice as high: short waves, which
     // limit the size of a cell, do not reach down to them.
     const std::int32_t depth = std::max(-1 - place(z, 2), 0);
-    const std::int32_t k = (depth + 1) / 2;
-    const auto column = static_cast<std::int32_t>(surface_cell);
-    std::uint32_t cell = volume_index_.find(column, 0, k);
-    if (cell != kNone) return cell;
-    const CellCenter& above = surface_centers_[surface_cell];
-    const double height = query_->grid.origin[2] - (k == 0 ? 0.5 : 2.0 * k) * query_->grid.edge[2];
-    cell = volume_index_.find(column, 0, z < height ? k + 1 : k - 1);
-    if (cell != kNone && within_reach(x1 - above.x1, x2 - above.x2, z - volume_centers_[cell].z)) {
-      return cell;
-    }
-    volume_centers_.push_back({above.x1, above.x2, height});
-    column_of_volume_.push_back(surface_cell);
-    level_of_volume_.push_back(static_cast<std::uint32_t>(k));
-    return volume_index_.add(column, 0, k);
+    return volume_places_.number_of({static_cast<std::int32_t>(surface_cell), 0, (depth + 1) / 2});
+  }
+
+  // The cell beside a place whose expansion reaches a point of it; kNone if there is none.
+  std::uint32_t surface_beside(std::uint32_t place, double x1, double x2) const {
+    const auto [i, j, k] = surface_places_.indices(place);
+    const auto reaches = [&](std::uint32_t cell) {
+      return cell != kNone && within_reach(x1 - surface_centers_[cell].x1, x2 - surface_centers_[cell].x2);
+    };
+    std::uint32_t cell = surface_places_.cell_at({x1 < center_of(i, 0) ? i - 1 : i + 1, j, k});
+    if (reaches(cell)) return cell;
+    cell = surface_places_.cell_at({i, x2 < center_of(j, 1) ? j - 1 : j + 1, k});
+    return reaches(cell) ? cell : kNone;
+  }
+  std::uint32_t volume_beside(std::uint32_t place, double x1, double x2, double z) const {
+    const auto [column, zero, level] = volume_places_.indices(place);
+    const std::uint32_t cell =
+        volume_places_.cell_at({column, zero, z < height_of(level) ? level + 1 : level - 1});
+    if (cell == kNone) return kNone;
+    const CellCenter& center = volume_centers_[cell];
+    return within_reach(x1 - center.x1, x2 - center.x2, z - center.z) ? cell : kNone;
+  }
+
+  std::uint32_t put_surface(std::uint32_t place) {
+    const auto [i, j, k] = surface_places_.indices(place);
+    const auto cell = static_cast<std::uint32_t>(surface_centers_.size());
+    surface_centers_.push_back({center_of(i, 0), center_of(j, 1), 0.0});
+    surface_places_.put(place, cell);
+    return cell;
+  }
+  std::uint32_t put_volume(std::uint32_t place) {
+    const auto [column, zero, level] = volume_places_.indices(place);
+    const auto cell = static_cast<std::uint32_t>(volume_centers_.size());
+    const CellCenter& above = surface_centers_[static_cast<std::size_t>(column)];
+    volume_centers_.push_back({above.x1, above.x2, height_of(level)});
+    column_of_volume_.push_back(static_cast<std::uint32_t>(column));
+    level_of_volume_.push_back(static_cast<std::uint32_t>(level));
+    volume_places_.put(place, cell);
+    return cell;
   }
 
   void build_surface() {
@@ -133,6 +163,11 @@ class SeaCells {
     build<false>(volume_centers_, table().harmonics, kHarmonicColumnsOfWeight, volumes_, volumes_built_);
   }
 
+  // Whether no round may add any.
+  bool full() const {
+    return std::max(surface_count(), volume_count()) > kMaxCells ||
+           std::max(surface_places_.count(), volume_places_.count()) > kMaxPlaces;
+  }
   std::size_t surface_count() const { return surface_centers_.size(); }
   std::size_t volume_count() const { return volume_centers_.size(); }
   const SurfaceCell<Number>& surface(std::size_t cell) const { return surfaces_[cell]; }
@@ -142,8 +177,8 @@ class SeaCells {
   std::uint32_t column_of_volume(std::size_t cell) const { return column_of_volume_[cell]; }
 
  private:
-  // A patch whose own cell has not been built takes a neighbour within this share of a cell's diagonal: a new
-  // cell costs more than what the neighbour's expansion leaves out there.
+  // The share of a cell's diagonal within which a neighbour's expansion is used: a new cell costs more than
+  // what the neighbour's leaves out there.
   static constexpr double kReach = 0.475;
 
   bool within_reach(double x1, double x2, double z = 0.0) const {
@@ -153,10 +188,13 @@ class SeaCells {
     constexpr double kFarthest = 1e9;
     const CellGrid& grid = query_->grid;
     return static_cast<std::int32_t>(
-        std::clamp(std::floor((x - grid.origin[axis]) / grid.edge[axis]), -kFarthest, kFarthest));
+        std::clamp(std::floor((x - grid.origin[axis]) * per_edge_[axis]), -kFarthest, kFarthest));
   }
   double center_of(std::int32_t cell, std::size_t axis) const {
     return query_->grid.origin[axis] + (cell + 0.5) * query_->grid.edge[axis];
+  }
+  double height_of(std::int32_t level) const {
+    return query_->grid.origin[2] - (level == 0 ? 0.5 : 2.0 * level) * query_->grid.edge[2];
   }
 
   const ExpansionTable<Number>& table() const {
@@ -219,11 +257,12 @@ class SeaCells {
   }
 
   const WaveQuery* query_ = nullptr;
-  CellIndex surface_index_, volume_index_;
+  GridPlaces surface_places_, volume_places_;
   std::vector<CellCenter> surface_centers_, volume_centers_;
   std::vector<std::uint32_t> column_of_volume_, level_of_volume_;
   std::vector<SurfaceCell<Number>> surfaces_;
   std::vector<VolumeCell<Number>> volumes_;
+  std::array<double, 3> per_edge_{};
   double reach_ = 0.0;  // of a neighbour's expansion
   std::size_t surfaces_built_ = 0, volumes_built_ = 0;
   CellWorkspace<Number> work_;

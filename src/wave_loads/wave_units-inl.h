@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -32,6 +33,12 @@ template <typename Number>
 struct UnitPlace {
   std::array<Number, kUnit<Number>> x1, x2, zeta;
   std::array<Number, kUnit<Number>> eta, eta_1, eta_2, eta_11, eta_12, eta_22, eta_third;
+};
+
+// The mean place of a unit's patches over 1 / k_max; z: z', known once the elevation is.
+template <typename Number>
+struct UnitMean {
+  Number x1, x2, z;
 };
 
 // Of a round and of one cell. Where there are too few, the first repeats, and only `count` results are used.
@@ -71,8 +78,12 @@ class RoundUnits {
   // Adds the new pieces, and finds what is known of all units of the round from the surface alone.
   void evaluate_surface() {
     pieces_->take_new([this](const Unit& unit) { units_.push_back(unit); });
-    if (places_.size() < units_.size()) places_.resize(units_.size());
+    if (places_.size() < units_.size()) {
+      places_.resize(units_.size());
+      means_.resize(units_.size());
+    }
     place_units();
+    find_surface_cells();
     link_units(cells_.surface_count(), &Unit::surface_cell);
     evaluate_elevations();
   }
@@ -103,12 +114,6 @@ class RoundUnits {
   bool holds_pieces(const Batch<Number>& batch) const { return units_[batch.units[0]].of_pieces; }
 
  private:
-  static double mean_of(const std::array<Number, kUnit<Number>>& numbers) {
-    double sum = 0.0;
-    for (const Number number : numbers) sum += static_cast<double>(number);
-    return sum / static_cast<double>(kUnit<Number>);
-  }
-
   void place_units() {
     Batch<Number> batch;
     for (std::size_t first = 0; first < units_.size(); first += batch.count) {
@@ -125,11 +130,22 @@ class RoundUnits {
       write(batch, place.x1, &UnitPlace<Number>::x1);
       write(batch, place.x2, &UnitPlace<Number>::x2);
       write(batch, place.zeta, &UnitPlace<Number>::zeta);
-      for (std::size_t n = 0; n < batch.count; ++n) {
-        const UnitPlace<Number>& of_unit = places_[first + n];
-        units_[first + n].surface_cell = cells_.find_surface(mean_of(of_unit.x1), mean_of(of_unit.x2));
-      }
+      write_mean(batch, place.x1, &UnitMean<Number>::x1);
+      write_mean(batch, place.x2, &UnitMean<Number>::x2);
     }
+  }
+
+  void find_surface_cells() {
+    for (std::size_t n = 0; n < units_.size(); ++n) {
+      const UnitMean<Number>& mean = means_[n];
+      units_[n].surface_cell = cells_.surface_place(mean.x1, mean.x2);
+    }
+    take_cells(
+        cells_.surface_places(), &Unit::surface_cell,
+        [this](std::uint32_t place, std::uint32_t n) {
+          return cells_.surface_beside(place, means_[n].x1, means_[n].x2);
+        },
+        [this](std::uint32_t place) { return cells_.put_surface(place); });
     cells_.build_surface();
   }
 
@@ -146,13 +162,42 @@ class RoundUnits {
   void find_volume_cells() {
     for (std::size_t n = 0; n < units_.size(); ++n) {
       Unit& unit = units_[n];
-      if (unit.dry) continue;
-      const UnitPlace<Number>& place = places_[n];
-      const double eta = mean_of(place.eta);
-      const double z = (mean_of(place.zeta) - eta) / (1.0 + eta * patch_->per_depth);
-      unit.volume_cell = cells_.find_volume(unit.surface_cell, mean_of(place.x1), mean_of(place.x2), z);
+      if (!unit.dry) unit.volume_cell = cells_.volume_place(unit.surface_cell, means_[n].z);
     }
+    take_cells(
+        cells_.volume_places(), &Unit::volume_cell,
+        [this](std::uint32_t place, std::uint32_t n) {
+          return cells_.volume_beside(place, means_[n].x1, means_[n].x2, means_[n].z);
+        },
+        [this](std::uint32_t place) { return cells_.put_volume(place); });
     cells_.build_volume();
+  }
+
+  // Gives cells to the units that are not dry. cell: on entry the units' places. beside(place, unit): a
+  // neighbour's cell that reaches the unit, or kNone; put(place): a new cell.
+  template <typename Beside, typename Put>
+  void take_cells(const GridPlaces& places, std::uint32_t Unit::*cell, const Beside& beside, const Put& put) {
+    link_units(places.count(), cell);
+    // Places that most units ask for come first, so that their cells serve those of few units as well.
+    wanted_.clear();
+    for (std::uint32_t place = 0; place < places.count(); ++place) {
+      std::uint32_t count = 0;
+      for (std::uint32_t n = heads_[place]; n != kNone; n = units_[n].next) ++count;
+      if (count > 0) wanted_.emplace_back(count, place);
+    }
+    std::sort(wanted_.begin(), wanted_.end(), [](const auto& a, const auto& b) {
+      return a.first > b.first || (a.first == b.first && a.second < b.second);
+    });
+    for (const auto& [count, place] : wanted_) {
+      std::uint32_t of_place = places.cell(place);
+      std::uint32_t n = heads_[place];
+      if (of_place == kNone) {
+        while (n != kNone && (units_[n].*cell = beside(place, n)) != kNone) n = units_[n].next;
+        if (n != kNone) of_place = put(place);  // some unit is out of the neighbours' reach
+      }
+      if (of_place == kNone) continue;
+      for (n = heads_[place]; n != kNone; n = units_[n].next) units_[n].*cell = of_place;
+    }
   }
 
   void link_units(std::size_t cells, std::uint32_t Unit::*cell) {
@@ -194,6 +239,14 @@ class RoundUnits {
     }
   }
 
+  // Writes the mean over each unit.
+  HWY_INLINE void write_mean(const Batch<Number>& batch, const V& vector, Number UnitMean<Number>::*mean) {
+    alignas(64) std::array<Number, kLanes<Number>> numbers;
+    const V means = sums_of_units<Number>(vector) * set<Number>(1.0 / kUnit<Number>);
+    hn::Store(means, LanesOf<Number>(), numbers.data());
+    for (std::size_t n = 0; n < batch.count; ++n) means_[batch.units[n]].*mean = numbers[n * kUnit<Number>];
+  }
+
   void evaluate_elevations() {
     for_each_batch([this](const Batch<Number>& batch, std::size_t cell) HWY_ATTR {
       const CellCenter& center = cells_.surface_center(cell);
@@ -207,6 +260,8 @@ class RoundUnits {
       write(batch, values.eta_12, &UnitPlace<Number>::eta_12);
       write(batch, values.eta_22, &UnitPlace<Number>::eta_22);
       write(batch, values.third, &UnitPlace<Number>::eta_third);
+      const Place<Number> place{x1, x2, read(batch, &UnitPlace<Number>::zeta)};
+      write_mean(batch, stretched<Number>(*patch_, place, values.eta), &UnitMean<Number>::z);
       note_dry(batch, cell, x1, x2, values);
     });
   }
@@ -225,7 +280,8 @@ class RoundUnits {
     const std::uint32_t dry = bits_of<Number>(hn::Gt(range.low, set<Number>(0.0)));
     constexpr std::uint32_t kAll = (std::uint32_t{1} << kUnit<Number>)-1;
     for (std::size_t n = 0; n < batch.count; ++n) {
-      units_[batch.units[n]].dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
+      Unit& unit = units_[batch.units[n]];
+      unit.dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
     }
   }
 
@@ -235,7 +291,9 @@ class RoundUnits {
   SeaCells<Number> cells_;
   std::vector<Unit> units_;
   std::vector<UnitPlace<Number>> places_;  // of each
-  std::vector<std::uint32_t> heads_;       // the first unit of each cell
+  std::vector<UnitMean<Number>> means_;    // as well
+  std::vector<std::uint32_t> heads_;       // the first unit of each cell, or of each place
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted_;  // by how many units, and the place
 };
 
 }  // namespace HWY_NAMESPACE
