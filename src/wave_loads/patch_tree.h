@@ -23,22 +23,26 @@ inline constexpr std::size_t kSiblings = 4;
 
 using FourFloats = std::array<float, kSiblings>;
 
-// Up to four sibling patches. Unused lanes repeat the first patch's centre and have no area.
-struct alignas(64) PatchBlock {
-  std::array<FourFloats, 3> center;  // [m], surface centroid m, B axes, relative to the mesh's centre c
-  FourFloats radius;                 // [m], max |y| over the patch, y = x - m; rounded up
-  FourFloats area;                   // [m^2], rounded up
-  FourFloats mu2;                    // [m^4], bound on the integral of |y|^2 dA
-  FourFloats mu3;                    // [m^5], bound on the integral of |y|^3 dA
-  FourFloats nu3;                    // [m^5], bound on the norm of the integral of y_i y_j y_l n_k dA
-  std::array<FourFloats, 3> S;       // [m^2], integral of n_k dA
-  std::array<FourFloats, 9> N;       // [m^3], integral of y_i n_k dA, at 3 i + k
-  std::array<FourFloats, 18> P;      // [m^4], integral of y_i y_j n_k dA, at 3 kSymmetricPair[i][j] + k
+// Up to four sibling patches. Unused lanes repeat the first patch's centre and have no area. In the order in
+// which a descent asks for it, a cache line each: where patches are, how large and what they hold, the rest.
+struct PatchBlock {
+  // [m], surface centroid m, B axes, relative to the mesh's centre c
+  alignas(64) std::array<FourFloats, 3> center;
+  FourFloats radius;  // [m], max |y| over the patch, y = x - m; rounded up
+
+  alignas(64) FourFloats area;  // [m^2], rounded up
+  FourFloats mu3;               // [m^5], bound on the integral of |y|^3 dA
   // Of an inner patch: the index of its children's block. Of a leaf: that of its first triangle block.
   std::array<std::uint32_t, kSiblings> child;
   // Of an inner patch 0; of a leaf the number of its triangle blocks.
   std::array<std::uint8_t, kSiblings> triangle_blocks;
   std::uint8_t patches;  // 1 to kSiblings
+
+  alignas(64) FourFloats mu2;    // [m^4], bound on the integral of |y|^2 dA
+  FourFloats nu3;                // [m^5], bound on the norm of the integral of y_i y_j y_l n_k dA
+  std::array<FourFloats, 3> S;   // [m^2], integral of n_k dA
+  std::array<FourFloats, 9> N;   // [m^3], integral of y_i n_k dA, at 3 i + k
+  std::array<FourFloats, 18> P;  // [m^4], integral of y_i y_j n_k dA, at 3 kSymmetricPair[i][j] + k
 };
 
 // Up to four triangles of a leaf. Unused lanes are points at the leaf's centroid.

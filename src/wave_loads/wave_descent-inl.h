@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -42,7 +44,8 @@ struct DescentWorkspace {
   KeptModels<Number> kept;
   Clips<Number> clips;
   InheritedUnits<Number> inherited;
-  std::vector<std::uint32_t> level;  // blocks
+  std::vector<std::uint32_t> first;    // blocks
+  std::vector<std::uint32_t> refined;  // results
 };
 
 template <typename Number>
@@ -96,18 +99,22 @@ class Descent {
 
   // The blocks with which the descent begins: those whose patches are not likely to be refined.
   void add_first_level() {
-    std::vector<std::uint32_t>& level = work_.level;
-    level.assign(1, 0);
-    for (std::size_t n = 0; n < level.size();) {
-      const PatchBlock& block = query_.tree->blocks[level[n]];
-      if (!all_inner(block) || level.size() > kMaxFirst || !is_too_large(block)) {
+    std::vector<std::uint32_t>& first = work_.first;
+    first.assign(1, 0);
+    for (std::size_t n = 0; n < first.size();) {
+      const PatchBlock& block = query_.tree->blocks[first[n]];
+      if (!all_inner(block) || first.size() > kMaxFirst || !is_too_large(block)) {
         ++n;
         continue;
       }
-      level[n] = block.child[0];
-      for (std::size_t lane = 1; lane < block.patches; ++lane) level.push_back(block.child[lane]);
+      for (std::size_t lane = 0; lane < block.patches; ++lane) {
+        prefetch_places(query_.tree->blocks[block.child[lane]]);
+        prefetch_sizes(query_.tree->blocks[block.child[lane]]);
+      }
+      first[n] = block.child[0];
+      for (std::size_t lane = 1; lane < block.patches; ++lane) first.push_back(block.child[lane]);
     }
-    for (const std::uint32_t b : level) {
+    for (const std::uint32_t b : first) {
       const PatchBlock& block = query_.tree->blocks[b];
       // A model of a leaf that is too large would be of no use.
       bool large = false;
@@ -173,12 +180,8 @@ class Descent {
   bool refine() {
     const double limit = refinement_limit<Number>(work_.results.errors(), work_.results.expected(),
                                                   work_.roots, query_.budget);
-    const std::size_t count = work_.results.errors().size();
-    bool any = false;
-    for (std::size_t n = 0; n < count; ++n) {
-      const double error = static_cast<double>(work_.results.errors()[n]);
-      if (!(error > limit)) continue;
-      any = true;
+    find_results_above(limit);
+    for (const std::uint32_t n : work_.refined) {
       // What one round adds is capped as well: it may reach a new cell with each of its units.
       if (units_of_next_round() > kMaxUnits) break;
       const Unit unit = work_.results.unit_of(n);
@@ -186,8 +189,7 @@ class Descent {
       const KeptModel kept{work_.results.kept_models(n), static_cast<std::uint32_t>(n % kLanes<Number>)};
       const double remainder = kept.models == kNone ? std::numeric_limits<double>::infinity()
                                                     : static_cast<double>(work_.kept.remainder(kept));
-      // Where children are expected to be above the limit as well.
-      const bool grandchildren = static_cast<double>(work_.results.expected()[n]) > kChildrenAbove * limit;
+      const bool grandchildren = reaches_grandchildren(n, limit);
       work_.results.remove(n);
       if (unit.of_pieces) {
         work_.pieces.quarter(unit, lane);
@@ -203,7 +205,33 @@ class Descent {
         work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
       }
     }
-    return any;
+    return !work_.refined.empty();
+  }
+
+  // Whether a result's children are expected to be above the limit as well.
+  bool reaches_grandchildren(std::size_t n, double limit) const {
+    return static_cast<double>(work_.results.expected()[n]) > kChildrenAbove * limit;
+  }
+
+  // Finds the results that are refined, and fetches what is read of the tree before their children are.
+  void find_results_above(double limit) {
+    const LanesOf<Number> d;
+    const std::span<const Number> errors = work_.results.errors();
+    work_.refined.clear();
+    for (std::size_t first = 0; first < errors.size(); first += kLanes<Number>) {
+      const auto above = hn::Gt(hn::LoadU(d, &errors[first]), set<Number>(limit));
+      for (std::uint32_t lanes = bits_of<Number>(above); lanes != 0; lanes &= lanes - 1) {
+        const auto n =
+            static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(lanes));
+        work_.refined.push_back(n);
+        if (!reaches_grandchildren(n, limit)) continue;
+        const Unit& unit = work_.results.unit_of(n);
+        if (unit.of_pieces) continue;
+        const PatchBlock& block = query_.tree->blocks[unit.block];
+        const std::size_t lane = unit.first + n % kUnit<Number>;
+        if (block.triangle_blocks[lane] == 0) prefetch_sizes(query_.tree->blocks[block.child[lane]]);
+      }
+    }
   }
 
   std::size_t units_of_next_round() const {

@@ -115,6 +115,8 @@ class InheritedUnits {
 
   // Adds a block of patches that the patch of the model holds.
   void add_block(const PatchTree& tree, std::uint32_t block, const KeptModel& model) {
+    prefetch_places(tree.blocks[block]);
+    prefetch_moments(tree.blocks[block]);
     for_each_unit<Number>(tree.blocks[block], [&](std::uint32_t first) {
       tasks_.push_back({block, first, model});
     });

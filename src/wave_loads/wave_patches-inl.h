@@ -22,13 +22,25 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Calls take(first lane) for each unit of a block, and fetches the block, which is read once all units of the
-// round are known.
+// Fetch what is read of a block later: where its patches are; how large they are and what they hold; all but
+// where they are.
+inline constexpr std::size_t kCacheLine = 64;
+inline void prefetch_places(const PatchBlock& block) {
+  static_assert(offsetof(PatchBlock, area) == kCacheLine);
+  hwy::Prefetch(&block.center);
+}
+inline void prefetch_sizes(const PatchBlock& block) {
+  static_assert(offsetof(PatchBlock, mu2) == 2 * kCacheLine);
+  hwy::Prefetch(&block.area);
+}
+inline void prefetch_moments(const PatchBlock& block) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&block);
+  for (std::size_t at = kCacheLine; at < sizeof(PatchBlock); at += kCacheLine) hwy::Prefetch(bytes + at);
+}
+
+// Calls take(first lane) for each unit of a block.
 template <typename Number, typename Take>
 HWY_INLINE void for_each_unit(const PatchBlock& block, const Take& take) {
-  constexpr std::size_t kLine = 64;
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&block);
-  for (std::size_t at = 0; at < sizeof(PatchBlock); at += kLine) hwy::Prefetch(bytes + at);
   take(0U);  // without a look at the block, which may not be in the cache yet
   for (std::uint32_t first = kUnit<Number>; first < kSiblings && first < block.patches;
        first += kUnit<Number>) {

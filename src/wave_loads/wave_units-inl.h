@@ -67,6 +67,7 @@ class RoundUnits {
   void clear() { units_.clear(); }
 
   void add_block(std::uint32_t block) {
+    prefetch_places(query_->tree->blocks[block]);
     for_each_unit<Number>(query_->tree->blocks[block], [&](std::uint32_t first) {
       Unit unit;
       unit.block = block;
@@ -282,6 +283,7 @@ class RoundUnits {
     for (std::size_t n = 0; n < batch.count; ++n) {
       Unit& unit = units_[batch.units[n]];
       unit.dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
+      if (!unit.dry && !unit.of_pieces) prefetch_moments(query_->tree->blocks[unit.block]);
     }
   }
 
