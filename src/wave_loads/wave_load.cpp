@@ -101,7 +101,8 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   // What a cell leaves out at its corners, over the whole surface and relative to the tolerance. It grows
   // with the ninth power of the distance from the centre: on average it is less than a tenth of this.
   // Fine tolerances need more of the tolerance for themselves. Chosen for the least time at 1e-2 to 1e-5.
-  const double truncation_share = 3.0 * std::sqrt(body.tolerance / 1e-3);
+  const double of_usual = body.tolerance / 1e-3;
+  const double truncation_share = 3.0 * std::sqrt(of_usual) * std::min(1.0 + 0.1 * of_usual, 2.0);
   const double reach =
       expansion.reach_within(truncation_share * query.budget / (body.tree->area * sea.amplitude_factor()));
   const double k = expansion.k_max;
