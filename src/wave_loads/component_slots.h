@@ -1,8 +1,9 @@
 // How the components of a sea are laid out for sums by direction (sea_expansion.h).
 //
-// The components of one direction share a slot, or several of equal length. kSlotsOfBlock slots lie side by
-// side in a block; the components that lie side by side are a step. Slots are filled up by components without
-// an amplitude.
+// kLanesOfStep components lie side by side, which are a step; the steps of a block follow each other. Those
+// in one lane of a block have the same direction. Either every lane is a slot, or, in a layout of one block,
+// the lanes are rows of one lane for each direction, and a slot is all lanes of its direction. Lanes are
+// filled up by components without an amplitude.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +12,26 @@
 
 namespace buoyancy {
 
-inline constexpr std::size_t kSlotsOfBlock = 8;
+inline constexpr std::size_t kLanesOfStep = 16;
 
 struct ComponentSlots {
   std::size_t steps = 0;  // of a block; 0: the components are not sorted into slots
   std::size_t blocks = 0;
-  // By component: (block * steps + step) * kSlotsOfBlock + slot in the block; without slots its own number.
+  std::size_t count = 0;  // of slots
+  std::size_t rows = 1;   // of lanes that a slot has; only in one block more than 1
+  // By component: (block * steps + step) * kLanesOfStep + lane; without slots its own number.
   std::vector<std::uint32_t> places;
 
   bool any() const { return steps > 0; }
-  std::size_t place_count() const { return any() ? blocks * steps * kSlotsOfBlock : places.size(); }
-  // The slot of a place, counted through all blocks, and whether it is the slot's first.
+  std::size_t place_count() const { return any() ? blocks * steps * kLanesOfStep : places.size(); }
+  // The slot of a place, and whether the place is the slot's first.
   std::size_t slot_of(std::size_t place) const {
-    return place / (steps * kSlotsOfBlock) * kSlotsOfBlock + place % kSlotsOfBlock;
+    const std::size_t lane = place / (steps * kLanesOfStep) * kLanesOfStep + place % kLanesOfStep;
+    return rows > 1 ? lane % count : lane;
   }
-  bool begins_slot(std::size_t place) const { return place / kSlotsOfBlock % steps == 0; }
+  bool begins_slot(std::size_t place) const {
+    return place / kLanesOfStep % steps == 0 && (rows == 1 || place % kLanesOfStep < count);
+  }
 };
 
 // directions: [deg], of each component. No slots if a component on its own would cost less.

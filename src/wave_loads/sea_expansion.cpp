@@ -139,7 +139,7 @@ SlotFactors<double> slot_factors(double b) {
 void set_powers(double k, std::size_t lane, StepPowers<double>& powers) {
   double power = 1.0;
   for (auto& of_degree : powers.of_degree) {
-    of_degree[2 * lane] = of_degree[2 * lane + 1] = power;
+    of_degree[lane] = power;
     power *= k;
   }
 }
@@ -191,7 +191,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
   k2_rest = filled(prepared.k2_rest);
   ExpansionTable<double>& table = double_precision;
   if (slots.any()) {
-    table.slots.resize(slots.blocks * kSlotsOfBlock);
+    table.slots.resize(slots.count);
     table.powers.resize(slots.blocks * slots.steps);
   } else {
     table.harmonics.resize(filled_components);
@@ -216,7 +216,7 @@ SeaExpansion::SeaExpansion(const Sea& sea)
     const double angle = std::atan2(prepared.k2[i], prepared.k1[i]);
     if (slots.any()) {
       if (slots.begins_slot(place)) table.slots[slots.slot_of(place)] = slot_factors(angle);
-      set_powers(k, place % kSlotsOfBlock, table.powers[place / kSlotsOfBlock]);
+      set_powers(k, place % kLanesOfStep, table.powers[place / kLanesOfStep]);
     } else {
       fill_rows(k, angle, table.harmonics[place], table.monomials[place]);
     }

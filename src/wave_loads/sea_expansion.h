@@ -79,10 +79,10 @@ struct alignas(64) SlotFactors {
   std::array<Row, kNormDegree + 1> monomials{};  // by degree and q
 };
 
-// The powers (k / k_max)^l of a step's components, each twice.
+// The powers (k / k_max)^l of a step's components.
 template <typename Number>
 struct alignas(64) StepPowers {
-  std::array<std::array<Number, 2 * kSlotsOfBlock>, kNormDegree + 1> of_degree{};
+  std::array<std::array<Number, kLanesOfStep>, kNormDegree + 1> of_degree{};
 };
 
 // Components are filled up to a multiple of kColumnUnit by components without an amplitude.
@@ -92,9 +92,9 @@ struct ExpansionTable {
   // Of a sea without slots, per component.
   std::vector<ExpansionRow<Number, kHarmonicColumns>> harmonics;
   std::vector<ExpansionRow<Number, kMonomialColumns>> monomials;
-  // Of a sea with slots: block after block.
+  // Of a sea with slots.
   std::vector<SlotFactors<Number>> slots;
-  std::vector<StepPowers<Number>> powers;
+  std::vector<StepPowers<Number>> powers;  // block after block
   // Per component, lengths over 1 / k_max.
   std::vector<Number> amplitude;       // a
   std::vector<Number> amplitude_in_f;  // a / (1 + e^(-2 k h))

@@ -66,10 +66,17 @@ struct CellCenter {
 // As many cells are built in one go, at most.
 inline constexpr std::size_t kCellsTogether = 16;
 
-// Sums over the components of each slot of a block, of a weight times a power of k. The numbers of a slot lie
-// side by side: that of the cosine, then that of the sine.
+// Sums over the components of each lane of a block, of a weight times a power of k.
 template <typename Number>
-using PowerSums = StepPowers<Number>;
+struct alignas(64) LaneSums {
+  std::array<std::array<Number, kLanesOfStep>, kNormDegree + 1> of_degree{};
+  std::array<Number, kLanesOfStep> unused{};  // a vector may start in any lane
+};
+
+// The weights whose products are summed: of even powers of k, and of odd ones.
+struct PowerWeights {
+  Weight of_even, of_odd;
+};
 
 // Two numbers of every component, set when they are first asked for. Those of the first cells are kept for
 // all cells that share them.
@@ -114,10 +121,8 @@ struct CellWorkspace {
   ComponentRows<Number> amplitudes;
   // By cell, weight and component.
   std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
-  // Of a sea with slots, by cell and place of the component: for even and for odd degrees, the weight of the
-  // cosines of m b and that of the sines of an odd m.
-  std::array<std::array<std::vector<Number>, 2>, kCellsTogether> pairs;
-  std::vector<PowerSums<Number>> power_sums;  // by cell and block
+  // Of a sea with slots, by cell, weights and block.
+  std::vector<LaneSums<Number>> lane_sums;
   struct alignas(64) Sums {
     std::array<Number, kHarmonicColumns> columns;
   };
@@ -128,16 +133,10 @@ struct CellWorkspace {
     const std::size_t components = sea.filled_components;
     turns.start(components);
     amplitudes.start(components);
-    if (sea.slots.any()) {
-      for (auto& of_cell : pairs) {
-        for (auto& of_parity : of_cell) of_parity.resize(2 * components);
-      }
-      power_sums.resize(kCellsTogether * sea.slots.blocks);
-    } else {
-      for (auto& of_cell : weights) {
-        for (auto& of_weight : of_cell) of_weight.resize(components);
-      }
+    for (auto& of_cell : weights) {
+      for (auto& of_weight : of_cell) of_weight.resize(components);
     }
+    lane_sums.resize(kCellsTogether * 2 * sea.slots.blocks);
   }
 };
 
@@ -204,31 +203,20 @@ HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Numb
                               const typename ComponentRows<Number>::Row& amplitudes, bool same,
                               std::size_t cell, CellWorkspace<Number>& work) {
   const LanesOf<Number> d;
-  const bool slots = sea.slots.any();
   auto& weights = work.weights[cell];
-  auto& pairs = work.pairs[cell];
-  const auto put = [&](std::size_t i, Weight cosine, const VectorOf<Number>& cosines, Weight sine,
-                       const VectorOf<Number>& sines) HWY_ATTR {
-    if (slots) {
-      const auto parity = static_cast<std::size_t>(cosine == Weight::kCosineOdd);
-      hn::StoreInterleaved2(cosines, sines, d, &pairs[parity][2 * i]);
-    } else {
-      hn::StoreU(cosines, d, &weights[static_cast<std::size_t>(cosine)][i]);
-      hn::StoreU(sines, d, &weights[static_cast<std::size_t>(sine)][i]);
-    }
-  };
+  const auto put = [&](std::size_t i, Weight weight, const VectorOf<Number>& numbers)
+                       HWY_ATTR { hn::StoreU(numbers, d, &weights[static_cast<std::size_t>(weight)][i]); };
   VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
     const VectorOf<Number> cosine = hn::LoadU(d, turns.first + i);
     const VectorOf<Number> sine = hn::LoadU(d, turns.second + i);
     const VectorOf<Number> even = hn::LoadU(d, amplitudes.first + i);
-    if (same) {
-      put(i, Weight::kCosineEven, even * cosine, Weight::kSineEven, even * sine);
-    } else {
+    put(i, Weight::kCosineEven, even * cosine);
+    put(i, Weight::kSineEven, even * sine);
+    if (!same) {
       const VectorOf<Number> odd = hn::LoadU(d, amplitudes.second + i);
-      // Slots have the terms of even degrees first: those of cosines are even, those of sines are odd.
-      put(i, Weight::kCosineEven, even * cosine, Weight::kSineOdd, odd * sine);
-      put(i, Weight::kCosineOdd, odd * cosine, Weight::kSineEven, even * sine);
+      put(i, Weight::kCosineOdd, odd * cosine);
+      put(i, Weight::kSineOdd, odd * sine);
     }
     tail = hn::MulAdd(even, hn::LoadU(d, &table.tail[i]), tail);
   }
@@ -312,74 +300,95 @@ HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& 
   }
 }
 
-// Adds to the sums of a block of slots what the steps from `begin` to `end` have, for kCells cells, from
-// number `part` of each step on.
-template <std::size_t kCells, typename Number>
+// Adds to the sums of a block what the steps from `begin` to `end` have, from lane `part` on, for kSums sums.
+// weights: of even and of odd powers.
+template <std::size_t kSums, typename Number>
 HWY_INLINE void add_steps(const StepPowers<Number>* powers,
-                          const std::array<std::array<const Number*, 2>, kCells>& pairs, std::size_t part,
+                          const std::array<std::array<const Number*, 2>, kSums>& weights, std::size_t part,
                           std::size_t begin, std::size_t end,
-                          const std::array<PowerSums<Number>*, kCells>& sums) {
+                          const std::array<LaneSums<Number>*, kSums>& sums) {
   constexpr std::size_t kPowers = kNormDegree + 1;
   const LanesOf<Number> d;
-  std::array<std::array<VectorOf<Number>, kPowers>, kCells> sum;
-  for (auto& of_cell : sum) {
-    for (auto& of_power : of_cell) of_power = hn::Zero(d);
+  std::array<std::array<VectorOf<Number>, kPowers>, kSums> sum;
+  for (auto& of_sum : sum) {
+    for (auto& of_power : of_sum) of_power = hn::Zero(d);
   }
   for (std::size_t step = begin; step < end; ++step) {
-    const std::size_t first = 2 * kSlotsOfBlock * step + part;
-    std::array<std::array<VectorOf<Number>, 2>, kCells> weights;
-    for (std::size_t c = 0; c < kCells; ++c) {
-      weights[c] = {hn::LoadU(d, pairs[c][0] + first), hn::LoadU(d, pairs[c][1] + first)};
+    const std::size_t first = kLanesOfStep * step + part;
+    std::array<std::array<VectorOf<Number>, 2>, kSums> weight;
+    for (std::size_t n = 0; n < kSums; ++n) {
+      weight[n] = {hn::LoadU(d, weights[n][0] + first), hn::LoadU(d, weights[n][1] + first)};
     }
 #pragma GCC unroll 16
     for (std::size_t l = 0; l < kPowers; ++l) {
       const VectorOf<Number> power = hn::Load(d, powers[step].of_degree[l].data() + part);
-      for (std::size_t c = 0; c < kCells; ++c) sum[c][l] = hn::MulAdd(weights[c][l % 2], power, sum[c][l]);
+      for (std::size_t n = 0; n < kSums; ++n) sum[n][l] = hn::MulAdd(weight[n][l % 2], power, sum[n][l]);
     }
   }
-  for (std::size_t c = 0; c < kCells; ++c) {
+  for (std::size_t n = 0; n < kSums; ++n) {
     for (std::size_t l = 0; l < kPowers; ++l) {
-      Number* const place = sums[c]->of_degree[l].data() + part;
-      hn::Store(hn::Load(d, place) + sum[c][l], d, place);
+      Number* const place = sums[n]->of_degree[l].data() + part;
+      hn::Store(hn::Load(d, place) + sum[n][l], d, place);
     }
   }
 }
 
-// Sets the sums of all slots for `count` cells from their pairs of weights. same: as in set_weights().
+// Adds up the lanes of each slot, in the first row.
 template <typename Number>
-HWY_NOINLINE void accumulate_slots(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
-                                   bool same, std::size_t count, CellWorkspace<Number>& work) {
-  // As many sums as the registers hold, with the powers shared between cells where there is room.
-  constexpr std::size_t kLanesOfStep = std::min<std::size_t>(kLanes<Number>, 2 * kSlotsOfBlock);
+HWY_INLINE void fold_rows(const ComponentSlots& slots, LaneSums<Number>& sums) {
+  const LanesOf<Number> d;
+  for (std::size_t rows = slots.rows; rows > 1;) {
+    const std::size_t left = (rows + 1) / 2;
+    const std::size_t lanes = (rows - left) * slots.count;
+    for (auto& of_degree : sums.of_degree) {
+      for (std::size_t lane = 0; lane < lanes; lane += kLanes<Number>) {
+        const VectorOf<Number> folded = hn::LoadU(d, of_degree.data() + left * slots.count + lane);
+        const VectorOf<Number> masked = hn::IfThenElseZero(hn::FirstN(d, lanes - lane), folded);
+        hn::Store(hn::Load(d, &of_degree[lane]) + masked, d, &of_degree[lane]);
+      }
+    }
+    rows = left;
+  }
+}
+
+// Sets the sums of all slots for `count` cells and each of the weights.
+template <typename Number, std::size_t kKinds>
+HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
+                                   const std::array<PowerWeights, kKinds>& kinds, std::size_t count,
+                                   CellWorkspace<Number>& work) {
+  // As many sums as the registers hold; they share the powers.
   constexpr std::size_t kTogether = kLanes<Number> * sizeof(Number) == 64 ? 2 : 1;
   // The powers of as many steps stay in the nearest cache while all cells pass. It also keeps the chains of
   // additions short.
   constexpr std::size_t kBlock = 24;
-  for (std::size_t n = 0; n < count * slots.blocks; ++n) work.power_sums[n] = {};
+  for (std::size_t n = 0; n < count * kKinds * slots.blocks; ++n) work.lane_sums[n] = {};
   for (std::size_t block = 0; block < slots.blocks; ++block) {
     const std::size_t last = (block + 1) * slots.steps;
     for (std::size_t begin = block * slots.steps; begin < last; begin += kBlock) {
       const std::size_t end = std::min(begin + kBlock, last);
-      const auto add = [&]<std::size_t kCells>(std::size_t cell,
-                                               std::integral_constant<std::size_t, kCells> /*number*/) {
-        std::array<std::array<const Number*, 2>, kCells> pairs;
-        std::array<PowerSums<Number>*, kCells> sums;
-        for (std::size_t c = 0; c < kCells; ++c) {
-          const auto& of_cell = work.pairs[cell + c];
-          pairs[c] = {of_cell[0].data(), of_cell[same ? 0 : 1].data()};
-          sums[c] = &work.power_sums[(cell + c) * slots.blocks + block];
+      const auto add = [&]<std::size_t kSums>(std::size_t first,
+                                              std::integral_constant<std::size_t, kSums> /*number*/) {
+        std::array<std::array<const Number*, 2>, kSums> weights;
+        std::array<LaneSums<Number>*, kSums> sums;
+        for (std::size_t n = 0; n < kSums; ++n) {
+          const auto& of_cell = work.weights[(first + n) / kKinds];
+          const PowerWeights& kind = kinds[(first + n) % kKinds];
+          weights[n] = {of_cell[static_cast<std::size_t>(kind.of_even)].data(),
+                        of_cell[static_cast<std::size_t>(kind.of_odd)].data()};
+          sums[n] = &work.lane_sums[(first + n) * slots.blocks + block];
         }
-        for (std::size_t part = 0; part < 2 * kSlotsOfBlock; part += kLanesOfStep) {
-          add_steps<kCells>(powers.data(), pairs, part, begin, end, sums);
+        for (std::size_t part = 0; part < kLanesOfStep; part += kLanes<Number>) {
+          add_steps<kSums>(powers.data(), weights, part, begin, end, sums);
         }
       };
-      std::size_t cell = 0;
-      for (; cell + kTogether <= count; cell += kTogether) {
-        add(cell, std::integral_constant<std::size_t, kTogether>());
+      std::size_t first = 0;
+      for (; first + kTogether <= count * kKinds; first += kTogether) {
+        add(first, std::integral_constant<std::size_t, kTogether>());
       }
-      for (; cell < count; ++cell) add(cell, std::integral_constant<std::size_t, 1>());
+      for (; first < count * kKinds; ++first) add(first, std::integral_constant<std::size_t, 1>());
     }
   }
+  for (std::size_t n = 0; n < count * kKinds; ++n) fold_rows(slots, work.lane_sums[n]);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -95,20 +95,19 @@ HWY_INLINE void set_coefficients(const std::array<Number, kHarmonicColumns>& sum
   }
 }
 
-// sums: block after block.
+// sums: block after block, of the cosines for even powers and of the sines for odd ones.
 template <typename Number>
-HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, const PowerSums<Number>* sums,
+HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, const LaneSums<Number>* sums,
                                  MonomialCoefficients<Number>& of_cell) {
   const LanesOf<Number> d;
   for (std::size_t first = 0; first <= kNormDegree; first += kLanes<Number>) {
     std::array<VectorOf<Number>, kNormDegree + 1> e;
     for (auto& row : e) row = hn::Zero(d);
     for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-      const PowerSums<Number>& of_block = sums[slot / kSlotsOfBlock];
-      const std::size_t pair = 2 * (slot % kSlotsOfBlock);
+      const LaneSums<Number>& of_block = sums[slot / kLanesOfStep];
 #pragma GCC unroll 16
       for (std::size_t l = 0; l <= kNormDegree; ++l) {
-        e[l] = hn::MulAdd(hn::Set(d, of_block.of_degree[l][pair + l % 2]),
+        e[l] = hn::MulAdd(hn::Set(d, of_block.of_degree[l][slot % kLanesOfStep]),
                           hn::Load(d, slots[slot].monomials[l].data() + first), e[l]);
       }
     }
@@ -220,25 +219,44 @@ HWY_INLINE VectorOf<Number> repeated_pair(const Number* pair, std::size_t first)
 #endif
 }
 
-// sums: block after block.
+// The sums of cosines and of sines of a block's lanes, as pairs.
 template <typename Number>
-HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots, const PowerSums<Number>* sums,
+struct alignas(64) PairsOfSums {
+  std::array<std::array<Number, 2 * kLanesOfStep>, kNormDegree + 1> of_degree;
+
+  HWY_INLINE void set(const LaneSums<Number>& cosines, const LaneSums<Number>& sines) {
+    const LanesOf<Number> d;
+    for (std::size_t l = 0; l <= kNormDegree; ++l) {
+      for (std::size_t lane = 0; lane < kLanesOfStep; lane += kLanes<Number>) {
+        hn::StoreInterleaved2(hn::Load(d, &cosines.of_degree[l][lane]),
+                              hn::Load(d, &sines.of_degree[l][lane]), d, &of_degree[l][2 * lane]);
+      }
+    }
+  }
+};
+
+// cosines, sines: the sums, block after block.
+template <typename Number>
+HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots,
+                                 const LaneSums<Number>* cosines, const LaneSums<Number>* sines,
                                  HarmonicCoefficients<Number>& of_cell) {
   const LanesOf<Number> d;
   for (std::size_t first = 0; first <= kNormDegree; first += kLanes<Number>) {
     std::array<VectorOf<Number>, kNormDegree + 1> a, b;
     for (std::size_t l = 0; l <= kNormDegree; ++l) a[l] = b[l] = hn::Zero(d);
+    PairsOfSums<Number> pairs;
     for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-      const PowerSums<Number>& of_block = sums[slot / kSlotsOfBlock];
-      const std::size_t pair = 2 * (slot % kSlotsOfBlock);
-      const VectorOf<Number> cosines = hn::Load(d, slots[slot].cosines.data() + first);
-      const VectorOf<Number> sines = hn::Load(d, slots[slot].sines.data() + first);
+      const std::size_t block = slot / kLanesOfStep;
+      if (slot % kLanesOfStep == 0) pairs.set(cosines[block], sines[block]);
+      const VectorOf<Number> of_cosines = hn::Load(d, slots[slot].cosines.data() + first);
+      const VectorOf<Number> of_sines = hn::Load(d, slots[slot].sines.data() + first);
 #pragma GCC unroll 16
       for (std::size_t l = 0; l <= kNormDegree; ++l) {
         // Terms of an even m have the first weight.
-        const VectorOf<Number> weight = repeated_pair<Number>(&of_block.of_degree[l][pair], first);
-        a[l] = hn::MulAdd(weight, cosines, a[l]);
-        b[l] = hn::MulAdd(weight, sines, b[l]);
+        const VectorOf<Number> weight =
+            repeated_pair<Number>(&pairs.of_degree[l][2 * (slot % kLanesOfStep)], first);
+        a[l] = hn::MulAdd(weight, of_cosines, a[l]);
+        b[l] = hn::MulAdd(weight, of_sines, b[l]);
       }
     }
     for (int l = 0; l <= kNormDegree; ++l) {

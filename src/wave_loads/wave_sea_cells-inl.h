@@ -223,6 +223,21 @@ class SeaCells {
     });
   }
 
+  // What is summed with the powers of k: for the surface the terms of even and of odd degrees; for the volume
+  // the cosines of m b and the sines of an odd m, whose parity is that of l + m. same: as in set_weights().
+  template <bool kSurface>
+  static auto kinds_of_weights(bool same) {
+    if constexpr (kSurface) {
+      return std::array{PowerWeights{Weight::kCosineEven, Weight::kSineEven}};
+    } else if (same) {
+      return std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineEven},
+                        PowerWeights{Weight::kSineEven, Weight::kSineEven}};
+    } else {
+      return std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineOdd},
+                        PowerWeights{Weight::kSineOdd, Weight::kSineEven}};
+    }
+  }
+
   // Builds the cells from number `built` on.
   template <bool kSurface, typename Row, typename Cell>
   void build(const std::vector<CellCenter>& centers, const std::vector<Row>& rows,
@@ -239,16 +254,19 @@ class SeaCells {
       }
       const ComponentSlots& slots = query_->expansion->slots;
       if (slots.any()) {
-        accumulate_slots<Number>(slots, table().powers, same, count, work_);
+        accumulate_lanes<Number>(slots, table().powers, kinds_of_weights<kSurface>(same), count, work_);
       } else {
         accumulate<Number>(rows, of_weight, same, count, work_);
       }
       for (std::size_t n = 0; n < count; ++n) {
         std::conditional_t<kSurface, MonomialCoefficients<Number>, HarmonicCoefficients<Number>> coefficients;
-        if (slots.any()) {
-          set_coefficients<Number>(table().slots, &work_.power_sums[n * slots.blocks], coefficients);
-        } else {
+        if (!slots.any()) {
           set_coefficients<Number>(work_.sums[n].columns, coefficients);
+        } else if constexpr (kSurface) {
+          set_coefficients<Number>(table().slots, &work_.lane_sums[n * slots.blocks], coefficients);
+        } else {
+          const LaneSums<Number>* const cosines = &work_.lane_sums[2 * n * slots.blocks];
+          set_coefficients<Number>(table().slots, cosines, cosines + slots.blocks, coefficients);
         }
         finish<Number>(coefficients, work_.tails[n], cells[built + n]);
       }

@@ -31,12 +31,12 @@ TEST(ComponentSlots, HoldComponentsOfOneDirectionEach) {
       ASSERT_EQ(slots.places.size(), all.size());
       std::set<std::uint32_t> places(slots.places.begin(), slots.places.end());
       EXPECT_EQ(places.size(), all.size()) << "two components have the same place";
-      EXPECT_LT(*places.rbegin(), slots.blocks * slots.steps * kSlotsOfBlock);
+      EXPECT_LT(*places.rbegin(), slots.place_count());
       std::map<std::size_t, double> direction_of_slot;
       for (std::size_t i = 0; i < all.size(); ++i) {
         const auto [slot, is_new] = direction_of_slot.try_emplace(slots.slot_of(slots.places[i]), all[i]);
         EXPECT_EQ(slot->second, all[i]);
-        EXPECT_LT(slot->first, slots.blocks * kSlotsOfBlock);
+        EXPECT_LT(slot->first, slots.count);
       }
     }
   }
