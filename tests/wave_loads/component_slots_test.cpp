@@ -33,13 +33,27 @@ TEST(ComponentSlots, HoldComponentsOfOneDirectionEach) {
       EXPECT_EQ(places.size(), all.size()) << "two components have the same place";
       EXPECT_LT(*places.rbegin(), slots.place_count());
       std::map<std::size_t, double> direction_of_slot;
+      std::set<std::size_t> begun;
       for (std::size_t i = 0; i < all.size(); ++i) {
         const auto [slot, is_new] = direction_of_slot.try_emplace(slots.slot_of(slots.places[i]), all[i]);
         EXPECT_EQ(slot->second, all[i]);
         EXPECT_LT(slot->first, slots.count);
+        if (slots.begins_slot(slots.places[i])) {
+          EXPECT_TRUE(begun.insert(slot->first).second) << "slot " << slot->first << " begins twice";
+        }
       }
+      EXPECT_EQ(begun.size(), direction_of_slot.size());
     }
   }
+}
+
+// Four rows of five lanes would be more than a block, and one row would leave most of its lanes unused.
+TEST(ComponentSlots, HaveSeveralLanesWhereDirectionsAreFew) {
+  const ComponentSlots slots = component_slots(directions_of(5, 40, 3));
+  EXPECT_EQ(slots.count, 5U);
+  EXPECT_EQ(slots.rows, 3U);
+  EXPECT_EQ(slots.steps, 14U);
+  EXPECT_EQ(slots.blocks, 1U);
 }
 
 TEST(ComponentSlots, AreLeftOutWhereDirectionsDiffer) {
