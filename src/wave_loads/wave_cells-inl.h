@@ -78,14 +78,15 @@ struct PowerWeights {
   Weight of_even, of_odd;
 };
 
-// Two numbers of every component, set when they are first asked for. Those of the first cells are kept for
-// all cells that share them.
+// Two numbers of every component, and one of all, set when they are first asked for. Those of the first cells
+// are kept for all cells that share them.
 template <typename Number>
 class ComponentRows {
  public:
   struct Row {
     const Number* first;
     const Number* second;
+    Number sum;
   };
 
   void start(std::size_t components) {
@@ -93,21 +94,22 @@ class ComponentRows {
     known_.fill(false);
   }
 
-  // set(first, second): sets row n.
+  // set(first, second): sets row n and returns its sum.
   template <typename Set>
   Row get(std::size_t n, const Set& set) {
     const std::size_t place = std::min(n, kKept);
     std::vector<Number>& numbers = rows_[place];
     if (numbers.size() < 2 * components_) numbers.resize(2 * components_);
-    if (!known_[place]) set(numbers.data(), numbers.data() + components_);
+    if (!known_[place]) sums_[place] = set(numbers.data(), numbers.data() + components_);
     known_[place] = place < kKept;
-    return {numbers.data(), numbers.data() + components_};
+    return {numbers.data(), numbers.data() + components_, sums_[place]};
   }
 
  private:
   static constexpr std::size_t kKept = 64;
   std::size_t components_ = 0;
   std::array<std::vector<Number>, kKept + 1> rows_;  // the last: of all others in turn
+  std::array<Number, kKept + 1> sums_{};
   std::array<bool, kKept + 1> known_{};
 };
 
@@ -117,7 +119,7 @@ struct CellWorkspace {
   // By column of cells: the cosines and the sines of the components' phases at its centre.
   ComponentRows<Number> turns;
   // Of the surface, then by level of cells: the components' amplitudes, of even and of odd derivatives along
-  // z.
+  // z; their sum is the tail of the cells.
   ComponentRows<Number> amplitudes;
   // By cell, weight and component.
   std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
@@ -149,7 +151,7 @@ HWY_NOINLINE void set_turns(const SeaExpansion& sea, const std::vector<double>& 
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
     const VectorOf<double> along = hn::MulAdd(hn::LoadU(dd, &sea.k1[i]), set<double>(center.x1),
                                               hn::LoadU(dd, &sea.k2[i]) * set<double>(center.x2));
-    const VectorOf<double> phase = within_turn(hn::LoadU(dd, &phases[i]) + along);
+    const VectorOf<double> phase = near_zero(hn::LoadU(dd, &phases[i]) + along);
     if constexpr (sizeof(Number) == sizeof(double)) {
       hn::StoreU(phase, dd, angles + i);
     } else {
@@ -165,48 +167,53 @@ HWY_NOINLINE void set_turns(const SeaExpansion& sea, const std::vector<double>& 
   }
 }
 
-// The amplitudes of the elevation; there are no derivatives along z.
+// The amplitudes of the elevation; there are no derivatives along z. Returns the tail of its cells.
 template <typename Number>
-HWY_NOINLINE void set_amplitudes(const ExpansionTable<Number>& table, double factor, Number* even) {
+HWY_NOINLINE Number set_amplitudes(const ExpansionTable<Number>& table, double factor, Number* even) {
   const LanesOf<Number> d;
+  VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < table.amplitude.size(); i += kLanes<Number>) {
-    hn::StoreU(set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]), d, even + i);
+    const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude[i]);
+    hn::StoreU(amplitude, d, even + i);
+    tail = hn::MulAdd(amplitude, hn::LoadU(d, &table.tail[i]), tail);
   }
+  return hn::GetLane(hn::SumOfLanes(d, tail));
 }
 
 // The amplitudes of f at a height z over 1 / k_max. In deep water those of odd derivatives are the same and
-// are not set.
+// are not set. Returns the tail of cells at that height.
 template <typename Number>
-HWY_NOINLINE void set_amplitudes(const ExpansionTable<Number>& table, double factor, bool deep_water,
-                                 double z, Number* even, Number* odd) {
+HWY_NOINLINE Number set_amplitudes(const ExpansionTable<Number>& table, double factor, bool deep_water,
+                                   double z, Number* even, Number* odd) {
   const LanesOf<Number> d;
+  VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < table.k.size(); i += kLanes<Number>) {
     const VectorOf<Number> amplitude = set<Number>(factor) * hn::LoadU(d, &table.amplitude_in_f[i]);
     const VectorOf<Number> exponent = hn::LoadU(d, &table.k[i]) * set<Number>(z);
     const VectorOf<Number> down = amplitude * hn::Exp(d, exponent);
-    if (deep_water) {
-      hn::StoreU(down, d, even + i);
-    } else {
+    VectorOf<Number> of_even = down;
+    if (!deep_water) {
       // cosh k(z + h) / cosh kh and sinh k(z + h) / cosh kh by exponentials that do not overflow.
       const VectorOf<Number> up = amplitude * hn::Exp(d, hn::LoadU(d, &table.minus_twice_kh[i]) - exponent);
-      hn::StoreU(down + up, d, even + i);
+      of_even = down + up;
       hn::StoreU(down - up, d, odd + i);
     }
+    hn::StoreU(of_even, d, even + i);
+    tail = hn::MulAdd(of_even, hn::LoadU(d, &table.tail[i]), tail);
   }
+  return hn::GetLane(hn::SumOfLanes(d, tail));
 }
 
 // Sets the weights of all components at a cell's centre. same: whether odd derivatives have the amplitudes of
 // even ones.
 template <typename Number>
-HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Number>& table,
-                              const typename ComponentRows<Number>::Row& turns,
+HWY_NOINLINE void set_weights(const SeaExpansion& sea, const typename ComponentRows<Number>::Row& turns,
                               const typename ComponentRows<Number>::Row& amplitudes, bool same,
                               std::size_t cell, CellWorkspace<Number>& work) {
   const LanesOf<Number> d;
   auto& weights = work.weights[cell];
   const auto put = [&](std::size_t i, Weight weight, const VectorOf<Number>& numbers)
                        HWY_ATTR { hn::StoreU(numbers, d, &weights[static_cast<std::size_t>(weight)][i]); };
-  VectorOf<Number> tail = hn::Zero(d);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
     const VectorOf<Number> cosine = hn::LoadU(d, turns.first + i);
     const VectorOf<Number> sine = hn::LoadU(d, turns.second + i);
@@ -218,9 +225,8 @@ HWY_NOINLINE void set_weights(const SeaExpansion& sea, const ExpansionTable<Numb
       put(i, Weight::kCosineOdd, odd * cosine);
       put(i, Weight::kSineOdd, odd * sine);
     }
-    tail = hn::MulAdd(even, hn::LoadU(d, &table.tail[i]), tail);
   }
-  work.tails[cell] = hn::GetLane(hn::SumOfLanes(d, tail));
+  work.tails[cell] = amplitudes.sum;
 }
 
 // Adds to sums the products of columns [kBegin, kEnd) of the components' rows with the weights of kCells

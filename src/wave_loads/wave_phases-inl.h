@@ -54,6 +54,13 @@ HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
   return rest - turns * set<double>(2.4492935982947064e-16);
 }
 
+// The same to the rounding of double precision of the angle itself, which is enough for angles of a few
+// turns.
+HWY_INLINE VectorOf<double> near_zero(const VectorOf<double>& angle) {
+  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / 6.283185307179586));
+  return hn::NegMulAdd(turns, set<double>(6.283185307179586), angle);
+}
+
 // Sets phases[i] to the phase of component i at the body's centre [rad], filled up with zeros. Exact to 1e-14
 // of a turn out to 1e9 wavelengths, as SeaSnapshot is.
 HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) {

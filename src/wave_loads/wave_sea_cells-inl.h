@@ -209,22 +209,24 @@ class SeaCells {
   ComponentRow turns_of(std::size_t surface_cell) {
     return work_.turns.get(surface_cell, [&](Number* cosines, Number* sines) {
       set_turns<Number>(*query_->expansion, work_.phases, surface_centers_[surface_cell], cosines, sines);
+      return Number{0};  // not of use
     });
   }
   ComponentRow amplitudes_of_surface() {
     return work_.amplitudes.get(0, [&](Number* even, Number* /*odd*/) {
-      set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), even);
+      return set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), even);
     });
   }
   ComponentRow amplitudes_of(std::size_t volume_cell) {
     return work_.amplitudes.get(1 + level_of_volume_[volume_cell], [&](Number* even, Number* odd) {
-      set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), query_->deep_water(),
-                             volume_centers_[volume_cell].z, even, odd);
+      return set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), query_->deep_water(),
+                                    volume_centers_[volume_cell].z, even, odd);
     });
   }
 
-  // What is summed with the powers of k: for the surface the terms of even and of odd degrees; for the volume
-  // the cosines of m b and the sines of an odd m, whose parity is that of l + m. same: as in set_weights().
+  // What is summed with the powers k^l: for the surface what the terms of degree l have; for the volume the
+  // weights of its terms of even orders m, then those of odd m. A weight is of an odd derivative where l + m
+  // is odd. same: as in set_weights().
   template <bool kSurface>
   static auto kinds_of_weights(bool same) {
     if constexpr (kSurface) {
@@ -248,8 +250,7 @@ class SeaCells {
     while (built < centers.size()) {
       const std::size_t count = std::min(centers.size() - built, kCellsTogether);
       for (std::size_t n = 0; n < count; ++n) {
-        set_weights<Number>(*query_->expansion, table(),
-                            turns_of(kSurface ? built + n : column_of_volume_[built + n]),
+        set_weights<Number>(*query_->expansion, turns_of(kSurface ? built + n : column_of_volume_[built + n]),
                             kSurface ? amplitudes_of_surface() : amplitudes_of(built + n), same, n, work_);
       }
       const ComponentSlots& slots = query_->expansion->slots;
