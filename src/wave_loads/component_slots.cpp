@@ -28,6 +28,7 @@ std::vector<Components> by_direction(const std::vector<double>& directions) {
     of_direction[directions[i]].push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<Components> groups;
+  groups.reserve(of_direction.size());
   for (auto& [direction, group] : of_direction) groups.push_back(std::move(group));
   return groups;
 }
