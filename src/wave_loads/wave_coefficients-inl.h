@@ -9,8 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -200,40 +198,17 @@ HWY_INLINE void set_coefficients(const std::array<Number, kHarmonicColumns>& sum
   }
 }
 
-// A pair of numbers again and again; the second alone where a vector has one lane, which is number `first` of
-// a row.
+// `even` and `odd` in turn, from number `first` of a row on; a vector of one lane holds one of them.
 template <typename Number>
-HWY_INLINE VectorOf<Number> repeated_pair(const Number* pair, std::size_t first) {
+HWY_INLINE VectorOf<Number> alternating(Number even, Number odd, std::size_t first) {
   const LanesOf<Number> d;
 #if HWY_TARGET == HWY_SCALAR
-  return hn::Set(d, pair[first % 2]);
+  return hn::Set(d, first % 2 == 0 ? even : odd);
 #else
   (void)first;
-  if constexpr (sizeof(Number) == sizeof(float)) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, pair, sizeof(bits));
-    return hn::BitCast(d, hn::Set(hn::Repartition<std::uint64_t, LanesOf<Number>>(), bits));
-  } else {
-    return hn::LoadDup128(d, pair);
-  }
+  return hn::OddEven(hn::Set(d, odd), hn::Set(d, even));
 #endif
 }
-
-// The sums of cosines and of sines of a block's lanes, as pairs.
-template <typename Number>
-struct alignas(64) PairsOfSums {
-  std::array<std::array<Number, 2 * kLanesOfStep>, kNormDegree + 1> of_degree;
-
-  HWY_INLINE void set(const LaneSums<Number>& cosines, const LaneSums<Number>& sines) {
-    const LanesOf<Number> d;
-    for (std::size_t l = 0; l <= kNormDegree; ++l) {
-      for (std::size_t lane = 0; lane < kLanesOfStep; lane += kLanes<Number>) {
-        hn::StoreInterleaved2(hn::Load(d, &cosines.of_degree[l][lane]),
-                              hn::Load(d, &sines.of_degree[l][lane]), d, &of_degree[l][2 * lane]);
-      }
-    }
-  }
-};
 
 // cosines, sines: the sums, block after block.
 template <typename Number>
@@ -244,17 +219,17 @@ HWY_INLINE void set_coefficients(const std::vector<SlotFactors<Number>>& slots,
   for (std::size_t first = 0; first <= kNormDegree; first += kLanes<Number>) {
     std::array<VectorOf<Number>, kNormDegree + 1> a, b;
     for (std::size_t l = 0; l <= kNormDegree; ++l) a[l] = b[l] = hn::Zero(d);
-    PairsOfSums<Number> pairs;
     for (std::size_t slot = 0; slot < slots.size(); ++slot) {
-      const std::size_t block = slot / kLanesOfStep;
-      if (slot % kLanesOfStep == 0) pairs.set(cosines[block], sines[block]);
+      const LaneSums<Number>& of_even = cosines[slot / kLanesOfStep];
+      const LaneSums<Number>& of_odd = sines[slot / kLanesOfStep];
+      const std::size_t lane = slot % kLanesOfStep;
       const VectorOf<Number> of_cosines = hn::Load(d, slots[slot].cosines.data() + first);
       const VectorOf<Number> of_sines = hn::Load(d, slots[slot].sines.data() + first);
 #pragma GCC unroll 16
       for (std::size_t l = 0; l <= kNormDegree; ++l) {
-        // Terms of an even m have the first weight.
+        // By order m.
         const VectorOf<Number> weight =
-            repeated_pair<Number>(&pairs.of_degree[l][2 * (slot % kLanesOfStep)], first);
+            alternating<Number>(of_even.of_degree[l][lane], of_odd.of_degree[l][lane], first);
         a[l] = hn::MulAdd(weight, of_cosines, a[l]);
         b[l] = hn::MulAdd(weight, of_sines, b[l]);
       }

@@ -54,8 +54,7 @@ HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
   return rest - turns * set<double>(2.4492935982947064e-16);
 }
 
-// The same to the rounding of double precision of the angle itself, which is enough for angles of a few
-// turns.
+// The same to the rounding of the angle itself: enough where the angle was rounded as well.
 HWY_INLINE VectorOf<double> near_zero(const VectorOf<double>& angle) {
   const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / 6.283185307179586));
   return hn::NegMulAdd(turns, set<double>(6.283185307179586), angle);
