@@ -79,7 +79,7 @@ struct PowerWeights {
 };
 
 // Two numbers of every component, and one of all, set when they are first asked for. Those of the first cells
-// are kept for all cells that share them.
+// are kept for all cells that share them; the others' last until the cells of the same batch are built.
 template <typename Number>
 class ComponentRows {
  public:
@@ -94,10 +94,10 @@ class ComponentRows {
     known_.fill(false);
   }
 
-  // set(first, second): sets row n and returns its sum.
+  // in_batch: the number of the cell in its batch. set(first, second): sets row n and returns its sum.
   template <typename Set>
-  Row get(std::size_t n, const Set& set) {
-    const std::size_t place = std::min(n, kKept);
+  Row get(std::size_t n, std::size_t in_batch, const Set& set) {
+    const std::size_t place = n < kKept ? n : kKept + in_batch;
     std::vector<Number>& numbers = rows_[place];
     if (numbers.size() < 2 * components_) numbers.resize(2 * components_);
     if (!known_[place]) sums_[place] = set(numbers.data(), numbers.data() + components_);
@@ -107,10 +107,31 @@ class ComponentRows {
 
  private:
   static constexpr std::size_t kKept = 64;
+  static constexpr std::size_t kRows = kKept + kCellsTogether;
   std::size_t components_ = 0;
-  std::array<std::vector<Number>, kKept + 1> rows_;  // the last: of all others in turn
-  std::array<Number, kKept + 1> sums_{};
-  std::array<bool, kKept + 1> known_{};
+  std::array<std::vector<Number>, kRows> rows_;
+  std::array<Number, kRows> sums_{};
+  std::array<bool, kRows> known_{};
+};
+
+// The two factors of a weight, by component.
+template <typename Number>
+struct WeightFactors {
+  const Number* turns;
+  const Number* amplitudes;
+};
+
+// The factors of all weights at a cell's centre: cosines and sines of the phases, and amplitudes of even and
+// of odd derivatives along z, whose sum is the cell's tail.
+template <typename Number>
+struct CellFactors {
+  typename ComponentRows<Number>::Row turns, amplitudes;
+
+  WeightFactors<Number> of(Weight weight) const {
+    const bool cosine = weight == Weight::kCosineEven || weight == Weight::kCosineOdd;
+    const bool even = weight == Weight::kCosineEven || weight == Weight::kSineEven;
+    return {cosine ? turns.first : turns.second, even ? amplitudes.first : amplitudes.second};
+  }
 };
 
 template <typename Number>
@@ -121,7 +142,8 @@ struct CellWorkspace {
   // Of the surface, then by level of cells: the components' amplitudes, of even and of odd derivatives along
   // z; their sum is the tail of the cells.
   ComponentRows<Number> amplitudes;
-  // By cell, weight and component.
+  std::array<CellFactors<Number>, kCellsTogether> factors;  // by cell
+  // Of a sea without slots, by cell, weight and component.
   std::array<std::array<std::vector<Number>, kWeights>, kCellsTogether> weights;
   // Of a sea with slots, by cell, weights and block.
   std::vector<LaneSums<Number>> lane_sums;
@@ -129,14 +151,15 @@ struct CellWorkspace {
     std::array<Number, kHarmonicColumns> columns;
   };
   std::array<Sums, kCellsTogether> sums;
-  std::array<Number, kCellsTogether> tails;
 
   void start(const SeaExpansion& sea) {
     const std::size_t components = sea.filled_components;
     turns.start(components);
     amplitudes.start(components);
-    for (auto& of_cell : weights) {
-      for (auto& of_weight : of_cell) of_weight.resize(components);
+    if (!sea.slots.any()) {
+      for (auto& of_cell : weights) {
+        for (auto& of_weight : of_cell) of_weight.resize(components);
+      }
     }
     lane_sums.resize(kCellsTogether * 2 * sea.slots.blocks);
   }
@@ -207,26 +230,21 @@ HWY_NOINLINE Number set_amplitudes(const ExpansionTable<Number>& table, double f
 // Sets the weights of all components at a cell's centre. same: whether odd derivatives have the amplitudes of
 // even ones.
 template <typename Number>
-HWY_NOINLINE void set_weights(const SeaExpansion& sea, const typename ComponentRows<Number>::Row& turns,
-                              const typename ComponentRows<Number>::Row& amplitudes, bool same,
-                              std::size_t cell, CellWorkspace<Number>& work) {
+HWY_NOINLINE void set_weights(const SeaExpansion& sea, bool same, std::size_t cell,
+                              CellWorkspace<Number>& work) {
   const LanesOf<Number> d;
-  auto& weights = work.weights[cell];
-  const auto put = [&](std::size_t i, Weight weight, const VectorOf<Number>& numbers)
-                       HWY_ATTR { hn::StoreU(numbers, d, &weights[static_cast<std::size_t>(weight)][i]); };
-  for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
-    const VectorOf<Number> cosine = hn::LoadU(d, turns.first + i);
-    const VectorOf<Number> sine = hn::LoadU(d, turns.second + i);
-    const VectorOf<Number> even = hn::LoadU(d, amplitudes.first + i);
-    put(i, Weight::kCosineEven, even * cosine);
-    put(i, Weight::kSineEven, even * sine);
-    if (!same) {
-      const VectorOf<Number> odd = hn::LoadU(d, amplitudes.second + i);
-      put(i, Weight::kCosineOdd, odd * cosine);
-      put(i, Weight::kSineOdd, odd * sine);
+  const auto set_weight = [&](Weight weight) HWY_ATTR {
+    const auto [turns, amplitudes] = work.factors[cell].of(weight);
+    Number* const products = work.weights[cell][static_cast<std::size_t>(weight)].data();
+    for (std::size_t i = 0; i < sea.filled_components; i += kLanes<Number>) {
+      hn::StoreU(hn::LoadU(d, amplitudes + i) * hn::LoadU(d, turns + i), d, products + i);
     }
-  }
-  work.tails[cell] = amplitudes.sum;
+  };
+  set_weight(Weight::kCosineEven);
+  set_weight(Weight::kSineEven);
+  if (same) return;
+  set_weight(Weight::kCosineOdd);
+  set_weight(Weight::kSineOdd);
 }
 
 // Adds to sums the products of columns [kBegin, kEnd) of the components' rows with the weights of kCells
@@ -306,12 +324,12 @@ HWY_NOINLINE void accumulate(const std::vector<ExpansionRow<Number, kColumns>>& 
   }
 }
 
-// Adds to the sums of a block what the steps from `begin` to `end` have, from lane `part` on, for kSums sums.
-// weights: of even and of odd powers.
-template <std::size_t kSums, typename Number>
+// Adds to the sums of a block what the steps from `begin` to `end` have, from lane `part` on, for kSums sums;
+// sets them if `first`. weights: of even and of odd powers; the same of both if kOneWeight.
+template <bool kOneWeight, std::size_t kSums, typename Number>
 HWY_INLINE void add_steps(const StepPowers<Number>* powers,
-                          const std::array<std::array<const Number*, 2>, kSums>& weights, std::size_t part,
-                          std::size_t begin, std::size_t end,
+                          const std::array<std::array<WeightFactors<Number>, 2>, kSums>& weights,
+                          std::size_t part, std::size_t begin, std::size_t end, bool first,
                           const std::array<LaneSums<Number>*, kSums>& sums) {
   constexpr std::size_t kPowers = kNormDegree + 1;
   const LanesOf<Number> d;
@@ -320,10 +338,14 @@ HWY_INLINE void add_steps(const StepPowers<Number>* powers,
     for (auto& of_power : of_sum) of_power = hn::Zero(d);
   }
   for (std::size_t step = begin; step < end; ++step) {
-    const std::size_t first = kLanesOfStep * step + part;
+    const std::size_t at = kLanesOfStep * step + part;
     std::array<std::array<VectorOf<Number>, 2>, kSums> weight;
     for (std::size_t n = 0; n < kSums; ++n) {
-      weight[n] = {hn::LoadU(d, weights[n][0] + first), hn::LoadU(d, weights[n][1] + first)};
+      const auto product = [&](const WeightFactors<Number>& factors) HWY_ATTR {
+        return hn::LoadU(d, factors.amplitudes + at) * hn::LoadU(d, factors.turns + at);
+      };
+      weight[n][0] = product(weights[n][0]);
+      weight[n][1] = kOneWeight ? weight[n][0] : product(weights[n][1]);
     }
 #pragma GCC unroll 16
     for (std::size_t l = 0; l < kPowers; ++l) {
@@ -334,7 +356,7 @@ HWY_INLINE void add_steps(const StepPowers<Number>* powers,
   for (std::size_t n = 0; n < kSums; ++n) {
     for (std::size_t l = 0; l < kPowers; ++l) {
       Number* const place = sums[n]->of_degree[l].data() + part;
-      hn::Store(hn::Load(d, place) + sum[n][l], d, place);
+      hn::Store(first ? sum[n][l] : hn::Load(d, place) + sum[n][l], d, place);
     }
   }
 }
@@ -357,8 +379,8 @@ HWY_INLINE void fold_rows(const ComponentSlots& slots, LaneSums<Number>& sums) {
   }
 }
 
-// Sets the sums of all slots for `count` cells and each of the weights.
-template <typename Number, std::size_t kKinds>
+// Sets the sums of all slots for `count` cells and each of the weights. kOneWeight: as in add_steps().
+template <bool kOneWeight, typename Number, std::size_t kKinds>
 HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
                                    const std::array<PowerWeights, kKinds>& kinds, std::size_t count,
                                    CellWorkspace<Number>& work) {
@@ -367,24 +389,23 @@ HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vecto
   // The powers of as many steps stay in the nearest cache while all cells pass. It also keeps the chains of
   // additions short.
   constexpr std::size_t kBlock = 24;
-  for (std::size_t n = 0; n < count * kKinds * slots.blocks; ++n) work.lane_sums[n] = {};
   for (std::size_t block = 0; block < slots.blocks; ++block) {
-    const std::size_t last = (block + 1) * slots.steps;
-    for (std::size_t begin = block * slots.steps; begin < last; begin += kBlock) {
+    const std::size_t first_step = block * slots.steps;
+    const std::size_t last = first_step + slots.steps;
+    for (std::size_t begin = first_step; begin < last; begin += kBlock) {
       const std::size_t end = std::min(begin + kBlock, last);
       const auto add = [&]<std::size_t kSums>(std::size_t first,
                                               std::integral_constant<std::size_t, kSums> /*number*/) {
-        std::array<std::array<const Number*, 2>, kSums> weights;
+        std::array<std::array<WeightFactors<Number>, 2>, kSums> weights;
         std::array<LaneSums<Number>*, kSums> sums;
         for (std::size_t n = 0; n < kSums; ++n) {
-          const auto& of_cell = work.weights[(first + n) / kKinds];
+          const CellFactors<Number>& of_cell = work.factors[(first + n) / kKinds];
           const PowerWeights& kind = kinds[(first + n) % kKinds];
-          weights[n] = {of_cell[static_cast<std::size_t>(kind.of_even)].data(),
-                        of_cell[static_cast<std::size_t>(kind.of_odd)].data()};
+          weights[n] = {of_cell.of(kind.of_even), of_cell.of(kind.of_odd)};
           sums[n] = &work.lane_sums[(first + n) * slots.blocks + block];
         }
         for (std::size_t part = 0; part < kLanesOfStep; part += kLanes<Number>) {
-          add_steps<kSums>(powers.data(), weights, part, begin, end, sums);
+          add_steps<kOneWeight, kSums>(powers.data(), weights, part, begin, end, begin == first_step, sums);
         }
       };
       std::size_t first = 0;

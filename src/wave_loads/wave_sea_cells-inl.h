@@ -206,37 +206,54 @@ class SeaCells {
   }
 
   using ComponentRow = typename ComponentRows<Number>::Row;
-  ComponentRow turns_of(std::size_t surface_cell) {
-    return work_.turns.get(surface_cell, [&](Number* cosines, Number* sines) {
+  // in_batch: as in ComponentRows::get().
+  ComponentRow turns_of(std::size_t surface_cell, std::size_t in_batch) {
+    return work_.turns.get(surface_cell, in_batch, [&](Number* cosines, Number* sines) {
       set_turns<Number>(*query_->expansion, work_.phases, surface_centers_[surface_cell], cosines, sines);
       return Number{0};  // not of use
     });
   }
   ComponentRow amplitudes_of_surface() {
-    return work_.amplitudes.get(0, [&](Number* even, Number* /*odd*/) {
+    return work_.amplitudes.get(0, 0, [&](Number* even, Number* /*odd*/) {
       return set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), even);
     });
   }
-  ComponentRow amplitudes_of(std::size_t volume_cell) {
-    return work_.amplitudes.get(1 + level_of_volume_[volume_cell], [&](Number* even, Number* odd) {
+  ComponentRow amplitudes_of(std::size_t volume_cell, std::size_t in_batch) {
+    return work_.amplitudes.get(1 + level_of_volume_[volume_cell], in_batch, [&](Number* even, Number* odd) {
       return set_amplitudes<Number>(table(), query_->sea->amplitude_factor(), query_->deep_water(),
                                     volume_centers_[volume_cell].z, even, odd);
     });
   }
 
-  // What is summed with the powers k^l: for the surface what the terms of degree l have; for the volume the
-  // weights of its terms of even orders m, then those of odd m. A weight is of an odd derivative where l + m
-  // is odd. same: as in set_weights().
+  // Sums with the powers k^l, of a sea with slots: for the surface what the terms of degree l have; for the
+  // volume the weights of its terms of even orders m, then those of odd m. A weight is of an odd derivative
+  // where l + m is odd. same: as in set_weights().
   template <bool kSurface>
-  static auto kinds_of_weights(bool same) {
+  void accumulate_slots(bool same, std::size_t count) {
+    const SeaExpansion& sea = *query_->expansion;
     if constexpr (kSurface) {
-      return std::array{PowerWeights{Weight::kCosineEven, Weight::kSineEven}};
+      accumulate_lanes<false, Number>(sea.slots, table().powers,
+                                      std::array{PowerWeights{Weight::kCosineEven, Weight::kSineEven}}, count,
+                                      work_);
     } else if (same) {
-      return std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineEven},
-                        PowerWeights{Weight::kSineEven, Weight::kSineEven}};
+      accumulate_lanes<true, Number>(sea.slots, table().powers,
+                                     std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineEven},
+                                                PowerWeights{Weight::kSineEven, Weight::kSineEven}},
+                                     count, work_);
     } else {
-      return std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineOdd},
-                        PowerWeights{Weight::kSineOdd, Weight::kSineEven}};
+      accumulate_lanes<false, Number>(sea.slots, table().powers,
+                                      std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineOdd},
+                                                 PowerWeights{Weight::kSineOdd, Weight::kSineEven}},
+                                      count, work_);
+    }
+  }
+
+  template <bool kSurface>
+  auto& coefficients_of() {
+    if constexpr (kSurface) {
+      return of_surface_;
+    } else {
+      return of_volume_;
     }
   }
 
@@ -250,17 +267,18 @@ class SeaCells {
     while (built < centers.size()) {
       const std::size_t count = std::min(centers.size() - built, kCellsTogether);
       for (std::size_t n = 0; n < count; ++n) {
-        set_weights<Number>(*query_->expansion, turns_of(kSurface ? built + n : column_of_volume_[built + n]),
-                            kSurface ? amplitudes_of_surface() : amplitudes_of(built + n), same, n, work_);
+        work_.factors[n] = {turns_of(kSurface ? built + n : column_of_volume_[built + n], n),
+                            kSurface ? amplitudes_of_surface() : amplitudes_of(built + n, n)};
       }
       const ComponentSlots& slots = query_->expansion->slots;
       if (slots.any()) {
-        accumulate_lanes<Number>(slots, table().powers, kinds_of_weights<kSurface>(same), count, work_);
+        accumulate_slots<kSurface>(same, count);
       } else {
+        for (std::size_t n = 0; n < count; ++n) set_weights<Number>(*query_->expansion, same, n, work_);
         accumulate<Number>(rows, of_weight, same, count, work_);
       }
       for (std::size_t n = 0; n < count; ++n) {
-        std::conditional_t<kSurface, MonomialCoefficients<Number>, HarmonicCoefficients<Number>> coefficients;
+        auto& coefficients = coefficients_of<kSurface>();
         if (!slots.any()) {
           set_coefficients<Number>(work_.sums[n].columns, coefficients);
         } else if constexpr (kSurface) {
@@ -269,7 +287,7 @@ class SeaCells {
           const LaneSums<Number>* const cosines = &work_.lane_sums[2 * n * slots.blocks];
           set_coefficients<Number>(table().slots, cosines, cosines + slots.blocks, coefficients);
         }
-        finish<Number>(coefficients, work_.tails[n], cells[built + n]);
+        finish<Number>(coefficients, work_.factors[n].amplitudes.sum, cells[built + n]);
       }
       built += count;
     }
@@ -285,6 +303,9 @@ class SeaCells {
   double reach_ = 0.0;  // of a neighbour's expansion
   std::size_t surfaces_built_ = 0, volumes_built_ = 0;
   CellWorkspace<Number> work_;
+  // Of the cell that is being built; kept, so that they are set to zero only once.
+  MonomialCoefficients<Number> of_surface_;
+  HarmonicCoefficients<Number> of_volume_;
 };
 
 }  // namespace HWY_NAMESPACE
