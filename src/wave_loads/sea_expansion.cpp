@@ -201,10 +201,12 @@ SeaExpansion::SeaExpansion(const Sea& sea)
        {&k1, &k2, &table.amplitude, &table.amplitude_in_f, &table.k, &table.minus_twice_kh, &table.tail}) {
     row->resize(filled_components, 0.0);
   }
+  component_of_place.resize(filled_components, 0);
   double squares = 0.0;
   double thirds = 0.0;
   for (std::size_t i = 0; i < components; ++i) {
     const std::size_t place = slots.places[i];
+    component_of_place[place] = static_cast<std::int64_t>(i);
     const double amplitude = prepared.amplitude[i];
     const double k = prepared.wave_number[i] / k_max;
     k1[place] = prepared.k1[i] / k_max;

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "wave_loads/component_slots.h"
@@ -109,6 +110,8 @@ struct SeaExpansion {
   ComponentSlots slots;               // none where they would cost more
   std::size_t filled_components = 0;  // a multiple of kColumnUnit
   double k_max = 0.0;                 // [rad/m]
+  // By place; of a place without a component, any.
+  std::vector<std::int64_t> component_of_place;
   // Per component, filled up.
   std::vector<double> k1, k2;                        // over k_max, along the horizontal axes
   std::vector<double> k1_W, k1_rest, k2_W, k2_rest;  // [rad/m], as in PreparedComponents

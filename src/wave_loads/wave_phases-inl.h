@@ -46,28 +46,30 @@ HWY_INLINE ExactDouble exact_sum(const VectorOf<double>& a, const VectorOf<doubl
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
+inline constexpr double kTurn = 6.283185307179586;             // 2 pi, rounded
+inline constexpr double kRestOfTurn = 2.4492935982947064e-16;  // what the rounding took
+
 // The rest of an angle [rad] within half a turn of 0.
 HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
-  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / 6.283185307179586));
-  const ExactDouble whole = exact_product(turns, set<double>(6.283185307179586));
+  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / kTurn));
+  const ExactDouble whole = exact_product(turns, set<double>(kTurn));
   const VectorOf<double> rest = (angle - whole.value) - whole.error;
-  return rest - turns * set<double>(2.4492935982947064e-16);
+  return rest - turns * set<double>(kRestOfTurn);
 }
 
 // The same to the rounding of the angle itself: enough where the angle was rounded as well.
 HWY_INLINE VectorOf<double> near_zero(const VectorOf<double>& angle) {
-  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / 6.283185307179586));
-  return hn::NegMulAdd(turns, set<double>(6.283185307179586), angle);
+  const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / kTurn));
+  return hn::NegMulAdd(turns, set<double>(kTurn), angle);
 }
 
-// Sets phases[i] to the phase of component i at the body's centre [rad], filled up with zeros. Exact to 1e-14
-// of a turn out to 1e9 wavelengths, as SeaSnapshot is.
+// Sets the phase of each place's component at the body's centre [rad], within a few turns of 0; any where
+// there is none. Exact to 1e-14 of a turn out to 1e9 wavelengths, as SeaSnapshot is.
 HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) {
   const LanesOf<double> d;
   const SeaExpansion& sea = *query.expansion;
-  phases.assign(sea.filled_components, 0.0);
-  const std::vector<double>& of_components = query.sea->phases();
-  for (std::size_t i = 0; i < of_components.size(); ++i) phases[sea.slots.places[i]] = of_components[i];
+  if (phases.size() < sea.filled_components) phases.resize(sea.filled_components);
+  const double* const of_components = query.sea->phases().data();
   const VectorOf<double> x1 = set<double>(query.x1);
   const VectorOf<double> x2 = set<double>(query.x2);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
@@ -76,8 +78,10 @@ HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) 
     const ExactDouble along = exact_sum(along1.value, along2.value);
     const VectorOf<double> small = hn::LoadU(d, &sea.k1_rest[i]) * x1 + hn::LoadU(d, &sea.k2_rest[i]) * x2 +
                                    ((along1.error + along2.error) + along.error);
-    const VectorOf<double> phase = within_turn(along.value) + small + hn::LoadU(d, &phases[i]);
-    hn::StoreU(within_turn(phase), d, &phases[i]);
+    const VectorOf<double> own = hn::GatherIndex(
+        d, of_components, hn::LoadU(hn::RebindToSigned<LanesOf<double>>(), &sea.component_of_place[i]));
+    const VectorOf<double> phase = within_turn(along.value) + small + own;
+    hn::StoreU(phase, d, &phases[i]);
   }
 }
 
