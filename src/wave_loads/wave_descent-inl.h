@@ -315,16 +315,16 @@ class Descent {
     if constexpr (kPieces) {
       const PieceLanes<Number> piece = work_.pieces.lanes(units);
       const PatchModel<Number> model =
-          model_of<Number>(patch_, place, piece.radius, surface, surface_bounds, hn::Sqrt(horizontal), f,
-                           *volume_bounds, volume_reach);
+          model_of<Number>(patch_, place, piece.radius, spread_of<Number>(piece), surface, surface_bounds,
+                           hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
       too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
       counts = hn::AndNot(model.dry, in_use);
       integrals = integrate<Number>(patch_, piece, model);
     } else {
       const PatchMoments<Number> moments = read_moments<Number>(*query_.tree, units);
       const PatchModel<Number> model =
-          model_of<Number>(patch_, place, moments.radius, surface, surface_bounds, hn::Sqrt(horizontal), f,
-                           *volume_bounds, volume_reach);
+          model_of<Number>(patch_, place, moments.radius, spread_of<Number>(moments), surface, surface_bounds,
+                           hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
       too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
       counts = hn::AndNot(model.dry, in_use);
       integrals = integrate<Number>(patch_, moments, model);

@@ -175,6 +175,7 @@ struct ReachBounds {
   VectorOf<Number> fourth;      // [m k_max^4], G_4
   VectorOf<Number> third_rest;  // [m k_max^3], what of G_3 has a degree above kThirdDegree
   VectorOf<Number> sum;         // [m], sum of sigma_l reach^l
+  VectorOf<Number> tail;        // [m k_max^(kNormDegree + 1)], of the power of `reach` in e_0
 };
 
 // What the third derivative of degree kThirdDegree leaves out at a distance from the centre [m k_max^3].
@@ -219,13 +220,37 @@ HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const
   };
   auto power = reach;  // reach^kDegree
   for (int l = 1; l < kDegree; ++l) power = power * reach;
-  const auto tail = hn::Set(d, bounds.tail) * reach * reach;
+  const auto squared = reach * reach;
+  const auto tail = hn::Set(d, bounds.tail) * squared;
+  result.tail = hn::Set(d, bounds.tail) * ratio(0);
   result.truncation =
-      power * reach * (hn::MulAdd(sigma(kDegree + 2), reach, sigma(kDegree + 1)) + tail * ratio(0));
+      power * reach * (hn::MulAdd(sigma(kDegree + 2), reach, sigma(kDegree + 1)) + result.tail * squared);
   result.slope =
       power * (set<Number>(kDegree + 1) * sigma(kDegree + 1) +
                set<Number>(kDegree + 2) * sigma(kDegree + 2) * reach + set<Number>(kTail) * tail * ratio(1));
   return result;
+}
+
+// A bound on the mean of e_0 over a patch whose points are at most reach + extent * |y| / r from the cell's
+// centre, y from the patch's centroid and r the largest |y| (Lemma 3b). farthest: at reach + extent. spread:
+// the root mean square of |y| / r.
+template <typename Number>
+HWY_INLINE VectorOf<Number> mean_truncation(const CellBounds<Number>& bounds,
+                                            const ReachBounds<Number>& farthest,
+                                            const VectorOf<Number>& reach, const VectorOf<Number>& extent,
+                                            const VectorOf<Number>& spread) {
+  static_assert(kDegree == 8 && kNormDegree == 10, "e_0 has the degrees 9 and 10, and the tail's");
+  const LanesOf<Number> d;
+  const auto ninth = hn::Set(d, bounds.sigma[9]);
+  const auto tenth = hn::Set(d, bounds.sigma[10]);
+  const auto tail = farthest.tail * reach;
+  const auto squared = reach * reach;
+  const auto eighth_power = squared * squared * (squared * squared);
+  const auto at_centroid = eighth_power * reach * hn::MulAdd(tenth + tail, reach, ninth);
+  const auto tenfold = hn::MulAdd(set<Number>(11.0), tail, set<Number>(10.0) * tenth);
+  const auto linear = extent * eighth_power * hn::MulAdd(tenfold, reach, set<Number>(9.0) * ninth);
+  const auto above = farthest.truncation - at_centroid - linear;
+  return hn::MulAdd(spread, hn::MulAdd(spread, above, linear), at_centroid);
 }
 
 }  // namespace HWY_NAMESPACE

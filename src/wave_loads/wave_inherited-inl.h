@@ -82,6 +82,7 @@ HWY_INLINE Inherited<Number> inherit(const PatchQuery<Number>& query, const Patc
   model.third_of_parts = set<Number>(8.0) * kept.third();  // parts inherit it
   model.curvature = kept.curvature();
   model.delta = kept.delta() + rounding_of_move<Number>(query, kept.phi(), from_kept, r, kept.curvature());
+  model.mean_delta = model.delta;
   model.delta_of_parts = model.delta;
   model.s_third = kept.s_third();
   model.s_cubic = {zero, zero, zero};

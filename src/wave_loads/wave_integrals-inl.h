@@ -246,6 +246,13 @@ HWY_INLINE DistanceMoments<Number> distance_moments(const PatchMoments<Number>& 
   return {m.mu3, m.mu3 * mean, m.nu3};
 }
 
+// The root mean square of the distance from the centroid, over the largest.
+template <typename Number>
+HWY_INLINE VectorOf<Number> spread_of(const PatchMoments<Number>& m) {
+  // A patch that is not used has no area.
+  return hn::Min(hn::Sqrt(m.mu2 / (m.area * m.radius * m.radius)), set<Number>(1.0));
+}
+
 // The integrals of a model over whole patches, or over patches that the surface crosses and that are not
 // clipped.
 template <typename Number>
@@ -298,7 +305,7 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
 
   const V mu1 = hn::Sqrt(m.area * m.mu2);
   const DistanceMoments<Number> distances = distance_moments<Number>(m);
-  const V remainder = hn::MulAdd(model.delta, m.area,
+  const V remainder = hn::MulAdd(model.mean_delta, m.area,
                                  cubic_remainder<Number>(distances, model.third, model.cubic, model.wet));
   const V of_hessian = hn::IfThenElse(model.whole, set<Number>(0.0), set<Number>(0.25));
   const V of_crossing = phi.quadratic_error * m.area + of_hessian * model.curvature * m.mu2;
@@ -314,7 +321,7 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;
   result.volume_error =
       volume_remainder<Number>(m.area, distances, model) +
-      hn::IfThenElse(model.whole, model.s_per_phi * model.delta * m.area,
+      hn::IfThenElse(model.whole, model.s_per_phi * model.mean_delta * m.area,
                      hn::MulAdd(depth.quadratic_error, m.area, quarter * model.s_curvature * m.mu2));
   clear_where<Number>(model.dry, result);
   return result;

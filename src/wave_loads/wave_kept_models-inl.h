@@ -129,7 +129,7 @@ class KeptModels {
     const Vectors3<Number> lever = moments.center - axis_of<Number>(query.reference);
     const V sixth = set<Number>(1.0 / 6.0);
     const V mu1 = hn::Sqrt(moments.area * moments.mu2);
-    const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.delta * moments.area);
+    const V remainder = hn::MulAdd(model.third * moments.mu3, sixth, model.mean_delta * moments.area);
     const V local = hn::MulAdd(model.delta, mu1, sixth * model.third * moments.mu3 * moments.radius);
     const V of_volume = volume_remainder<Number>(moments.area, distance_moments<Number>(moments), model);
     if (count_ == models_.size()) models_.emplace_back();

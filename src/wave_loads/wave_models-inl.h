@@ -48,6 +48,7 @@ struct PatchModel {
   VectorOf<Number> delta_of_parts;  // [m], an estimate as well
   VectorOf<Number> curvature;       // [1/m], |H|
   VectorOf<Number> delta;           // [m], error of the model over the whole patch
+  VectorOf<Number> mean_delta;      // [m], a bound on the mean of that error
   VectorOf<Number> s_third;         // [1/m^2], L_3; 0 where the model of s is linear
   CubicBounds<Number> s_cubic;
   VectorOf<Number> s_curvature;  // [1/m], |D^2 eta|, as s_third
@@ -116,12 +117,14 @@ HWY_INLINE Symmetric<Number> level_hessian_in_body_axes(const PatchQuery<Number>
           entry(e1.x, e2.x, first.z, second.z), entry(e1.y, e2.y, first.z, second.z)};
 }
 
-// radius: [m]. surface, f: the expansions at the place, of the elevation and of the pressure; *_bounds,
-// *_reach: of the cells they come from, and how far the place is from these cells' centres, over 1 / k_max. f
-// and its cell's are not used where the pressure is hydrostatic.
+// radius: [m]. spread: the root mean square of the distance from the centroid, over the radius. surface, f:
+// the expansions at the place, of the elevation and of the pressure; *_bounds, *_reach: of the cells they
+// come from, and how far the place is from these cells' centres, over 1 / k_max. f and its cell's are not
+// used where the pressure is hydrostatic.
 template <typename Number>
 HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Place<Number>& place,
-                                       const VectorOf<Number>& radius, const SurfaceValues<Number>& surface,
+                                       const VectorOf<Number>& radius, const VectorOf<Number>& spread,
+                                       const SurfaceValues<Number>& surface,
                                        const CellBounds<Number>& surface_bounds,
                                        const VectorOf<Number>& surface_reach, const VolumeValues<Number>& f,
                                        const CellBounds<Number>& volume_bounds,
@@ -148,7 +151,8 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V& L2 = range.L2;
   const V& L3 = range.L3;
   const V& epsilon = range.epsilon;
-  const V& of_eta = range.of_eta;
+  const V mean_truncation_of_eta =
+      mean_truncation<Number>(surface_bounds, range.above, surface_reach, r, spread);
 
   PatchModel<Number> model;
   model.dry = hn::Gt(s_low, zero);
@@ -174,7 +178,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   model.s_curvature = hn::IfThenElseZero(known, range.L2_at_point) * set<Number>(query.k_max);
 
   const V still = set<Number>(query.submerged ? 0.0 : 1.0);
-  V value, g1, g2, g3, M3, delta, gamma;
+  V value, g1, g2, g3, M3, delta, mean_delta, gamma;
   V M3_at_point;  // about M_3 of a small patch
   CubicBounds<Number> cubic = of_eta_cubic;
   V stretch = one;  // bound on q
@@ -187,8 +191,10 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     H = {surface.eta_11, surface.eta_22, zero, surface.eta_12, zero, zero};
     M3 = L3;
     M3_at_point = surface.third;
-    delta = hn::MulAdd(still * rounding, hn::Abs(place.zeta), of_eta) +
-            set<Number>(query.displacement) * (still + L1);
+    const V rest = hn::MulAdd(still * rounding, hn::Abs(place.zeta), range.rounded) +
+                   set<Number>(query.displacement) * (still + L1);
+    delta = range.above.truncation + rest;
+    mean_delta = mean_truncation_of_eta + rest;
     gamma = zero;
     model.too_steep = hn::Gt(zero, one);
   } else {
@@ -268,9 +274,13 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     cubic.norm = set<Number>(1.5811389) * f.third * V1_cubed + three * vertical * V1 * Z2 + abs_f_3 * Z3;
     const V f_rest = hn::MulAdd(rounding, inside.third, third_rest_at<Number>(volume_bounds, volume_reach));
     cubic.rest = hn::MulAdd(f_rest, V1_cubed, abs_f_3 * w_max * qq * range.third_rest);
-    delta = hn::MulAdd(F1, shift, inside.truncation) +
-            rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
-            set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
+    const V mean_epsilon = hn::MulAdd(rounding, hn::Abs(place.zeta), range.rounded + mean_truncation_of_eta);
+    const V rest = rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
+                   set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
+    delta = hn::MulAdd(F1, shift, inside.truncation) + rest;
+    mean_delta = hn::MulAdd(
+        F1 * w_max * qq, mean_epsilon,
+        mean_truncation<Number>(volume_bounds, inside, volume_reach + shift, r * V1, spread) + rest);
 
     const V z = stretched<Number>(query, place, eta);
     const V Z = hn::MulAdd(r, hn::Sqrt(hn::MulAdd(b_1, b_1, qq)), shift);
@@ -316,16 +326,18 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   // Bounds over a ball grow faster than exponentially with its radius.
   model.third_of_parts = hn::Sqrt(hn::Sqrt(M3 * M3_at_point) * M3_at_point) * per_area;
   model.curvature = hn::Sqrt(frobenius_squared<Number>(H)) * set<Number>(query.k_max);
-  model.delta_of_parts = hn::IfThenElseZero(use_quadratic, delta) * set<Number>(1.0 / query.k_max);
+  model.delta_of_parts = hn::IfThenElseZero(use_quadratic, mean_delta) * set<Number>(1.0 / query.k_max);
   // The rounding of the integrals themselves.
   const auto flat = hn::Not(hn::Or(use_quadratic, use_tangent));
   const V steepness = one + hn::IfThenZeroElse(flat, L1 + hn::IfThenElseZero(use_quadratic, hn::Abs(g3)));
   const V size =
       hn::Abs(model_value) + r * steepness + r * r * model.curvature * set<Number>(1.0 / query.k_max);
   const V displaced = set<Number>(query.displacement * query.steepest);
-  model.delta = (select(delta, tangent_delta + displaced, flat_delta + displaced) +
-                 set<Number>(query.integral_rounding) * size) *
-                set<Number>(1.0 / query.k_max);
+  const V rounded = set<Number>(query.integral_rounding) * size;
+  const V of_tangent = tangent_delta + displaced;
+  const V of_flat = flat_delta + displaced;
+  model.delta = per_k * (select(delta, of_tangent, of_flat) + rounded);
+  model.mean_delta = per_k * (select(mean_delta, of_tangent, of_flat) + rounded);
   // Which parts are wet: the test of the surface decides for the quadratic model, the model's own sign for
   // the others.
   model.whole = hn::Or(hn::And(hn::Not(flat), wet),

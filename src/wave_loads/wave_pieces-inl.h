@@ -50,6 +50,20 @@ HWY_INLINE VectorOf<Number> norm_of_mean_cubes(const std::array<Vectors3<Number>
   return hn::MulAdd(set<Number>(3.00001) * hn::Sqrt(dot<Number>(mid, mid)), mean2, about_mid);
 }
 
+// The mean of |y|^2 over triangles about their centroids, from the corners, rounded up.
+template <typename Number>
+HWY_INLINE VectorOf<Number> mean_square(const std::array<Vectors3<Number>, 3>& corners) {
+  const VectorOf<Number> sum = dot<Number>(corners[0], corners[0]) + dot<Number>(corners[1], corners[1]) +
+                               dot<Number>(corners[2], corners[2]);
+  return sum * set<Number>(1.000001 / 12.0);
+}
+
+// The root mean square of the distance from the centroid, over the largest.
+template <typename Number>
+HWY_INLINE VectorOf<Number> spread_of(const PieceLanes<Number>& piece) {
+  return hn::Min(hn::Sqrt(mean_square<Number>(piece.corners)) / piece.radius, set<Number>(1.0));
+}
+
 // The integrals over pieces, and the bounds on their errors.
 template <typename Number>
 HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, const PieceLanes<Number>& piece,
@@ -67,15 +81,13 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
       to_patch<Number>(integrate<Number>(query, t), lever, piece.center, piece.radius, model.s_per_phi);
   const Vectors3<Number> normal = cross<Number>(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
   const V area = set<Number>(0.500001) * hn::Sqrt(dot<Number>(normal, normal));
-  V second = set<Number>(0.0);
-  V fourth = second;
+  V fourth = set<Number>(0.0);
   for (const Vectors3<Number>& corner : t.corners) {
     const V squared = dot<Number>(corner, corner);
-    second = second + squared;
     fourth = hn::MulAdd(squared, squared, fourth);
   }
   // The means of |y|^2 and |y|^4 over a triangle, about its centroid.
-  const V mean2 = second * set<Number>(1.000001 / 12.0);
+  const V mean2 = mean_square<Number>(t.corners);
   const V mean4 = fourth * set<Number>(1.000001 / 30.0);
   const V mean3 = hn::Sqrt(mean2 * mean4);
   const Vectors3<Number> mid =
@@ -83,7 +95,7 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const DistanceMoments<Number> distances{area * mean3, area * mean4,
                                           area * norm_of_mean_cubes<Number>(t.corners, mid, mean2)};
   const V cubic = cubic_remainder<Number>(distances, model.third, model.cubic, model.wet);
-  const V remainder = hn::MulAdd(area, model.delta, cubic);
+  const V remainder = hn::MulAdd(area, model.mean_delta, cubic);
   const V local =
       hn::MulAdd(area * model.delta, hn::Sqrt(mean2), set<Number>(1.0 / 6.0) * model.third * distances.mu4);
   // Of a whole triangle, the norm of its third moments bounds what the offsets leave out.

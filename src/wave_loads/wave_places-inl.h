@@ -112,8 +112,9 @@ struct SurfaceRange {
   VectorOf<Number> s, low, high;
   VectorOf<Number> L1, L2, L3, L4, L2_at_point;
   VectorOf<Number> third_rest;  // of D^3 eta at the point
-  VectorOf<Number> of_eta;      // error of eta
+  VectorOf<Number> rounded;     // error of eta by rounding
   VectorOf<Number> epsilon;     // error of s
+  ReachBounds<Number> above;    // of the expansion of eta over the patch
 };
 
 // r: radius over 1 / k_max.
@@ -127,19 +128,19 @@ HWY_INLINE SurfaceRange<Number> range_of(const VectorOf<Number>& zeta, const Vec
   const V half = set<Number>(0.5);
   SurfaceRange<Number> range;
   range.s = zeta - surface.eta;
-  const ReachBounds<Number> above = bounds_at<Number>(bounds, reach + r);
+  range.above = bounds_at<Number>(bounds, reach + r);
   const V mean = half * (surface.eta_11 + surface.eta_22);
   const V difference = half * (surface.eta_11 - surface.eta_22);
   const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
-  range.L3 = third_within<Number>(surface.third, above, r, rounding);
-  range.L4 = above.fourth;
-  range.third_rest = hn::MulAdd(rounding, above.third, third_rest_at<Number>(bounds, reach));
+  range.L3 = third_within<Number>(surface.third, range.above, r, rounding);
+  range.L4 = range.above.fourth;
+  range.third_rest = hn::MulAdd(rounding, range.above.third, third_rest_at<Number>(bounds, reach));
   range.L2_at_point = hn::Abs(mean) + deviator;
   range.L2 = hn::MulAdd(r, range.L3, range.L2_at_point);
   const V slope_squared = hn::MulAdd(surface.eta_1, surface.eta_1, surface.eta_2 * surface.eta_2);
   range.L1 = hn::MulAdd(r, range.L2, hn::Sqrt(slope_squared));
-  range.of_eta = hn::MulAdd(rounding, above.sum, above.truncation);
-  range.epsilon = hn::MulAdd(rounding, hn::Abs(zeta), range.of_eta);
+  range.rounded = rounding * range.above.sum;
+  range.epsilon = hn::MulAdd(rounding, hn::Abs(zeta), range.rounded + range.above.truncation);
   const V r_squared_half = half * r * r;
   const V variation = hn::MulAdd(r, hn::Sqrt(set<Number>(1.0) + slope_squared),
                                  r_squared_half * r * range.L3 * set<Number>(1.0 / 3.0));
