@@ -1,11 +1,16 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/vec3.h"
 #include "wave_loads/wave_field-inl.h"
+#include "wave_loads/wave_integrals-inl.h"
+#include "wave_loads/wave_pieces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -72,6 +77,36 @@ TEST(WaveField, KnowsTheMeanWhereAllPointsAreAsFar) {
     PatchInCell patch = random_patch(generator);
     patch.distances.assign(10, 1.0);
     EXPECT_NEAR(patch.bound(), patch.truncation_at(patch.reach + patch.extent), 1e-12 * patch.bound());
+  }
+}
+
+TEST(WaveField, KnowsTheSpreadOfATriangle) {
+  std::mt19937_64 generator(37);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 100; ++i) {
+    std::array<Vec3, 3> corners;
+    for (Vec3& corner : corners) corner = {normal(generator), normal(generator), normal(generator)};
+    const Vec3 centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    PieceLanes<double> piece{};
+    double radius = 0.0;
+    double mean = 0.0;  // of the square of the distance: the mean of those of the edges' midpoints
+    for (std::size_t n = 0; n < 3; ++n) {
+      corners[n] -= centroid;
+      piece.corners[n] = {set<double>(corners[n].x()), set<double>(corners[n].y()),
+                          set<double>(corners[n].z())};
+      radius = std::max(radius, corners[n].norm());
+    }
+    for (std::size_t n = 0; n < 3; ++n)
+      mean += (0.5 * (corners[n] + corners[(n + 1) % 3])).squaredNorm() / 3.0;
+    piece.radius = set<double>(radius);
+    const double area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    PatchMoments<double> patch{};
+    patch.radius = piece.radius;
+    patch.area = set<double>(area);
+    patch.mu2 = set<double>(mean * area);
+    const double spread = std::sqrt(mean) / radius;
+    EXPECT_NEAR(first_lane(spread_of<double>(piece)), spread, 1e-6);
+    EXPECT_NEAR(first_lane(spread_of<double>(patch)), spread, 1e-12);
   }
 }
 
