@@ -165,6 +165,20 @@ HWY_INLINE VolumeValues<Number> evaluate(const VolumeCell<Number>& cell, const V
   return v;
 }
 
+template <int kExponent, typename V>
+HWY_INLINE V power(const V& x) {
+  if constexpr (kExponent == 1) {
+    return x;
+  } else if constexpr (kExponent % 2 == 0) {
+    const V root = power<kExponent / 2>(x);
+    return root * root;
+  } else {
+    return power<kExponent - 1>(x) * x;
+  }
+}
+
+static_assert(kNormDegree == kDegree + 2, "e_0 has two degrees with a norm, and the tail");
+
 // What the polynomials of a cell leave out and how fast they vary, at distances up to `reach` (over 1 /
 // k_max) from its centre.
 template <typename Number>
@@ -182,9 +196,8 @@ struct ReachBounds {
 template <typename Number>
 HWY_INLINE VectorOf<Number> third_rest_at(const CellBounds<Number>& bounds, const VectorOf<Number>& reach) {
   static_assert(kDegree == kThirdDegree + 4, "one degree is left out");
-  const auto squared = reach * reach;
   return set<Number>(1.0 * kDegree * (kDegree - 1) * (kDegree - 2)) *
-         hn::Set(LanesOf<Number>(), bounds.sigma[kDegree]) * (squared * squared * reach);
+         hn::Set(LanesOf<Number>(), bounds.sigma[kDegree]) * power<kDegree - 3>(reach);
 }
 
 template <typename Number>
@@ -209,7 +222,7 @@ HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const
     }
   }
   // From the terms above kThirdDegree to the power of theirs.
-  for (int power = 0; power <= kThirdDegree; ++power) result.third_rest = result.third_rest * reach;
+  result.third_rest = result.third_rest * power<kThirdDegree + 1>(reach);
   // Degrees above kNormDegree: a geometric series, which ends where the ratio reaches one.
   constexpr int kTail = kNormDegree + 1;
   const auto one = set<Number>(1.0);
@@ -218,16 +231,15 @@ HWY_INLINE ReachBounds<Number> bounds_at(const CellBounds<Number>& bounds, const
     const auto inverse = one / hn::Max(rest, set<Number>(1e-30));
     return hn::IfThenElse(rest > set<Number>(0.0), inverse, set<Number>(1e30));
   };
-  auto power = reach;  // reach^kDegree
-  for (int l = 1; l < kDegree; ++l) power = power * reach;
+  const auto highest_power = power<kDegree>(reach);
   const auto squared = reach * reach;
   const auto tail = hn::Set(d, bounds.tail) * squared;
   result.tail = hn::Set(d, bounds.tail) * ratio(0);
-  result.truncation =
-      power * reach * (hn::MulAdd(sigma(kDegree + 2), reach, sigma(kDegree + 1)) + result.tail * squared);
-  result.slope =
-      power * (set<Number>(kDegree + 1) * sigma(kDegree + 1) +
-               set<Number>(kDegree + 2) * sigma(kDegree + 2) * reach + set<Number>(kTail) * tail * ratio(1));
+  result.truncation = highest_power * reach *
+                      (hn::MulAdd(sigma(kNormDegree), reach, sigma(kDegree + 1)) + result.tail * squared);
+  result.slope = highest_power * (set<Number>(kDegree + 1) * sigma(kDegree + 1) +
+                                  set<Number>(kNormDegree) * sigma(kNormDegree) * reach +
+                                  set<Number>(kTail) * tail * ratio(1));
   return result;
 }
 
@@ -239,16 +251,15 @@ HWY_INLINE VectorOf<Number> mean_truncation(const CellBounds<Number>& bounds,
                                             const ReachBounds<Number>& farthest,
                                             const VectorOf<Number>& reach, const VectorOf<Number>& extent,
                                             const VectorOf<Number>& spread) {
-  static_assert(kDegree == 8 && kNormDegree == 10, "e_0 has the degrees 9 and 10, and the tail's");
   const LanesOf<Number> d;
-  const auto ninth = hn::Set(d, bounds.sigma[9]);
-  const auto tenth = hn::Set(d, bounds.sigma[10]);
+  const auto first = hn::Set(d, bounds.sigma[kDegree + 1]);
+  const auto second = hn::Set(d, bounds.sigma[kNormDegree]);
   const auto tail = farthest.tail * reach;
-  const auto squared = reach * reach;
-  const auto eighth_power = squared * squared * (squared * squared);
-  const auto at_centroid = eighth_power * reach * hn::MulAdd(tenth + tail, reach, ninth);
-  const auto tenfold = hn::MulAdd(set<Number>(11.0), tail, set<Number>(10.0) * tenth);
-  const auto linear = extent * eighth_power * hn::MulAdd(tenfold, reach, set<Number>(9.0) * ninth);
+  const auto highest_power = power<kDegree>(reach);
+  const auto at_centroid = highest_power * reach * hn::MulAdd(second + tail, reach, first);
+  const auto above_first = hn::MulAdd(set<Number>(kNormDegree + 1), tail, set<Number>(kNormDegree) * second);
+  const auto linear =
+      extent * highest_power * hn::MulAdd(above_first, reach, set<Number>(kDegree + 1) * first);
   const auto above = farthest.truncation - at_centroid - linear;
   return hn::MulAdd(spread, hn::MulAdd(spread, above, linear), at_centroid);
 }
