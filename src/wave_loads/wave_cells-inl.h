@@ -379,11 +379,12 @@ HWY_INLINE void fold_rows(const ComponentSlots& slots, LaneSums<Number>& sums) {
   }
 }
 
-// Sets the sums of all slots for `count` cells and each of the weights. kOneWeight: as in add_steps().
-template <bool kOneWeight, typename Number, std::size_t kKinds>
+// Sets the sums of all slots for `count` cells and each of the weights.
+template <typename Number, PowerWeights... kOfSums>
 HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vector<StepPowers<Number>>& powers,
-                                   const std::array<PowerWeights, kKinds>& kinds, std::size_t count,
-                                   CellWorkspace<Number>& work) {
+                                   std::size_t count, CellWorkspace<Number>& work) {
+  constexpr std::array kKinds{kOfSums...};
+  constexpr bool kOneWeight = ((kOfSums.of_even == kOfSums.of_odd) && ...);
   // As many sums as the registers hold; they share the powers.
   constexpr std::size_t kTogether = kLanes<Number> * sizeof(Number) == 64 ? 2 : 1;
   // The powers of as many steps stay in the nearest cache while all cells pass. It also keeps the chains of
@@ -399,8 +400,8 @@ HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vecto
         std::array<std::array<WeightFactors<Number>, 2>, kSums> weights;
         std::array<LaneSums<Number>*, kSums> sums;
         for (std::size_t n = 0; n < kSums; ++n) {
-          const CellFactors<Number>& of_cell = work.factors[(first + n) / kKinds];
-          const PowerWeights& kind = kinds[(first + n) % kKinds];
+          const CellFactors<Number>& of_cell = work.factors[(first + n) / kKinds.size()];
+          const PowerWeights& kind = kKinds[(first + n) % kKinds.size()];
           weights[n] = {of_cell.of(kind.of_even), of_cell.of(kind.of_odd)};
           sums[n] = &work.lane_sums[(first + n) * slots.blocks + block];
         }
@@ -409,13 +410,13 @@ HWY_NOINLINE void accumulate_lanes(const ComponentSlots& slots, const std::vecto
         }
       };
       std::size_t first = 0;
-      for (; first + kTogether <= count * kKinds; first += kTogether) {
+      for (; first + kTogether <= count * kKinds.size(); first += kTogether) {
         add(first, std::integral_constant<std::size_t, kTogether>());
       }
-      for (; first < count * kKinds; ++first) add(first, std::integral_constant<std::size_t, 1>());
+      for (; first < count * kKinds.size(); ++first) add(first, std::integral_constant<std::size_t, 1>());
     }
   }
-  for (std::size_t n = 0; n < count * kKinds; ++n) fold_rows(slots, work.lane_sums[n]);
+  for (std::size_t n = 0; n < count * kKinds.size(); ++n) fold_rows(slots, work.lane_sums[n]);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -231,20 +231,16 @@ class SeaCells {
   template <bool kSurface>
   void accumulate_slots(bool same, std::size_t count) {
     const SeaExpansion& sea = *query_->expansion;
+    using enum Weight;
+    const std::vector<StepPowers<Number>>& powers = table().powers;
     if constexpr (kSurface) {
-      accumulate_lanes<false, Number>(sea.slots, table().powers,
-                                      std::array{PowerWeights{Weight::kCosineEven, Weight::kSineEven}}, count,
-                                      work_);
+      accumulate_lanes<Number, PowerWeights{kCosineEven, kSineEven}>(sea.slots, powers, count, work_);
     } else if (same) {
-      accumulate_lanes<true, Number>(sea.slots, table().powers,
-                                     std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineEven},
-                                                PowerWeights{Weight::kSineEven, Weight::kSineEven}},
-                                     count, work_);
+      accumulate_lanes<Number, PowerWeights{kCosineEven, kCosineEven}, PowerWeights{kSineEven, kSineEven}>(
+          sea.slots, powers, count, work_);
     } else {
-      accumulate_lanes<false, Number>(sea.slots, table().powers,
-                                      std::array{PowerWeights{Weight::kCosineEven, Weight::kCosineOdd},
-                                                 PowerWeights{Weight::kSineOdd, Weight::kSineEven}},
-                                      count, work_);
+      accumulate_lanes<Number, PowerWeights{kCosineEven, kCosineOdd}, PowerWeights{kSineOdd, kSineEven}>(
+          sea.slots, powers, count, work_);
     }
   }
 
