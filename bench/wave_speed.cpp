@@ -91,9 +91,13 @@ SeaDescription sea_of(int components, WavePressure pressure) {
   return description;
 }
 
-// How long a method's turn lasts at least, ns: several passes over the poses for a method of microseconds.
-double turn_of(Extent extent) {
-  return extent == Extent::kSmoke ? 0.0 : 10e6;
+// How long a method's turn lasts at least, ns: several passes over the poses for a method of microseconds,
+// and more of them where slow methods allow few sweeps, so that each of its poses meets a quick moment of the
+// machine.
+double turn_of(Extent extent, int sweeps) {
+  constexpr double kShortest = 10e6;
+  constexpr double kOfAllSweeps = 0.3e9;
+  return extent == Extent::kSmoke ? 0.0 : std::max(kShortest, kOfAllSweeps / sweeps);
 }
 
 // The surface with every edge cut into `cuts`, which does not change it.
@@ -281,7 +285,8 @@ void measure_sea(const BenchmarkMesh& model, const PatchTree& tree, const WaveRe
                      },
                      {}});
   for (TimedMethod& method : methods) measure_errors(method, model.mesh, poses, truth);
-  time_methods(methods, poses, sweeps_of(extent, row.triangles, components), turn_of(extent));
+  const int sweeps = sweeps_of(extent, row.triangles, components);
+  time_methods(methods, poses, sweeps, turn_of(extent, sweeps));
   for (const TimedMethod& method : methods) measurements.push_back(method.row);
 }
 
