@@ -229,18 +229,17 @@ class SeaCells {
   // volume the weights of its terms of even orders m, then those of odd m. A weight is of an odd derivative
   // where l + m is odd. same: as in set_weights().
   template <bool kSurface>
-  void accumulate_slots(bool same, std::size_t count) {
-    const SeaExpansion& sea = *query_->expansion;
+  void accumulate_slots(const ComponentSlots& slots, bool same, std::size_t count) {
     using enum Weight;
     const std::vector<StepPowers<Number>>& powers = table().powers;
     if constexpr (kSurface) {
-      accumulate_lanes<Number, PowerWeights{kCosineEven, kSineEven}>(sea.slots, powers, count, work_);
+      accumulate_lanes<Number, PowerWeights{kCosineEven, kSineEven}>(slots, powers, count, work_);
     } else if (same) {
       accumulate_lanes<Number, PowerWeights{kCosineEven, kCosineEven}, PowerWeights{kSineEven, kSineEven}>(
-          sea.slots, powers, count, work_);
+          slots, powers, count, work_);
     } else {
       accumulate_lanes<Number, PowerWeights{kCosineEven, kCosineOdd}, PowerWeights{kSineOdd, kSineEven}>(
-          sea.slots, powers, count, work_);
+          slots, powers, count, work_);
     }
   }
 
@@ -268,7 +267,7 @@ class SeaCells {
       }
       const ComponentSlots& slots = query_->expansion->slots;
       if (slots.any()) {
-        accumulate_slots<kSurface>(same, count);
+        accumulate_slots<kSurface>(slots, same, count);
       } else {
         for (std::size_t n = 0; n < count; ++n) set_weights<Number>(*query_->expansion, same, n, work_);
         accumulate<Number>(rows, of_weight, same, count, work_);
