@@ -85,7 +85,9 @@ SeaDescription sea_of(int components, WavePressure pressure) {
   waves.significant_wave_height = 0.5;
   waves.peak_period = 3.0;
   waves.spreading = 10.0;
-  waves.directions = components == 512 ? 8 : 5;
+  // About as many frequencies for every number of components: where they are few, the shortest wave is
+  // longer, which costs less whatever the number of components.
+  waves.directions = components == 50 ? 1 : components == 200 ? 5 : 8;
   waves.frequencies = components / waves.directions;
   description.systems = {waves};
   return description;
