@@ -130,8 +130,7 @@ std::optional<Error> error_in(const SeaDescription& description, const Water& wa
   if (components > kMaxWaveComponents) {
     checks.fail("number of wave components", static_cast<double>(components),
                 "at most " + std::to_string(kMaxWaveComponents), {},
-                "Use fewer frequencies or directions: the cost does not depend on them, but 200 components "
-                "are usual");
+                "Use fewer frequencies or directions: 200 components are usual");
   }
   if (!(deepest_trough(description) < description.depth)) {
     checks.fail("deepest trough", deepest_trough(description),
