@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -7,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/vec3.h"
+#include "tests/wave_loads/triangle_lanes-inl.h"
 #include "wave_loads/wave_field-inl.h"
 #include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_pieces-inl.h"
@@ -16,10 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 namespace {
-
-double first_lane(const VectorOf<double>& numbers) {
-  return hn::GetLane(numbers);
-}
 
 // An expansion, and a patch beside its centre.
 struct PatchInCell {
@@ -82,29 +77,14 @@ TEST(WaveField, KnowsTheMeanWhereAllPointsAreAsFar) {
 
 TEST(WaveField, KnowsTheSpreadOfATriangle) {
   std::mt19937_64 generator(37);
-  std::normal_distribution<double> normal;
   for (int i = 0; i < 100; ++i) {
-    std::array<Vec3, 3> corners;
-    for (Vec3& corner : corners) corner = {normal(generator), normal(generator), normal(generator)};
-    const Vec3 centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    const Corners corners = random_triangle(generator);
+    const PatchMoments<double> patch = moments_of(corners);
     PieceLanes<double> piece{};
-    double radius = 0.0;
-    double mean = 0.0;  // of the square of the distance: the mean of those of the edges' midpoints
-    for (std::size_t n = 0; n < 3; ++n) {
-      corners[n] -= centroid;
-      piece.corners[n] = {set<double>(corners[n].x()), set<double>(corners[n].y()),
-                          set<double>(corners[n].z())};
-      radius = std::max(radius, corners[n].norm());
-    }
-    for (std::size_t n = 0; n < 3; ++n)
-      mean += (0.5 * (corners[n] + corners[(n + 1) % 3])).squaredNorm() / 3.0;
-    piece.radius = set<double>(radius);
-    const double area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
-    PatchMoments<double> patch{};
-    patch.radius = piece.radius;
-    patch.area = set<double>(area);
-    patch.mu2 = set<double>(mean * area);
-    const double spread = std::sqrt(mean) / radius;
+    for (std::size_t n = 0; n < 3; ++n) piece.corners[n] = in_lanes(corners[n] - centroid_of(corners));
+    piece.radius = patch.radius;
+    const double spread =
+        std::sqrt(first_lane(patch.mu2) / first_lane(patch.area)) / first_lane(patch.radius);
     EXPECT_NEAR(first_lane(spread_of<double>(piece)), spread, 1e-6);
     EXPECT_NEAR(first_lane(spread_of<double>(patch)), spread, 1e-12);
   }
