@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "tests/wave_loads/triangle_lanes-inl.h"
 #include "wave_loads/wave_inherited-inl.h"
+#include "wave_loads/wave_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -44,9 +45,7 @@ KeptModelLanes<double> random_models(std::mt19937_64& generator) {
 }
 
 double value_at(const Quadratic<double>& q, const Vec3& y) {
-  const Vectors3<double> lanes = in_lanes(y);
-  return first_lane(q.value + dot<double>(q.gradient, lanes) +
-                    set<double>(0.5) * dot<double>(product<double>(q.hessian, lanes), lanes));
+  return first_lane(value_at<double>(q, in_lanes(y)));
 }
 
 TEST(InheritedModel, BoundsTheThirdMomentAboutItsOrigin) {
