@@ -19,6 +19,11 @@ const char* remedy_for(BodyStatus status) {
   if (status == BodyStatus::kBadCondition) {
     return "a received condition of a compartment or tank cannot be used: see the warning about its message";
   }
+  if (status == BodyStatus::kNotCertified) {
+    return "the bound on the force's error is above the weight of the water that the body displaces. Likely "
+           "cause: a trough uncovers the sea bed there, or waves far shorter than the body. Use lower waves, "
+           "deeper water or a lower cutoff";
+  }
   if (status == BodyStatus::kNonFiniteTwist) {
     return "a velocity is NaN or infinite where it is needed: with a lead_time, and for bodies with drag or "
            "added mass";
@@ -68,7 +73,11 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
           "the response holds. Raise the tolerance, or lower the waves' cutoff"},
       InWaves{&ServiceCounters::bodies_sea_too_steep, "bodies in a sea too steep for linear theory",
               "likely cause: high waves with too many short ones on top. Lower the height or the cutoff, or "
-              "lengthen the period; buoyancyd --check reports the steepness"}};
+              "lengthen the period; buoyancyd --check reports the steepness"},
+      InWaves{&ServiceCounters::bodies_below_bed, "bodies that reach below the sea bed",
+              "the bed does not hold them, and the waves below it are those at the bed. Likely cause: a body "
+              "that "
+              "sinks, or a depth or level that is not in metres"}};
   for (const InWaves& in_waves : kInWaves) {
     const std::int64_t increase = now.*in_waves.counter - before.*in_waves.counter;
     if (increase > 0) warnings.push_back({in_waves.message, increase, in_waves.remedy});

@@ -33,6 +33,8 @@ BodyStatus to_body_status(BuoyancyStatus status) {
       return BodyStatus::kOpenEdgeWet;
     case BuoyancyStatus::kOutOfRange:
       return BodyStatus::kOutOfRange;
+    case BuoyancyStatus::kNotCertified:
+      return BodyStatus::kNotCertified;
   }
   return BodyStatus::kOutOfRange;
 }
@@ -88,7 +90,7 @@ WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, c
 }
 
 WaveDetails details_of(const WaveBuoyancyResult& computed) {
-  return {computed.work_capped, computed.sea_too_steep, computed.volume_error_bound};
+  return {computed.work_capped, computed.sea_too_steep, computed.below_bed, computed.volume_error_bound};
 }
 
 void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
@@ -161,6 +163,7 @@ void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters) {
   counters.bodies_unchanged += static_cast<std::int64_t>(outcome.unchanged);
   counters.bodies_work_capped += static_cast<std::int64_t>(outcome.in_waves.work_capped);
   counters.bodies_sea_too_steep += static_cast<std::int64_t>(outcome.in_waves.sea_too_steep);
+  counters.bodies_below_bed += static_cast<std::int64_t>(outcome.in_waves.below_bed);
   switch (outcome.result.immersion) {
     case Immersion::kDry:
       ++counters.bodies_dry;

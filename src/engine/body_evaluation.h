@@ -41,6 +41,7 @@ bool equal_branch_free(const PoseBits& a, const PoseBits& b);
 struct WaveDetails {
   bool work_capped = false;
   bool sea_too_steep = false;
+  bool below_bed = false;
   double volume_error_bound = 0.0;  // [m^3]
 };
 

@@ -9,7 +9,12 @@
 
 namespace buoyancy {
 
-enum class BuoyancyStatus { kOk, kOpenEdgeWet, kOutOfRange };
+enum class BuoyancyStatus {
+  kOk,
+  kOpenEdgeWet,
+  kOutOfRange,
+  kNotCertified,  // in waves: the bound on the force's error is above the weight of the whole displacement
+};
 
 struct BuoyancyResult {
   BuoyancyStatus status = BuoyancyStatus::kOk;

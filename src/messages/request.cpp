@@ -24,6 +24,8 @@ const char* to_string(BodyStatus status) {
       return "NO_SEA";
     case BodyStatus::kBadCondition:
       return "BAD_CONDITION";
+    case BodyStatus::kNotCertified:
+      return "NOT_CERTIFIED";
   }
   return "UNKNOWN_STATUS";
 }

@@ -54,8 +54,9 @@ enum class BodyStatus : std::int32_t {
   kOutOfRange = 7,
   kNoSea = 8,
   kBadCondition = 9,
+  kNotCertified = 10,
 };
-inline constexpr int kBodyStatusCount = 10;
+inline constexpr int kBodyStatusCount = 11;
 // The constant's name in the message definition, such as "UNKNOWN_BODY"; "UNKNOWN_STATUS" for any other
 // value.
 const char* to_string(BodyStatus status);

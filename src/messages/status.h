@@ -38,6 +38,7 @@ struct ServiceCounters {
   std::int64_t bodies_unchanged = 0;
   std::int64_t bodies_work_capped = 0;
   std::int64_t bodies_sea_too_steep = 0;
+  std::int64_t bodies_below_bed = 0;
   std::int64_t wave_patches = 0;
   std::int64_t hydrostatics = 0;
   double largest_dropped_force = 0.0;

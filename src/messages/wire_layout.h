@@ -139,6 +139,7 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.bodies_unchanged...);
   visitor(c.bodies_work_capped...);
   visitor(c.bodies_sea_too_steep...);
+  visitor(c.bodies_below_bed...);
   visitor(c.wave_patches...);
   visitor(c.hydrostatics...);
   visitor(c.largest_dropped_force...);

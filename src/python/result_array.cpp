@@ -100,6 +100,9 @@ const char* explain(BodyStatus status) {
       return "the scene's waves come in messages, and none is known here; pass sea=";
     case BodyStatus::kBadCondition:
       return "a message has set a compartment or tank to a value that cannot be used";
+    case BodyStatus::kNotCertified:
+      return "in waves, the bound on the force's error is above the weight of the body's displacement; the "
+             "sea bed falls dry there, or the waves are far shorter than the body";
   }
   return "a status that this version does not know";
 }

@@ -1,6 +1,7 @@
 #include "wave_loads/direct_sea.h"
 
 #include <cmath>
+#include <limits>
 
 namespace buoyancy {
 
@@ -14,6 +15,7 @@ void DirectSea<Number>::prepare(const SeaSnapshot& snapshot, double x1, double x
   const bool deep = std::isinf(depth);
   snapshot.phases_at(x1, x2, scratch);
   per_depth = static_cast<Number>(deep ? 0.0 : 1.0 / depth);
+  bed = deep ? std::numeric_limits<Number>::lowest() : static_cast<Number>(-depth);
   components.clear();
   groups.clear();
   for (std::size_t i = 0; i < waves.size(); ++i) {

@@ -33,6 +33,7 @@ struct DirectSea {
   std::vector<Component> components;
   std::vector<Group> groups;
   Number per_depth = 0;  // [1/m], 1 / h; 0 in deep water
+  Number bed = 0;        // [m], -h; the lowest number in deep water
 
   // x1, x2: the body's centre [m]. scratch: phases.
   void prepare(const SeaSnapshot& sea, double x1, double x2, std::vector<double>& scratch);

@@ -165,7 +165,9 @@ HWY_NOINLINE void evaluate_sea(const DirectSea<Number>& sea, std::size_t count, 
 
     const auto one = set<Number>(1.0);
     const auto s = hn::Min(hn::Load(d, points.zeta.data() + first) - eta, zero);
-    const auto z = s / hn::MulAdd(eta, hn::Set(d, sea.per_depth), one);
+    const auto column = hn::MulAdd(eta, hn::Set(d, sea.per_depth), one);
+    const auto bed = hn::Set(d, sea.bed);
+    const auto z = hn::IfThenElse(hn::Gt(column, zero), hn::Max(s / column, bed), bed);
     auto f = zero;
     for (std::size_t begin = 0; begin < number; begin += kTogether) {
       auto of_groups = zero;

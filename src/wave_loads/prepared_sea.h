@@ -21,8 +21,7 @@ class PreparedSea {
   const SeaExpansion& expansion() const { return expansion_; }
 
   // Bound on the norm of the gradient of the wave pressure over rho g, at full amplitudes, at and below this
-  // height over the level: B_1 in docs/wave_mathematics.md. z: [m], <= 0, not below the bed. Complexity:
-  // O(1).
+  // height over the level: B_1 in docs/wave_mathematics.md. z: [m], <= 0. Complexity: O(1).
   double max_gradient(double z) const;
 
  private:

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "hydrostatics/lowest_vertex.h"
 #include "wave_loads/wave_load.h"
 #include "wave_loads/wave_surface_methods.h"
 
@@ -36,6 +37,19 @@ Immersion immersion_in_waves(const HydrostaticMesh& mesh, const SeaAtTime& sea, 
   return Immersion::kPiercing;
 }
 
+// Where the box reaches below the bed, the lowest vertex decides if it is known.
+bool reaches_below_bed(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
+  const Sea& of_sea = sea.prepared().sea();
+  if (std::isinf(of_sea.depth())) return false;
+  const Vec3& up_W = of_sea.water().up_W;
+  const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
+  const Vec3 up_B = R_WB.transpose() * up_W;
+  const double over_bed = up_W.dot(pose.p_WB + R_WB * mesh.center_B) - of_sea.water().level + of_sea.depth();
+  const Vec3 lowest_corner = (up_B.array() > 0.0).select(mesh.box_min, mesh.box_max);
+  if (!(over_bed + up_B.dot(lowest_corner) < 0.0)) return false;
+  return !mesh.tree || over_bed + lowest_vertex(*mesh.tree, up_B) < 0.0;
+}
+
 // [m], sum of a k^n now.
 double amplitude_sum(const SeaAtTime& sea, std::size_t n) {
   return sea.snapshot().amplitude_factor() * sea.prepared().expansion().amplitude_sums[n];
@@ -48,23 +62,58 @@ double position_rounding(const HydrostaticMesh& mesh, const SeaAtTime& sea, cons
   return 8.0 * kEpsilon * distance * (1.0 + amplitude_sum(sea, 1));
 }
 
-// Are all boundary edges of an open mesh above the surface? The height over the surface is linear along an
-// edge but for the surface's curvature, which is at most the sum of a k^2.
-bool boundary_is_dry(const HydrostaticMesh& mesh, const WaveMesh& wave_mesh, const SeaAtTime& sea,
-                     const Pose& pose, const Mat3& R_WB) {
-  const Sea& of_sea = sea.prepared().sea();
-  const Water& water = of_sea.water();
-  const double edge = wave_mesh.longest_boundary_edge;
-  const double margin = amplitude_sum(sea, 2) * edge * edge / 8.0 + position_rounding(mesh, sea, pose);
-  const double crest = sea.max_elevation();
-  return std::none_of(mesh.boundary_vertices.begin(), mesh.boundary_vertices.end(), [&](std::int32_t i) {
-    const Vec3 p_W = pose.p_WB + R_WB * (mesh.center_B + mesh.vertex(i));
-    const double zeta = water.up_W.dot(p_W) - water.level;
-    if (zeta > crest + margin) return false;
-    const double eta = sea.snapshot().elevation(of_sea.axes().e1_W.dot(p_W), of_sea.axes().e2_W.dot(p_W));
-    return zeta - eta <= margin;
-  });
-}
+// Whether the boundary of an open mesh is above the surface. Along an edge the height over the surface is
+// linear but for the curvature of the surface, which is at most the sum of a k^2; where that leaves it open,
+// halves of the edge decide.
+class Boundary {
+ public:
+  Boundary(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose, const Mat3& R_WB)
+      : mesh_(mesh),
+        sea_(sea),
+        p_WC_(pose.p_WB + R_WB * mesh.center_B),
+        R_WB_(R_WB),
+        curvature_(amplitude_sum(sea, 2)),
+        rounding_(position_rounding(mesh, sea, pose)) {}
+
+  bool is_dry(const std::array<std::int32_t, 2>& edge) const {
+    return is_dry(end_at(mesh_.vertex(edge[0])), end_at(mesh_.vertex(edge[1])), kMaxHalvings);
+  }
+
+ private:
+  static constexpr int kMaxHalvings = 8;
+
+  struct End {
+    Vec3 y;         // [m], B axes, from the mesh's centre
+    double zeta;    // [m], height over the level
+    double height;  // [m], over the surface; above the highest crest, over that
+  };
+
+  End end_at(const Vec3& y) const {
+    const Sea& sea = sea_.prepared().sea();
+    const Vec3 p_W = p_WC_ + R_WB_ * y;
+    const double zeta = sea.water().up_W.dot(p_W) - sea.water().level;
+    const double crest = sea_.max_elevation();
+    if (zeta > crest) return {y, zeta, zeta - crest};
+    return {y, zeta,
+            zeta - sea_.snapshot().elevation(sea.axes().e1_W.dot(p_W), sea.axes().e2_W.dot(p_W))};
+  }
+
+  bool is_dry(const End& a, const End& b, int halvings) const {
+    const double lowest = std::min(a.height, b.height);
+    if (!(lowest > rounding_)) return false;
+    if (std::min(a.zeta, b.zeta) > sea_.max_elevation() + rounding_) return true;
+    if (lowest > curvature_ * (b.y - a.y).squaredNorm() / 8.0 + rounding_) return true;
+    if (halvings == 0) return false;
+    const End middle = end_at(0.5 * (a.y + b.y));
+    return is_dry(a, middle, halvings - 1) && is_dry(middle, b, halvings - 1);
+  }
+
+  const HydrostaticMesh& mesh_;
+  const SeaAtTime& sea_;
+  Vec3 p_WC_;
+  const Mat3& R_WB_;
+  double curvature_, rounding_;
+};
 
 bool is_finite(const WaveBuoyancyResult& outcome) {
   const BuoyancyResult& result = outcome.result;
@@ -96,12 +145,13 @@ WaveLoad load_of(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTim
 }
 
 // Bound on the force of waves over rho g V on a body that is wet everywhere (docs/wave_mathematics.md, "Deep,
-// calm, high"). highest, lowest: [m], heights over the level of the body's bounds.
-double max_wave_force_per_volume(const SeaAtTime& sea, double highest, double lowest) {
+// calm, high"). highest: [m], height over the level of the body's bounds.
+double max_wave_force_per_volume(const SeaAtTime& sea, double highest) {
   const PreparedSea& prepared = sea.prepared();
   const double slope = amplitude_sum(sea, 1);
   if (prepared.sea().pressure() == WavePressure::kHydrostatic) return slope;
   const double h = prepared.sea().depth();
+  if (highest < -h) return sea.snapshot().amplitude_factor() * prepared.max_gradient(-h);
   const double elevation = sea.max_elevation();
   const double depth = -(highest + elevation);  // under the lowest trough
   if (!(depth > 0.0)) return std::numeric_limits<double>::infinity();
@@ -109,7 +159,7 @@ double max_wave_force_per_volume(const SeaAtTime& sea, double highest, double lo
   double largest_stretch = 1.0;
   double shear = slope;  // bound on w q^2 |grad eta|
   if (!std::isinf(h)) {
-    if (!(elevation < h) || lowest < -h) return std::numeric_limits<double>::infinity();
+    if (!(elevation < h)) return std::numeric_limits<double>::infinity();
     least_stretch = h / (h + elevation);
     largest_stretch = h / (h - elevation);
     shear = (1.0 + highest / h) * largest_stretch * largest_stretch * slope;
@@ -125,19 +175,21 @@ double max_wave_force_per_volume(const SeaAtTime& sea, double highest, double lo
 }  // namespace
 
 WaveMesh make_wave_mesh(const HydrostaticMesh& mesh) {
-  WaveMesh wave_mesh{build_patch_tree(mesh.surface)};
+  WaveMesh wave_mesh{build_patch_tree(mesh.surface), {}};
   if (!mesh.is_open()) return wave_mesh;
-  std::vector<bool> on_boundary(mesh.surface.x.size());
-  for (const std::int32_t i : mesh.boundary_vertices) on_boundary[static_cast<std::size_t>(i)] = true;
-  for (const auto& triangle : mesh.surface.triangles) {
+  std::vector<std::array<std::int32_t, 2>> edges;
+  edges.reserve(3 * mesh.surface.triangles.size());
+  for (const Triangle& triangle : mesh.surface.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::int32_t from = triangle[i];
-      const std::int32_t to = triangle[(i + 1) % 3];
-      if (!on_boundary[static_cast<std::size_t>(from)] || !on_boundary[static_cast<std::size_t>(to)])
-        continue;
-      wave_mesh.longest_boundary_edge =
-          std::max(wave_mesh.longest_boundary_edge, (mesh.vertex(to) - mesh.vertex(from)).norm());
+      const auto [low, high] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      edges.push_back({low, high});
     }
+  }
+  std::ranges::sort(edges);
+  for (auto edge = edges.begin(); edge != edges.end();) {
+    const auto next = std::upper_bound(edge, edges.end(), *edge);
+    if (next - edge == 1) wave_mesh.boundary_edges.push_back(*edge);
+    edge = next;
   }
   return wave_mesh;
 }
@@ -155,13 +207,16 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
     return outcome;
   }
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
-  if (mesh.is_open() && !boundary_is_dry(mesh, wave_mesh, sea, pose, R_WB)) {
+  const Boundary boundary(mesh, sea, pose, R_WB);
+  const auto is_dry = [&](const auto& edge) { return boundary.is_dry(edge); };
+  if (!std::ranges::all_of(wave_mesh.boundary_edges, is_dry)) {
     result = failed_result(BuoyancyStatus::kOpenEdgeWet, result.immersion);
     return outcome;
   }
   const WaveLoad load = load_of(solver, wave_mesh, sea, pose, reference_B);
   outcome.work_capped = load.capped;
   outcome.sea_too_steep = load.too_steep;
+  outcome.below_bed = reaches_below_bed(mesh, sea, pose);
   outcome.patches = load.patches;
   const double specific_weight = water.density * water.gravity;  // [N/m^3]
   const double rounding = mesh.rounding_bound();
@@ -173,12 +228,15 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
       specific_weight * (load.torque_bound + rounding * mesh.max_lever_arm(reference_B));
   result.volume = load.volume;
   outcome.volume_error_bound = load.volume_bound + rounding;
-  const double min_volume =
-      solver.method() == Method::kHierarchical ? 2.0 * force_bound : mesh.volume_tolerance();
+  const bool has_bound = solver.method() == Method::kHierarchical;
+  const double min_volume = has_bound ? 2.0 * force_bound : mesh.volume_tolerance();
   if (load.volume > min_volume) {
     result.center_of_buoyancy_W = R_WB * (mesh.center_B + load.moment / load.volume);
   }
-  if (!is_finite(outcome)) {
+  if (has_bound && force_bound > std::abs(mesh.volume)) {
+    outcome = {};
+    result = failed_result(BuoyancyStatus::kNotCertified, Immersion::kPiercing);
+  } else if (!is_finite(outcome)) {
     outcome = {};
     result = failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
@@ -203,8 +261,7 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
   const Vec3 up_B = plane.up_B.vec3();
   const double middle = up_B.dot(0.5 * (mesh.box_min + mesh.box_max)) - plane.h_c;
   const double reach = up_B.cwiseAbs().dot(0.5 * (mesh.box_max - mesh.box_min)) + plane.error;
-  const double per_volume = max_wave_force_per_volume(sea, (middle + reach) / plane.norm_squared,
-                                                      (middle - reach) / plane.norm_squared);
+  const double per_volume = max_wave_force_per_volume(sea, (middle + reach) / plane.norm_squared);
   if (!(per_volume <= solver.tolerance())) return false;
   WaveBuoyancyResult calm;
   BuoyancyResult& still = calm.result;
@@ -213,6 +270,7 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
     return false;
   }
   calm.volume_error_bound = mesh.rounding_bound();
+  calm.below_bed = reaches_below_bed(mesh, sea, pose);
   const double wave_force = per_volume * submerged.buoyant_force;
   still.force_error_bound += wave_force;
   still.torque_error_bound += wave_force * mesh.max_lever_arm(reference_B);

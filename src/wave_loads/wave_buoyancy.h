@@ -7,7 +7,9 @@
 // The methods fast, improved and exact do not work in waves: they sum volumes under a plane.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "hydrostatics/buoyancy.h"
 #include "wave_loads/patch_tree.h"
@@ -17,8 +19,9 @@ namespace buoyancy {
 
 // What queries in waves need of a mesh, besides HydrostaticMesh; built once per mesh.
 struct WaveMesh {
-  PatchTree patches;                   // of `hierarchical`
-  double longest_boundary_edge = 0.0;  // [m], of an open mesh; 0 for a closed one
+  PatchTree patches;  // of `hierarchical`
+  // Vertices of HydrostaticMesh::surface: the edges of an open mesh that one triangle has alone.
+  std::vector<std::array<std::int32_t, 2>> boundary_edges;
 };
 
 WaveMesh make_wave_mesh(const HydrostaticMesh& mesh);
@@ -27,12 +30,14 @@ struct WaveBuoyancyResult {
   BuoyancyResult result;
   bool work_capped = false;    // the work reached its cap before the bound was within the tolerance
   bool sea_too_steep = false;  // the modelled pressure falls downwards at the surface somewhere on the body
+  bool below_bed = false;      // the body reaches below the sea bed
   std::int32_t patches = 0;    // evaluated
   double volume_error_bound = 0.0;  // [m^3], bound on |result.volume - true volume|
 };
 
 // wave_mesh: of the solver's mesh. The solver's method is hierarchical, fast_surface or exact_surface. pose,
-// reference_B, statuses: as for buoyancy(). Heap and complexity: those of the method.
+// reference_B, statuses: as for buoyancy(), and kNotCertified with `hierarchical`. Heap and complexity: those
+// of the method.
 WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTime& sea,
                                      const Pose& pose, const Vec3& reference_B);
 

@@ -41,16 +41,6 @@ CellGrid grid_over(const std::array<double, 3>& low, const std::array<double, 3>
   return grid;
 }
 
-// A bound on the gradient of the pressure over rho g, in and near the water.
-double steepest_pressure(const SeaSnapshot& snapshot, const SeaExpansion& expansion) {
-  const double slope = snapshot.amplitude_factor() * expansion.amplitude_sums[1];
-  if (snapshot.sea().pressure() == WavePressure::kHydrostatic) return 1.0 + slope;
-  // Of the map to the stretched height.
-  const double rise = snapshot.amplitude_factor() * expansion.amplitude_sums[0] / snapshot.sea().depth();
-  const double stretch = 1.0 / std::max(1.0 - rise, 1e-6);
-  return 1.0 + slope * (1.0 + stretch + (1.0 + rise) * stretch * stretch * slope);
-}
-
 }  // namespace
 
 WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const SeaSnapshot& sea,
@@ -97,7 +87,6 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
       body.tree->displacement + 1e-15 * (pose.p_WB.norm() + mesh.center_B.norm() + std::abs(water.level)) +
       mesh.diagonal *
           (single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon());
-  query.steepest = steepest_pressure(sea, expansion);
   // What a cell leaves out at its corners, over the whole surface and relative to the tolerance. It grows
   // with the ninth power of the distance from the centre: on average it is less than a tenth of this.
   // Fine tolerances need more of the tolerance for themselves. Chosen for the least time at 1e-2 to 1e-5.
@@ -110,8 +99,8 @@ WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const Se
   const double reach_2 = extent.dot(query.e2_B.cwiseAbs());
   const double middle_1 = query.e1_B.dot(middle);
   const double middle_2 = query.e2_B.dot(middle);
-  const double top = std::min(height + reach_up + query.usual_elevation, 0.0);
-  const double bottom = std::min(height - reach_up - query.usual_elevation, top);
+  const double top = std::clamp(height + reach_up + query.usual_elevation, -query.depth, 0.0);
+  const double bottom = std::clamp(height - reach_up - query.usual_elevation, -query.depth, top);
   query.grid = grid_over({k * (middle_1 - reach_1), k * (middle_2 - reach_2), k * bottom},
                          {k * (middle_1 + reach_1), k * (middle_2 + reach_2), k * top}, reach);
   WaveLoad load = single ? descend_in_single_precision(query) : descend_in_double_precision(query);

@@ -60,6 +60,11 @@ struct PatchModel {
   hn::Mask<LanesOf<Number>> too_steep;
 };
 
+// Stands for a bound where there is none: larger than any that is of use, and still a finite sum.
+inline constexpr double kNoBound = 1e20;
+// The least height of the water over the bed, over the depth, with which there are bounds.
+inline constexpr double kShallowest = 1e-6;
+
 template <typename Number>
 HWY_INLINE CubicBounds<Number> in_metres(const PatchQuery<Number>& query, const CubicBounds<Number>& bounds,
                                          const hn::Mask<LanesOf<Number>>& valid) {
@@ -136,8 +141,8 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V two = set<Number>(2.0);
   const V three = set<Number>(3.0);
   const V r = radius * set<Number>(query.k_max);
-  const V l = set<Number>(query.per_depth);
   const V rounding = set<Number>(query.rounding());
+  const V over_bed = place.zeta - set<Number>(query.bed);  // of the centroid
 
   const V& eta = surface.eta;
   const V& eta1 = surface.eta_1;
@@ -181,7 +186,10 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   V value, g1, g2, g3, M3, delta, mean_delta, gamma;
   V M3_at_point;  // about M_3 of a small patch
   CubicBounds<Number> cubic = of_eta_cubic;
-  V stretch = one;  // bound on q
+  V tangent_rest = zero;  // what Lemma C adds for the decay of the waves with the depth
+  V steepest;             // bound on the gradient of the pressure
+  const V deepest = hn::Max(hn::Neg(s_low), zero);
+  const V slope_sum = set<Number>(query.slope);
   Symmetric<Number> H;
   if (query.hydrostatic) {
     value = eta - still * place.zeta;
@@ -196,37 +204,51 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     delta = range.above.truncation + rest;
     mean_delta = mean_truncation_of_eta + rest;
     gamma = zero;
+    steepest = still + slope_sum;
     model.too_steep = hn::Gt(zero, one);
   } else {
-    const V q = one / hn::MulAdd(eta, l, one);
-    const V b = q * q * hn::MulAdd(place.zeta, l, one);
+    const V per_depth = set<Number>(query.per_depth);
+    const V q = one / hn::Max(hn::MulAdd(eta, per_depth, one), set<Number>(kShallowest));
+    const V b = q * q * hn::MulAdd(place.zeta, per_depth, one);
     const V b1 = hn::Neg(b) * eta1;
     const V b2 = hn::Neg(b) * eta2;
-    const V lqq = l * q * q;
+    const V lqq = per_depth * q * q;
+    // Below the bed the waves do not change with the height.
+    const auto above_bed = hn::Gt(over_bed, zero);
+    const V f_3 = hn::IfThenElseZero(above_bed, f.f_3);
+    const V f_13 = hn::IfThenElseZero(above_bed, f.f_13);
+    const V f_23 = hn::IfThenElseZero(above_bed, f.f_23);
+    const V f_33 = hn::IfThenElseZero(above_bed, f.f_33);
     value = hn::NegMulAdd(still, place.zeta, f.f);
-    g1 = hn::MulAdd(b1, f.f_3, f.f_1);
-    g2 = hn::MulAdd(b2, f.f_3, f.f_2);
-    g3 = hn::MulSub(q, f.f_3, still);
+    g1 = hn::MulAdd(b1, f_3, f.f_1);
+    g2 = hn::MulAdd(b2, f_3, f.f_2);
+    g3 = hn::MulSub(q, f_3, still);
     const V f_22 = hn::Neg(f.f_11) - f.f_33;
-    const V twice_bql = two * b * q * l;
+    const V twice_bql = two * b * q * per_depth;
     const V z11 = hn::MulSub(twice_bql * eta1, eta1, b * surface.eta_11);
     const V z12 = hn::MulSub(twice_bql * eta1, eta2, b * surface.eta_12);
     const V z22 = hn::MulSub(twice_bql * eta2, eta2, b * surface.eta_22);
-    const V c1 = hn::MulAdd(b1, f.f_33, f.f_13);
-    const V c2 = hn::MulAdd(b2, f.f_33, f.f_23);
-    H[0] = f.f_11 + b1 * (f.f_13 + c1) + f.f_3 * z11;
-    H[1] = f_22 + b2 * (f.f_23 + c2) + f.f_3 * z22;
-    H[2] = q * q * f.f_33;
-    H[3] = f.f_12 + b1 * f.f_23 + b2 * c1 + f.f_3 * z12;
-    H[4] = hn::NegMulAdd(lqq * eta1, f.f_3, q * c1);
-    H[5] = hn::NegMulAdd(lqq * eta2, f.f_3, q * c2);
+    const V c1 = hn::MulAdd(b1, f_33, f_13);
+    const V c2 = hn::MulAdd(b2, f_33, f_23);
+    H[0] = f.f_11 + b1 * (f_13 + c1) + f_3 * z11;
+    H[1] = f_22 + b2 * (f_23 + c2) + f_3 * z22;
+    H[2] = q * q * f_33;
+    H[3] = f.f_12 + b1 * f_23 + b2 * c1 + f_3 * z12;
+    H[4] = hn::NegMulAdd(lqq * eta1, f_3, q * c1);
+    H[5] = hn::NegMulAdd(lqq * eta2, f_3, q * c2);
 
-    // Bounds on the derivatives of the stretched height over the ball.
-    const V lowest = hn::Max(hn::MulAdd(l, eta - r * L1 - epsilon, one), set<Number>(1e-6));
-    const V q_max = one / lowest;
-    stretch = q_max;
-    const V w_max = hn::Max(hn::MulAdd(l, place.zeta + r, one), hn::MulSub(l, r - place.zeta, one));
+    // Bounds on the derivatives of the stretched height over the ball, as far as it is above the bed.
+    const V shallowest = hn::Max(hn::MulAdd(per_depth, eta - r * L1 - epsilon, one),
+                                 hn::NegMulAdd(per_depth, set<Number>(query.amplitude), one));
+    const auto below_bed = hn::Le(over_bed + r, zero);
+    const V l = hn::IfThenZeroElse(below_bed, per_depth);
+    const V q_max = hn::IfThenElse(below_bed, one, one / hn::Max(shallowest, set<Number>(kShallowest)));
+    const V w_max = hn::IfThenZeroElse(below_bed, hn::MulAdd(l, place.zeta + r, one));
     const V qq = q_max * q_max;
+    // Where a trough may reach the bed, the pressure may have any gradient, and a jump.
+    const auto bounded = hn::Or(hn::Gt(shallowest, set<Number>(kShallowest)), hn::And(below_bed, wet));
+    steepest = hn::IfThenElse(bounded, hn::MulAdd(slope_sum, one + q_max + w_max * qq * slope_sum, still),
+                              set<Number>(kNoBound));
     const V l_L1 = l * L1;
     const V slope2 = hn::MulAdd(two * q_max * l_L1, L1, L2) * qq;
     const V Q1 = l * qq * L1;
@@ -275,12 +297,19 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     const V f_rest = hn::MulAdd(rounding, inside.third, third_rest_at<Number>(volume_bounds, volume_reach));
     cubic.rest = hn::MulAdd(f_rest, V1_cubed, abs_f_3 * w_max * qq * range.third_rest);
     const V mean_epsilon = hn::MulAdd(rounding, hn::Abs(place.zeta), range.rounded + mean_truncation_of_eta);
-    const V rest = rounding * (inside.sum + still * hn::Abs(place.zeta) + r) +
-                   set<Number>(query.displacement) * hn::MulAdd(F1, V1, still);
-    delta = hn::MulAdd(F1, shift, inside.truncation) + rest;
-    mean_delta = hn::MulAdd(
-        F1 * w_max * qq, mean_epsilon,
-        mean_truncation<Number>(volume_bounds, inside, volume_reach + shift, r * V1, spread) + rest);
+    const V steep = hn::MulAdd(F1 + inside.slope, hn::MulAdd(w_max * qq, range.above.slope, V1), still);
+    const V rest =
+        rounding * (inside.sum + still * hn::Abs(place.zeta) + r) + set<Number>(query.displacement) * steep;
+    // What the model of one side of the bed is off by on the other.
+    const V across = hn::Max(r - hn::Abs(over_bed), zero);
+    const V bend = half * F2 * qq;
+    const V at_bed = q_max * inside.slope * across;
+    delta = hn::MulAdd(F1, shift, inside.truncation) + hn::MulAdd(bend * across, across, at_bed + rest);
+    const V mean_across = hn::Min(across, spread * r);
+    mean_delta =
+        hn::MulAdd(F1 * w_max * qq, mean_epsilon,
+                   mean_truncation<Number>(volume_bounds, inside, volume_reach + shift, r * V1, spread) +
+                       hn::MulAdd(bend * mean_across, mean_across, at_bed + rest));
 
     const V z = stretched<Number>(query, place, eta);
     const V Z = hn::MulAdd(r, hn::Sqrt(hn::MulAdd(b_1, b_1, qq)), shift);
@@ -292,13 +321,15 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     // Only where the expansion knows the surface well.
     const auto near_surface =
         hn::And(hn::Lt(hn::Abs(z), r), hn::Lt(epsilon, set<Number>(0.01 * query.amplitude)));
-    model.too_steep = hn::And(hn::Ge(q * (f.f_3 - around.slope), one), near_surface);
+    model.too_steep = hn::And(hn::Ge(q * (f_3 - around.slope), one), near_surface);
+    gamma = hn::IfThenElse(bounded, gamma, set<Number>(kNoBound));
+    delta = hn::IfThenElse(bounded, delta, set<Number>(kNoBound));
+    tangent_rest = hn::Min(deepest * q_max, hn::Neg(set<Number>(query.bed))) * slope_sum;
   }
 
   const auto certain = hn::Or(wet, hn::Lt(gamma, one));
   // Without a certificate: Lemma C, with the pressure of the depth under the tangent plane of the surface.
-  const V deepest = hn::Max(hn::Neg(s_low), zero);
-  const V tangent_delta = half * L2 * r * r + epsilon + deepest * stretch * set<Number>(query.slope);
+  const V tangent_delta = half * L2 * r * r + epsilon + tangent_rest;
   // Without an expansion: Lemma D.
   const V amplitude = set<Number>(query.amplitude);
   const V highest = place.zeta + r;
@@ -332,7 +363,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
   const V steepness = one + hn::IfThenZeroElse(flat, L1 + hn::IfThenElseZero(use_quadratic, hn::Abs(g3)));
   const V size =
       hn::Abs(model_value) + r * steepness + r * r * model.curvature * set<Number>(1.0 / query.k_max);
-  const V displaced = set<Number>(query.displacement * query.steepest);
+  const V displaced = set<Number>(query.displacement) * steepest;
   const V rounded = set<Number>(query.integral_rounding) * size;
   const V of_tangent = tangent_delta + displaced;
   const V of_flat = flat_delta + displaced;

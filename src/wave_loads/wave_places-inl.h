@@ -11,6 +11,7 @@
 #define BUOYANCY_WAVE_PLACES_INL_H
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -32,6 +33,7 @@ struct PatchQuery {
   double k_max = 1.0;                      // [rad/m]
   double zeta = 0.0;                       // [m], height of c over the level
   double per_depth = 0.0;                  // 1 / (k_max h); 0 in deep water
+  double bed = 0.0;                        // -k_max h; below all numbers in deep water
   bool hydrostatic = false;
   // Whether the body is wet everywhere: its weight of water is added apart, and patches integrate f alone.
   bool submerged = false;
@@ -40,7 +42,6 @@ struct PatchQuery {
   double unit_roundoff = 0.0;      // of Number
   double integral_rounding = 0.0;  // of a patch's integrals, relative
   double displacement = 0.0;       // of the surface, times k_max
-  double steepest = 1.0;           // bound on the gradient of the pressure
 
   double rounding() const { return kRoundingFactor * unit_roundoff; }  // of an expansion
 };
@@ -59,6 +60,8 @@ PatchQuery<Number> patch_query_of(const WaveQuery& query) {
   patch.k_max = query.expansion->k_max;
   patch.zeta = query.zeta;
   patch.per_depth = query.deep_water() ? 0.0 : 1.0 / (patch.k_max * query.depth);
+  constexpr double kLowest = 0.25 * std::numeric_limits<Number>::max();
+  patch.bed = -std::min(patch.k_max * query.depth, kLowest);
   patch.hydrostatic = query.hydrostatic;
   patch.submerged = query.submerged;
   const double factor = query.sea->amplitude_factor();
@@ -67,7 +70,6 @@ PatchQuery<Number> patch_query_of(const WaveQuery& query) {
   patch.unit_roundoff = 0.5 * std::numeric_limits<Number>::epsilon();
   patch.integral_rounding = 16.0 * patch.unit_roundoff + std::numeric_limits<float>::epsilon();
   patch.displacement = query.displacement * patch.k_max;
-  patch.steepest = query.steepest;
   return patch;
 }
 
@@ -89,12 +91,13 @@ HWY_INLINE Place<Number> place_of(const PatchQuery<Number>& query, const Vectors
   return {k * along(query.e1_B), k * along(query.e2_B), k * (along(query.up_B) + set<Number>(query.zeta))};
 }
 
-// z' of the patches' centroids.
+// z' of the patches' centroids, which is that of the bed for points below it, and where there is no water.
 template <typename Number>
 HWY_INLINE VectorOf<Number> stretched(const PatchQuery<Number>& query, const Place<Number>& place,
                                       const VectorOf<Number>& eta) {
-  const auto one = set<Number>(1.0);
-  return (place.zeta - eta) / hn::MulAdd(eta, set<Number>(query.per_depth), one);
+  const auto bed = set<Number>(query.bed);
+  const auto column = hn::MulAdd(eta, set<Number>(query.per_depth), set<Number>(1.0));
+  return hn::IfThenElse(hn::Gt(column, set<Number>(0.0)), hn::Max((place.zeta - eta) / column, bed), bed);
 }
 
 // A bound on the third derivative within a distance of a point, by that at the point and by the cell's norms.

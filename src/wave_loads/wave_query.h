@@ -47,7 +47,6 @@ struct WaveQuery {
   bool submerged = false;
   double usual_elevation = 0.0;  // [m], twice the root mean square, which waves seldom exceed
   double displacement = 0.0;     // [m], of the tree's surface from the body's
-  double steepest = 1.0;         // bound on the gradient of the pressure over rho g
   double max_lever = 1.0;        // [m], L_r
   double budget = 0.0;           // [m^3]
   CellGrid grid;

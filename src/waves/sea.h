@@ -8,7 +8,8 @@
 //   p/(rho g) = -zeta + sum a_i E_i(z') cos(theta_i)     E(z') = cosh k(z' + h) / cosh kh, with Wheeler's
 //                                                        stretching z' = h s / (h + eta), h the depth
 //   p/(rho g) = -s                                       where the pressure is `hydrostatic`
-// In deep water z' = s and E = exp(k z'). See docs/waves.md.
+// In deep water z' = s and E = exp(k z'). Below the bed, and where a trough uncovers it, z' = -h: the waves
+// are those at the bed. See docs/waves.md.
 #pragma once
 
 #include <cstdint>

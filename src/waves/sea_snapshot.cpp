@@ -78,7 +78,8 @@ WaterAtPoint SeaSnapshot::at(const Vec3& p_W) const {
   point.elevation = elevation(x1, x2);
   point.height = zeta - point.elevation;
   const double s = std::min(point.height, 0.0);
-  const double stretched = std::isinf(h) ? s : h * s / (h + point.elevation);
+  const double column = h + point.elevation;
+  const double stretched = std::isinf(h) ? s : column > 0.0 ? std::max(h * s / column, -h) : -h;
   double pressure_head = 0.0;  // [m], sum a E cos(theta)
   for (std::size_t i = 0; i < components.size(); ++i) {
     const double k = components.wave_number[i];

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 16 + 10 + 1 + 8 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 16 + 11 + 1 + 9 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -58,6 +58,7 @@ ServiceStatus random_status() {
                                 &c.bodies_unchanged,
                                 &c.bodies_work_capped,
                                 &c.bodies_sea_too_steep,
+                                &c.bodies_below_bed,
                                 &c.wave_patches,
                                 &c.hydrostatics,
                                 &status.reloads,
@@ -136,6 +137,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_out_of_range = count(status, BodyStatus::kOutOfRange);
   message.bodies_no_sea = count(status, BodyStatus::kNoSea);
   message.bodies_bad_condition = count(status, BodyStatus::kBadCondition);
+  message.bodies_not_certified = count(status, BodyStatus::kNotCertified);
   message.quaternions_normalised = c.quaternions_normalised;
   message.bodies_dry = c.bodies_dry;
   message.bodies_wet = c.bodies_wet;
@@ -143,6 +145,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_unchanged = c.bodies_unchanged;
   message.bodies_work_capped = c.bodies_work_capped;
   message.bodies_sea_too_steep = c.bodies_sea_too_steep;
+  message.bodies_below_bed = c.bodies_below_bed;
   message.wave_patches = c.wave_patches;
   message.hydrostatics = c.hydrostatics;
   message.largest_dropped_force = c.largest_dropped_force;

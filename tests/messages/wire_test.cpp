@@ -466,6 +466,7 @@ TEST(BodyStatus, ConvertsToNamesOfMessageDefinition) {
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::OUT_OF_RANGE}), "OUT_OF_RANGE");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NO_SEA}), "NO_SEA");
   EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::BAD_CONDITION}), "BAD_CONDITION");
+  EXPECT_STREQ(to_string(BodyStatus{body_wrench_t::NOT_CERTIFIED}), "NOT_CERTIFIED");
   EXPECT_STREQ(to_string(BodyStatus{kBodyStatusCount}), "UNKNOWN_STATUS");
 }
 

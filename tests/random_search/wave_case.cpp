@@ -212,6 +212,12 @@ void draw_sea(WaveRequest& request, double size, RandomPoses& random) {
     const double trough = sum_of_amplitudes(request.description.systems[0]);
     const double above_trough = log_uniform(random, 1e-3, 2.0) * size;
     set_depth(request.description, trough * random.uniform(1.01, 1.5) + above_trough, gravity);
+    if (random.pick(8) == 0) {
+      // Some troughs reach the bed, where that is not refused.
+      SeaDescription shallow = request.description;
+      set_depth(shallow, trough * random.uniform(0.2, 1.0), gravity);
+      if (Sea::make(shallow, request.water)) request.description = shallow;
+    }
   }
   if (random.pick(4) == 0) request.description.pressure = WavePressure::kHydrostatic;
 }
@@ -310,8 +316,22 @@ void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random)
       request.placement = "piercing";
       zeta = snapshot.elevation(x1, x2) + random.uniform(-0.6, 0.6) * up_B.dot(highest - lowest);
   }
-  // Nothing is below the bed.
-  if (!std::isinf(sea.depth())) zeta = std::max(zeta, -sea.depth() - up_B.dot(lowest) + 1e-6 * size);
+  if (!std::isinf(sea.depth())) {
+    const double below = up_B.dot(lowest);
+    const double above = up_B.dot(highest);
+    switch (random.pick(4)) {
+      case 0:
+        request.placement += ", across the bed";
+        zeta = -sea.depth() - below - random.uniform(0.0, 1.0) * (above - below);
+        break;
+      case 1:
+        request.placement += ", below the bed";
+        zeta = -sea.depth() - above - log_uniform(random, 1e-6, 5.0) * size;
+        break;
+      default:
+        zeta = std::max(zeta, -sea.depth() - below + 1e-6 * size);
+    }
+  }
   const Vec3 c_W = x1 * axes.e1_W + x2 * axes.e2_W + (water.level + zeta) * water.up_W;
   request.pose.p_WB = c_W - R_WB * body.mesh.center_B;
 }

@@ -1,7 +1,7 @@
 // Random bodies and requests in waves, for the search against the bound of wave loads: bodies of 12 to 30,000
 // triangles and 0.1 to 30 m; seas that are regular, irregular, short, steep, very long, deep or hardly deeper
-// than their troughs; bodies that pierce the surface, touch it, are deep or dry; near the world's origin and
-// 1e6 m away, today and at the origin of time.
+// than their troughs, or less deep; bodies that pierce the surface or the bed, touch the surface, are deep,
+// dry or below the bed; near the world's origin and 1e6 m away, today and at the origin of time.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 #include "tests/wave_loads/brute_force.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -32,7 +33,8 @@ Point sea_at(const SeaSnapshot& snapshot, const Vec3& p_W) {
   const double s = zeta - eta;
   if (sea.pressure() == WavePressure::kHydrostatic) return {s, -s};
   const double h = sea.depth();
-  const double z = std::isinf(h) ? s : h * s / (h + eta);
+  const double free = std::isinf(h) ? s : h * s / (h + eta);
+  const double z = h + eta > 0.0 ? std::max(free, -h) : -h;
   double f = 0.0;
   for (std::size_t i = 0; i < waves.size(); ++i) {
     const double k = waves.wave_number[i];

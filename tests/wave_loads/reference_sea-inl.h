@@ -60,7 +60,13 @@ void evaluate_sea(const ReferenceSea::View& sea, std::size_t points, const doubl
       hn::StoreU(hn::Neg(s), d, pressure + p);
       continue;
     }
-    const V stretched = deep ? s : h * s / (h + eta);
+    V stretched = s;
+    if (!deep) {
+      // Held at the bed, below it and where a trough uncovers it.
+      const V column = h + eta;
+      const V free = hn::Max(h * s / column, hn::Neg(h));
+      stretched = hn::IfThenElse(hn::Gt(column, zero), free, hn::Neg(h));
+    }
     V f = zero;
     for (std::size_t i = 0; i < sea.components; ++i) {
       const V exponent = hn::Set(d, sea.k[i]) * stretched;

@@ -164,7 +164,7 @@ ReferenceSea::ReferenceSea(const Sea& sea, std::int64_t utime, double lead_time,
 
 double ReferenceSea::resolved_wave_number(double depth, double negligible) const {
   // Stretching moves points up where the surface is high.
-  if (!std::isinf(depth_)) depth *= depth_ / (depth_ + max_elevation_);
+  if (!std::isinf(depth_)) depth = std::min(depth, depth_) * depth_ / (depth_ + max_elevation_);
   double slope = 0.0;
   if (!hydrostatic_) {
     for (std::size_t i = 0; i < k_.size(); ++i) slope += amplitude_[i] * k_[i] * std::exp(-k_[i] * depth);

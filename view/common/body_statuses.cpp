@@ -27,6 +27,8 @@ const char* meaning(BodyStatus status) {
       return "no sea has been received that holds at the request's time";
     case BodyStatus::kBadCondition:
       return "a received condition of a compartment or tank cannot be used";
+    case BodyStatus::kNotCertified:
+      return "the bound on the force's error is above the weight of the body's displacement";
   }
   return "";
 }

@@ -173,6 +173,7 @@ json status_json(const ServiceStatus& status) {
           {"bodies_unchanged", counters.bodies_unchanged},
           {"bodies_work_capped", counters.bodies_work_capped},
           {"bodies_sea_too_steep", counters.bodies_sea_too_steep},
+          {"bodies_below_bed", counters.bodies_below_bed},
           {"wave_patches", counters.wave_patches},
           {"hydrostatics", counters.hydrostatics},
           {"latency", percentiles_json(status.latency)},

@@ -258,7 +258,7 @@
       ['skipped: dry', status.bodies_dry], ['skipped: fully submerged', status.bodies_wet],
       ['skipped: unchanged', status.bodies_unchanged], ['computed: partially submerged', status.bodies_crossing],
       ...Object.entries(status.bodies),
-      ['waves: work capped', status.bodies_work_capped], ['waves: too steep for linear theory', status.bodies_sea_too_steep], ['waves: patches', status.wave_patches],
+      ['waves: work capped', status.bodies_work_capped], ['waves: too steep for linear theory', status.bodies_sea_too_steep], ['waves: below the sea bed', status.bodies_below_bed], ['waves: patches', status.wave_patches],
       ['quaternions normalised', status.quaternions_normalised], ['hydrostatics', status.hydrostatics],
     ]));
     tables.push(table_of('Service latency', ['from receipt to publication', 'ms'], [

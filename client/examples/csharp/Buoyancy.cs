@@ -38,7 +38,8 @@ namespace Buoyancy
     public enum PoseStatus
     {
         Ok = 0, NonFinitePose = 2, BadQuaternion = 3, NonFiniteTwist = 4, OpenEdgeWet = 6, OutOfRange = 7, NoSea = 8,
-        BadCondition = 9
+        BadCondition = 9,
+        NotCertified = 10
     }
 
     /// <summary>What Library says about itself.</summary>

@@ -33,6 +33,7 @@ class Status(enum.IntEnum):
     OUT_OF_RANGE = 7
     NO_SEA = 8
     BAD_CONDITION = 9
+    NOT_CERTIFIED = 10
 
 class Wrenches:
     @property
