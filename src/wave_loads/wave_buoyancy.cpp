@@ -94,8 +94,7 @@ class Boundary {
     const double zeta = sea.water().up_W.dot(p_W) - sea.water().level;
     const double crest = sea_.max_elevation();
     if (zeta > crest) return {y, zeta, zeta - crest};
-    return {y, zeta,
-            zeta - sea_.snapshot().elevation(sea.axes().e1_W.dot(p_W), sea.axes().e2_W.dot(p_W))};
+    return {y, zeta, zeta - sea_.snapshot().elevation(sea.axes().e1_W.dot(p_W), sea.axes().e2_W.dot(p_W))};
   }
 
   bool is_dry(const End& a, const End& b, int halvings) const {
