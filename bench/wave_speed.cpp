@@ -46,8 +46,17 @@ BenchmarkMesh box_of(const char* name, double size, std::int32_t segments) {
   return {name, std::move(source), std::move(mesh)};
 }
 
+BenchmarkMesh cylinder_of(const char* name, std::int32_t stacks) {
+  TriangleMesh source = make_shape(CylinderShape{0.213, 4.9, 40, stacks});
+  HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}}, WithTree::kNo);
+  return {name, std::move(source), std::move(mesh)};
+}
+
 constexpr std::array kPlan{
     PlannedMesh{[] { return box_of("box", 2.0, 1); }, 64, 32, true, true},
+    // A pontoon of long triangles, and the same of short ones.
+    PlannedMesh{[] { return cylinder_of("pontoon", 1); }, 64, 32, true, true},
+    PlannedMesh{[] { return cylinder_of("pontoon", 40); }, 4, 4, true, true},
     PlannedMesh{[] { return box_of("crate", 1.0, 10); }, 4, 4, true, true},
     PlannedMesh{[] { return rock(16); }, 4, 0, true, false},
     PlannedMesh{[] { return rock(39); }, 2, 0, true, false},

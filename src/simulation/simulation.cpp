@@ -67,7 +67,8 @@ Error not_ok_error(const SimulatedBody& body, double time) {
       error.hint = "See its log, and correct what publishes BUOYANCY_CONDITION";
       break;
     case BodyStatus::kNotCertified:
-      error.cause = "a trough of the waves uncovers the sea bed there, or waves are far shorter than the body";
+      error.cause =
+          "a trough of the waves uncovers the sea bed there, or waves are far shorter than the body";
       error.hint = "Use lower waves, deeper water or a lower cutoff";
       break;
     default:

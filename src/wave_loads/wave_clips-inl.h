@@ -39,30 +39,30 @@ class Clips {
   }
 
   // Notes a leaf that is to be clipped, which has been removed from the results.
-  void add(const PatchTree& tree, const PatchBlock& block, std::size_t place, const KeptModel& model,
+  void add(const QueryPatches& patches, const PatchBlock& block, std::size_t place, const KeptModel& model,
            std::size_t result) {
-    const TriangleBlock* const triangles = &tree.triangles[block.child[place]];
     for (std::uint32_t b = 0; b < block.triangle_blocks[place]; ++b) {
       for (std::uint32_t first = 0; first < kSiblings; first += kUnit<Number>) {
         tasks_.push_back({block.child[place] + b, first, model, result});
       }
       // They are read after the other patches of the round have been evaluated.
-      for (std::size_t row = 0; row < triangles[b].corners.size(); row += 4) {
-        hwy::Prefetch(triangles[b].corners[row].data());
+      const TriangleBlock& triangles = patches.triangles(block.child[place] + b);
+      for (std::size_t row = 0; row < triangles.corners.size(); row += 4) {
+        hwy::Prefetch(triangles.corners[row].data());
       }
     }
     leaves_.push_back({model, result});
   }
 
   // Clips what was noted and puts it in the place of the results.
-  void finish(const PatchTree& tree, const PatchQuery<Number>& query, Results<Number>& results) {
+  void finish(const QueryPatches& patches, const PatchQuery<Number>& query, Results<Number>& results) {
     for (const Leaf& leaf : leaves_) {
       results.add_errors(leaf.result, kept_->remainder(leaf.model), kept_->torque_remainder(leaf.model),
                          kept_->volume_remainder_of(leaf.model));
     }
     for (std::size_t n = 0; n < tasks_.size(); n += kUnitsPerVector<Number>) {
       const std::size_t count = std::min(kUnitsPerVector<Number>, tasks_.size() - n);
-      clip(tree, query, &tasks_[n], count, results);
+      clip(patches, query, &tasks_[n], count, results);
     }
     for (const Leaf& leaf : leaves_) results.finish(leaf.result);
     leaves_.clear();
@@ -82,12 +82,12 @@ class Clips {
     std::size_t result;
   };
 
-  HWY_NOINLINE void clip(const PatchTree& tree, const PatchQuery<Number>& query, const Task* tasks,
+  HWY_NOINLINE void clip(const QueryPatches& patches, const PatchQuery<Number>& query, const Task* tasks,
                          std::size_t count, Results<Number>& results) const {
     const auto task = [&](std::size_t n) -> const Task& { return tasks[n < count ? n : 0]; };
     const auto corner = [&](std::size_t row) HWY_ATTR {
       return gather_units<Number>([&](std::size_t n) {
-        return tree.triangles[task(n).triangle_block].corners[row].data() + task(n).first;
+        return patches.triangles(task(n).triangle_block).corners[row].data() + task(n).first;
       });
     };
     // Most often all triangles are of one leaf.
@@ -101,8 +101,6 @@ class Clips {
     t.phi = kept.phi();
     t.s = kept.s();
     t.curvature = kept.curvature();
-    t.whole = set_mask<Number>(false);
-    t.none = set_mask<Number>(false);
     const PatchIntegrals<Number> integrals = to_patch<Number>(integrate<Number>(query, t), kept.lever(),
                                                               kept.center(), kept.radius(), kept.s_per_phi());
     add_sums(integrals, tasks, count, results);

@@ -25,7 +25,6 @@
 #include "wave_loads/wave_kept_models-inl.h"
 #include "wave_loads/wave_load.h"
 #include "wave_loads/wave_patches-inl.h"
-#include "wave_loads/wave_pieces-inl.h"
 #include "wave_loads/wave_query.h"
 #include "wave_loads/wave_refinement-inl.h"
 #include "wave_loads/wave_results-inl.h"
@@ -37,10 +36,10 @@ namespace HWY_NAMESPACE {
 
 template <typename Number>
 struct DescentWorkspace {
+  QueryPatches patches;
   RoundUnits<Number> units;
   Results<Number> results;
   std::vector<Number> roots;  // of the results' expected errors
-  Pieces<Number> pieces;
   KeptModels<Number> kept;
   Clips<Number> clips;
   InheritedUnits<Number> inherited;
@@ -55,9 +54,9 @@ class Descent {
 
   Descent(const WaveQuery& query, DescentWorkspace<Number>& work)
       : query_(query), work_(work), patch_(patch_query_of<Number>(query)) {
-    work_.units.start(query_, patch_, work_.pieces);
+    work_.patches.start(*query.tree);
+    work_.units.start(query_, work_.patches, patch_);
     work_.results.start(query.max_lever);
-    work_.pieces.clear();
     work_.kept.clear();
     work_.clips.start(work_.kept);
     work_.inherited.start(work_.kept);
@@ -67,15 +66,12 @@ class Descent {
     add_first_level();
     evaluate_round();
     constexpr int kMaxRounds = 24;
-    bool capped = false;
     for (int round = 0; round < kMaxRounds && work_.results.total() > query_.budget; ++round) {
-      capped = patches_ > kMaxPatches || cells().full();
-      if (capped) break;
-      if (!refine()) break;
+      if (patches_ > kMaxPatches || cells().full() || !refine()) break;
       evaluate_round();
     }
     WaveLoad load = work_.results.sum();
-    load.capped = capped;
+    load.capped = work_.results.total() > query_.budget;
     load.too_steep = too_steep_;
     load.patches = static_cast<std::int32_t>(patches_);
     load.cells = static_cast<std::int32_t>(cells().surface_count() + cells().volume_count());
@@ -102,37 +98,19 @@ class Descent {
     std::vector<std::uint32_t>& first = work_.first;
     first.assign(1, 0);
     for (std::size_t n = 0; n < first.size();) {
-      const PatchBlock& block = query_.tree->blocks[first[n]];
+      const PatchBlock& block = work_.patches.block(first[n]);
       if (!all_inner(block) || first.size() > kMaxFirst || !is_too_large(block)) {
         ++n;
         continue;
       }
       for (std::size_t lane = 0; lane < block.patches; ++lane) {
-        prefetch_places(query_.tree->blocks[block.child[lane]]);
-        prefetch_sizes(query_.tree->blocks[block.child[lane]]);
+        prefetch_places(work_.patches.block(block.child[lane]));
+        prefetch_sizes(work_.patches.block(block.child[lane]));
       }
       first[n] = block.child[0];
       for (std::size_t lane = 1; lane < block.patches; ++lane) first.push_back(block.child[lane]);
     }
-    for (const std::uint32_t b : first) {
-      const PatchBlock& block = query_.tree->blocks[b];
-      // A model of a leaf that is too large would be of no use.
-      bool large = false;
-      for (std::size_t lane = 0; lane < block.patches; ++lane) {
-        large |= block.triangle_blocks[lane] > 0 && static_cast<double>(block.radius[lane]) > largest_piece();
-      }
-      if (!large) {
-        work_.units.add_block(b);
-        continue;
-      }
-      for (std::size_t lane = 0; lane < block.patches; ++lane) {
-        if (block.triangle_blocks[lane] > 0) {
-          work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
-        } else {
-          work_.units.add_block(block.child[lane]);
-        }
-      }
-    }
+    for (const std::uint32_t b : first) work_.units.add_block(b);
   }
 
   // Whether patches of a block can be expected to be refined: by the third derivative that the sea usually
@@ -168,44 +146,64 @@ class Descent {
     return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum))) > kShare * query_.budget;
   }
 
-  // The radius of pieces [m] at which their models begin to be of use; more where there would be too many.
-  double largest_piece() const {
-    constexpr double kMaxPieceReach = 1.1;
-    constexpr double kFirstPieces = 1000.0;
-    return std::max(kMaxPieceReach / patch_.k_max, std::sqrt(query_.tree->area / kFirstPieces));
-  }
-
   // Replaces results above a threshold by those of their children, or clips them. Returns whether there are
   // any.
   bool refine() {
-    const double limit = refinement_limit<Number>(work_.results.errors(), work_.results.expected(),
-                                                  work_.roots, query_.budget);
-    find_results_above(limit);
+    for (;;) {
+      // Once triangles that cannot be refined have most of the budget, the others need not have much less.
+      const double budget = std::max(query_.budget - work_.results.settled(), 0.5 * work_.results.settled());
+      const double limit =
+          refinement_limit<Number>(work_.results.errors(), work_.results.expected(), work_.roots, budget);
+      find_results_above(limit);
+      if (work_.refined.empty()) return false;
+      if (refine_found(limit)) return true;
+    }
+  }
+
+  // Returns whether any could be refined.
+  bool refine_found(double limit) {
+    bool refined = false;
     for (const std::uint32_t n : work_.refined) {
       // What one round adds is capped as well: it may reach a new cell with each of its units.
       if (units_of_next_round() > kMaxUnits) break;
       const Unit unit = work_.results.unit_of(n);
       const std::size_t lane = unit.first + n % kUnit<Number>;
+      const PatchBlock& block = work_.patches.block(unit.block);
       const KeptModel kept{work_.results.kept_models(n), static_cast<std::uint32_t>(n % kLanes<Number>)};
       const double remainder = kept.models == kNone ? std::numeric_limits<double>::infinity()
                                                     : static_cast<double>(work_.kept.remainder(kept));
-      const bool grandchildren = reaches_grandchildren(n, limit);
-      work_.results.remove(n);
-      if (unit.of_pieces) {
-        work_.pieces.quarter(unit, lane);
+      if (block.triangle_blocks[lane] > 0) {
+        refined |= refine_leaf(n, unit.block, lane, kept, remainder < limit);
         continue;
       }
-      const PatchBlock& block = query_.tree->blocks[unit.block];
-      if (block.triangle_blocks[lane] == 0) {
-        const bool inherit = remainder < kInheritedShare * limit;
-        add_children(block.child[lane], grandchildren, inherit ? kept : KeptModel{});
-      } else if (remainder < limit) {
-        work_.clips.add(*query_.tree, block, lane, kept, n);
-      } else {
-        work_.pieces.add_triangles(*query_.tree, block, lane, largest_piece());
+      refined = true;
+      const bool grandchildren = reaches_grandchildren(n, limit);
+      work_.results.remove(n);
+      add_children(block.child[lane], grandchildren,
+                   remainder < kInheritedShare * limit ? kept : KeptModel{});
+    }
+    return refined;
+  }
+
+  // Clips a leaf with the model that was kept of it, or replaces it by its triangles where that model leaves
+  // out too much. Returns whether either could be done.
+  bool refine_leaf(std::uint32_t n, std::uint32_t block, std::size_t lane, const KeptModel& kept,
+                   bool is_good) {
+    if (!is_good) {
+      const QueryPatches::Blocks triangles = work_.patches.add_triangles_of_leaf(block, lane);
+      if (triangles.first != triangles.end) {
+        work_.results.remove(n);
+        for (std::uint32_t b = triangles.first; b < triangles.end; ++b) work_.units.add_block(b);
+        return true;
+      }
+      if (kept.models == kNone) {
+        work_.results.settle(n);
+        return false;
       }
     }
-    return !work_.refined.empty();
+    work_.results.remove(n);
+    work_.clips.add(work_.patches, work_.patches.block(block), lane, kept, n);
+    return true;
   }
 
   // Whether a result's children are expected to be above the limit as well.
@@ -226,28 +224,25 @@ class Descent {
         work_.refined.push_back(n);
         if (!reaches_grandchildren(n, limit)) continue;
         const Unit& unit = work_.results.unit_of(n);
-        if (unit.of_pieces) continue;
-        const PatchBlock& block = query_.tree->blocks[unit.block];
+        const PatchBlock& block = work_.patches.block(unit.block);
         const std::size_t lane = unit.first + n % kUnit<Number>;
-        if (block.triangle_blocks[lane] == 0) prefetch_sizes(query_.tree->blocks[block.child[lane]]);
+        if (block.triangle_blocks[lane] == 0) prefetch_sizes(work_.patches.block(block.child[lane]));
       }
     }
   }
 
-  std::size_t units_of_next_round() const {
-    return work_.units.count() + work_.inherited.count() + work_.pieces.new_count() / kUnit<Number>;
-  }
+  std::size_t units_of_next_round() const { return work_.units.count() + work_.inherited.count(); }
 
   // kept: the model that they inherit, or none.
   void add_children(std::uint32_t b, bool grandchildren, const KeptModel& kept) {
     const auto add = [&](std::uint32_t of_children) {
       if (kept.models != kNone) {
-        work_.inherited.add_block(*query_.tree, of_children, kept);
+        work_.inherited.add_block(work_.patches, of_children, kept);
       } else {
         work_.units.add_block(of_children);
       }
     };
-    const PatchBlock& block = query_.tree->blocks[b];
+    const PatchBlock& block = work_.patches.block(b);
     if (!grandchildren || !all_inner(block)) {
       add(b);
       return;
@@ -266,20 +261,11 @@ class Descent {
         evaluate_batch(batch, cells().column_of_volume(cell), cell);
       });
     }
-    work_.clips.finish(*query_.tree, patch_, work_.results);
-    patches_ += work_.inherited.finish(*query_.tree, patch_, work_.results);
+    work_.clips.finish(work_.patches, patch_, work_.results);
+    patches_ += work_.inherited.finish(work_.patches, patch_, work_.results);
     work_.units.clear();
   }
 
-  void evaluate_batch(const Batch<Number>& batch, std::size_t surface_cell, std::size_t volume_cell) {
-    if (work_.units.holds_pieces(batch)) {
-      evaluate_batch<true>(batch, surface_cell, volume_cell);
-    } else {
-      evaluate_batch<false>(batch, surface_cell, volume_cell);
-    }
-  }
-
-  template <bool kPieces>
   HWY_NOINLINE void evaluate_batch(const Batch<Number>& batch, std::size_t surface_cell,
                                    std::size_t volume_cell) {
     const V zero = set<Number>(0.0);
@@ -309,28 +295,15 @@ class Descent {
     }
     const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kUnit<Number>);
     const UnitsOfVector<Number> units = work_.units.units_of(batch);
-    PatchIntegrals<Number> integrals;
-    KeptOfBatch kept;
-    hn::Mask<LanesOf<Number>> counts;
-    if constexpr (kPieces) {
-      const PieceLanes<Number> piece = work_.pieces.lanes(units);
-      const PatchModel<Number> model =
-          model_of<Number>(patch_, place, piece.radius, spread_of<Number>(piece), surface, surface_bounds,
-                           hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
-      too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
-      counts = hn::AndNot(model.dry, in_use);
-      integrals = integrate<Number>(patch_, piece, model);
-    } else {
-      const PatchMoments<Number> moments = read_moments<Number>(*query_.tree, units);
-      const PatchModel<Number> model =
-          model_of<Number>(patch_, place, moments.radius, spread_of<Number>(moments), surface, surface_bounds,
-                           hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
-      too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
-      counts = hn::AndNot(model.dry, in_use);
-      integrals = integrate<Number>(patch_, moments, model);
-      kept = work_.kept.keep_crossing(*query_.tree, units, hn::AndNot(model.whole, counts), patch_, moments,
-                                      model, moments.center);
-    }
+    const PatchMoments<Number> moments = read_moments<Number>(work_.patches, units);
+    const PatchModel<Number> model =
+        model_of<Number>(patch_, place, moments.radius, spread_of<Number>(moments), surface, surface_bounds,
+                         hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
+    too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
+    const auto counts = hn::AndNot(model.dry, in_use);
+    PatchIntegrals<Number> integrals = integrate<Number>(patch_, moments, model);
+    const KeptOfBatch kept = work_.kept.keep_crossing(work_.patches, units, hn::AndNot(model.whole, counts),
+                                                      patch_, moments, model, moments.center);
     patches_ += hn::CountTrue(LanesOf<Number>(), counts);
     clear_where<Number>(hn::Not(counts), integrals);
     work_.results.add(units, integrals, kept);

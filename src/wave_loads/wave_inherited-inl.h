@@ -115,23 +115,23 @@ class InheritedUnits {
   std::size_t count() const { return tasks_.size(); }
 
   // Adds a block of patches that the patch of the model holds.
-  void add_block(const PatchTree& tree, std::uint32_t block, const KeptModel& model) {
-    prefetch_places(tree.blocks[block]);
-    prefetch_moments(tree.blocks[block]);
-    for_each_unit<Number>(tree.blocks[block], [&](std::uint32_t first) {
+  void add_block(const QueryPatches& patches, std::uint32_t block, const KeptModel& model) {
+    prefetch_places(patches.block(block));
+    prefetch_moments(patches.block(block));
+    for_each_unit<Number>(patches.block(block), [&](std::uint32_t first) {
       tasks_.push_back({block, first, model});
     });
   }
 
   // Evaluates what was added and appends the results. Returns the number of patches that are not dry.
-  std::size_t finish(const PatchTree& tree, const PatchQuery<Number>& query, Results<Number>& results) {
-    std::size_t patches = 0;
+  std::size_t finish(const QueryPatches& patches, const PatchQuery<Number>& query, Results<Number>& results) {
+    std::size_t wet = 0;
     for (std::size_t n = 0; n < tasks_.size(); n += kUnitsPerVector<Number>) {
-      patches +=
-          evaluate(tree, query, &tasks_[n], std::min(kUnitsPerVector<Number>, tasks_.size() - n), results);
+      wet +=
+          evaluate(patches, query, &tasks_[n], std::min(kUnitsPerVector<Number>, tasks_.size() - n), results);
     }
     tasks_.clear();
-    return patches;
+    return wet;
   }
 
  private:
@@ -141,8 +141,8 @@ class InheritedUnits {
     KeptModel model;
   };
 
-  HWY_NOINLINE std::size_t evaluate(const PatchTree& tree, const PatchQuery<Number>& query, const Task* tasks,
-                                    std::size_t count, Results<Number>& results) {
+  HWY_NOINLINE std::size_t evaluate(const QueryPatches& patches, const PatchQuery<Number>& query,
+                                    const Task* tasks, std::size_t count, Results<Number>& results) {
     UnitsOfVector<Number> units;
     bool of_one = true;
     for (std::size_t n = 0; n < units.size(); ++n) {
@@ -153,12 +153,12 @@ class InheritedUnits {
     }
     const KeptModelLanes<Number> kept = kept_->template lanes<KeptModelLanes<Number>::kRows>(
         of_one, [&](std::size_t n) -> const KeptModel& { return tasks[n < count ? n : 0].model; });
-    const Inherited<Number> inherited = inherit<Number>(query, read_moments<Number>(tree, units), kept);
+    const Inherited<Number> inherited = inherit<Number>(query, read_moments<Number>(patches, units), kept);
     const auto counts = hn::AndNot(inherited.model.dry, hn::FirstN(LanesOf<Number>(), count * kUnit<Number>));
     PatchIntegrals<Number> integrals = integrate<Number>(query, inherited.moments, inherited.model);
     clear_where<Number>(hn::Not(counts), integrals);
     results.add(units, integrals,
-                kept_->keep_crossing(tree, units, hn::AndNot(inherited.model.whole, counts), query,
+                kept_->keep_crossing(patches, units, hn::AndNot(inherited.model.whole, counts), query,
                                      inherited.moments, inherited.model, kept.origin()));
     return hn::CountTrue(LanesOf<Number>(), counts);
   }

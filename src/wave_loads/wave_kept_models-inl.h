@@ -83,14 +83,14 @@ class KeptModels {
 
   // Keeps the models of a batch of units if the surface may cross a patch of theirs. origin: as in
   // KeptModelLanes.
-  HWY_INLINE KeptOfBatch keep_crossing(const PatchTree& tree, const UnitsOfVector<Number>& units,
+  HWY_INLINE KeptOfBatch keep_crossing(const QueryPatches& patches, const UnitsOfVector<Number>& units,
                                        const hn::Mask<LanesOf<Number>>& crossing,
                                        const PatchQuery<Number>& query, const PatchMoments<Number>& moments,
                                        const PatchModel<Number>& model, const Vectors3<Number>& origin) {
     KeptOfBatch kept;
     kept.lanes = bits_of<Number>(crossing);
     if (kept.lanes == 0) return kept;
-    kept.leaves = kept.lanes & leaves<Number>(tree, units);
+    kept.leaves = kept.lanes & leaves<Number>(patches, units);
     kept.models = keep(query, moments, model, origin);
     return kept;
   }

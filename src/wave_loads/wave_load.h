@@ -4,9 +4,11 @@
 //   F = -rho g int psi n dA,   tau = -rho g int (x - ref) x psi n dA
 // where psi is the pressure over rho g where the point is below the instantaneous surface, and 0 elsewhere
 // (docs/wave_mathematics.md). The surface is integrated patch by patch with a quadratic model of the
-// pressure; patches are refined until the sum of their bounds is within the tolerance, or until the work
-// reaches its cap. The bounds that are returned hold in every case. That of the
-// volume decides nothing: under waves that are short against the body it may exceed the tolerance.
+// pressure; patches are refined until the sum of their bounds is within the tolerance, until they are single
+// triangles, or until the work reaches its cap. The bounds that are returned hold in every case; they are
+// certified but for the rounding of sums over components, whose worst case is not added ("What is not
+// covered" in docs/wave_mathematics.md). That of the volume does not decide what is refined: under waves that
+// are short against the body it may exceed the tolerance.
 //
 // Complexity: hardly depends on the numbers of triangles and of components. No heap once a
 // thread's buffers are as large as its queries need.
@@ -29,7 +31,7 @@ struct WaveLoad {
   double force_bound = 0.0;    // [m^3], on |error of force|
   double torque_bound = 0.0;   // [m^4]
   double volume_bound = 0.0;   // [m^3], on |error of volume|
-  bool capped = false;         // the work reached its cap before the bound was within the tolerance
+  bool capped = false;         // the bound did not get within the tolerance
   bool too_steep = false;      // somewhere the pressure does not rise downwards at the surface
   std::int32_t patches = 0;    // evaluated
   std::int32_t cells = 0;      // expanded

@@ -200,7 +200,7 @@ HWY_INLINE PatchModel<Number> model_of(const PatchQuery<Number>& query, const Pl
     M3 = L3;
     M3_at_point = surface.third;
     const V rest = hn::MulAdd(still * rounding, hn::Abs(place.zeta), range.rounded) +
-                   set<Number>(query.displacement) * (still + L1);
+                   set<Number>(query.displacement) * (still + L1 + range.above.slope);
     delta = range.above.truncation + rest;
     mean_delta = mean_truncation_of_eta + rest;
     gamma = zero;

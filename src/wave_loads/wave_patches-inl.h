@@ -50,9 +50,10 @@ HWY_INLINE void for_each_unit(const PatchBlock& block, const Take& take) {
 
 // Reads the moments of the patches of a vector of units.
 template <typename Number>
-HWY_INLINE PatchMoments<Number> read_moments(const PatchTree& tree, const UnitsOfVector<Number>& units) {
+HWY_INLINE PatchMoments<Number> read_moments(const QueryPatches& patches,
+                                             const UnitsOfVector<Number>& units) {
   std::array<const PatchBlock*, kUnitsPerVector<Number>> blocks;
-  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n] = &tree.blocks[units[n].block];
+  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n] = &patches.block(units[n].block);
   const auto get = [&](const auto& member) HWY_ATTR {
     return gather_units<Number>([&](std::size_t n) { return member(*blocks[n]).data() + units[n].first; });
   };
@@ -82,11 +83,11 @@ HWY_INLINE PatchMoments<Number> read_moments(const PatchTree& tree, const UnitsO
 
 // The patches of a vector of units that are leaves, as bits.
 template <typename Number>
-HWY_INLINE std::uint32_t leaves(const PatchTree& tree, const UnitsOfVector<Number>& units) {
+HWY_INLINE std::uint32_t leaves(const QueryPatches& patches, const UnitsOfVector<Number>& units) {
   std::uint32_t bits = 0;
   for (std::size_t lane = 0; lane < kLanes<Number>; ++lane) {
     const Unit& unit = units[lane / kUnit<Number>];
-    const bool leaf = tree.blocks[unit.block].triangle_blocks[unit.first + lane % kUnit<Number>] > 0;
+    const bool leaf = patches.block(unit.block).triangle_blocks[unit.first + lane % kUnit<Number>] > 0;
     bits |= std::uint32_t{leaf} << lane;
   }
   return bits;

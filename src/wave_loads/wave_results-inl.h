@@ -29,12 +29,11 @@ namespace HWY_NAMESPACE {
 inline constexpr double kErrorOfChildren = 0.15;
 inline constexpr double kErrorOfClipping = 0.02;
 
-// What is evaluated together: kUnit patches of a block of the tree, or as many pieces of triangles.
+// What is evaluated together: kUnit patches of a block of the tree.
 struct Unit {
-  std::uint32_t block = 0;  // of the tree, or of the pieces
+  std::uint32_t block = 0;
   std::uint32_t first = 0;  // lane of the block
-  bool of_pieces = false;
-  bool dry = false;  // all of its patches are
+  bool dry = false;         // all of its patches are
   std::uint32_t surface_cell = 0, volume_cell = 0;
   std::uint32_t next = kNone;  // in the same cell
 };
@@ -58,7 +57,7 @@ class Results {
   void start(double max_lever) {
     per_lever_ = 1.0 / max_lever;
     batch_count_ = 0;
-    total_ = 0.0;
+    total_ = settled_ = 0.0;
   }
 
   // Returns the number of the first result.
@@ -128,12 +127,20 @@ class Results {
     for (auto& row : batch.rows) row[result % kLanes<Number>] = Number{0};
   }
 
+  // Keeps a result that cannot be refined: its error is no longer one of errors().
+  void settle(std::size_t result) {
+    settled_ += static_cast<double>(errors_[result]);
+    errors_[result] = Number{0};
+    expected_[result] = Number{0};
+  }
+
   // Per result [m^3], the larger of the bound on the force and of that on the torque / L_r.
   std::span<const Number> errors() const { return {errors_.data(), count()}; }
   // What the errors of a patch's children, or that of the patch once it is clipped, are expected to add up
   // to.
   std::span<const Number> expected() const { return {expected_.data(), count()}; }
-  double total() const { return total_; }
+  double total() const { return total_; }      // of the errors, with those that are settled
+  double settled() const { return settled_; }  // of those that are settled
   // The models that were kept of the patch; kNone if there are none.
   std::uint32_t kept_models(std::size_t result) const {
     const KeptOfBatch& of_batch = batches_[result / kLanes<Number>].kept;
@@ -192,7 +199,7 @@ class Results {
   std::size_t batch_count_ = 0;
   std::vector<Number> errors_, expected_;
   double per_lever_ = 1.0;
-  double total_ = 0.0;  // of the errors
+  double total_ = 0.0, settled_ = 0.0;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -26,7 +26,6 @@ struct TriangleLanes {
   std::array<Vectors3<Number>, 3> corners;
   Quadratic<Number> phi, s;
   VectorOf<Number> curvature;
-  hn::Mask<LanesOf<Number>> whole, none;
 };
 
 template <typename Number>
@@ -174,8 +173,7 @@ HWY_INLINE TriangleIntegrals<Number> integrate(const PatchQuery<Number>& query,
   const LoneCorner<Number> lone = lone_corner<Number>(values);
 
   TriangleIntegrals<Number> sum{{zero, zero, zero}, {zero, zero, zero}, zero, {zero, zero, zero}, zero, zero};
-  const auto counts = hn::Or(t.whole, hn::Or(lone.all_positive, lone.lone_negative));
-  const V of_whole = hn::IfThenZeroElse(t.none, hn::IfThenElseZero(counts, one));
+  const V of_whole = hn::IfThenElseZero(hn::Or(lone.all_positive, lone.lone_negative), one);
   add_triangle<Number>(t.corners, area, of_whole, up, t, sum);
 
   const auto pick = [&](std::size_t first) {
@@ -190,7 +188,7 @@ HWY_INLINE TriangleIntegrals<Number> integrate(const PatchQuery<Number>& query,
   const V value_p = lone.pick(values[0], values[1], values[2]);
   const V value_q = lone.pick(values[1], values[2], values[0]);
   const V value_r = lone.pick(values[2], values[0], values[1]);
-  const auto clipped = hn::AndNot(hn::Or(t.whole, t.none), hn::Or(lone.lone_positive, lone.lone_negative));
+  const auto clipped = hn::Or(lone.lone_positive, lone.lone_negative);
   const V to_q = hn::IfThenElseZero(clipped, value_p / hn::IfThenElse(clipped, value_p - value_q, one));
   const V to_r = hn::IfThenElseZero(clipped, value_p / hn::IfThenElse(clipped, value_p - value_r, one));
   const V sign = hn::IfThenElseZero(clipped, hn::IfThenElse(lone.lone_positive, one, hn::Neg(one)));
@@ -214,7 +212,7 @@ HWY_INLINE TriangleIntegrals<Number> integrate(const PatchQuery<Number>& query,
                        mean_of_positive_part<Number>(shifted(hn::Neg(D)));
   const V strip =
       hn::Min(hn::Max(difference, zero), D) + set<Number>(16.0 * query.unit_roundoff) * (largest + D);
-  sum.strip = hn::IfThenZeroElse(hn::Or(t.whole, t.none), strip * hn::Sqrt(dot<Number>(area, area)));
+  sum.strip = strip * hn::Sqrt(dot<Number>(area, area));
   return sum;
 }
 

@@ -18,7 +18,6 @@
 
 #include "wave_loads/wave_models-inl.h"
 #include "wave_loads/wave_patches-inl.h"
-#include "wave_loads/wave_pieces-inl.h"
 #include "wave_loads/wave_places-inl.h"
 #include "wave_loads/wave_query.h"
 #include "wave_loads/wave_results-inl.h"
@@ -54,10 +53,9 @@ class RoundUnits {
   using V = VectorOf<Number>;
 
   // The arguments must outlive the query.
-  void start(const WaveQuery& query, const PatchQuery<Number>& patch, Pieces<Number>& pieces) {
-    query_ = &query;
+  void start(const WaveQuery& query, const QueryPatches& patches, const PatchQuery<Number>& patch) {
+    patches_ = &patches;
     patch_ = &patch;
-    pieces_ = &pieces;
     cells_.start(query);
     units_.clear();
   }
@@ -67,8 +65,8 @@ class RoundUnits {
   void clear() { units_.clear(); }
 
   void add_block(std::uint32_t block) {
-    prefetch_places(query_->tree->blocks[block]);
-    for_each_unit<Number>(query_->tree->blocks[block], [&](std::uint32_t first) {
+    prefetch_places(patches_->block(block));
+    for_each_unit<Number>(patches_->block(block), [&](std::uint32_t first) {
       Unit unit;
       unit.block = block;
       unit.first = first;
@@ -76,9 +74,8 @@ class RoundUnits {
     });
   }
 
-  // Adds the new pieces, and finds what is known of all units of the round from the surface alone.
+  // Finds what is known of the units of the round from the surface alone.
   void evaluate_surface() {
-    pieces_->take_new([this](const Unit& unit) { units_.push_back(unit); });
     if (places_.size() < units_.size()) {
       places_.resize(units_.size());
       means_.resize(units_.size());
@@ -112,18 +109,12 @@ class RoundUnits {
     for (std::size_t n = 0; n < units.size(); ++n) units[n] = units_[batch.units[n]];
     return units;
   }
-  bool holds_pieces(const Batch<Number>& batch) const { return units_[batch.units[0]].of_pieces; }
 
  private:
   void place_units() {
     Batch<Number> batch;
     for (std::size_t first = 0; first < units_.size(); first += batch.count) {
-      const bool pieces = units_[first].of_pieces;
-      batch.count = 0;
-      while (batch.count < kUnitsPerVector<Number> && first + batch.count < units_.size() &&
-             units_[first + batch.count].of_pieces == pieces) {
-        ++batch.count;
-      }
+      batch.count = std::min(kUnitsPerVector<Number>, units_.size() - first);
       for (std::size_t n = 0; n < kUnitsPerVector<Number>; ++n) {
         batch.units[n] = static_cast<std::uint32_t>(first + (n < batch.count ? n : 0));
       }
@@ -152,10 +143,9 @@ class RoundUnits {
 
   Vectors3<Number> centers_of(const Batch<Number>& batch) const {
     const UnitsOfVector<Number> units = units_of(batch);
-    if (units[0].of_pieces) return pieces_->lanes(units).center;
     const auto axis = [&](std::size_t i) HWY_ATTR {
       return gather_units<Number>(
-          [&](std::size_t n) { return &query_->tree->blocks[units[n].block].center[i][units[n].first]; });
+          [&](std::size_t n) { return &patches_->block(units[n].block).center[i][units[n].first]; });
     };
     return {axis(0), axis(1), axis(2)};
   }
@@ -217,10 +207,8 @@ class RoundUnits {
   HWY_INLINE void for_each_batch(const Work& work) {
     for (std::size_t cell = 0; cell < heads_.size(); ++cell) {
       for (std::uint32_t n = heads_[cell]; n != kNone;) {
-        // A batch holds patches of the tree, or triangles.
         Batch<Number> batch;
-        const bool pieces = units_[n].of_pieces;
-        while (n != kNone && batch.count < kUnitsPerVector<Number> && units_[n].of_pieces == pieces) {
+        while (n != kNone && batch.count < kUnitsPerVector<Number>) {
           batch.units[batch.count++] = n;
           n = units_[n].next;
         }
@@ -271,10 +259,8 @@ class RoundUnits {
   HWY_INLINE void note_dry(const Batch<Number>& batch, std::size_t cell, const V& x1, const V& x2,
                            const SurfaceValues<Number>& values) {
     const UnitsOfVector<Number> units = units_of(batch);
-    const V radius =
-        units[0].of_pieces ? pieces_->lanes(units).radius : gather_units<Number>([&](std::size_t n) {
-          return &query_->tree->blocks[units[n].block].radius[units[n].first];
-        });
+    const V radius = gather_units<Number>(
+        [&](std::size_t n) { return &patches_->block(units[n].block).radius[units[n].first]; });
     const SurfaceRange<Number> range = range_of<Number>(
         read(batch, &UnitPlace<Number>::zeta), radius * set<Number>(patch_->k_max), values,
         cells_.surface(cell).bounds, hn::Sqrt(hn::MulAdd(x1, x1, x2 * x2)), set<Number>(patch_->rounding()));
@@ -283,13 +269,12 @@ class RoundUnits {
     for (std::size_t n = 0; n < batch.count; ++n) {
       Unit& unit = units_[batch.units[n]];
       unit.dry = (dry >> (n * kUnit<Number>)&kAll) == kAll;
-      if (!unit.dry && !unit.of_pieces) prefetch_moments(query_->tree->blocks[unit.block]);
+      if (!unit.dry) prefetch_moments(patches_->block(unit.block));
     }
   }
 
-  const WaveQuery* query_ = nullptr;
+  const QueryPatches* patches_ = nullptr;
   const PatchQuery<Number>* patch_ = nullptr;
-  Pieces<Number>* pieces_ = nullptr;
   SeaCells<Number> cells_;
   std::vector<Unit> units_;
   std::vector<UnitPlace<Number>> places_;  // of each

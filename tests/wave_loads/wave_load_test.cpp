@@ -266,7 +266,7 @@ TEST(WaveLoad, BoundsWideBodiesInShortWaves) {
     waves.push_back({0.05 / k, std::sqrt(kStandardGravity * k), 100.0 * length, 50.0 * length});
   }
   description.systems = {waves};
-  const Case one(RockShape{6.0, 39, 0.2, 5}, description, 1e-5);
+  const Case one(RockShape{6.0, 39, 0.2, 5}, description, 3e-5);
   Pose pose;
   pose.p_WB = {40.0, -70.0, 0.5};
   const WaveLoad load = one.load(pose);
@@ -274,7 +274,7 @@ TEST(WaveLoad, BoundsWideBodiesInShortWaves) {
       brute_force_load(one.mesh.surface, one.mesh.center_B, one.snapshot, pose, Vec3::Zero(), 4);
   // Far more columns of cells than those whose phases are kept.
   EXPECT_GT(load.cells, 300);
-  EXPECT_LE(load.force_bound, 1e-5 * one.mesh.volume);
+  EXPECT_LE(load.force_bound, 3e-5 * one.mesh.volume);
   EXPECT_LE((load.force - truth.force).norm(), load.force_bound + truth.force_error);
   EXPECT_LE((load.torque - truth.torque).norm(), load.torque_bound + truth.torque_error);
   EXPECT_LE(std::abs(load.volume - truth.volume), load.volume_bound + truth.volume_error);
