@@ -267,7 +267,7 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");
   app.add_option("--downflooding", options.downfloodings,
-                 "gz: an opening that lets water in; the same, and the criteria end their areas there. "
+                 "gz: an opening that lets water in; the same, and the curve of the criteria ends there. "
                  "Repeatable")
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");

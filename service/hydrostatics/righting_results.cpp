@@ -17,11 +17,13 @@ constexpr double kThirty = 30.0 * kRadiansPerDegree;
 constexpr double kForty = 40.0 * kRadiansPerDegree;
 constexpr int kMaxHeel = 90;  // [degrees], of the criteria
 
-// Of the criteria: each degree up to 90, and the angle of downflooding where that ends the areas.
+// Of the criteria: each degree up to 90, or up to the angle of downflooding and that angle.
 std::vector<double> heels_of_criteria(double flooding) {
   std::vector<double> heels;
-  for (int heel = 0; heel <= kMaxHeel; ++heel) heels.push_back(heel * kRadiansPerDegree);
-  if (flooding < kForty) heels.insert(std::ranges::upper_bound(heels, flooding), flooding);
+  for (int heel = 0; heel <= kMaxHeel && heel * kRadiansPerDegree <= flooding; ++heel) {
+    heels.push_back(heel * kRadiansPerDegree);
+  }
+  if (flooding > heels.back() && flooding < kMaxHeel * kRadiansPerDegree) heels.push_back(flooding);
   return heels;
 }
 
@@ -35,14 +37,15 @@ RightingArmOptions with_progress(const RightingArmOptions& options, std::int64_t
   return counted;
 }
 
-// [m rad], to a heel of the curve.
+// [m rad], to a heel of the curve, or to its end.
 double area_to(const RightingCurve& curve, double heel) {
   const auto found = std::ranges::find_if(
       curve.points, [heel](const RightingCurvePoint& point) { return point.arm.heel >= heel; });
-  return found->area;
+  return found == curve.points.end() ? curve.points.back().area : found->area;
 }
 
-// flooding: [rad], to starboard; infinity: none. Empty where the arms are not known up to 90 degrees.
+// flooding: [rad], to starboard; infinity: none. The curve is cut short there: beyond it, the body is taken
+// to have lost its stability. Empty where the arms are not known up to there, or up to 90 degrees.
 std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const Water& water,
                                                  double flooding, const RightingArmOptions& options) {
   const auto curve = righting_curve(body, water, heels_of_criteria(flooding), options);
@@ -51,16 +54,16 @@ std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const
   const auto left = righting_arm(body, water, -kStep, options);
   if (!curve || !right || !left) return {};
 
-  const double end = std::min(kForty, flooding);
+  const bool reaches_thirty = flooding >= kThirty;
   const double to_thirty = area_to(*curve, kThirty);
-  const double to_end = area_to(*curve, end);
-  // Where water comes in below 30 degrees, there is no area beyond.
-  const double beyond_thirty = end > kThirty ? to_end - to_thirty : 0.0;
+  const double to_end = area_to(*curve, kForty);
   std::string end_text = "40 degrees";
+  std::string thirty_text = "30 degrees";
   if (flooding < kForty) {
-    end_text = fmt::format("downflooding at {:.4g} degrees", end / kRadiansPerDegree);
+    end_text = fmt::format("downflooding at {:.4g} degrees", flooding / kRadiansPerDegree);
+    if (!reaches_thirty) thirty_text += ", cut at downflooding";
   }
-  double max_beyond_thirty = -std::numeric_limits<double>::infinity();
+  double max_beyond_thirty = reaches_thirty ? -std::numeric_limits<double>::infinity() : 0.0;
   for (const auto& [arm, area] : curve->points) {
     if (arm.heel >= kThirty) max_beyond_thirty = std::max(max_beyond_thirty, arm.gz);
   }
@@ -68,9 +71,9 @@ std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const
   if (curve->max_starboard && heel_of_max >= kThirty) {
     max_beyond_thirty = std::max(max_beyond_thirty, curve->max_starboard->gz);
   }
-  return {{"area from 0 to 30 degrees", to_thirty, 0.055, "m rad"},
-          {fmt::format("area from 0 to {}", end_text), to_end, 0.090, "m rad"},
-          {fmt::format("area from 30 to {}", end_text), beyond_thirty, 0.030, "m rad"},
+  return {{"area from 0 to " + thirty_text, to_thirty, 0.055, "m rad", reaches_thirty},
+          {"area from 0 to " + end_text, to_end, 0.090, "m rad"},
+          {"area from 30 to " + end_text, to_end - to_thirty, 0.030, "m rad"},
           {"largest GZ at 30 degrees or more", max_beyond_thirty, 0.20, "m"},
           {"heel of the largest GZ", heel_of_max / kRadiansPerDegree, 25.0, "degrees"},
           {"GM at heel 0", (right->gz - left->gz) / (2.0 * kStep), 0.15, "m"}};

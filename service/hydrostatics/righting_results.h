@@ -18,8 +18,9 @@ struct StabilityCriterion {
   double value = 0.0;
   double required = 0.0;
   std::string unit;
+  bool reached = true;  // does the curve reach the heel that the criterion names?
 
-  bool is_met() const { return value >= required; }
+  bool is_met() const { return reached && value >= required; }
 };
 
 struct RightingResults {
@@ -33,8 +34,8 @@ struct ImmersionPoints {
   std::vector<Vec3> deck_edge_B, downflooding_B;
 };
 
-// heels: see righting_curve(), and for where there is no result. The areas of the criteria end at the angle
-// of downflooding to starboard where that is below 40 degrees. options.progress counts the heels of the curve
+// heels: see righting_curve(), and for where there is no result. The curve of the criteria ends at the angle
+// of downflooding to starboard; that of the results does not. options.progress counts the heels of the curve
 // and of the criteria.
 std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
                                                 std::span<const double> heels, const ImmersionPoints& points,

@@ -227,16 +227,44 @@ TEST_F(HydrostaticsProgram, ReportsDeckEdgeAndDownflooding) {
   EXPECT_EQ(without.at("criteria").at("values").at(1).at("name"), "area from 0 to 40 degrees");
 }
 
-TEST_F(HydrostaticsProgram, EndsAreasWhereWaterComesInEarly) {
-  const std::string opening = "0,-5," + std::to_string(5.0 * std::tan(20.0 * kDegree));
+TEST_F(HydrostaticsProgram, EndsCriteriaWhereWaterComesInEarly) {
+  const std::string opening = "0,-5," + std::to_string(5.0 * std::tan(24.0 * kDegree));
   const ProgramRun result =
       run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", opening});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   const auto criteria = nlohmann::json::parse(result.output).at("criteria").at("values");
-  EXPECT_NEAR(criteria.at(0).at("value").get<double>(), 0.132002392797, 1e-10);
-  EXPECT_NEAR(criteria.at(1).at("value").get<double>(), wall_sided_area(20.0 * kDegree), 1e-6);
-  EXPECT_EQ(criteria.at(2).at("value"), 0.0);
-  EXPECT_EQ(criteria.at(2).at("met"), false);
+  const std::string end = "downflooding at 24 degrees";
+  const std::array<std::string, 5> names{"area from 0 to 30 degrees, cut at downflooding",
+                                         "area from 0 to " + end, "area from 30 to " + end,
+                                         "largest GZ at 30 degrees or more", "heel of the largest GZ"};
+  // The area is beyond that of the code at 30 degrees, to which the curve does not come.
+  const double area = wall_sided_area(24.0 * kDegree);
+  EXPECT_GT(area, 0.055);
+  const std::array<double, 5> values{area, area, 0.0, 0.0, 24.0};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(criteria.at(i).at("name"), names[i]);
+    EXPECT_NEAR(criteria.at(i).at("value").get<double>(), values[i], 1e-5);
+    EXPECT_EQ(criteria.at(i).at("met"), false) << names[i];
+  }
+  EXPECT_EQ(criteria.at(5).at("met"), true);
+
+  // Between 30 and 40 degrees the largest arm is that at the end; an opening that is under water upright
+  // leaves no curve.
+  const auto with_opening_at = [&](double degrees) {
+    const std::string at = "0,-5," + std::to_string(5.0 * std::tan(degrees * kDegree));
+    return nlohmann::json::parse(
+               run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", at}).output)
+        .at("criteria")
+        .at("values");
+  };
+  const auto late = with_opening_at(30.5);
+  EXPECT_EQ(late.at(0).at("met"), true);
+  EXPECT_NEAR(late.at(4).at("value").get<double>(), 30.5, 1e-4);
+  EXPECT_GT(late.at(3).at("value").get<double>(), 0.740740741);
+  EXPECT_LT(late.at(3).at("value").get<double>(), 0.79);
+  const auto upright = with_opening_at(-1.0);
+  EXPECT_EQ(upright.size(), 6U);
+  EXPECT_EQ(upright.at(1).at("value"), 0.0);
 }
 
 TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {

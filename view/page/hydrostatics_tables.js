@@ -15,8 +15,13 @@ const attitude_heads = ['', '', 'heel, °', 'trim, °', 'draft, m', 'smaller GM,
 function heel_rows(results) {
   const rows = [];
   const add = (text, starboard, port) => rows.push([text, degrees_text(starboard), degrees_text(port)]);
-  add('range of stability ends', results.vanishing_starboard, results.vanishing_port);
   const heel_of = (arm) => (arm === null ? null : arm.heel);
+  // Where the arm vanishes, or where water comes in before.
+  const end_of_range = (side) => {
+    const ends = [results[`vanishing_${side}`], results.downflooding && heel_of(results.downflooding[side])].filter((end) => end !== null);
+    return ends.length === 0 ? null : ends.reduce((a, b) => (Math.abs(a) < Math.abs(b) ? a : b));
+  };
+  add('range of stability ends', end_of_range('starboard'), end_of_range('port'));
   add('largest righting arm', heel_of(results.max_starboard), heel_of(results.max_port));
   const of_points = (text, immersions) => { if (immersions) add(text, heel_of(immersions.starboard), heel_of(immersions.port)); };
   of_points('deck edge goes under water', results.deck_edge);
