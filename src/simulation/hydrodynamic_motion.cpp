@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/body_evaluation.h"
+#include "engine/load_evaluation.h"
 #include "hydrodynamics/linear_solver.h"
 #include "hydrostatics/hydrostatics.h"
 #include "messages/conversions.h"
@@ -101,7 +101,7 @@ HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, 
 }
 
 void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, double lead_time,
-                              RigidBodyState& state) {
+                              const CurrentWater& water, RigidBodyState& state) {
   still_ = wrench;
   if (wrench.status != BodyStatus::kOk) return;
   const Pose pose = validate_pose(sent, lead_time).pose;
@@ -119,25 +119,32 @@ void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, d
   still_.torque = to_array(to_vec3(wrench.torque) - of_motion.tail<3>());
 
   half_jump_.setZero();
-  if (taken_ && now.added_mass != immersion_.added_mass) {
-    const Vec6 before = relative_twist(state);
-    const Vec6 after = modes_.twist_of_modal(now.added_mass) * modes_.modal(before, immersion_.added_mass);
-    set_relative_twist(after, state);
-    half_jump_ = 0.5 * (after - before);
+  if (const auto* const added = body_->hydrodynamics->added_mass_placement()) {
+    const Vec3 center_W = pose.p_WB + moving.motion.R_WB * added->center_B;
+    const Vec3 flow_W = water_motion(water, current_W_, center_W).velocity_W;
+    if (taken_ && now.added_mass != immersion_.added_mass) {
+      const Vec3 mean_flow_W = 0.5 * (flow_W_ + flow_W);
+      const Vec6 before = relative_twist(state, mean_flow_W);
+      const Vec6 after = modes_.twist_of_modal(now.added_mass) * modes_.modal(before, immersion_.added_mass);
+      set_relative_twist(after, mean_flow_W, state);
+      half_jump_ = 0.5 * (after - before);
+    }
+    flow_W_ = flow_W;
   }
   immersion_ = now;
   taken_ = true;
 }
 
-Vec6 HydrodynamicMotion::relative_twist(const RigidBodyState& state) const {
+Vec6 HydrodynamicMotion::relative_twist(const RigidBodyState& state, const Vec3& water_velocity_W) const {
   Vec6 twist;
-  twist.head<3>() = state.q_WB.conjugate() * Vec3(state.velocity_W - current_W_);
+  twist.head<3>() = state.q_WB.conjugate() * Vec3(state.velocity_W - water_velocity_W);
   twist.tail<3>() = state.q_WB.conjugate() * angular_velocity_W(rigid_, state);
   return twist;
 }
 
-void HydrodynamicMotion::set_relative_twist(const Vec6& twist, RigidBodyState& state) const {
-  state.velocity_W = current_W_ + state.q_WB * Vec3(twist.head<3>());
+void HydrodynamicMotion::set_relative_twist(const Vec6& twist, const Vec3& water_velocity_W,
+                                            RigidBodyState& state) const {
+  state.velocity_W = water_velocity_W + state.q_WB * Vec3(twist.head<3>());
   state.angular_momentum_W = state.q_WB * Vec3(mass_B_.bottomRightCorner<3, 3>() * twist.tail<3>());
 }
 
@@ -187,7 +194,7 @@ void HydrodynamicMotion::change_velocities(double time, RigidBodyState& state) c
   Vec6 force;
   force << R_BW * load.force_W, R_BW * load.torque_W;
   const Vec3 current_B = R_BW * current_W_;
-  const Vec6 before = relative_twist(state);
+  const Vec6 before = relative_twist(state, current_W_);
   const Mat6 N = modes_.twist_of_modal(immersion_.added_mass);
   const Vec6 u_before = modes_.modal(before, immersion_.added_mass);
   const bool turns = screw_ || immersion_.added_mass > 0.0;
@@ -212,7 +219,7 @@ void HydrodynamicMotion::change_velocities(double time, RigidBodyState& state) c
     }
     mean = 0.5 * (before + N * u);
   }
-  set_relative_twist(N * u, state);
+  set_relative_twist(N * u, current_W_, state);
 }
 
 void HydrodynamicMotion::move(double time, RigidBodyState& state) const {
@@ -227,11 +234,11 @@ void HydrodynamicMotion::move(double time, RigidBodyState& state) const {
     integrate_free_rotation(rigid_, time, state);
     return;
   }
-  const Vec6 twist = relative_twist(state);
+  const Vec6 twist = relative_twist(state, current_W_);
   const Vec6 moving = twist + half_jump_;
   const Vec3 velocity = screw_velocity(time * moving.tail<3>(), moving.head<3>());
   displace(current_W_ + state.q_WB * velocity, state.q_WB * Vec3(moving.tail<3>()));
-  set_relative_twist(twist, state);
+  set_relative_twist(twist, current_W_, state);
 }
 
 void HydrodynamicMotion::begin_step(Integrator integrator, double step, RigidBodyState& state) {
@@ -245,7 +252,7 @@ void HydrodynamicMotion::finish_step(Integrator integrator, double step, RigidBo
 }
 
 double HydrodynamicMotion::added_kinetic_energy(const RigidBodyState& state, double immersion) const {
-  const Vec6 twist = relative_twist(state);
+  const Vec6 twist = relative_twist(state, current_W_);
   return 0.5 * immersion * twist.dot(added_mass_B_ * twist);
 }
 

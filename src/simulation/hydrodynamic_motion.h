@@ -17,10 +17,11 @@
 //         Q: du/dt = -C u by Cayley's transform, which is a rotation.
 //   X(t): pose, with the twist constant in B's axes: a screw. For a dry body X(t) of integrator.h, which is
 //         exact for v and L constant in W; then C is left out.
-//   S:    the immersion changes with the pose, from s to s': u is kept. The change of added mass does no work
-//         in this way, which in one dimension is Lagrange's equation; otherwise a body could gain energy by
-//         dipping in and out. The pose moved with the twist from before the change: half the difference is
-//         made up for in the next X, which keeps the order 2.
+//   S:    the immersion changes with the pose, from s to s': u is kept, of the twist relative to the water at
+//         the centre of the added mass, waves included. The change of added mass does no work in this way,
+//         which in one dimension is Lagrange's equation; otherwise a body could gain energy by dipping in and
+//         out. The pose moved with the twist from before the change: half the difference is made up for in
+//         the next X, which keeps the order 2.
 //
 //   semi_implicit_euler  V(h) X(h), new wrench, S
 //   velocity_verlet      V(h/2) X(h), new wrench, S V(h/2)
@@ -28,6 +29,7 @@
 
 #include <optional>
 
+#include "engine/body_evaluation.h"
 #include "simulation/added_mass_modes.h"
 #include "simulation/integrator.h"
 
@@ -41,9 +43,10 @@ class HydrodynamicMotion {
   // Replaces the rigid body, whose compartments or tanks have another condition from now on.
   void set_rigid_body(const RigidBody& rigid);
 
-  // Takes the wrench of a response to the state that was sent, evaluated lead_time later, and changes the
-  // velocities by S. The first wrench changes none.
-  void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, RigidBodyState& state);
+  // Takes the wrench of a response to the state that was sent, evaluated lead_time later in this water, and
+  // changes the velocities by S. The first wrench changes none.
+  void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, const CurrentWater& water,
+            RigidBodyState& state);
 
   // As in integrator.h, with the wrench that was taken last. Preconditions: take() was called; finish_step()
   // belongs to the last begin_step().
@@ -66,8 +69,9 @@ class HydrodynamicMotion {
   double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
   void set_mass();  // of the rigid body
 
-  Vec6 relative_twist(const RigidBodyState& state) const;
-  void set_relative_twist(const Vec6& twist, RigidBodyState& state) const;
+  // Relative to water that has this velocity everywhere.
+  Vec6 relative_twist(const RigidBodyState& state, const Vec3& water_velocity_W) const;
+  void set_relative_twist(const Vec6& twist, const Vec3& water_velocity_W, RigidBodyState& state) const;
   // N^T D N, with D at this twist; current_B: the current in B's axes.
   Mat6 modal_damping(const Vec6& twist, const Vec3& current_B, const Mat6& N) const;
   Mat6 client_damping(const Vec6& twist) const;  // of the absolute twist
@@ -89,6 +93,7 @@ class HydrodynamicMotion {
   BodyWrench still_;               // the wrench without its drag and Coriolis terms
   bool taken_ = false;             // take() was called
   Immersions immersion_;           // of still_
+  Vec3 flow_W_ = Vec3::Zero();     // [m/s], the water at the centre of the added mass, of still_
   bool screw_ = false;             // X of the present step is a screw
   Vec6 half_jump_ = Vec6::Zero();  // half the change of the twist in the last S, B's axes
 };

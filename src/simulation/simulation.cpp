@@ -115,6 +115,7 @@ Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
     : water_(scene.water()),
       current_W_(scene.current_W()),
       has_waves_(scene.sea() != nullptr || scene.receives_sea()),
+      waters_(scene),
       options_(options),
       conditions_(scene, options.step) {
   if (options.delay_steps > 0) delay_line_.resize(static_cast<std::size_t>(options.delay_steps) + 1);
@@ -149,12 +150,14 @@ void Simulation::accept(const WrenchResponse& latest) {
   assert(response.bodies.size() == bodies_.size());
   delay_ = static_cast<double>(step_number_ - response.id.seq) * options_.step;
   const bool wrenches_are_current = delay_ == 0.0 && options_.lead_time == 0.0;
+  CurrentWater water;
+  if (has_hydrodynamics_) water = waters_.move_to(response.id.utime, options_.lead_time).water;
   while (sent_.size() > 1 && sent_.front().id.seq < response.id.seq) sent_.pop_front();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     SimulatedBody& body = bodies_[i];
     body.wrench = response.bodies[i];
     if (body.hydrodynamics) {
-      body.hydrodynamics->take(body.wrench, sent_.front().bodies[i], options_.lead_time, body.state);
+      body.hydrodynamics->take(body.wrench, sent_.front().bodies[i], options_.lead_time, water, body.state);
     }
     if (in_step_) finish_step(body, body.state);
     record_energy(body, !in_step_ || body.condition_changed, wrenches_are_current, water_);

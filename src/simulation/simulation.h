@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/water_at_time.h"
 #include "simulation/condition_schedule.h"
 #include "simulation/hydrodynamic_motion.h"
 #include "simulation/integrator.h"
@@ -97,6 +98,7 @@ class Simulation {
   Water water_;
   Vec3 current_W_;
   bool has_waves_ = false;
+  WaterAtTime waters_;              // of the scene; nothing is known of a sea that is received
   bool has_hydrodynamics_ = false;  // does a simulated body have drag or added mass?
   SimulationOptions options_;
   ConditionSchedule conditions_;
