@@ -195,7 +195,9 @@ int simulate(Arguments arguments) {
   warn(std::move(size_warning));
   warn(step_warning(*simulation));
   warn(latency_warning(*simulation, static_cast<double>(options.delay_steps) * options.step));
+  warn(received_sea_warning(*simulation));
   LatencyMonitor latency;
+  BedMonitor bed;
 
   const Clock::time_point start = Clock::now();
   Expected<RunOutcome> outcome = RunOutcome::kCompleted;
@@ -208,6 +210,10 @@ int simulate(Arguments arguments) {
           progress.clear();
           warn(std::move(warning));
         }
+      }
+      for (Warning& warning : bed.update(now)) {
+        progress.clear();
+        warn(std::move(warning));
       }
       return csv ? csv->write(now) : Expected<void>{};
     });

@@ -1,8 +1,11 @@
 #include "simulation/rigid_body.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include <Eigen/Eigenvalues>
@@ -153,6 +156,14 @@ Vec3 angular_velocity_W(const RigidBody& body, const RigidBodyState& state) {
 
 Pose pose_of(const RigidBody& body, const RigidBodyState& state) {
   return {state.center_W - state.q_WB * body.center_of_mass_B, state.q_WB};
+}
+
+double lowest_height(const HydrostaticMesh& mesh, const WaterPlane& plane) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : mesh.surface.triangles) {
+    for (const std::int32_t i : triangle) lowest = std::min(lowest, plane.height(mesh.vertex(i)));
+  }
+  return lowest;
 }
 
 BodyState to_body_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state) {

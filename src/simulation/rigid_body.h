@@ -81,6 +81,8 @@ RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec);
 
 Vec3 angular_velocity_W(const RigidBody& body, const RigidBodyState& state);  // [rad/s]
 Pose pose_of(const RigidBody& body, const RigidBodyState& state);             // pose of B
+// [m], of the lowest vertex of a body's mesh over the level. O(vertices).
+double lowest_height(const HydrostaticMesh& mesh, const WaterPlane& plane);
 BodyState to_body_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state);
 
 // Sum of the wrench of a response and the body's weight. The wrench must belong to the state's pose.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
@@ -31,16 +30,11 @@ double steps_per_second(const RunSummary& summary) {
 BodySummary summarize(const SimulatedBody& body, const Water& water) {
   const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
   const WaterPlane plane = water_plane_in_body(pose_of(body.rigid, body.state), water, mesh.center_B);
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Triangle& triangle : mesh.surface.triangles) {
-    for (const std::int32_t i : triangle) lowest = std::min(lowest, plane.height(mesh.vertex(i)));
-  }
-
   BodySummary summary;
   summary.id = body.body->id;
   summary.name = body.body->name;
   summary.mass = body.rigid.mass;
-  summary.draft = -lowest;
+  summary.draft = -lowest_height(mesh, plane);
   summary.heave = water.up_W.dot(body.state.center_W) - water.level;
   const Vec3& up_B = plane.up_B;
   summary.roll = std::atan2(up_B.y(), up_B.z());

@@ -57,6 +57,16 @@ std::string subject(const SimulatedBody& body, int others) {
   return subject;
 }
 
+// [m], depth under the level of the lowest point of the body's mesh where that is below the bed, else
+// nullopt.
+std::optional<double> depth_below_bed(const SimulatedBody& body, double bed, const Water& water) {
+  const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
+  const WaterPlane plane = water_plane_in_body(pose_of(body.rigid, body.state), water, mesh.center_B);
+  if (plane.up_B.cwiseAbs().dot(mesh.box_max) + plane.h_c <= bed) return std::nullopt;
+  const double depth = -lowest_height(mesh, plane);
+  return depth > bed ? std::optional(depth) : std::nullopt;
+}
+
 std::string describe_frequency(const Worst& worst) {
   return "a body of " + number(worst.body->rigid.mass) + " kg has natural frequencies up to " +
          number(worst.highest.frequency) + " rad/s, at a draft of " + number(worst.highest.draft) + " m";
@@ -121,6 +131,43 @@ std::optional<Warning> LatencyMonitor::update(const Simulation& simulation) {
   sum_ = 0.0;
   steps_ = 0;
   return warning;
+}
+
+std::vector<Warning> BedMonitor::update(const Simulation& simulation) {
+  std::vector<Warning> warnings;
+  if (std::isinf(simulation.depth())) return warnings;
+  const std::vector<SimulatedBody>& bodies = simulation.bodies();
+  warned_.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (warned_[i]) continue;
+    const std::optional<double> depth = depth_below_bed(bodies[i], simulation.depth(), simulation.water());
+    if (!depth) continue;
+    warned_[i] = true;
+    warnings.push_back(
+        {subject(bodies[i], 0),
+         "it is below the sea bed at " + number(simulation.time()) + " s: its lowest point is " +
+             number(*depth, 4) + " m under the level",
+         "at most the depth of " + number(simulation.depth(), 4) + " m",
+         "the bed does not stop bodies: there is no contact",
+         "Below the bed, the waves have the pressure that they have at the bed; do not use the "
+         "motion from then on, or give the water its depth there"});
+  }
+  return warnings;
+}
+
+std::optional<Warning> received_sea_warning(const Simulation& simulation) {
+  if (!simulation.receives_sea()) return std::nullopt;
+  const auto has_added_mass = [](const SimulatedBody& body) {
+    return body.hydrodynamics && body.body->hydrodynamics->coefficients().added_mass.has_value();
+  };
+  const std::vector<SimulatedBody>& bodies = simulation.bodies();
+  const auto first = std::ranges::find_if(bodies, has_added_mass);
+  if (first == bodies.end()) return std::nullopt;
+  return Warning{subject(*first, static_cast<int>(std::count_if(first + 1, bodies.end(), has_added_mass))),
+                 "added mass in a sea that the service receives", "waves that the scene describes",
+                 "the velocity of the water is not known here, so that a change of the immersed share of the "
+                 "added mass acts on the velocity relative to the current alone",
+                 "Describe the waves in the scene if the body goes in and out of the water"};
 }
 
 std::optional<Warning> energy_warning(const Simulation& simulation) {

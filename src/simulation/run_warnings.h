@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "simulation/simulation.h"
 
@@ -41,6 +42,18 @@ class LatencyMonitor {
   std::int64_t steps_ = 0;
   bool warned_ = false;
 };
+
+// Warns once about each body whose lowest point is below the sea bed.
+class BedMonitor {
+ public:
+  std::vector<Warning> update(const Simulation& simulation);  // at the start and after every step
+
+ private:
+  std::vector<bool> warned_;  // by body of the simulation
+};
+
+// Warns if a body has added mass in a sea that is received, in whose waves its velocity is not known here.
+std::optional<Warning> received_sea_warning(const Simulation& simulation);
 
 // Warns if the mechanical energy of a body more than doubled: if it rose by more than half the largest
 // kinetic energy, and by more than rounding. Nothing in a scene without waves and current adds energy to a

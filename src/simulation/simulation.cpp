@@ -1,8 +1,11 @@
 #include "simulation/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -30,10 +33,23 @@ void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, cons
     energy.current += added;
     kinetic += added;
   }
-  if (first) energy = {energy.current, energy.current, energy.current, energy.current, kinetic};
+  if (first) {
+    energy.initial = energy.min = energy.max = energy.current;
+    energy.max_kinetic = kinetic;
+  }
   energy.min = std::min(energy.min, energy.current);
   energy.max = std::max(energy.max, energy.current);
   energy.max_kinetic = std::max(energy.max_kinetic, kinetic);
+}
+
+// Of the highest waves that were measured at sea, for a sea that is received: [m], and [m/s] of its longest.
+constexpr double kReceivedWaveHeight = 30.0;
+constexpr double kReceivedWaveSpeed = 50.0;
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 constexpr const char* kDiverged = "the simulation diverged: the step is too large for the body";
@@ -115,9 +131,22 @@ Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
     : water_(scene.water()),
       current_W_(scene.current_W()),
       has_waves_(scene.sea() != nullptr || scene.receives_sea()),
+      receives_sea_(scene.receives_sea()),
+      depth_(std::numeric_limits<double>::infinity()),
       waters_(scene),
       options_(options),
       conditions_(scene, options.step) {
+  if (receives_sea_) {
+    wave_height_ = kReceivedWaveHeight;
+    wave_speed_ = kReceivedWaveSpeed;
+  } else if (const Sea* const sea = scene.sea()) {
+    depth_ = sea->depth();
+    wave_height_ = 2.0 * sea->max_elevation();
+    const PreparedComponents& waves = sea->prepared();
+    for (std::size_t i = 0; i < waves.size(); ++i) {
+      wave_speed_ = std::max(wave_speed_, waves.angular_frequency[i] / waves.wave_number[i]);
+    }
+  }
   if (options.delay_steps > 0) delay_line_.resize(static_cast<std::size_t>(options.delay_steps) + 1);
 }
 
@@ -160,10 +189,25 @@ void Simulation::accept(const WrenchResponse& latest) {
       body.hydrodynamics->take(body.wrench, sent_.front().bodies[i], options_.lead_time, water, body.state);
     }
     if (in_step_) finish_step(body, body.state);
-    record_energy(body, !in_step_ || body.condition_changed, wrenches_are_current, water_);
+    const bool first = !in_step_ || body.condition_changed;
+    record_energy(body, first, wrenches_are_current, water_);
+    if (first) body.energy.available = available_energy(body);
     body.condition_changed = false;
   }
   in_step_ = false;
+}
+
+double Simulation::available_energy(const SimulatedBody& body) const {
+  const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
+  double mass = body.rigid.mass + water_.density * std::abs(mesh.volume);
+  if (body.hydrodynamics && body.body->hydrodynamics->coefficients().added_mass) {
+    mass += body.body->hydrodynamics->coefficients().added_mass->matrix.diagonal().head<3>().maxCoeff();
+  }
+  const double height =
+      std::abs(water_.up_W.dot(body.state.center_W) - water_.level) + mesh.diagonal + wave_height_;
+  const double squared_speeds =
+      body.state.velocity_W.squaredNorm() + current_W_.squaredNorm() + wave_speed_ * wave_speed_;
+  return mass * (water_.gravity * height + squared_speeds) + body.energy.max_kinetic;
 }
 
 void Simulation::finish_step(const SimulatedBody& body, RigidBodyState& state) const {
@@ -214,9 +258,21 @@ Expected<void> Simulation::check_motion() const {
     const RigidBodyState& state = body.state;
     const bool finite = state.velocity_W.allFinite() && state.angular_momentum_W.allFinite() &&
                         std::isfinite(body.energy.current);
-    if (finite || body.wrench.status != BodyStatus::kOk) continue;
-    return make_error({body_at(body, time()), "a velocity or energy that is not finite", "finite numbers",
-                       kDiverged, kUseSmallerStep});
+    if (body.wrench.status != BodyStatus::kOk) continue;
+    if (!finite) {
+      return make_error({body_at(body, time()), "a velocity or energy that is not finite", "finite numbers",
+                         kDiverged, kUseSmallerStep});
+    }
+    const double rise = body.energy.current - body.energy.initial;
+    if (!(rise > kEnergyLimit * body.energy.available)) continue;
+    return make_error(
+        {body_at(body, time()),
+         "its mechanical energy rose by " + number(rise) + " J, to a speed of " +
+             number(state.velocity_W.norm()) + " m/s",
+         "a rise of at most " + number(kEnergyLimit * body.energy.available) +
+             " J: ten times what gravity, waves and current can give to it here",
+         std::string(kDiverged) + ", responses are late, or the waves are too steep for linear theory",
+         std::string(kUseSmallerStep) + " or lock-step mode, and see buoyancyd --check"});
   }
   return {};
 }

@@ -40,7 +40,12 @@ struct EnergyStats {
   double min = 0.0;
   double max = 0.0;
   double max_kinetic = 0.0;
+  // What gravity, waves and current can give to the body in the scene's scale, see docs/simulator.md.
+  double available = 0.0;
 };
+
+// Of the available energy: beyond it, a motion is none that the scene can cause.
+inline constexpr double kEnergyLimit = 10.0;
 
 struct SimulatedBody {
   const Body* body = nullptr;  // in the scene
@@ -71,7 +76,8 @@ class Simulation {
 
   // Errors: a body whose wrench is not OK. A simulator must not continue without its force.
   Expected<void> check_wrenches() const;
-  // Errors: a body whose velocity, angular momentum or energy is not finite though its wrench is OK.
+  // Errors: a body whose velocity, angular momentum or energy is not finite though its wrench is OK, or whose
+  // energy rose by more than kEnergyLimit times what is available.
   Expected<void> check_motion() const;
 
   // Number of steps whose wrenches were accepted: step_number() - 1 between advance() and accept().
@@ -84,6 +90,10 @@ class Simulation {
   const Water& water() const { return water_; }
   // Does the scene have waves? They do work on the bodies: the mechanical energy is that in water at rest.
   bool has_waves() const { return has_waves_; }
+  // [m], of the sea bed under the level. Infinite: deep water, or a sea that is received.
+  double depth() const { return depth_; }
+  // Are the waves received by the service? Then the water's velocity in them is not known here.
+  bool receives_sea() const { return receives_sea_; }
   // Does the scene have a current? It does work on the bodies with drag or added mass.
   bool has_current() const { return current_W_ != Vec3::Zero(); }
   const SimulationOptions& options() const { return options_; }
@@ -93,11 +103,16 @@ class Simulation {
 
   const WrenchResponse& delayed_response(const WrenchResponse& latest);
   void finish_step(const SimulatedBody& body, RigidBodyState& state) const;
+  double available_energy(const SimulatedBody& body) const;  // [J], in its present state
   void apply(const ConditionSchedule::Event& event);
 
   Water water_;
   Vec3 current_W_;
   bool has_waves_ = false;
+  bool receives_sea_ = false;
+  double depth_ = 0.0;              // [m]
+  double wave_height_ = 0.0;        // [m], from the deepest trough to the highest crest
+  double wave_speed_ = 0.0;         // [m/s], of the fastest component
   WaterAtTime waters_;              // of the scene; nothing is known of a sea that is received
   bool has_hydrodynamics_ = false;  // does a simulated body have drag or added mass?
   SimulationOptions options_;

@@ -212,6 +212,38 @@ TEST_F(BuoyancyClient, FailsOnDivergedMotionWithoutNonFiniteRows) {
   }
 }
 
+TEST_F(BuoyancyClient, EndsRunThatExplodesInWavesWithACompleteCsv) {
+  const std::string waves = "[[water.waves]]\ntype = \"regular\"\nheight = 0.1\nperiod = 2.0\n";
+  const std::string path = directory_.write("waves.toml", crate(waves, "density = 50\n"));
+  const std::string csv = directory_.path("run.csv");
+  // Wrenches of half a second ago feed energy into the crate.
+  const FinishedProcess finished = run_to_end(
+      client_command(
+          path, {"--embedded", "--step", "0.01", "--duration", "600", "--lead-time", "-0.5", "--csv", csv}),
+      kRunTimeout);
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_EQ(finished.standard_output, "");
+  for (const char* text : {"body 1 (crate) at", "mechanical energy rose by", "at most", "smaller --step"}) {
+    EXPECT_NE(finished.standard_error.find(text), std::string::npos) << text << finished.standard_error;
+  }
+  const std::string text = read_file(csv);
+  EXPECT_EQ(text.back(), '\n');
+  const std::vector<double> utime = csv_column(text, "utime");
+  ASSERT_GT(utime.size(), 10U);
+  for (std::size_t i = 0; i < utime.size(); ++i) EXPECT_EQ(utime[i], 10'000.0 * static_cast<double>(i));
+}
+
+TEST_F(BuoyancyClient, WarnsOnceAboutBodyBelowTheSeaBed) {
+  const std::string waves =
+      "[water]\ndepth = 3\n[[water.waves]]\ntype = \"regular\"\nheight = 0.02\nperiod = 2.0\n";
+  const std::string path = directory_.write("bed.toml", crate(waves, "density = 2000\n"));
+  const nlohmann::json summary =
+      simulate_with_warnings(path, {"--embedded", "--step", "0.01", "--duration", "2"});
+  ASSERT_EQ(summary["warnings"].size(), 1U) << summary["warnings"];
+  EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (crate): it is below the sea bed"),
+            std::string::npos);
+}
+
 TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
   // A plate of 2 kg: w = 70 rad/s.
   const std::string plate = directory_.write(
