@@ -86,8 +86,7 @@ enum {
   BUOYANCY_STATUS_OPEN_EDGE_WET = 6,     // the mesh is open, and part of its boundary is not dry
   BUOYANCY_STATUS_OUT_OF_RANGE = 7,      // the result is beyond the range of double
   BUOYANCY_STATUS_NO_SEA = 8,            // the scene's waves come in messages, which a query does not receive
-  BUOYANCY_STATUS_BAD_CONDITION =
-      9,  // of the service only: a message about a compartment or tank is unusable
+  BUOYANCY_STATUS_BAD_CONDITION = 9,     // of the service: a message about a compartment or tank is unusable
   // In waves: the bound on the force's error is above the weight of the water that the whole body displaces.
   BUOYANCY_STATUS_NOT_CERTIFIED = 10
 };
