@@ -82,7 +82,7 @@ class Run {
     if (Expected<void> used = result_.checks.receive_sea(task_.sea); !used) return used;
     SeaState state;
     decode(task_.sea, state);
-    const Expected<Sea> sea = to_sea(state, task_.scene.water());
+    const Expected<Sea> sea = to_sea(state, task_.scene.water(), task_.scene.current_W());
     if (!sea) return make_error(sea.error());
     set_sea(*sea);
     first_utime_ = std::max(first_utime_, state.utime);

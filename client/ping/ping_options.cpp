@@ -91,7 +91,8 @@ Expected<ByteVector> sea_to_publish(const PingOptions& options, const Scene& sce
   if (!sea) return make_error(sea.error());
   SeaState state = to_sea_state(*sea, make_session_id());
   // The scene must be able to use it, else the service rejects it.
-  if (const Expected<Sea> usable = to_sea(state, scene.water()); !usable) return make_error(usable.error());
+  if (const Expected<Sea> usable = to_sea(state, scene.water(), scene.current_W()); !usable)
+    return make_error(usable.error());
   ByteVector bytes;
   encode(state, bytes);
   return bytes;

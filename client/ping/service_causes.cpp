@@ -25,6 +25,9 @@ void add_sea_causes(const SeaState& expected, const SeaState& received, std::vec
   add_if_other("ramp", expected.ramp, received.ramp, " s", causes);
   add_if_other("time_origin", static_cast<double>(expected.time_origin),
                static_cast<double>(received.time_origin), " us", causes);
+  for (std::size_t i = 0; i < 3; ++i) {
+    add_if_other("current", expected.current[i], received.current[i], " m/s", causes);
+  }
   if (expected.amplitude != received.amplitude || expected.angular_frequency != received.angular_frequency ||
       expected.direction != received.direction || expected.phase != received.phase) {
     causes.push_back(

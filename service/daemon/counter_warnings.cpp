@@ -63,10 +63,9 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
     const char* remedy;
   };
   constexpr std::array kInWaves{
-      InWaves{
-          &ServiceCounters::seas_rejected, "seas rejected",
-          "likely cause: their sender is of another version, or does not agree with the scene about up or "
-          "gravity"},
+      InWaves{&ServiceCounters::seas_rejected, "seas rejected",
+              "likely cause: their sender is of another version, or does not agree with the scene about up, "
+              "gravity or the current"},
       InWaves{
           &ServiceCounters::bodies_work_capped, "bodies in waves with an error bound above their tolerance",
           "likely cause: a tolerance below what bodies this large allow in waves this short; the bound in "

@@ -95,13 +95,12 @@ BUOYANCY_API const char* buoyancy_status_name(int32_t status);
 
 // ---------- sea
 
-// A surface with waves, or at rest.
+// A surface with waves, or at rest, and a current that carries the waves.
 typedef struct buoyancy_sea buoyancy_sea;
 
 // toml: the sections [world] and [water] of a scene file (docs/scene_file.md), in UTF-8. An empty text is
 // water at rest. directory: where files of wave components that the text names are looked up; NULL: the
-// process's current one. Errors: SCENE, also for a current and for waves = "received". Complexity: O(wave
-// components).
+// process's current one. Errors: SCENE, also for waves = "received". Complexity: O(wave components).
 BUOYANCY_API buoyancy_error buoyancy_sea_from_toml(const char* toml, const char* directory,
                                                    buoyancy_sea** sea);
 // NULL is allowed. Errors: HANDLE.
@@ -131,7 +130,8 @@ BUOYANCY_API buoyancy_error buoyancy_sea_elevations(const buoyancy_sea* sea, int
                                                     int64_t utime_count, double* elevations, int32_t threads);
 // The water at points in the world: positions [m], 3 count. Sets those arrays that are not NULL: pressures
 // [Pa] over that of the air, of the waves and of the water at rest together, 0 above the surface, count;
-// velocities [m/s] and accelerations [m/s^2], W, 3 count, above the surface those of the surface below.
+// velocities [m/s], of current and waves, and accelerations [m/s^2], W, 3 count, above the surface those of
+// the surface below. Accelerations are those that an observer sees who drifts with the current.
 // Everything else as in buoyancy_sea_elevations().
 BUOYANCY_API buoyancy_error buoyancy_sea_water_at(const buoyancy_sea* sea, int64_t count,
                                                   const double* positions, const int64_t* utimes,
@@ -309,8 +309,7 @@ BUOYANCY_API buoyancy_error buoyancy_scene_from_toml(const char* toml, const cha
                                                      buoyancy_scene** scene);
 // NULL is allowed. Errors: HANDLE.
 BUOYANCY_API buoyancy_error buoyancy_scene_free(buoyancy_scene* scene);
-// The scene's sea as a handle of its own, to be freed as any other; it has no current. Errors: SCENE where
-// waves are received.
+// The scene's sea as a handle of its own, to be freed as any other. Errors: SCENE where waves are received.
 BUOYANCY_API buoyancy_error buoyancy_scene_sea(const buoyancy_scene* scene, buoyancy_sea** sea);
 
 typedef struct buoyancy_body_info {

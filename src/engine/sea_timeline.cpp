@@ -44,7 +44,7 @@ Expected<void> SeaTimeline::receive(Bytes message, const Scene& scene) {
   }
   SeaState state;
   if (const std::optional<DecodeError> error = decode(message, state)) return make_error(not_a_sea(*error));
-  Expected<Sea> sea = to_sea(state, scene.water());
+  Expected<Sea> sea = to_sea(state, scene.water(), scene.current_W());
   if (!sea) return make_error(std::move(sea.error()));
   SeaPeriod period{*utime, sea->water(), nullptr, {message.begin(), message.end()}};
   if (!sea->is_still()) period.sea = std::make_shared<const PreparedSea>(*std::move(sea));

@@ -5,16 +5,16 @@
 namespace buoyancy {
 namespace {
 
-// Is a received sea the same sea in both waters?
-bool is_same_medium(const Water& a, const Water& b) {
-  return a.density == b.density && a.gravity == b.gravity && a.up_W == b.up_W;
+// Is a received sea the same sea in both scenes?
+bool is_same_medium(const Scene& a, const Scene& b) {
+  return a.water().density == b.water().density && a.water().gravity == b.water().gravity &&
+         a.water().up_W == b.water().up_W && a.current_W() == b.current_W();
 }
 
 }  // namespace
 
 void WaterAtTime::set_scene(const Scene& scene) {
-  const bool keeps_seas =
-      scene_->receives_sea() && scene.receives_sea() && is_same_medium(scene_->water(), scene.water());
+  const bool keeps_seas = scene_->receives_sea() && scene.receives_sea() && is_same_medium(*scene_, scene);
   if (!keeps_seas) seas_ = SeaTimeline(scene);
   scene_ = &scene;
 }

@@ -17,8 +17,8 @@ class WaterAtTime {
   // scene must outlive this object or the next set_scene().
   explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
 
-  // Received seas remain where both scenes receive them and agree about the water's density, up and gravity.
-  // The previous scene is not accessed again.
+  // Received seas remain where both scenes receive them and agree about the water's density, up, gravity and
+  // current. The previous scene is not accessed again.
   void set_scene(const Scene& scene);
 
   // See SeaTimeline::receive().

@@ -23,6 +23,7 @@ constexpr std::int32_t kPressureHydrostatic = sea_state_t::PRESSURE_HYDROSTATIC;
 constexpr std::int32_t kPressureWheeler = sea_state_t::PRESSURE_WHEELER;
 constexpr double kAxisTolerance = 1e-6;
 constexpr double kGravityTolerance = 1e-6;  // relative
+constexpr double kCurrentTolerance = 1e-6;  // [m/s]
 // sea_ranges::kAngle in radians, rounded inwards.
 constexpr NumberRange kAngleInRadians = NumberRange::from_to(-17453.0, 17453.0, "rad");
 
@@ -81,8 +82,8 @@ std::string bracketed(const Vec3& vector) {
 }
 
 // A NaN is at no distance within the tolerance.
-bool is_near(const Vec3& a, const Vec3& b) {
-  return (a - b).norm() <= kAxisTolerance;
+bool is_near(const Vec3& a, const Vec3& b, double tolerance = kAxisTolerance) {
+  return (a - b).norm() <= tolerance;
 }
 
 std::optional<Error> axes_error(const SeaState& state, const Vec3& up_W) {
@@ -119,6 +120,14 @@ std::optional<Error> gravity_error(double sent, double of_scene) {
                   "the scene's, " + format_shortest(of_scene) + " m/s^2, within 1e-6 of it",
                   "the sender uses another value, such as 9.81 where the scene has 9.80665",
                   "Set gravity under [world] in the scene, or have the sender use the scene's");
+}
+
+std::optional<Error> current_error(const Vec3& sent_W, const Vec3& of_scene_W) {
+  if (is_near(sent_W, of_scene_W, kCurrentTolerance)) return std::nullopt;
+  return error_of("current = " + bracketed(sent_W),
+                  "the scene's, " + bracketed(of_scene_W) + " m/s, within 1e-6 m/s",
+                  "waves ride on the current, and the sender has another one than the scene, or none",
+                  "Set velocity under [water.current] in the scene, or have the sender use the scene's");
 }
 
 std::optional<Error> range_error(std::string_view name, double value, const NumberRange& range,
@@ -158,9 +167,10 @@ std::optional<Error> components_error(const SeaState& state) {
   return first_error("phase", state.phase, kAngleInRadians, kAngleCause, kAngleHint);
 }
 
-std::optional<Error> error_in(const SeaState& state, const Water& water) {
+std::optional<Error> error_in(const SeaState& state, const Water& water, const Vec3& current_W) {
   if (auto error = axes_error(state, water.up_W)) return error;
   if (auto error = gravity_error(state.gravity, water.gravity)) return error;
+  if (auto error = current_error(to_vec3(state.current), current_W)) return error;
   if (auto error = range_error("level", state.level, NumberRange::any("m"))) return error;
   if (state.depth != std::numeric_limits<double>::infinity()) {
     if (auto error = range_error("depth", state.depth, sea_ranges::kDepth,
@@ -229,6 +239,7 @@ SeaState to_sea_state(const Sea& sea, std::int64_t instance_id) {
   state.gravity = sea.water().gravity;
   state.time_origin = sea.time_origin();
   state.ramp = sea.ramp();
+  state.current = to_array(sea.current_W());
   state.wave_pressure = sea.pressure() == WavePressure::kWheeler ? kPressureWheeler : kPressureHydrostatic;
   for (const WaveComponent& component : sea.components()) {
     state.amplitude.push_back(component.amplitude);
@@ -239,14 +250,15 @@ SeaState to_sea_state(const Sea& sea, std::int64_t instance_id) {
   return state;
 }
 
-Expected<Sea> to_sea(const SeaState& state, const Water& water) {
-  if (auto error = error_in(state, water)) return make_error(*std::move(error));
+Expected<Sea> to_sea(const SeaState& state, const Water& water, const Vec3& current_W) {
+  if (auto error = error_in(state, water, current_W)) return make_error(*std::move(error));
   SeaDescription description;
   description.depth = state.depth;
   description.pressure =
       state.wave_pressure == kPressureWheeler ? WavePressure::kWheeler : WavePressure::kHydrostatic;
   description.time_origin = state.time_origin;
   description.ramp = state.ramp;
+  description.current_W = to_vec3(state.current);
   WaveComponents components(state.amplitude.size());
   for (std::size_t i = 0; i < components.size(); ++i) {
     components[i] = {state.amplitude[i], state.angular_frequency[i], to_degrees(state.direction[i]),

@@ -27,6 +27,7 @@ struct SeaState {
   double gravity = 0.0;                                    // [m/s^2]
   std::int64_t time_origin = 0;                            // [us]
   double ramp = 0.0;                                       // [s]
+  std::array<double, 3> current{};                         // [m/s], W frame
   std::int32_t wave_pressure = 0;                          // a constant of sea_state_t.lcm
   // One entry per component.
   std::vector<double> amplitude;          // [m]
@@ -53,9 +54,10 @@ tl::expected<std::int64_t, DecodeError> peek_sea_utime(Bytes bytes);
 // The sea of a scene, which always holds: its utime is 0.
 SeaState to_sea_state(const Sea& sea, std::int64_t instance_id);
 
-// water: of the scene. Its density, up and gravity are used; the level is the message's. The Sea is the one
+// water, current_W [m/s]: of the scene. Its density, up and gravity are used; the level is the message's, and
+// so is the current that carries the waves, so that they are where the sender sees them. The Sea is the one
 // that the message was made of, to rounding. Errors name the field at fault: not finite, out of its range,
-// axes or gravity other than those of the scene, an unknown wave_pressure, and those of Sea::make().
-Expected<Sea> to_sea(const SeaState& state, const Water& water);
+// axes, gravity or current other than those of the scene, an unknown wave_pressure, and those of Sea::make().
+Expected<Sea> to_sea(const SeaState& state, const Water& water, const Vec3& current_W);
 
 }  // namespace buoyancy

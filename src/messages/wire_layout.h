@@ -88,7 +88,8 @@ void visit_header(Message& loads, Visitor& visitor) {
 template <MaybeConst<SeaState> State, typename Visitor>
 void visit_header(State& state, Visitor& visitor) {
   visitor(state.utime, state.instance_id, state.e1, state.e2, state.up);
-  visitor(state.level, state.depth, state.gravity, state.time_origin, state.ramp, state.wave_pressure);
+  visitor(state.level, state.depth, state.gravity, state.time_origin, state.ramp, state.current,
+          state.wave_pressure);
 }
 
 template <MaybeConst<SeaState> State, typename Visitor>

@@ -55,7 +55,11 @@ PyObject* query(PyObject* self, PyObject* const* arguments, Py_ssize_t count, Py
     QueryWater water = water_of(*scene);
     if (is_given(sea)) {
       water = water_of(instance_of<SeaObject>(sea).sea);
-      water.current_W = scene->current_W();
+      if (water.current_W != scene->current_W()) {
+        throw InputException({"sea", "a current of [" + format_vector(water.current_W) + "] m/s",
+                              "the scene's, [" + format_vector(scene->current_W()) + "] m/s", "",
+                              "Give both the same velocity below [water.current]"});
+      }
       if (water.waves != nullptr && !body.prepared_mesh->wave_mesh) {
         throw InputException({"sea", "waves, with a scene in water at rest",
                               "a scene that is prepared for waves", "",

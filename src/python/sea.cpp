@@ -169,7 +169,8 @@ py::object vector(const Vec3& value) {
 
 constexpr const char* kSeaDoc =
     "The water and its waves.\n\nSea(level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1), depth=inf, "
-    "wave_pressure=\"wheeler\",\n    time_origin=0, ramp=0.0, waves=[...]) takes the keys of the sections "
+    "wave_pressure=\"wheeler\",\n    time_origin=0, ramp=0.0, waves=[...], current={\"velocity\": (0, 0, "
+    "0)}) takes the keys of the sections "
     "[water] and "
     "[world] of a scene\n    file, with their units, ranges and defaults (docs/scene_file.md). waves: a dict "
     "per wave "
@@ -199,9 +200,10 @@ void define_sea(py::module_& module) {
       [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
         return motion(self, x, y, z, time, threads, &WaterMotionArrays::velocities, 3);
       },
-      "velocity($self, x, y, z, t, *, threads=0)\n--\n\nVelocity of the water at points in the world, in "
-      "m/s: "
-      "the shape of the arguments, and 3.\n\nx, y, z: metres, world frame; t: seconds; broadcast as numpy "
+      "velocity($self, x, y, z, t, *, threads=0)\n--\n\nVelocity of the water at points in the world, of "
+      "current and "
+      "waves, in m/s: the shape of the arguments, and 3.\n\nx, y, z: metres, world frame; t: seconds; "
+      "broadcast as numpy "
       "does.");
   add_method(
       "acceleration",
@@ -210,7 +212,7 @@ void define_sea(py::module_& module) {
       },
       "acceleration($self, x, y, z, t, *, threads=0)\n--\n\nAcceleration of the water at points in the "
       "world, in "
-      "m/s^2: see velocity().");
+      "m/s^2, as an observer sees it who drifts with the current: see velocity().");
   add_method(
       "pressure",
       [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
@@ -229,6 +231,9 @@ void define_sea(py::module_& module) {
   type.def_property_readonly(
       "up", [](py::handle self) { return vector(instance_of<SeaObject>(self).sea.water().up_W); },
       "(3,): unit vector, world frame.");
+  type.def_property_readonly(
+      "current", [](py::handle self) { return vector(instance_of<SeaObject>(self).sea.current_W()); },
+      "(3,), m/s: of the current, which carries the waves, world frame.");
   type.def_property_readonly(
       "axes",
       [](py::handle self) {

@@ -162,7 +162,7 @@ class RangeEvaluation {
 }  // namespace
 
 QueryWater water_of(const QuerySea& sea) {
-  return {.at_rest = sea.water(), .waves = sea.waves()};
+  return {.at_rest = sea.water(), .waves = sea.waves(), .current_W = sea.current_W()};
 }
 
 QueryWater water_of(const Scene& scene) {

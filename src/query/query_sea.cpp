@@ -16,8 +16,8 @@ double time_per_point(const QuerySea& sea) {
   return kTimePerComponent * static_cast<double>(sea.waves()->sea().prepared().size());
 }
 
-// The water at a point under a surface at rest.
-WaterAtPoint at_rest(const Water& water, const Vec3& p_W) {
+// The water at a point under a surface without waves.
+WaterAtPoint without_waves(const Water& water, const Vec3& p_W) {
   WaterAtPoint point;
   point.height = water.up_W.dot(p_W) - water.level;
   point.pressure = point.height < 0.0 ? -point.height * water.density * water.gravity : 0.0;
@@ -27,11 +27,11 @@ WaterAtPoint at_rest(const Water& water, const Vec3& p_W) {
 }  // namespace
 
 Expected<QuerySea> QuerySea::make(const SeaDescription& description, const Water& water) {
-  if (description.systems.empty()) return QuerySea(water, nullptr);
+  if (description.systems.empty()) return QuerySea(water, nullptr, description.current_W);
   Expected<Sea> sea = Sea::make(description, water);
   if (!sea) return make_error(std::move(sea.error()));
-  if (sea->is_still()) return QuerySea(water, nullptr);
-  return QuerySea(water, std::make_shared<const PreparedSea>(*std::move(sea)));
+  if (sea->is_still()) return QuerySea(water, nullptr, description.current_W);
+  return QuerySea(water, std::make_shared<const PreparedSea>(*std::move(sea)), description.current_W);
 }
 
 Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& name,
@@ -41,10 +41,6 @@ Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& nam
   if (description->waves_received) {
     return make_error({name, "waves = \"received\"", "the wave systems themselves",
                        "no messages are received in a query", "List the systems, or leave waves out"});
-  }
-  if (!description->current_W.isZero(0.0)) {
-    return make_error({name, "a current", "no current", "a sea has none, only a scene has",
-                       "Query a body of a scene with [water.current]"});
   }
   Expected<QuerySea> sea = make(description->sea, description->water);
   if (!sea) {
@@ -73,11 +69,11 @@ void water_at_points(const QuerySea& sea, std::span<const double> points,
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p_W{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
-      const WaterAtPoint point = now == nullptr ? at_rest(sea.water(), p_W) : now->snapshot().at(p_W);
+      const WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->snapshot().at(p_W);
       if (!out.pressures.empty()) out.pressures[i] = point.pressure;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto n = static_cast<Eigen::Index>(axis);
-        if (!out.velocities.empty()) out.velocities[3 * i + axis] = point.velocity_W[n];
+        if (!out.velocities.empty()) out.velocities[3 * i + axis] = sea.current_W()[n] + point.velocity_W[n];
         if (!out.accelerations.empty()) out.accelerations[3 * i + axis] = point.acceleration_W[n];
       }
     }

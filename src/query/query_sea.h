@@ -21,21 +21,23 @@ class QuerySea {
   static Expected<QuerySea> make(const SeaDescription& description, const Water& water);
   // text: the sections [world] and [water] of a scene file (docs/scene_file.md); directory: resolves the
   // relative paths of files of wave components. name: identifies the text in errors. Errors: those of
-  // parse_water() and Sea::make(), a current, and waves = "received".
+  // parse_water() and Sea::make(), and waves = "received".
   static Expected<QuerySea> parse(std::string_view text, const std::string& name,
                                   const std::filesystem::path& directory);
 
   const Water& water() const { return water_; }
   // nullptr: the water is at rest, since no amplitude is above 0.
   const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
+  const Vec3& current_W() const { return current_W_; }  // [m/s], which carries the waves
   HorizontalAxes axes() const { return horizontal_axes(water_.up_W); }
 
  private:
-  QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves)
-      : water_(water), waves_(std::move(waves)) {}
+  QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves, const Vec3& current_W)
+      : water_(water), waves_(std::move(waves)), current_W_(current_W) {}
 
   Water water_;
   std::shared_ptr<const PreparedSea> waves_;
+  Vec3 current_W_;
 };
 
 // Sets out[i] to the elevation of the surface over the level [m] at (x1[i], x2[i]) [m] along the horizontal
@@ -49,8 +51,8 @@ void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<c
 // and of the water at rest together [Pa]; 0 above the surface.
 struct WaterMotionArrays {
   std::span<double> pressures;      // [Pa]; n, or empty: not wanted
-  std::span<double> velocities;     // [m/s], W frame; 3 n, or empty
-  std::span<double> accelerations;  // [m/s^2], W frame; 3 n, or empty
+  std::span<double> velocities;     // [m/s], W frame, of current and waves; 3 n, or empty
+  std::span<double> accelerations;  // [m/s^2], W frame, as in WaterAtPoint; 3 n, or empty
 };
 void water_at_points(const QuerySea& sea, std::span<const double> points,
                      std::span<const std::int64_t> utimes, const WaterMotionArrays& out,

@@ -137,10 +137,9 @@ inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPol
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
-  SeaDescription sea;             // without wave systems: water at rest
-  bool waves_received = false;    // waves = "received": the sea comes in messages, and `sea` says nothing
-  Vec3 current_W = Vec3::Zero();  // [m/s], section [water.current]
-  std::string water_location;     // of [water]: "scene.toml:3", for errors; empty without it
+  SeaDescription sea;           // without wave systems: water at rest, or with a current
+  bool waves_received = false;  // waves = "received": the sea comes in messages, `sea` has the current alone
+  std::string water_location;   // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };

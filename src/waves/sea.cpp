@@ -119,6 +119,9 @@ std::optional<Error> error_in(const SeaDescription& description, const Water& wa
     checks.in("depth", description.depth, sea_ranges::kDepth);
   }
   checks.in("ramp", description.ramp, sea_ranges::kRamp);
+  for (const double velocity : description.current_W) {
+    checks.in("current", velocity, NumberRange::any("m/s"));
+  }
   std::size_t components = 0;
   for (std::size_t i = 0; i < description.systems.size(); ++i) {
     checks.start("wave system " + std::to_string(i + 1));
@@ -144,13 +147,18 @@ std::optional<Error> error_in(const SeaDescription& description, const Water& wa
   return checks.error();
 }
 
-void prepare(const WaveComponent& component, double gravity, double depth, PreparedComponents& prepared) {
-  const double k = wave_number(component.angular_frequency, gravity, depth);
+void prepare(const WaveComponent& component, const Sea& sea, PreparedComponents& prepared) {
+  const double k = wave_number(component.angular_frequency, sea.water().gravity, sea.depth());
   const portable::SinCos direction = portable::sin_cos_of_degrees(component.direction);
   const DoubleDouble k1 = DoubleDouble{direction.cos, direction.cos_rest} * k;
   const DoubleDouble k2 = DoubleDouble{direction.sin, direction.sin_rest} * k;
   prepared.amplitude.push_back(component.amplitude);
   prepared.angular_frequency.push_back(component.angular_frequency);
+  const DoubleDouble apparent = k1 * sea.axes().e1_W.dot(sea.current_W()) +
+                                k2 * sea.axes().e2_W.dot(sea.current_W()) +
+                                DoubleDouble{component.angular_frequency, 0.0};
+  prepared.apparent_frequency.push_back(apparent.hi);
+  prepared.apparent_frequency_rest.push_back(apparent.lo);
   prepared.wave_number.push_back(k);
   prepared.k1.push_back(k1.hi);
   prepared.k1_rest.push_back(k1.lo);
@@ -177,12 +185,13 @@ Expected<Sea> Sea::make(const SeaDescription& description, const Water& water) {
   sea.pressure_ = description.pressure;
   sea.time_origin_ = description.time_origin;
   sea.ramp_ = description.ramp;
+  sea.current_W_ = description.current_W;
   for (std::size_t i = 0; i < description.systems.size(); ++i) {
     const WaveComponents components = components_of(description.systems[i], i);
     sea.components_.insert(sea.components_.end(), components.begin(), components.end());
   }
   for (const WaveComponent& component : sea.components_) {
-    if (component.amplitude > 0.0) prepare(component, water.gravity, sea.depth_, sea.prepared_);
+    if (component.amplitude > 0.0) prepare(component, sea, sea.prepared_);
   }
   return sea;
 }

@@ -1,8 +1,8 @@
 // A sea: wave components over water at rest, prepared once per scene, immutable and shared by all threads.
 //
 // Linear (Airy) waves. With the horizontal position X = (e1 . x, e2 . x) of a point x and its height
-// zeta = up . x - level over the water at rest, component i has the phase theta_i = k_i d_i . X - w_i t +
-// phase_i, and
+// zeta = up . x - level over the water at rest, component i has the phase theta_i = k_i d_i . (X - U t) -
+// w_i t + phase_i, where U is the horizontal part of the current that carries the waves, and
 //   eta = sum a_i cos(theta_i)                           elevation of the surface
 //   s = zeta - eta                                       height over the surface; wet where s < 0
 //   p/(rho g) = -zeta + sum a_i E_i(z') cos(theta_i)     E(z') = cosh k(z' + h) / cosh kh, with Wheeler's
@@ -34,7 +34,10 @@ HorizontalAxes horizontal_axes(const Vec3& up_W);
 struct PreparedComponents {
   std::vector<double> amplitude;          // [m]
   std::vector<double> angular_frequency;  // [rad/s]
-  std::vector<double> wave_number;        // [rad/m], k
+  // [rad/s], w + k . U, with which the phase falls at a fixed point: a number and its rounding error, since
+  // its product with t has to be accurate to a fraction of a turn for every utime.
+  std::vector<double> apparent_frequency, apparent_frequency_rest;
+  std::vector<double> wave_number;  // [rad/m], k
   // [rad/m], k times the direction's unit vector: the sum of a number and its rounding error, since k . X has
   // to be accurate to a fraction of a turn far from the origin.
   std::vector<double> k1, k1_rest, k2, k2_rest;
@@ -56,6 +59,7 @@ class Sea {
   WavePressure pressure() const { return pressure_; }
   std::int64_t time_origin() const { return time_origin_; }  // [us]
   double ramp() const { return ramp_; }                      // [s]
+  const Vec3& current_W() const { return current_W_; }       // [m/s], that carries the waves
 
   // As described, system after system. Made into a system of components they describe the same sea.
   const WaveComponents& components() const { return components_; }
@@ -85,6 +89,7 @@ class Sea {
   WavePressure pressure_ = WavePressure::kWheeler;
   std::int64_t time_origin_ = 0;
   double ramp_ = 0.0;
+  Vec3 current_W_ = Vec3::Zero();
   WaveComponents components_;
   PreparedComponents prepared_;
 };

@@ -16,6 +16,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/vec3.h"
+
 namespace buoyancy {
 
 inline constexpr std::size_t kMaxWaveComponents = 4096;  // of a sea, all systems together
@@ -67,6 +69,8 @@ struct SeaDescription {
   WavePressure pressure = WavePressure::kWheeler;
   std::int64_t time_origin = 0;  // [us], the utime of t = 0
   double ramp = 0.0;             // [s], see Sea::amplitude_factor()
+  // [m/s]. Its horizontal part carries the waves: frequencies are those that an observer sees who drifts.
+  Vec3 current_W = Vec3::Zero();
   std::vector<WaveSystem> systems;
 };
 

@@ -40,7 +40,8 @@ void SeaSnapshot::set_time(std::int64_t utime, double lead_time) {
   const PreparedComponents& components = sea_->prepared();
   amplitude_factor_ = sea_->amplitude_factor(t.hi);
   for (std::size_t i = 0; i < phases_.size(); ++i) {
-    phases_[i] = reduced(DoubleDouble{components.phase[i], 0.0} - t * components.angular_frequency[i]);
+    const DoubleDouble frequency{components.apparent_frequency[i], components.apparent_frequency_rest[i]};
+    phases_[i] = reduced(DoubleDouble{components.phase[i], 0.0} - t * frequency);
   }
 }
 

@@ -12,11 +12,13 @@ namespace buoyancy {
 // The water at a point. Above the surface there is none: the pressure is then 0, and velocity and
 // acceleration are those of the surface below the point.
 struct WaterAtPoint {
-  double elevation = 0.0;              // [m], eta: of the surface above or below the point, over the level
-  double height = 0.0;                 // [m], s: of the point over the surface; wet where below 0
-  double pressure = 0.0;               // [Pa], over that of the air
-  Vec3 velocity_W = Vec3::Zero();      // [m/s]
-  Vec3 acceleration_W = Vec3::Zero();  // [m/s^2], the change of velocity at a fixed point
+  double elevation = 0.0;  // [m], eta: of the surface above or below the point, over the level
+  double height = 0.0;     // [m], s: of the point over the surface; wet where below 0
+  double pressure = 0.0;   // [Pa], over that of the air
+  // Stretched linear theory (docs/waves.md): beyond first order in the steepness, the acceleration is not the
+  // derivative of the velocity. Both are those that an observer sees who drifts with the current.
+  Vec3 velocity_W = Vec3::Zero();      // [m/s], of the waves; the current comes on top
+  Vec3 acceleration_W = Vec3::Zero();  // [m/s^2]
 };
 
 // set_time() allocates nothing after the first call, and the queries allocate nothing. Several threads may

@@ -328,7 +328,9 @@ TEST(CInterface, GivesHydrostatics) {
 }
 
 TEST(CInterface, GivesTheWaterOfASea) {
-  for (const std::string& text : {std::string("[water]\nlevel = 0.25\n"), kWaves}) {
+  for (const std::string& text : {std::string("[water]\nlevel = 0.25\n"), kWaves,
+                                  kWaves + "[water.current]\nvelocity = [0.3, -0.2, 0.1]\n"}) {
+    const bool waves = text.starts_with(kWaves);
     buoyancy_scene* scene = scene_from(text + kBodies);
     buoyancy_sea* sea = nullptr;
     ASSERT_EQ(buoyancy_scene_sea(scene, &sea), BUOYANCY_OK) << last_error();
@@ -340,8 +342,8 @@ TEST(CInterface, GivesTheWaterOfASea) {
     EXPECT_EQ(info.level, 0.25);
     EXPECT_EQ(info.axis2[1], 1.0);
     EXPECT_EQ(info.depth, kInfinity);
-    EXPECT_EQ(info.wave_components, text == kWaves ? 1 : 0);
-    EXPECT_EQ(info.max_elevation, text == kWaves ? 0.15 : 0.0);
+    EXPECT_EQ(info.wave_components, waves ? 1 : 0);
+    EXPECT_EQ(info.max_elevation, waves ? 0.15 : 0.0);
 
     constexpr std::size_t kPoints = 200;
     std::vector<double> x(kPoints), y(kPoints), points(3 * kPoints), computed(kPoints), expected(kPoints),
@@ -360,7 +362,7 @@ TEST(CInterface, GivesTheWaterOfASea) {
         buoyancy_sea_elevations(sea, kPoints, x.data(), y.data(), utimes.data(), kPoints, computed.data(), 0),
         BUOYANCY_OK);
     sea_elevations(same, x, y, utimes, expected);
-    EXPECT_EQ(std::isnan(computed[7]), text == kWaves);
+    EXPECT_EQ(std::isnan(computed[7]), waves);
     computed[7] = expected[7] = 0.0;
     EXPECT_EQ(computed, expected);
     ASSERT_EQ(buoyancy_sea_water_at(sea, kPoints, points.data(), utimes.data(), kPoints, pressures.data(),

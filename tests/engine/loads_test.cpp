@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/format.h"
 #include "engine/load_evaluation.h"
 #include "engine/request_handler.h"
 #include "messages/conversions.h"
@@ -271,6 +272,55 @@ TEST(RequestHandlerWithLoads, BodyThatDriftsWithTheWaterFeelsItsAcceleration) {
   EXPECT_GT(acceleration_W.norm(), 0.01);
   EXPECT_LE(to_vec3(loads.drag_force).norm(), 1e-20);
   EXPECT_LE((to_vec3(loads.added_mass_force) - 2.0 * acceleration_W).norm(), 1e-11);
+}
+
+// The boxes in a sea on a current, and where they are in its frame; nothing there tells the current apart
+// from water at rest, but the time at which the added mass takes part in the motion of the reference point.
+TEST(RequestHandlerWithLoads, LoadsAreTheSameInTheFrameOfTheCurrent) {
+  const std::string sea =
+      "[water]\ndepth = 30\ntime_origin = 1789999900000000\nwaves = { type = \"jonswap\", "
+      "significant_wave_height = 0.5, peak_period = 4.0, spreading = 8, seed = 3 }\n";
+  constexpr double kTime = 100.0;  // [s], of kNow
+  const Scene still = scene_of(boxes(sea));
+  RequestHandler in_still_water(still);
+  const auto in_waves = [](const Answer& answer) {  // of body 3, with what its engine adds
+    const BodyLoads& loads = answer.loads.bodies[0];
+    Mat6 added_mass;
+    for (std::size_t i = 0; i < 36; ++i) {
+      added_mass(static_cast<Eigen::Index>(i / 6), static_cast<Eigen::Index>(i % 6)) =
+          loads.added_mass[i / 6][i % 6];
+    }
+    return std::pair{wrench_of(answer.response.bodies[1]), added_mass};
+  };
+  for (const Vec3& current_W : {Vec3(1.5, 0.0, 0.0), Vec3(-0.9, 2.2, 0.0)}) {
+    const Scene scene =
+        scene_of(boxes(sea + "[water.current]\nvelocity = [" + format_vector(current_W) + "]\n"));
+    RequestHandler on_current(scene);
+    for (const double height : {0.3, 0.0, -2.0}) {
+      std::vector<BodyState> bodies{moving(1, height), moving(3, height)};
+      const Answer at_rest = ask(in_still_water, bodies);
+      for (BodyState& body : bodies) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          body.position[i] += kTime * current_W[static_cast<Eigen::Index>(i)];
+          body.linear_velocity[i] += current_W[static_cast<Eigen::Index>(i)];
+        }
+      }
+      const Answer carried = ask(on_current, bodies);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const BodyWrench& a = at_rest.response.bodies[i];
+        const BodyWrench& b = carried.response.bodies[i];
+        ASSERT_EQ(b.status, BodyStatus::kOk);
+        Vec6 difference = wrench_of(b) - wrench_of(a);
+        if (i == 1) {
+          Vec6 turning = Vec6::Zero();
+          turning.head<3>() = to_vec3(bodies[i].angular_velocity).cross(current_W);
+          difference += in_waves(carried).second * turning;
+        }
+        EXPECT_LE(difference.head<3>().norm(), a.force_error_bound + b.force_error_bound) << height;
+        EXPECT_LE(difference.tail<3>().norm(), a.torque_error_bound + b.torque_error_bound) << height;
+      }
+    }
+  }
 }
 
 TEST(RequestHandlerWithLoads, SameBytesOnAnyNumberOfThreads) {

@@ -171,7 +171,7 @@ void check_description(const SceneDescription& scene) {
     check_dynamics(body.dynamics);
     check_coefficients(body);
   }
-  require(scene.current_W.allFinite(), "the current is finite");
+  require(scene.sea.current_W.allFinite(), "the current is finite");
 }
 
 bool is_small_and_generated(const SceneDescription& scene) {

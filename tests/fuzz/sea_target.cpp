@@ -61,12 +61,13 @@ void write_count(ByteVector& packet) {
     packet[fixed - 1 - i] = static_cast<std::uint8_t>(components >> (8 * i));
 }
 
-void use_axes_and_gravity(const Water& water, SeaState& state) {
+void use_medium(const Water& water, const Vec3& current_W, SeaState& state) {
   const HorizontalAxes axes = horizontal_axes(water.up_W);
   state.e1 = to_array(axes.e1_W);
   state.e2 = to_array(axes.e2_W);
   state.up = to_array(water.up_W);
   state.gravity = water.gravity;
+  state.current = to_array(current_W);
 }
 
 // Maps any number into a range, most numbers to another one; inside the range, to itself.
@@ -103,18 +104,19 @@ double elevation_at(const Sea& sea, const Place& place) {
 void check_sea(const Sea& sea, const Place& place, bool is_usual) {
   // Beyond this the phases are still defined by the formula, but no longer resolved by doubles.
   constexpr double kFar = 1e7;
-  const bool is_near =
-      std::abs(place.x1) <= kFar && std::abs(place.x2) <= kFar && std::abs(place.lead_time) <= kFar;
+  const double t = 1e-6 * (static_cast<double>(place.utime) - static_cast<double>(sea.time_origin()));
+  const bool is_near = std::abs(place.x1) <= kFar && std::abs(place.x2) <= kFar &&
+                       std::abs(place.lead_time) <= kFar && sea.current_W().norm() * std::abs(t) <= kFar;
   if (!is_near) return;
   const double eta = elevation_at(sea, place);
   require(std::abs(eta) <= sea.max_elevation() * (1.0 + 1e-12),
           "no crest is higher than the sum of the amplitudes");
   const SeaState sent = to_sea_state(sea, 1);
-  const Expected<Sea> again = to_sea(sent, sea.water());
+  const Expected<Sea> again = to_sea(sent, sea.water(), sea.current_W());
   require(again.has_value(), "a sea that is sent again is accepted");
   require(again->components().size() == sea.components().size(), "a sea keeps its components");
   if (!is_usual) return;
-  // The rounding of directions is at most 1e-15 and is multiplied by k |X|, at most 11 times 1.5e7.
+  // The rounding of directions is at most 1e-15 and is multiplied by k |X - U t|, at most 11 times 3e7.
   require(std::abs(elevation_at(*again, place) - eta) <= 1e-6 * (1.0 + sea.max_elevation()),
           "a sea that is sent again has the same elevations");
 }
@@ -137,10 +139,11 @@ void check(FuzzBytes bytes) {
 
   Water water;
   if ((options & 8U) != 0) water.up_W = Vec3(0.95, -0.1, 0.2).normalized();
-  if ((options & 4U) != 0) use_axes_and_gravity(water, state);
+  const Vec3 current_W = (options & 32U) != 0 ? Vec3(1.5, -0.5, 0.2) : Vec3(Vec3::Zero());
+  if ((options & 4U) != 0) use_medium(water, current_W, state);
   const bool is_usual = (options & 16U) != 0;
   if (is_usual) use_usual_numbers(state);
-  const Expected<Sea> sea = to_sea(state, water);
+  const Expected<Sea> sea = to_sea(state, water, current_W);
   if (!sea) {
     check_error(sea.error());
     return;

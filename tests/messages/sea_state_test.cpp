@@ -26,9 +26,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr std::size_t kFixed = 8 + 8 + 8 + 9 * 8 + 3 * 8 + 8 + 8 + 4 + 4;
+constexpr std::size_t kFixed = 8 + 8 + 8 + 9 * 8 + 3 * 8 + 8 + 8 + 3 * 8 + 4 + 4;
 constexpr std::size_t kComponent = 4 * 8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Vec3 kCurrent(1.5, -0.7, 0.1);  // of wind_sea_and_swell()
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 SeaState random_sea_state() {
@@ -37,7 +38,7 @@ SeaState random_sea_state() {
   state.instance_id = random_integer<std::int64_t>();
   state.time_origin = random_integer<std::int64_t>();
   state.wave_pressure = random_integer<std::int32_t>();
-  for (auto* axis : {&state.e1, &state.e2, &state.up}) randomise(*axis);
+  for (auto* axis : {&state.e1, &state.e2, &state.up, &state.current}) randomise(*axis);
   for (double* value : {&state.level, &state.depth, &state.gravity, &state.ramp}) *value = random_double();
   const auto components = *rc::gen::inRange<std::size_t>(0, 6);
   for (auto* values : {&state.amplitude, &state.angular_frequency, &state.direction, &state.phase}) {
@@ -59,6 +60,7 @@ sea_state_t to_generated(const SeaState& state) {
   message.gravity = state.gravity;
   message.time_origin = state.time_origin;
   message.ramp = state.ramp;
+  std::copy(state.current.begin(), state.current.end(), message.current);
   message.wave_pressure = state.wave_pressure;
   message.num_components = static_cast<std::int32_t>(state.amplitude.size());
   message.amplitude = state.amplitude;
@@ -81,11 +83,12 @@ void set_count(ByteVector& bytes, std::int32_t count) {
 }
 
 // A wind sea and a swell, with directions and phases of all sizes.
-Sea wind_sea_and_swell(const Water& water = {}, double depth = kInfinity) {
+Sea wind_sea_and_swell(const Water& water = {}, double depth = kInfinity, const Vec3& current_W = kCurrent) {
   SeaDescription description;
   description.depth = depth;
   description.time_origin = 1'700'000'000'000'000;
   description.ramp = 20.0;
+  description.current_W = current_W;
   IrregularWaves waves;
   waves.significant_wave_height = 2.0;
   waves.peak_period = 8.0;
@@ -102,7 +105,7 @@ Sea wind_sea_and_swell(const Water& water = {}, double depth = kInfinity) {
 Sea received(const Sea& sea) {
   SeaState state;
   EXPECT_FALSE(decode(encoded(to_sea_state(sea, 7)), state).has_value());
-  Expected<Sea> again = to_sea(state, sea.water());
+  Expected<Sea> again = to_sea(state, sea.water(), sea.current_W());
   EXPECT_TRUE(again.has_value()) << again.error().message();
   return *std::move(again);
 }
@@ -111,7 +114,7 @@ Sea received(const Sea& sea) {
 std::string error_after(const std::function<void(SeaState&)>& change, const Water& water = {}) {
   SeaState state = to_sea_state(wind_sea_and_swell({}, 50.0), 7);
   change(state);
-  const Expected<Sea> sea = to_sea(state, water);
+  const Expected<Sea> sea = to_sea(state, water, kCurrent);
   return sea ? "no error" : sea.error().message();
 }
 
@@ -212,6 +215,7 @@ TEST(SeaState, HoldsTheSeaInRadians) {
   EXPECT_EQ(state.gravity, kStandardGravity);
   EXPECT_EQ(state.time_origin, 1'700'000'000'000'000);
   EXPECT_EQ(state.ramp, 20.0);
+  EXPECT_EQ(state.current, (std::array{1.5, -0.7, 0.1}));
   EXPECT_EQ(state.wave_pressure, sea_state_t::PRESSURE_WHEELER);
   ASSERT_EQ(state.amplitude.size(), 204U);
   EXPECT_EQ(state.amplitude[203], 0.2);
@@ -234,6 +238,7 @@ TEST(SeaState, IsTheSameSeaAgain) {
     EXPECT_EQ(again.pressure(), WavePressure::kWheeler);
     EXPECT_EQ(again.time_origin(), sea.time_origin());
     EXPECT_EQ(again.ramp(), 20.0);
+    EXPECT_EQ(again.current_W(), kCurrent);
     ASSERT_EQ(again.components().size(), sea.components().size());
     for (std::size_t i = 0; i < sea.components().size(); ++i) {
       const WaveComponent& sent = sea.components()[i];
@@ -247,7 +252,7 @@ TEST(SeaState, IsTheSameSeaAgain) {
 }
 
 TEST(SeaState, HasTheSameElevationsFarAway) {
-  const Sea sea = wind_sea_and_swell();
+  const Sea sea = wind_sea_and_swell({}, kInfinity, Vec3::Zero());
   const Sea again = received(sea);
   SeaSnapshot sent(sea);
   SeaSnapshot got(again);
@@ -274,7 +279,7 @@ TEST(SeaState, OfAStillSeaIsStill) {
 TEST(SeaState, LevelIsTheMessages) {
   SeaState state = to_sea_state(wind_sea_and_swell(), 7);
   state.level = 2.5;
-  EXPECT_EQ(to_sea(state, {.level = 1.0})->water().level, 2.5);
+  EXPECT_EQ(to_sea(state, {.level = 1.0}, kCurrent)->water().level, 2.5);
 }
 
 TEST(SeaState, AxesMayDifferByRounding) {
@@ -308,6 +313,15 @@ TEST(SeaState, RejectsOtherAxesAndGravity) {
       "cause: the sender uses another value, such as 9.81 where the scene has 9.80665. Set gravity under "
       "[world] in the scene, or have the sender use the scene's.");
   EXPECT_THAT(error_after([](SeaState& state) { state.gravity = kNaN; }), HasSubstr("gravity = nan"));
+}
+
+TEST(SeaState, RejectsAnotherCurrent) {
+  EXPECT_EQ(error_after([](SeaState& state) { state.current[1] += 9e-7; }), "no error");
+  EXPECT_EQ(error_after([](SeaState& state) { state.current = {}; }),
+            "the received sea: current = [0, 0, 0]; expected the scene's, [1.5, -0.7, 0.1] m/s, within 1e-6 "
+            "m/s. Likely cause: waves ride on the current, and the sender has another one than the scene, or "
+            "none. Set velocity under [water.current] in the scene, or have the sender use the scene's.");
+  EXPECT_THAT(error_after([](SeaState& state) { state.current[2] = kNaN; }), HasSubstr("current = [1.5,"));
 }
 
 TEST(SeaState, RejectsBadNumbersOfTheSea) {

@@ -44,9 +44,11 @@ TEST(ServiceCauses, CompareSeasOfBothSides) {
   service.sea = to_sea_state(*scene.sea(), 5);
   EXPECT_TRUE(causes_from_service(scene, service).empty());
   service.sea->level = 0.25;
+  service.sea->current[1] = 1.5;
   service.sea->amplitude[0] *= 2.0;
   const std::string found = joined(causes_from_service(scene, service));
   EXPECT_NE(found.find("another level: 0.25 instead of 0 m"), std::string::npos) << found;
+  EXPECT_NE(found.find("another current: 1.5 instead of 0 m/s"), std::string::npos) << found;
   EXPECT_NE(found.find("other waves"), std::string::npos) << found;
 }
 

@@ -20,6 +20,19 @@ class DescribesWaterInMotion(TestCase):
         later, earlier = (np.asarray(sea.velocity(1.0, 2.0, -1.0, 0.5 + d)) for d in (h, -h))
         np.testing.assert_allclose(sea.acceleration(1.0, 2.0, -1.0, 0.5), (later - earlier) / (2 * h), atol=1e-3)
 
+    def test_waves_ride_on_the_current(self):
+        waves = dict(type="regular", height=0.5, period=4.0)
+        still = buoyancy.Sea(waves=waves)
+        sea = buoyancy.Sea(waves=waves, current=dict(velocity=[1.5, 0.5, 0.0]))
+        self.assertEqual(sea.current.tolist(), [1.5, 0.5, 0.0])
+        self.assertAlmostEqual(sea.elevation(7.0 + 15.0, 5.0, 10.0), still.elevation(7.0, 0.0, 10.0), delta=1e-12)
+        np.testing.assert_allclose(np.asarray(sea.velocity(22.0, 5.0, -1.0, 10.0)) - [1.5, 0.5, 0.0],
+                                   still.velocity(7.0, 0.0, -1.0, 10.0), atol=1e-12)
+        box = '[[body]]\nid = 1\nshape = { type = "box" }\n'
+        scene = buoyancy.Scene.from_text('[water]\nwaves = "received"\n' + box)
+        with self.assertRaisesRegex(buoyancy.InputError, "a current of .1.5, 0.5, 0. m/s; expected the scene's"):
+            scene.query(1, (0, 0, 0), (1, 0, 0, 0), sea=sea)
+
     def test_shapes(self):
         sea = buoyancy.Sea(waves=[dict(type="jonswap", significant_wave_height=1, peak_period=5, spreading=10)])
         self.assertIsInstance(sea.elevation(0, 0, 0), float)

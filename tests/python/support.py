@@ -16,7 +16,8 @@ MESHES = ("rock", "sphere", "knot", "hull", "cone")
 WATERS = {
     "rest": {},
     "tilted": dict(gravity=3.7, up=(0.3, -0.2, 2), level=0.1, density=998.2),
-    "waves": dict(depth=30, waves=dict(type="jonswap", significant_wave_height=0.5, peak_period=4.0, seed=3)),
+    "waves": dict(depth=30, waves=dict(type="jonswap", significant_wave_height=0.5, peak_period=4.0, frequencies=40,
+                                       seed=3)),
 }
 
 

@@ -33,6 +33,7 @@ std::string bodies(const std::string& water) {
 
 const std::string kSea =
     "[water]\ndepth = 30\nwaves = { type = \"jonswap\", significant_wave_height = 0.5, peak_period = 4.0, "
+    "frequencies = 40, "
     "seed = 3 }\n[water.current]\nvelocity = [0.3, -0.2, 0.1]\n";
 
 struct Answer {

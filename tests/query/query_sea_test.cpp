@@ -21,7 +21,8 @@ std::string error_of(const std::string& text) {
 
 const std::string kWaves =
     "[world]\nup = [0, 1, 0]\n[water]\nlevel = 2.0\ndepth = 30\nramp = 10\ntime_origin = 1790000000000000\n"
-    "waves = { type = \"jonswap\", significant_wave_height = 1.5, peak_period = 5.0, seed = 3 }\n";
+    "waves = { type = \"jonswap\", significant_wave_height = 1.5, peak_period = 5.0, frequencies = 40, seed "
+    "= 3 }\n";
 
 TEST(QuerySea, ReadsTheKeysOfASceneFile) {
   const QuerySea sea = sea_of(kWaves);
@@ -36,12 +37,27 @@ TEST(QuerySea, ReadsTheKeysOfASceneFile) {
 TEST(QuerySea, SaysWhatIsWrongWithItsKeys) {
   EXPECT_NE(error_of("[water]\nlevl = 1").find("level"), std::string::npos);
   EXPECT_NE(error_of("[water]\nwaves = \"received\"").find("received"), std::string::npos);
-  EXPECT_NE(error_of("[water.current]\nvelocity = [1, 0, 0]").find("current"), std::string::npos);
   EXPECT_NE(error_of("[[body]]\nid = 1").find("body"), std::string::npos);
   EXPECT_NE(error_of("water = ").find("TOML"), std::string::npos);
   EXPECT_NE(error_of("[water]\ndepth = 1\nwaves = { type = \"regular\", height = 9, period = 3 }")
                 .find("sea: [water]"),
             std::string::npos);
+}
+
+TEST(QuerySea, WaterMovesWithTheCurrentToo) {
+  const std::vector<double> point{1.0, 2.0, -0.5};
+  for (const std::string& waves :
+       {std::string(), std::string("waves = { type = \"regular\", height = 0.4, period = 3 "
+                                   "}\n")}) {
+    const QuerySea sea = sea_of("[water]\n" + waves + "[water.current]\nvelocity = [1, -2, 0.5]\n");
+    std::vector<double> velocity(3);
+    water_at_points(sea, point, std::vector<std::int64_t>{kNow}, {{}, velocity, {}});
+    Vec3 expected(1.0, -2.0, 0.5);
+    if (sea.waves() != nullptr) {
+      expected += SeaSnapshot(sea.waves()->sea(), kNow).at({1.0, 2.0, -0.5}).velocity_W;
+    }
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(velocity[static_cast<std::size_t>(i)], expected[i]);
+  }
 }
 
 TEST(QuerySea, HasTheWaterOfASnapshotAtEveryPoint) {

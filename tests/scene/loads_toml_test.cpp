@@ -41,7 +41,7 @@ TEST(LoadsToml, ReadsEveryKey) {
       "[body.added_mass]\nmatrix = " +
       matrix({5, 126, 127, 0.1, 33, 34}, 1, 1, 128) + "\ncenter = [1, 2, 3]\nimmersion = \"none\"\n");
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_EQ(scene->current_W, Vec3(0.5, 0.0, -0.1));
+  EXPECT_EQ(scene->sea.current_W, Vec3(0.5, 0.0, -0.1));
   const BodyDescription& body = scene->bodies[0];
   EXPECT_TRUE(body.loads);
   EXPECT_FALSE(body.hydrostatics);
@@ -67,7 +67,7 @@ TEST(LoadsToml, ReadsAMatrixRowByRow) {
 TEST(LoadsToml, TablesMayBeLeftOut) {
   const auto scene = parse(scene_with_crate());
   ASSERT_TRUE(scene);
-  EXPECT_EQ(scene->current_W, Vec3(Vec3::Zero()));
+  EXPECT_EQ(scene->sea.current_W, Vec3(Vec3::Zero()));
   EXPECT_FALSE(scene->bodies[0].drag);
   EXPECT_FALSE(scene->bodies[0].added_mass);
   EXPECT_FALSE(scene->bodies[0].loads);

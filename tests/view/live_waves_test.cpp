@@ -82,7 +82,7 @@ TEST_F(LivePageInWaves, DrawsSurfaceOfSea) {
 }
 
 TEST_F(LivePageInWaves, DrawsReceivedSeaThatHolds) {
-  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kBox;
+  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kCurrentOfPages + kBox;
   const Water water = scene_of(received).water();
   const Scene first = scene_of(kSeasOfPages[0].table + kBox);
   const Scene second = scene_of(kSeasOfPages[1].table + kBox);
@@ -93,9 +93,9 @@ TEST_F(LivePageInWaves, DrawsReceivedSeaThatHolds) {
             nlohmann::json({nullptr, true}))
       << "no sea yet";
 
-  const auto expect_drawn = [this, &water](const Sea& sent, std::int64_t utime) {
+  const auto expect_drawn = [&](const Sea& sent, std::int64_t utime) {
     SCOPED_TRACE(utime);
-    const Expected<Sea> sea = to_sea(to_sea_state(sent, 7), water);
+    const Expected<Sea> sea = to_sea(to_sea_state(sent, 7), water, scene_of(received).current_W());
     ASSERT_TRUE(sea) << sea.error().message();
     SeaSnapshot snapshot(*sea);
     snapshot.set_time(utime);

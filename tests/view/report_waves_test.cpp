@@ -90,7 +90,7 @@ TEST_F(ReportPageInWaves, DrawsSurfaceOfSea) {
 }
 
 TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
-  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kBox;
+  const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kCurrentOfPages + kBox;
   std::vector<std::uint8_t> log;
   auto add = [&log, number = std::int64_t{0}](std::int64_t utime, std::string_view channel,
                                               const auto& message) mutable {
@@ -127,7 +127,7 @@ TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
   const Water water = scene_of(received).water();
   for (const std::int64_t seconds : {12, 29, 10, 20}) {
     SCOPED_TRACE(seconds);
-    const Expected<Sea> sea = to_sea(seas[seconds < 20 ? 0 : 1], water);
+    const Expected<Sea> sea = to_sea(seas[seconds < 20 ? 0 : 1], water, scene_of(received).current_W());
     ASSERT_TRUE(sea) << sea.error().message();
     SeaSnapshot snapshot(*sea);
     snapshot.set_time(kTodayUtime + 1'000'000 * seconds);

@@ -56,7 +56,7 @@ TEST(SeaJson, KeepsEveryNumberOfSea) {
   const PreparedComponents& components = sea.prepared();
   EXPECT_EQ(components.size(), 200U);
   EXPECT_EQ(json["amplitude"].get<std::vector<double>>(), components.amplitude);
-  EXPECT_EQ(json["angular_frequency"].get<std::vector<double>>(), components.angular_frequency);
+  EXPECT_EQ(json["apparent_frequency"].get<std::vector<double>>(), components.apparent_frequency);
   EXPECT_EQ(json["wave_number"].get<std::vector<double>>(), components.wave_number);
   EXPECT_EQ(json["k1"].get<std::vector<double>>(), components.k1);
   EXPECT_EQ(json["k2"].get<std::vector<double>>(), components.k2);

@@ -17,10 +17,11 @@ inline constexpr std::int64_t kTodayUtime = 1'790'000'000'123'456;  // [us], in 
 
 struct NamedWater {
   const char* name;
-  const char* table;  // of a scene file
+  std::string table;  // of a scene file
 };
 
-inline constexpr std::array<NamedWater, 2> kSeasOfPages{{{"deep, two systems, phases of 1970", R"(
+inline const std::string kCurrentOfPages = "[water.current]\nvelocity = [1.2, -0.4, 0.1]\n";
+inline const std::array<NamedWater, 2> kSeasOfPages{{{"deep, two systems, phases of 1970", R"(
 [water]
 level = 1.5
 [[water.waves]]
@@ -38,8 +39,8 @@ height = 0.6
 period = 11.0
 direction = -100.0
 phase = 40.0
-)"},
-                                                         {"finite depth, ramp", R"(
+)" + kCurrentOfPages},
+                                                     {"finite depth, ramp", R"(
 [water]
 level = 1.5
 depth = 6.0
@@ -51,7 +52,7 @@ significant_wave_height = 1.2
 peak_period = 6.0
 direction = 200.0
 frequencies = 25
-)"}}};
+)" + kCurrentOfPages}}};
 
 // Within the ramp, at its end and after it [us].
 inline constexpr std::array<std::int64_t, 3> kShownUtimes{kTodayUtime + 12'000'000, kTodayUtime + 29'500'000,

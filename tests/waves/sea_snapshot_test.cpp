@@ -29,7 +29,8 @@ Sea make_sea(std::vector<WaveSystem> systems, const std::function<void(SeaDescri
   return Sea::make(description, water).value();
 }
 
-Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity()) {
+Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity(),
+             const Vec3& current_W = Vec3::Zero()) {
   IrregularWaves waves;
   waves.significant_wave_height = height;
   waves.peak_period = 5.0;
@@ -37,7 +38,10 @@ Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity
   waves.spreading = 10.0;
   waves.directions = 3;
   waves.frequencies = 10;
-  return make_sea({waves}, [depth](SeaDescription& description) { description.depth = depth; });
+  return make_sea({waves}, [&](SeaDescription& description) {
+    description.depth = depth;
+    description.current_W = current_W;
+  });
 }
 
 std::int64_t microseconds(double t) {
@@ -67,9 +71,8 @@ TEST(SeaSnapshot, LeadTimeIsLater) {
 }
 
 // Against 113 bits, with positions of 1,000 km and the utime of today.
-TEST(SeaSnapshot, KeepsItsPhasesFarFromOrigins) {
+void expect_exact_phases(const Sea& sea) {
   using Quad = boost::multiprecision::cpp_bin_float_quad;
-  const Sea sea = wind_sea(2.0);
   SeaSnapshot now(sea);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> position(-1e6, 1e6);
@@ -85,12 +88,38 @@ TEST(SeaSnapshot, KeepsItsPhasesFarFromOrigins) {
       const Quad k = component.angular_frequency * component.angular_frequency / kGravity;
       const Quad direction = radians * component.direction;
       const Quad t = Quad(utime) / 1'000'000;
+      const Quad x1 = x - sea.current_W().x() * t;
+      const Quad x2 = y - sea.current_W().y() * t;
       elevation += component.amplitude *
-                   cos(k * (x * cos(direction) + y * sin(direction)) - w * t + radians * component.phase);
+                   cos(k * (x1 * cos(direction) + x2 * sin(direction)) - w * t + radians * component.phase);
     }
     now.set_time(utime);
     EXPECT_NEAR(now.elevation(x, y), elevation.convert_to<double>(), 1e-14 * sea.max_elevation());
   }
+}
+
+TEST(SeaSnapshot, KeepsItsPhasesFarFromOrigins) {
+  expect_exact_phases(wind_sea(2.0));
+}
+
+TEST(SeaSnapshot, WavesRideOnTheCurrent) {
+  constexpr double kDeep = std::numeric_limits<double>::infinity();
+  const Sea sea = wind_sea(2.0, kDeep, {1.7, -0.6, 0.2});
+  expect_exact_phases(sea);
+  // The water of an observer who drifts is that without a current.
+  SeaSnapshot carried(sea);
+  const Sea still = wind_sea(2.0);
+  SeaSnapshot at_rest(still);
+  const double t = 50.0;
+  carried.set_time(microseconds(t));
+  at_rest.set_time(microseconds(t));
+  const Vec3 p_W(3.0, -4.0, -1.0);
+  const WaterAtPoint there = carried.at(p_W + t * Vec3(1.7, -0.6, 0.0));
+  const WaterAtPoint here = at_rest.at(p_W);
+  EXPECT_NEAR(there.elevation, here.elevation, 1e-13);
+  EXPECT_NEAR(there.pressure, here.pressure, 1e-8);
+  EXPECT_LE((there.velocity_W - here.velocity_W).norm(), 1e-13);
+  EXPECT_LE((there.acceleration_W - here.acceleration_W).norm(), 1e-13);
 }
 
 TEST(SeaSnapshot, TakesEveryUtime) {

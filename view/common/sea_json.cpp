@@ -26,7 +26,7 @@ Json sea_json(const Sea& sea) {
           {"ramp", sea.ramp()},
           {"pressure", to_string(sea.pressure())},
           {"amplitude", components.amplitude},
-          {"angular_frequency", components.angular_frequency},
+          {"apparent_frequency", components.apparent_frequency},
           {"wave_number", components.wave_number},
           {"k1", components.k1},
           {"k2", components.k2},

@@ -15,7 +15,7 @@ namespace buoyancy::view {
 // "time_origin"      [us], the utime of t = 0
 // "ramp"             [s]
 // "pressure"         to_string(WavePressure)
-// "amplitude" [m], "angular_frequency" [rad/s], "wave_number", "k1", "k2" [rad/m] and "phase" [rad]: arrays
+// "amplitude" [m], "apparent_frequency" [rad/s], "wave_number", "k1", "k2" [rad/m] and "phase" [rad]: arrays
 //                    of one number per component, as in PreparedComponents
 // Numbers have the digits from which the same double is read back.
 nlohmann::ordered_json sea_json(const Sea& sea);

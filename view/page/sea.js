@@ -5,7 +5,7 @@
 // together move the surface by less than 1e-5 m per metre of wave amplitude.
 class Sea {
   constructor(data) {
-    for (const name of ['amplitude', 'angular_frequency', 'wave_number', 'k1', 'k2', 'phase']) this[name] = Float64Array.from(data[name]);
+    for (const name of ['amplitude', 'apparent_frequency', 'wave_number', 'k1', 'k2', 'phase']) this[name] = Float64Array.from(data[name]);
     for (const name of ['e1', 'e2', 'up', 'level', 'depth', 'ramp', 'pressure']) this[name] = data[name];
     this.components = this.amplitude.length;
   }
@@ -25,7 +25,7 @@ class Sea {
 
   // [rad], of one component, within half a turn of 0: sines of such angles are exact and cheap.
   phase_at(i, x1, x2, t) {
-    const phase = this.k1[i] * x1 + this.k2[i] * x2 - this.angular_frequency[i] * t + this.phase[i];
+    const phase = this.k1[i] * x1 + this.k2[i] * x2 - this.apparent_frequency[i] * t + this.phase[i];
     return phase - 2 * Math.PI * Math.round(phase / (2 * Math.PI));
   }
 

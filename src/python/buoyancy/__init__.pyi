@@ -124,6 +124,7 @@ class Sea:
         time_origin: int = 0,
         ramp: float = 0.0,
         waves: Union[Mapping[str, Any], Sequence[Mapping[str, Any]]] = ...,
+        current: Mapping[str, Any] = ...,
     ) -> None: ...
     def elevation(self, x: ArrayLike, y: ArrayLike, t: ArrayLike, *, threads: int = 0) -> Union[Array, float]: ...
     def velocity(
@@ -143,6 +144,8 @@ class Sea:
     def gravity(self) -> float: ...
     @property
     def up(self) -> Array: ...
+    @property
+    def current(self) -> Array: ...  # m/s
     @property
     def axes(self) -> Tuple[Array, Array]: ...
     @property
