@@ -62,7 +62,7 @@ IrregularWaves read_irregular_waves(TomlTable& table, WaveType type) {
   }
   table.read("direction", waves.direction, sea_ranges::kAngle);
   table.read("spreading", waves.spreading, sea_ranges::kSpreading);
-  table.read("frequencies", waves.frequencies, sea_ranges::kBins);
+  if (table.has("frequencies")) table.read("frequencies", waves.frequencies.emplace(), sea_ranges::kBins);
   if (waves.spreading) waves.directions = kDefaultDirections;
   table.read("directions", waves.directions, sea_ranges::kBins);
   if (!waves.spreading && waves.directions > 1) {

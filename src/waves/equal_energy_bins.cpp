@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace buoyancy {
@@ -19,14 +20,15 @@ constexpr std::array<Node, 5> kGaussLegendre{{{-0.9061798459386640, 0.2369268850
 
 }  // namespace
 
-EqualEnergyBins::EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries)
-    : density_(std::move(density)), boundaries_(boundaries.begin(), boundaries.end()) {
+EqualEnergyBins::EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries,
+                                 Mean mean)
+    : density_(std::move(density)), mean_(mean), boundaries_(boundaries.begin(), boundaries.end()) {
   Integral below;
   integral_below_.push_back(below);
   for (std::size_t i = 1; i < boundaries_.size(); ++i) {
     const Integral between = integrate(boundaries_[i - 1], boundaries_[i]);
     below.energy += between.energy;
-    below.first_moment += between.first_moment;
+    below.moment += between.moment;
     integral_below_.push_back(below);
   }
 }
@@ -39,7 +41,7 @@ EqualEnergyBins::Integral EqualEnergyBins::integrate(double begin, double end) c
     const double x = middle + half * node.position;
     const double weighted = half * node.weight * density_(x);
     integral.energy += weighted;
-    integral.first_moment += weighted * x;
+    integral.moment += weighted * (mean_ == Mean::kArithmetic ? x : x * x);
   }
   return integral;
 }
@@ -61,7 +63,7 @@ EqualEnergyBins::Integral EqualEnergyBins::integral_to(double energy) const {
     place = std::clamp(place + (wanted - part.energy) / density_(place), begin, end);
     part = integrate(begin, place);
   }
-  return {energy, below.first_moment + part.first_moment};
+  return {energy, below.moment + part.moment};
 }
 
 std::vector<double> EqualEnergyBins::means(std::size_t bins) const {
@@ -70,9 +72,10 @@ std::vector<double> EqualEnergyBins::means(std::size_t bins) const {
   means.reserve(bins);
   double moment_below = 0.0;
   for (std::size_t bin = 1; bin <= bins; ++bin) {
-    const double moment_to = bin < bins ? integral_to(per_bin * static_cast<double>(bin)).first_moment
-                                        : integral_below_.back().first_moment;
-    means.push_back((moment_to - moment_below) / per_bin);
+    const double moment_to =
+        bin < bins ? integral_to(per_bin * static_cast<double>(bin)).moment : integral_below_.back().moment;
+    const double mean = (moment_to - moment_below) / per_bin;
+    means.push_back(mean_ == Mean::kArithmetic ? mean : std::sqrt(mean));
     moment_below = moment_to;
   }
   return means;

@@ -10,18 +10,21 @@ namespace buoyancy {
 
 class EqualEnergyBins {
  public:
+  // The energy-weighted mean that stands for a bin. That of the squares keeps the density's second moment.
+  enum class Mean { kArithmetic, kRootMeanSquare };
+
   // density: positive almost everywhere, and smooth between each two of the boundaries, which ascend.
   // Integrates it with five points of Gauss-Legendre quadrature between each two.
-  EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries);
+  EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries, Mean mean);
 
   double energy() const { return integral_below_.back().energy; }  // the integral of the density
-  // The energy-weighted means of `bins` bins, ascending.
+  // The means of `bins` bins, ascending.
   std::vector<double> means(std::size_t bins) const;
 
  private:
   struct Integral {
-    double energy = 0.0;        // of the density
-    double first_moment = 0.0;  // of the density times the variable
+    double energy = 0.0;  // of the density
+    double moment = 0.0;  // of the density times the variable or its square
   };
 
   Integral integrate(double begin, double end) const;
@@ -29,6 +32,7 @@ class EqualEnergyBins {
   Integral integral_to(double energy) const;
 
   std::function<double(double)> density_;
+  Mean mean_;
   std::vector<double> boundaries_;
   std::vector<Integral> integral_below_;  // each boundary
 };

@@ -1,6 +1,20 @@
 #include "waves/random_phase.h"
 
+#include <numeric>
+#include <utility>
+
 namespace buoyancy {
+namespace {
+
+std::array<std::uint32_t, 2> key_of(std::uint64_t seed) {
+  return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)};
+}
+
+// The third word of the counter.
+constexpr std::uint32_t kPhases = 0;
+constexpr std::uint32_t kOrders = 1;
+
+}  // namespace
 
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
   constexpr int kRounds = 10;
@@ -22,10 +36,22 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 }
 
 double random_phase(std::uint64_t seed, std::uint32_t system, std::uint32_t component) {
-  const auto [first, second, third, fourth] = philox(
-      {component, system, 0, 0}, {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)});
+  const auto [first, second, third, fourth] = philox({component, system, kPhases, 0}, key_of(seed));
   const std::uint64_t bits = (std::uint64_t{first} << 32U | second) >> 11U;  // 53
   return 360.0 * (static_cast<double>(bits) * 0x1p-53);
+}
+
+std::vector<std::size_t> random_order(std::uint64_t seed, std::uint32_t system, std::uint32_t group,
+                                      std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // R. A. Fisher and F. Yates: each place from the last one on gets one of the numbers that are left.
+  for (std::size_t left = count; left > 1; --left) {
+    const std::uint64_t random =
+        philox({group, system, kOrders, static_cast<std::uint32_t>(left)}, key_of(seed))[0];
+    std::swap(order[left - 1], order[random * left >> 32U]);
+  }
+  return order;
 }
 
 }  // namespace buoyancy

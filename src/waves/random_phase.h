@@ -1,12 +1,14 @@
-// Random phases of wave components: a counter-based generator, so that a phase depends on nothing but the
-// seed and the component's place.
+// Random phases and orders of wave components: a counter-based generator, so that a phase depends on nothing
+// but the seed and the component's place.
 //
 // Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3",
 // SC11: Philox4x32-10.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace buoyancy {
 
@@ -15,5 +17,10 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 
 // [deg], uniform in [0, 360). The same on every machine.
 double random_phase(std::uint64_t seed, std::uint32_t system, std::uint32_t component);
+
+// The numbers from 0 to count - 1 in an order that depends on the seed, the system and the group. count:
+// below 2^32. The same on every machine.
+std::vector<std::size_t> random_order(std::uint64_t seed, std::uint32_t system, std::uint32_t group,
+                                      std::size_t count);
 
 }  // namespace buoyancy

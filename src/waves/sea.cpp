@@ -62,7 +62,7 @@ void check(Checks& checks, const IrregularWaves& waves, double depth) {
   if (waves.gamma) checks.in("gamma", *waves.gamma, sea_ranges::kGamma);
   checks.in("direction", waves.direction, sea_ranges::kAngle);
   if (waves.spreading) checks.in("spreading", *waves.spreading, sea_ranges::kSpreading);
-  checks.in("frequencies", waves.frequencies, sea_ranges::kBins);
+  if (waves.frequencies) checks.in("frequencies", *waves.frequencies, sea_ranges::kBins);
   checks.in("directions", waves.directions, sea_ranges::kBins);
   checks.in("cutoff", waves.cutoff, sea_ranges::kCutoff);
   check_depth(checks, "significant_wave_height", waves.significant_wave_height, depth);

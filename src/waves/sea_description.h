@@ -44,10 +44,10 @@ struct IrregularWaves {
   double direction = 0.0;                // [deg], the mean
   // s of the directional spreading cos^2s(angle / 2), > 0; default: long-crested.
   std::optional<double> spreading;
-  std::int32_t frequencies = 40;  // number of bins of equal energy
-  std::int32_t directions = 1;    // number of bins of equal energy; 1 without a spreading
-  double cutoff = 3.0;            // highest angular frequency over that of the peak, > 1
-  std::uint64_t seed = 1;         // of the phases
+  std::optional<std::int32_t> frequencies;  // of each direction; default: frequencies_of()
+  std::int32_t directions = 1;              // number of bins of equal energy; 1 without a spreading
+  double cutoff = 3.0;                      // highest angular frequency over that of the peak, > 1
+  std::uint64_t seed = 1;                   // of the phases and of the order of directions
 };
 
 using WaveComponents = std::vector<WaveComponent>;

@@ -37,7 +37,12 @@ std::vector<double> frequency_boundaries(double cutoff) {
 }
 
 EqualEnergyBins frequency_bins(double log_gamma, double cutoff) {
-  return {[log_gamma](double x) { return shape(x, log_gamma); }, frequency_boundaries(cutoff)};
+  return {[log_gamma](double x) { return shape(x, log_gamma); }, frequency_boundaries(cutoff),
+          EqualEnergyBins::Mean::kRootMeanSquare};
+}
+
+std::int32_t directions_of(const IrregularWaves& waves) {
+  return waves.spreading ? waves.directions : 1;
 }
 
 double variance_of(double significant_wave_height) {
@@ -57,6 +62,11 @@ double gamma_of(const IrregularWaves& waves) {
   return waves.gamma ? *waves.gamma : default_gamma(waves.significant_wave_height, waves.peak_period);
 }
 
+std::int32_t frequencies_of(const IrregularWaves& waves) {
+  const std::int32_t directions = directions_of(waves);
+  return waves.frequencies.value_or((kDefaultComponents + directions - 1) / directions);
+}
+
 WaveSpectrum::WaveSpectrum(const IrregularWaves& waves)
     : peak_(2.0 * std::numbers::pi / waves.peak_period),
       cutoff_(waves.cutoff),
@@ -69,7 +79,7 @@ double WaveSpectrum::density(double angular_frequency) const {
   return x <= cutoff_ ? variance_ / (bins_.energy() * peak_) * shape(x, log_gamma_) : 0.0;
 }
 
-std::vector<double> WaveSpectrum::mean_frequencies(std::size_t bins) const {
+std::vector<double> WaveSpectrum::bin_frequencies(std::size_t bins) const {
   std::vector<double> frequencies = bins_.means(bins);
   for (double& frequency : frequencies) frequency *= peak_;
   return frequencies;
@@ -87,7 +97,8 @@ std::vector<double> spreading_angles(double spreading, std::size_t bins) {
   constexpr int kPanels = 48;
   std::vector<double> boundaries;
   for (int i = 0; i <= kPanels; ++i) boundaries.push_back(widest * (2.0 * i / kPanels - 1.0));
-  const std::vector<double> means = EqualEnergyBins(density, boundaries).means(bins);
+  const std::vector<double> means =
+      EqualEnergyBins(density, boundaries, EqualEnergyBins::Mean::kArithmetic).means(bins);
   std::vector<double> angles;
   for (std::size_t i = 0; i < bins; ++i) angles.push_back(0.5 * (means[i] - means[bins - 1 - i]));
   return angles;
@@ -100,18 +111,21 @@ WaveComponents components_of(const WaveSystem& system, std::size_t place) {
              regular->phase}};
   }
   const auto& waves = std::get<IrregularWaves>(system);
-  const auto frequencies = static_cast<std::size_t>(waves.frequencies);
-  const std::size_t directions = waves.spreading ? static_cast<std::size_t>(waves.directions) : 1;
+  const auto frequencies = static_cast<std::size_t>(frequencies_of(waves));
+  const auto directions = static_cast<std::size_t>(directions_of(waves));
   const std::vector<double> angles = spreading_angles(waves.spreading.value_or(1.0), directions);
   const double amplitude = std::sqrt(2.0 * variance_of(waves.significant_wave_height) /
                                      static_cast<double>(frequencies * directions));
+  const std::vector<double> bins = WaveSpectrum(waves).bin_frequencies(frequencies * directions);
+  const auto key = static_cast<std::uint32_t>(place);
   WaveComponents components;
-  components.reserve(frequencies * directions);
-  for (const double frequency : WaveSpectrum(waves).mean_frequencies(frequencies)) {
-    for (const double angle : angles) {
-      components.push_back({amplitude, frequency, waves.direction + angle,
-                            random_phase(waves.seed, static_cast<std::uint32_t>(place),
-                                         static_cast<std::uint32_t>(components.size()))});
+  components.reserve(bins.size());
+  while (components.size() < bins.size()) {
+    const auto group = static_cast<std::uint32_t>(components.size() / directions);
+    for (const std::size_t direction : random_order(waves.seed, key, group, directions)) {
+      const std::size_t i = components.size();
+      components.push_back({amplitude, bins[i], waves.direction + angles[direction],
+                            random_phase(waves.seed, key, static_cast<std::uint32_t>(i))});
     }
   }
   return components;
@@ -121,8 +135,7 @@ std::size_t number_of_components(const WaveSystem& system) {
   if (const auto* components = std::get_if<WaveComponents>(&system)) return components->size();
   const auto* waves = std::get_if<IrregularWaves>(&system);
   if (waves == nullptr) return 1;
-  const std::int32_t directions = waves->spreading ? waves->directions : 1;
-  return static_cast<std::size_t>(waves->frequencies) * static_cast<std::size_t>(directions);
+  return static_cast<std::size_t>(frequencies_of(*waves)) * static_cast<std::size_t>(directions_of(*waves));
 }
 
 }  // namespace buoyancy

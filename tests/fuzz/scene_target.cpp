@@ -81,7 +81,8 @@ void check_system(const IrregularWaves& waves) {
   require(!waves.gamma || sea_ranges::kGamma.contains(*waves.gamma), "gamma is within its range");
   require(!waves.spreading || sea_ranges::kSpreading.contains(*waves.spreading),
           "the spreading is within its range");
-  require(sea_ranges::kBins.contains(waves.frequencies) && sea_ranges::kBins.contains(waves.directions),
+  require(sea_ranges::kBins.contains(waves.frequencies.value_or(1)) &&
+              sea_ranges::kBins.contains(waves.directions),
           "the numbers of bins are within their range");
   require(waves.spreading || waves.directions == 1, "long-crested waves have one direction");
 }

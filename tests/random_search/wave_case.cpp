@@ -139,7 +139,7 @@ double sum_of_amplitudes(const WaveSystem& system) {
   if (const auto* components = std::get_if<WaveComponents>(&system)) add(*components);
   if (const auto* irregular = std::get_if<IrregularWaves>(&system)) {
     // Equal amplitudes whose energy is that of the significant wave height.
-    const double count = irregular->frequencies * irregular->directions;
+    const double count = *irregular->frequencies * irregular->directions;
     sum += irregular->significant_wave_height / 4.0 * std::sqrt(2.0 * count);
   }
   return sum;

@@ -107,7 +107,7 @@ TEST(SeaToml, UsesDefaultsOfSpectra) {
   EXPECT_FALSE(jonswap.gamma);
   EXPECT_EQ(jonswap.direction, 0.0);
   EXPECT_FALSE(jonswap.spreading);
-  EXPECT_EQ(jonswap.frequencies, 40);
+  EXPECT_FALSE(jonswap.frequencies);
   EXPECT_EQ(jonswap.directions, 1);
   EXPECT_EQ(jonswap.cutoff, 3.0);
   EXPECT_EQ(jonswap.seed, 1U);

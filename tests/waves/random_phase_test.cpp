@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,17 @@ TEST(RandomPhase, DependsOnSeedSystemAndComponent) {
   EXPECT_NE(random_phase(std::uint64_t{1} << 32U | 1U, 0, 0), phase);
   EXPECT_NE(random_phase(1, 1, 0), phase);
   EXPECT_NE(random_phase(1, 0, 1), phase);
+}
+
+TEST(RandomOrder, IsEveryOrderEquallyOften) {
+  std::map<std::vector<std::size_t>, int> counts;
+  constexpr std::uint32_t kGroups = 6000;
+  for (std::uint32_t group = 0; group < kGroups; ++group) ++counts[random_order(7, 0, group, 3)];
+  ASSERT_EQ(counts.size(), 6U);
+  for (const auto& [order, count] : counts) EXPECT_NEAR(count, kGroups / 6, 100);
+  EXPECT_EQ(random_order(7, 0, 0, 1), std::vector<std::size_t>{0});
+  EXPECT_NE(random_order(7, 0, 0, 50), random_order(8, 0, 0, 50));
+  EXPECT_NE(random_order(7, 0, 0, 50), random_order(7, 1, 0, 50));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(SeaReport, DescribesSpectraOfEachSystem) {
   EXPECT_EQ(reports[2].gamma, 3.3);
   EXPECT_FALSE(reports[2].gamma_is_default);
   EXPECT_EQ(reports[3].type, "pierson_moskowitz");
-  EXPECT_EQ(reports[3].components, 80U);
+  EXPECT_EQ(reports[3].components, 200U);
   EXPECT_NEAR(reports[3].significant_wave_height, 1.0, 1e-14);
 }
 
