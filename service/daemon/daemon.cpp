@@ -22,6 +22,7 @@
 #include "messages/status.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
+#include "waves/sea_report.h"
 
 namespace buoyancy::service {
 namespace {
@@ -135,7 +136,12 @@ Expected<void> Daemon::subscribe_to_conditions() {
 
 void Daemon::prepare_for_messages() {
   sea_bytes_.clear();
-  if (scene_->sea() != nullptr) encode(to_sea_state(*scene_->sea(), instance_id_), sea_bytes_);
+  if (const Sea* const sea = scene_->sea()) {
+    encode(to_sea_state(*sea, instance_id_), sea_bytes_);
+    for (const Warning& warning : sea_warnings(scene_->name(), *sea, scene_->wave_systems())) {
+      spdlog::warn("{}", warning.message());
+    }
+  }
   const LargestMessages messages = largest_messages(*scene_, channels_);
   const std::size_t request_bytes = std::min(messages.request.bytes, kMaxMessageBytes);
   const auto buffer = connection_.reserve_receive_buffer(request_bytes);
@@ -242,7 +248,19 @@ void Daemon::on_sea(Bytes message) {
   if (!scene_->receives_sea()) return;  // it may be our own
   if (const Expected<void> received = handler_.receive_sea(message); !received) {
     warnings_.add({"messages of the sea rejected", 1, received.error().message()}, seconds_now());
+    return;
   }
+  std::shared_ptr<const SeaPeriod> sea = handler_.newest_sea();
+  if (sea == newest_sea_) return;
+  newest_sea_ = std::move(sea);
+  if (newest_sea_->sea == nullptr) return;
+  std::string detail;
+  for (const Warning& warning : sea_warnings("received", newest_sea_->sea->sea(), {})) {
+    if (!detail.empty()) detail += ' ';
+    detail += warning.message();
+  }
+  if (!detail.empty())
+    warnings_.add({"seas received that are too high or too steep", 1, detail}, seconds_now());
 }
 
 void Daemon::on_condition(Bytes message) {

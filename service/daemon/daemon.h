@@ -126,6 +126,7 @@ class Daemon {
   double queue_delay_ = 0.0;  // [s], longest since the last status
   InstanceMonitor instances_;
   RateLimitedLog warnings_;
+  std::shared_ptr<const SeaPeriod> newest_sea_;  // the last received one that warnings_ has been told about
   SystemdNotifier systemd_;
   std::optional<FaultySender> faults_;  // nullopt: the service behaves
   ServiceCounters reported_;

@@ -14,6 +14,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -60,6 +62,10 @@ class RequestHandler {
   // Receives a sea_state_t for a scene whose waves are received (Scene::receives_sea()); see SeaTimeline.
   // Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
   Expected<void> receive_sea(Bytes message);
+  // The one that holds for the latest requests; nullptr: none has been received.
+  std::shared_ptr<const SeaPeriod> newest_sea() const {
+    return water_.sea_at(std::numeric_limits<std::int64_t>::max());
+  }
   // For a replay that divides a recording: replaces the seas received so far; takes over and counts one more
   // received sea, with those before it; counts a sea that could not be used.
   void set_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)); }

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -118,7 +119,12 @@ std::string system_text(const WaveSystemReport& system) {
     text += system.type == "regular" ? ", period " : ", peak period ";
     text += format_rounded(system.peak->period) + " s";
     if (system.type == "components") text += " (calculated)";
+    if (system.zero_crossing_period) text += ", Tz " + format_rounded(*system.zero_crossing_period) + " s";
     text += ", steepness " + format_rounded(system.peak->steepness);
+  }
+  if (system.breaking) {
+    const double share = system.breaking->height / system.breaking->limit;
+    text += " (" + std::to_string(std::lround(100.0 * share)) + " % of breaking)";
   }
   if (system.gamma) {
     text += ", gamma " + format_rounded(*system.gamma);
@@ -127,19 +133,34 @@ std::string system_text(const WaveSystemReport& system) {
   return text;
 }
 
+// [s], of each system.
+std::vector<double> repeat_times(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
+  std::vector<double> times;
+  std::span<const WaveComponent> rest = sea.components();
+  for (const WaveSystemReport& system : systems) {
+    times.push_back(repeat_time(rest.first(system.components)));
+    rest = rest.subspan(system.components);
+  }
+  return times;
+}
+
+std::string repeats_text(double time) {
+  return std::isinf(time) ? "does not repeat within " + format_rounded(kRepeatSearch) + " mean periods"
+                          : "repeats after " + format_rounded(time) + " s";
+}
+
 std::string sea_text(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
   std::string text =
       "sea  " + pluralize(static_cast<std::int64_t>(systems.size()), "wave system", "wave systems");
   text += "\n";
+  const std::vector<double> repeats = repeat_times(sea, systems);
   for (std::size_t i = 0; i < systems.size(); ++i) {
     std::string label = "  system " + std::to_string(i + 1);
     label.resize(std::max<std::size_t>(16, label.size() + 1), ' ');
-    text += label + system_text(systems[i]) + "\n";
+    text += label + system_text(systems[i]) + ", " + repeats_text(repeats[i]) + "\n";
   }
-  text += "  together      " +
-          pluralize(static_cast<std::int64_t>(sea.components().size()), "component", "components") + ", Hs " +
-          format_rounded(sea.significant_wave_height()) + " m, shortest wave " +
-          format_rounded(shortest_wavelength(sea)) + " m\n";
+  text += "  together      " + system_text(report_components(sea)) + ", shortest wave " +
+          format_rounded(shortest_wavelength(sea)) + " m, " + repeats_text(std::ranges::max(repeats)) + "\n";
   text += "  depth         " +
           (std::isinf(sea.depth()) ? "inf: deep water" : format_number(sea.depth()) + " m") + "\n";
   text += "  pressure      " + std::string(to_string(sea.pressure())) + "\n";
@@ -169,8 +190,9 @@ Json to_json(const Water& water) {
           {"gravity", water.gravity}};
 }
 
-Json to_json(const WaveSystemReport& system) {
+Json to_json(const WaveSystemReport& system, double repeat_time) {
   const std::optional<PeakWave>& peak = system.peak;
+  const std::optional<Breaking>& breaking = system.breaking;
   return {{"type", system.type},
           {"components", system.components},
           {"height", system.height},
@@ -178,13 +200,20 @@ Json to_json(const WaveSystemReport& system) {
           {"peak_period", peak ? Json(peak->period) : Json(nullptr)},
           {"peak_wavelength", peak ? Json(peak->wavelength) : Json(nullptr)},
           {"steepness", peak ? Json(peak->steepness) : Json(nullptr)},
+          {"breaking_ratio", breaking ? Json(breaking->height / breaking->limit) : Json(nullptr)},
+          {"zero_crossing_period", to_json(system.zero_crossing_period)},
+          {"m0", system.m0},
+          {"m1", system.m1},
+          {"m2", system.m2},
+          {"repeat_time", repeat_time},
           {"gamma", to_json(system.gamma)},
           {"gamma_is_default", system.gamma_is_default}};
 }
 
 Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
+  const std::vector<double> repeats = repeat_times(sea, reports);
   Json systems = Json::array();
-  for (const WaveSystemReport& report : reports) systems.push_back(to_json(report));
+  for (std::size_t i = 0; i < reports.size(); ++i) systems.push_back(to_json(reports[i], repeats[i]));
   Json components = Json::array();
   for (const WaveComponent& component : sea.components()) {
     components.push_back({{"amplitude", component.amplitude},
@@ -200,6 +229,7 @@ Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
           {"shortest_wavelength", shortest_wavelength(sea)},
           {"extreme_steepness", sea.extreme_steepness()},
           {"systems", std::move(systems)},
+          {"together", to_json(report_components(sea), std::ranges::max(repeats))},
           {"components", std::move(components)}};
 }
 
@@ -343,18 +373,10 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 std::vector<Warning> scene_warnings(const Scene& scene) {
   std::vector<Warning> warnings = coefficient_warnings(scene);
   std::ranges::move(subdivision_warnings(scene), std::back_inserter(warnings));
-  const Sea* sea = scene.sea();
-  if (sea == nullptr || !sea->is_too_steep()) return warnings;
-  warnings.insert(
-      warnings.begin(),
-      {scene.name() + ": the sea",
-       "a steepness of " + format_rounded(sea->extreme_steepness()) +
-           " (4 sqrt(sum (a k)^2 / 2), or sum a k where that is less)",
-       "less than 1: under the steepest crests the modelled pressure falls downwards, since linear theory "
-       "does not hold there",
-       "waves too high for their length, or the short waves of a spectrum with a high cutoff",
-       "Use lower or longer waves, or a lower cutoff"});
-  return warnings;
+  if (scene.sea() == nullptr) return warnings;
+  std::vector<Warning> of_sea = sea_warnings(scene.name(), *scene.sea(), scene.wave_systems());
+  std::ranges::move(warnings, std::back_inserter(of_sea));
+  return of_sea;
 }
 
 }  // namespace buoyancy

@@ -31,9 +31,11 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // "sea" is null if the water is at rest, and {"received": true} if waves are received. Else it holds "depth"
 // (null: deep), "wave_pressure", "time_origin" and "ramp" as in the scene file; "significant_wave_height" of
 // all systems together, "shortest_wavelength", "extreme_steepness" (Sea::extreme_steepness()); "systems" (the
-// fields of WaveSystemReport by name, those of its peak as "peak_period", "peak_wavelength" and "steepness");
-// and "components", all systems' one after the other, with the keys of the scene file. Every number parses to
-// the double that is used.
+// fields of WaveSystemReport by name, those of its peak as "peak_period", "peak_wavelength" and "steepness",
+// "breaking_ratio", of the height over that at which such waves break, and "repeat_time" [s], null if it is
+// infinite, see repeat_time()); "together", the same of report_components(), which repeats when the last
+// system does; and "components", all systems' one after the other, with the keys of the scene file. Every
+// number parses to the double that is used.
 //
 // Only where the scene has them: "current" of "water" [m/s]; "drag" and "added_mass" of a body, with the keys
 // of the scene file; and with options.motions "motions" of a body
@@ -52,7 +54,7 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // exist only where the scene has them.
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
-// Warnings about a scene that can be used: a sea that is too steep for linear theory; a full quadratic drag
+// Warnings about a scene that can be used: those of sea_warnings(); a full quadratic drag
 // matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
 // or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the
 // mesh's diagonal; coefficients that are too large for the mesh; parts, compartments and tanks that overlap,

@@ -1,18 +1,20 @@
-// What buoyancyd --check reports about the wave systems of a sea.
+// What buoyancyd --check and the log report about the wave systems of a sea.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "waves/sea.h"
 
 namespace buoyancy {
 
 // The wave that stands for a system: of a regular wave the wave itself, of a spectrum its peak, and of
-// components the calculated peak period 2 pi m_-2 m_1 / m_0^2, from the moments m_n = sum a^2 w^n / 2, since
-// their energy need not have a peak.
+// components the calculated peak period 2 pi m_-2 m_1 / m_0^2, since their energy need not have a peak.
 struct PeakWave {
   double period = 0.0;      // [s]
   double wavelength = 0.0;  // [m], in the water's depth
@@ -20,17 +22,45 @@ struct PeakWave {
   double steepness = 0.0;
 };
 
+// The height at which waves break, by the criterion that a system is nearest to.
+struct Breaking {
+  double height = 0.0;         // [m], of the system, or of one of its components
+  double limit = 0.0;          // [m]
+  std::string_view criterion;  // the limit's formula and source
+};
+
 struct WaveSystemReport {
   std::string_view type;                 // "regular", "jonswap", "pierson_moskowitz", "components"
   std::size_t components = 0;            // number of them
   double height = 0.0;                   // [m], of a regular wave from crest to trough, else significant
-  double significant_wave_height = 0.0;  // [m], of the components: 4 sqrt(sum a^2 / 2)
+  double significant_wave_height = 0.0;  // [m], of the components: 4 sqrt(m_0)
+  double m0 = 0.0, m1 = 0.0, m2 = 0.0;   // [m^2 (rad/s)^n], the moments m_n = sum a^2 w^n / 2
   std::optional<double> gamma;           // of a spectrum, as used
   bool gamma_is_default = false;
-  std::optional<PeakWave> peak;  // nullopt for components without energy
+  // Nullopt for components without energy.
+  std::optional<PeakWave> peak;
+  std::optional<double> zero_crossing_period;  // [s], Tz = 2 pi sqrt(m_0 / m_2)
+  std::optional<Breaking> breaking;
 };
 
 // One report per system. sea: made of this description. Complexity: O(components).
 std::vector<WaveSystemReport> report_wave_systems(const SeaDescription& description, const Sea& sea);
+// Of all components of a sea as one system of components.
+WaveSystemReport report_components(const Sea& sea);
+
+// [s], the time after which the record of these waves resembles its beginning, at a point that drifts with
+// the current: the first time after its initial decay at which the envelope of the autocorrelation of the
+// elevation, |sum a^2 exp(i w t)| / sum a^2, exceeds kRepeatCorrelation. Waves whose envelope never decays
+// below it, such as a regular wave, repeat after their mean period 2 pi m_0 / m_1. Infinity: not within
+// kRepeatSearch mean periods, or no energy. Complexity: O(components), about 50 us per component.
+inline constexpr double kRepeatCorrelation = 1.0 / 3.0;
+inline constexpr double kRepeatSearch = 5000.0;
+double repeat_time(std::span<const WaveComponent> components);
+
+// Warnings about a sea that is higher than waves get before they break, and about one that is too steep for
+// linear theory (Sea::is_too_steep()). systems: reports of the sea's systems, empty for a received sea, which
+// is one of components. subject: what the sea is of, such as the scene's name.
+std::vector<Warning> sea_warnings(const std::string& subject, const Sea& sea,
+                                  std::span<const WaveSystemReport> systems);
 
 }  // namespace buoyancy

@@ -186,6 +186,17 @@ TEST(SceneReport, WritesTheSeaAsJson) {
   EXPECT_NEAR(jonswap["steepness"].get<double>() * jonswap["peak_wavelength"].get<double>(), 2.0, 1e-14);
   EXPECT_EQ(jonswap["gamma"], scene.wave_systems()[0].gamma);
   EXPECT_EQ(jonswap["gamma_is_default"], true);
+  EXPECT_EQ(jonswap["m0"], scene.wave_systems()[0].m0);
+  EXPECT_EQ(jonswap["m1"], scene.wave_systems()[0].m1);
+  EXPECT_EQ(jonswap["m2"], scene.wave_systems()[0].m2);
+  EXPECT_EQ(jonswap["zero_crossing_period"], *scene.wave_systems()[0].zero_crossing_period);
+  EXPECT_EQ(jonswap["breaking_ratio"],
+            scene.wave_systems()[0].breaking->height / scene.wave_systems()[0].breaking->limit);
+  EXPECT_EQ(jonswap["repeat_time"], nullptr);
+  EXPECT_NEAR(sea["systems"][1]["repeat_time"].get<double>(), 12.5, 1e-12);
+  EXPECT_EQ(sea["together"]["components"], 203);
+  EXPECT_EQ(sea["together"]["m0"], report_components(*scene.sea()).m0);
+  EXPECT_EQ(sea["together"]["repeat_time"], nullptr);
   EXPECT_EQ(sea["systems"][1]["type"], "regular");
   EXPECT_EQ(sea["systems"][1]["height"], 1.0);
   EXPECT_EQ(sea["systems"][1]["gamma"], nullptr);
@@ -249,11 +260,11 @@ TEST(SceneReport, ComponentsReadAgainGiveTheSameSea) {
 TEST(SceneReport, FormatsTheSeaAsText) {
   const std::string text = scene_report_text(prepared(kSea));
   for (const char* expected :
-       {"\nsea  3 wave systems\n",
-        "  system 1      jonswap, 200 components, Hs 2 m, peak period 8 s, steepness ",
-        "gamma 1 (from Hs and peak period)\n",
-        "  system 2      regular, 1 component, height 1 m, period 12.5 s",
-        "  system 3      2 components, Hs 0.6325 m, peak period ", " s (calculated), steepness ",
+       {"\nsea  3 wave systems\n", "  system 1      jonswap, 200 components, Hs 2 m, peak period 8 s, Tz ",
+        " % of breaking), gamma 1 (from Hs and peak period), ",
+        "  system 2      regular, 1 component, height 1 m, period 12.5 s, Tz 12.5 s, steepness ",
+        "does not repeat within 5000 mean periods\n", "repeats after 12.5 s\n",
+        "  system 3      2 components, Hs 0.6325 m, peak period ", " s (calculated), Tz ",
         "  together      203 components, Hs ", "shortest wave ", "  depth         40 m\n",
         "  pressure      hydrostatic\n", "  time          t = 0 at utime 1772000000000001 us, ramp of 15 s\n",
         "  components    listed by --check --json\n"}) {
@@ -272,8 +283,10 @@ TEST(SceneReport, WarnsAboutASeaTooSteepForLinearTheory) {
         "[water.waves]\ntype = \"regular\"\nperiod = 2\nheight = " + format_shortest(height) + "\n")));
   };
   EXPECT_TRUE(scene_warnings(prepared(kThreeBodies)).empty());
-  EXPECT_TRUE(warnings(1.95).empty());
-  ASSERT_EQ(warnings(2.05).size(), 1U);
+  EXPECT_TRUE(warnings(0.85).empty());
+  ASSERT_EQ(warnings(1.95).size(), 1U);
+  EXPECT_EQ(warnings(1.95)[0].subject, "pool.toml: wave system 1") << "breaks";
+  ASSERT_EQ(warnings(2.05).size(), 2U);
   EXPECT_EQ(warnings(2.05)[0].message().rfind("pool.toml: the sea: a steepness of 1.032 ", 0), 0U)
       << warnings(2.05)[0].message();
 }

@@ -14,7 +14,9 @@ namespace buoyancy {
 namespace {
 
 const std::string kSwell = "depth = 30.0\nwaves = { type = \"regular\", height = 0.5, period = 5.0 }\n";
-const std::string kHigherSwell = "waves = { type = \"regular\", height = 0.8, period = 5.0 }\n";
+const std::string kHigherSwell =
+    "waves = { type = \"regular\", height = 0.8, period = 5.0 }\ncurrent = { velocity = [0.5, 0.2, 0.1] }\n";
+const std::string kBreakingWave = "waves = { type = \"regular\", height = 7.9, period = 4.0 }\n";
 
 void send_sea(RawLcmSocket& socket, const SeaState& sea) {
   socket.send("BUOYANCY_SEA", encoded(sea));
@@ -86,6 +88,17 @@ TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
   // The service logs warnings after it has published the status that counts them.
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
   EXPECT_NE(service.log().find("gravity = 9.81"), std::string::npos) << service.log();
+
+  send_sea(socket, sea_of(kBreakingWave, 77));
+  ASSERT_TRUE(
+      wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.seas_received > 1; }));
+  ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
+  EXPECT_NE(service.log().find("at which such waves break"), std::string::npos) << service.log();
+}
+
+TEST(ServiceInWaves, LogsThatTheWavesOfItsSceneWouldBreak) {
+  const RunningService service({}, box_in(kBreakingWave));
+  EXPECT_NE(service.log().find("at which such waves break"), std::string::npos) << service.log();
 }
 
 TEST(ServiceInWaves, PublishesNoSeaThatItReceives) {
