@@ -28,7 +28,8 @@ namespace buoyancy {
 struct DropCounts {
   std::int64_t packets = 0;    // of any channel, dropped by the kernel because its receive buffer was full
   std::int64_t fragments = 0;  // of incomplete or inconsistent messages on the subscribed channels
-  std::int64_t oversized_messages = 0;  // larger than kMaxMessageBytes, on the subscribed channels
+  std::int64_t partial_messages_evicted = 0;  // incomplete ones, to keep within the limits of LcmReassembler
+  std::int64_t oversized_messages = 0;        // larger than kMaxMessageBytes, on the subscribed channels
 };
 
 class UdpmReceiver {
@@ -76,7 +77,8 @@ class UdpmReceiver {
 
   int fileno() const { return socket_.value(); }  // readable when a packet of any channel is pending
   DropCounts drop_counts() const {
-    return {packets_dropped_, reassembler_.fragments_dropped(), reassembler_.oversized_messages()};
+    return {packets_dropped_, reassembler_.fragments_dropped(), reassembler_.partial_messages_evicted(),
+            reassembler_.oversized_messages()};
   }
 
  private:

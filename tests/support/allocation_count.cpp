@@ -10,9 +10,13 @@ namespace {
 constexpr std::size_t kUsualAlignment = alignof(std::max_align_t);
 
 std::atomic<std::int64_t> allocations{0};
+std::atomic<std::int64_t> allocated_bytes{0};
+std::atomic<std::int64_t> failing_allocation{0};  // number of the call that fails; 0: none
 
 void* allocate_or_null(std::size_t size, std::size_t alignment = kUsualAlignment) noexcept {
-  allocations.fetch_add(1, std::memory_order_relaxed);
+  const std::int64_t number = allocations.fetch_add(1, std::memory_order_relaxed) + 1;
+  allocated_bytes.fetch_add(static_cast<std::int64_t>(size), std::memory_order_relaxed);
+  if (number == failing_allocation.load(std::memory_order_relaxed)) return nullptr;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   return std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
 }
@@ -97,6 +101,22 @@ namespace buoyancy {
 
 std::int64_t AllocationCount::total() {
   return allocations.load(std::memory_order_relaxed);
+}
+
+std::int64_t AllocationCount::total_bytes() {
+  return allocated_bytes.load(std::memory_order_relaxed);
+}
+
+FailingAllocation::FailingAllocation(std::int64_t n) {
+  failing_allocation = allocations + n;
+}
+
+FailingAllocation::~FailingAllocation() {
+  failing_allocation = 0;
+}
+
+bool FailingAllocation::has_failed() const {
+  return allocations >= failing_allocation;
 }
 
 }  // namespace buoyancy

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <unistd.h>
 
 #include "tests/service/raw_lcm.h"
+#include "tests/support/allocation_count.h"
+#include "tests/support/process_memory.h"
 
 namespace buoyancy {
 namespace {
@@ -143,15 +146,90 @@ TEST(LcmReassembler, DropsFragmentsWithGapsOrOverlaps) {
   }
 }
 
-TEST(LcmReassembler, DiscardsOldestPartialMessageIfFull) {
+// A first fragment of a message that never arrives: 37 bytes that announce the largest message.
+RawBytes forged_fragment(int number) {
+  RawBytes packet;
+  append(packet, kFragment, 4);
+  append(packet, static_cast<std::uint64_t>(number), 4);
+  append(packet, kMaxMessageBytes, 4);
+  append(packet, 0, 4);
+  append(packet, 0, 2);
+  append(packet, 0xffff, 2);
+  append(packet, "A");
+  append(packet, 0, 15);
+  return packet;
+}
+
+TEST(LcmReassembler, EvictsTheMessageWithoutProgressIfFull) {
+  constexpr int kForged = 10 * static_cast<int>(LcmReassembler::kMaxPartialMessages);
   LcmReassembler reassembler = subscribed_to({"A"});
-  for (std::uint64_t sender = 0; sender < 100; ++sender) {
-    EXPECT_FALSE(reassembler.push(fragments("A", counting(1'000), 600, 1)[0], sender));
+  const RawBytes payload = counting(100'000);
+  const auto honest = fragments("A", payload, 1'000, 1);
+  std::uint64_t forger = 1;
+  for (std::size_t i = 0; i + 1 < honest.size(); ++i) {
+    EXPECT_FALSE(reassembler.push(honest[i], 0));
+    for (int n = 0; n < kForged / 100; ++n) EXPECT_FALSE(reassembler.push(forged_fragment(n), ++forger));
   }
-  EXPECT_EQ(reassembler.fragments_dropped(),
-            100 - static_cast<std::int64_t>(LcmReassembler::kMaxPartialMessages));
-  EXPECT_FALSE(reassembler.push(fragments("A", counting(1'000), 600, 1)[1], 0));
-  EXPECT_TRUE(holds(reassembler.push(fragments("A", counting(1'000), 600, 1)[1], 99), 0, counting(1'000)));
+  EXPECT_TRUE(holds(reassembler.push(honest.back(), 0), 0, payload));
+  EXPECT_GT(reassembler.partial_messages_evicted(), 1'000);
+  EXPECT_EQ(reassembler.fragments_dropped(), reassembler.partial_messages_evicted());
+}
+
+TEST(LcmReassembler, AllocatesNoMoreThanWhatHasArrived) {
+  LcmReassembler reassembler = subscribed_to({"A"});
+  const AllocationCount allocations;
+  for (std::uint64_t sender = 0; sender < 1'000; ++sender) reassembler.push(forged_fragment(1), sender);
+  EXPECT_LT(allocations.bytes(), 1'000'000);
+}
+
+TEST(LcmReassembler, KeepsPartialMessagesWithinTheirMemory) {
+  // All but the last fragment of messages of 16 MB.
+  constexpr std::size_t kFragmentBytes = 60'000;
+  LcmReassembler reassembler = subscribed_to({"A"});
+  const RawBytes payload = counting(kMaxMessageBytes);
+  const auto packets = fragments("A", payload, kFragmentBytes, 1);
+  const std::int64_t before = resident_kb(::getpid());
+  for (std::uint64_t sender = 0; sender < 10; ++sender) {
+    for (std::size_t i = 0; i + 1 < packets.size(); ++i) reassembler.push(packets[i], sender);
+  }
+  EXPECT_LE(resident_kb(::getpid()) - before,
+            2 * static_cast<std::int64_t>(LcmReassembler::kMaxPartialBytes) / 1'024);
+  EXPECT_GE(reassembler.partial_messages_evicted(), 6);
+  EXPECT_TRUE(holds(reassembler.push(packets.back(), 9), 0, payload));
+}
+
+TEST(LcmReassembler, LosesAMessageForWhichThereIsNoMemory) {
+  const RawBytes payload = counting(100'000);
+  const auto packets = fragments("A", payload, 10'000, 1);
+  for (std::int64_t n = 1; n < 100; ++n) {
+    LcmReassembler reassembler = subscribed_to({"A"});
+    bool has_failed = false;
+    bool complete = false;
+    {
+      const FailingAllocation failing(n);
+      for (const RawBytes& packet : packets) complete = reassembler.push(packet, 1).has_value();
+      has_failed = failing.has_failed();
+    }
+    EXPECT_NE(complete, has_failed) << n;
+    if (!has_failed) return;
+    EXPECT_GT(reassembler.fragments_dropped(), 0) << n;
+    for (const RawBytes& packet : packets) complete = reassembler.push(packet, 1).has_value();
+    EXPECT_TRUE(complete) << n;
+  }
+  FAIL() << "never without a failure";
+}
+
+TEST(LcmReassembler, DropsFragmentsThatExceedTheirMessage) {
+  LcmReassembler reassembler = subscribed_to({"A"});
+  auto some = fragments("A", counting(1'000), 400, 1);
+  some[2] = some[1];
+  some[2][17] = 2;  // the number of the fragment
+  EXPECT_FALSE(reassembler.push(some[0], 1));
+  EXPECT_FALSE(reassembler.push(some[1], 1));
+  EXPECT_FALSE(reassembler.push(some[1], 1));  // a duplicate is none
+  EXPECT_EQ(reassembler.fragments_dropped(), 0);
+  EXPECT_FALSE(reassembler.push(some[2], 1));
+  EXPECT_GT(reassembler.fragments_dropped(), 0);
 }
 
 TEST(LcmReassembler, RejectsOversizedMessages) {
