@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/format.h"
+#include "service/daemon/budgets.h"
 
 namespace buoyancy::service {
 
@@ -57,29 +58,47 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
           {fmt::format("bodies with status {}", to_string(status)), increase, remedy_for(status)});
     }
   }
-  struct InWaves {
+  struct Growth {
     std::int64_t ServiceCounters::*counter;
-    const char* message;
-    const char* remedy;
+    std::string message;
+    std::string remedy;
   };
-  constexpr std::array kInWaves{
-      InWaves{&ServiceCounters::seas_rejected, "seas rejected",
-              "likely cause: their sender is of another version, or does not agree with the scene about up, "
-              "gravity or the current"},
-      InWaves{
-          &ServiceCounters::bodies_work_capped, "bodies in waves with an error bound above their tolerance",
-          "likely cause: a tolerance below what bodies this large allow in waves this short; the bound in "
-          "the response holds. Raise the tolerance, or lower the waves' cutoff"},
-      InWaves{&ServiceCounters::bodies_sea_too_steep, "bodies in a sea too steep for linear theory",
-              "likely cause: high waves with too many short ones on top. Lower the height or the cutoff, or "
-              "lengthen the period; buoyancyd --check reports the steepness"},
-      InWaves{&ServiceCounters::bodies_below_bed, "bodies that reach below the sea bed",
-              "the bed does not hold them, and the waves below it are those at the bed. Likely cause: a body "
-              "that "
-              "sinks, or a depth or level that is not in metres"}};
-  for (const InWaves& in_waves : kInWaves) {
-    const std::int64_t increase = now.*in_waves.counter - before.*in_waves.counter;
-    if (increase > 0) warnings.push_back({in_waves.message, increase, in_waves.remedy});
+  const std::array growths{
+      Growth{&ServiceCounters::seas_rejected, "seas rejected",
+             "likely cause: their sender is of another version, or does not agree with the scene about up, "
+             "gravity or the current"},
+      Growth{&ServiceCounters::bodies_work_capped,
+             "bodies in waves with an error bound above their tolerance",
+             "likely cause: a tolerance below what bodies this large allow in waves this short; the bound in "
+             "the response holds. Raise the tolerance, or lower the waves' cutoff"},
+      Growth{&ServiceCounters::bodies_sea_too_steep, "bodies in a sea too steep for linear theory",
+             "likely cause: high waves with too many short ones on top. Lower the height or the cutoff, or "
+             "lengthen the period; buoyancyd --check reports the steepness"},
+      Growth{&ServiceCounters::bodies_below_bed, "bodies that reach below the sea bed",
+             "the bed does not hold them, and the waves below it are those at the bed. Likely cause: a body "
+             "that sinks, or a depth or level that is not in metres"},
+      Growth{&ServiceCounters::rejected_bodies,
+             fmt::format("requests rejected, more than {} bodies more than the scene has", kMaxExtraBodies),
+             "a request repeats bodies, or names unknown ones: distribute them over several requests"},
+      Growth{&ServiceCounters::rejected_work,
+             fmt::format("requests rejected, computed for more than {} s", kMaxComputing.count()),
+             "distribute the bodies over several requests, or raise their tolerance"},
+      Growth{
+          &ServiceCounters::rejected_busy,
+          fmt::format("requests rejected, {} others take more than {} ms and {} or {} MB of them wait",
+                      RequestHandler::kMaxInProgress, kSlice.count(), kMaxWaiting, kMaxWaitingBytes >> 20U),
+          "too many clients send requests this large: their retries are answered when there is time"},
+      Growth{&ServiceCounters::rejected_memory, "messages rejected, out of memory",
+             "give the service more memory (MemoryMax of the unit, ulimit -v), or a smaller scene"},
+      Growth{&ServiceCounters::outputs_too_large,
+             fmt::format("hydrostatics or loads of more than {} bytes not sent", kMaxMessageBytes),
+             "the response was sent; distribute the bodies over several requests"},
+      Growth{&ServiceCounters::replies_evicted,
+             fmt::format("stored replies discarded to stay within {} MB", kMaxRetainedBytes >> 20U),
+             "a retry of such a request is computed again; too many sessions send requests this large"}};
+  for (const Growth& growth : growths) {
+    const std::int64_t increase = now.*growth.counter - before.*growth.counter;
+    if (increase > 0) warnings.push_back({growth.message, increase, growth.remedy});
   }
   return warnings;
 }
@@ -95,6 +114,13 @@ std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts&
     warnings.push_back({fmt::format("messages of more than {} bytes dropped", kMaxMessageBytes),
                         now.oversized_messages - before.oversized_messages,
                         "let their sender distribute the bodies over several requests"});
+  }
+  if (now.partial_messages_evicted > before.partial_messages_evicted) {
+    warnings.push_back(
+        {fmt::format("incomplete messages discarded, more than {} or {} MB of them at a time",
+                     LcmReassembler::kMaxPartialMessages, LcmReassembler::kMaxPartialBytes >> 20U),
+         now.partial_messages_evicted - before.partial_messages_evicted,
+         "a program sends fragments of messages that it does not complete"});
   }
   if (now.fragments > before.fragments) {
     warnings.push_back(

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <random>
 #include <span>
 #include <system_error>
@@ -20,6 +21,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
+#include "service/daemon/budgets.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
 #include "waves/sea_report.h"
@@ -32,6 +34,10 @@ constexpr int kIgnored = -1;       // a descriptor that poll() skips
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kMaxWait = 3600.0;  // [s]
 constexpr std::size_t kMaxSessions = RequestHandlerOptions{}.max_sessions;
+
+Deadline end_of_slice() {
+  return std::chrono::steady_clock::now() + kSlice;
+}
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -88,13 +94,16 @@ Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Ser
       mode_(mode),
       channels_(std::move(channels)),
       connection_(std::move(connection)),
-      handler_(*scene_, {.max_sessions = kMaxSessions, .threads = threads}),
+      handler_(*scene_, {.max_sessions = kMaxSessions, .threads = threads, .budgets = kBudgets}),
       poses_(std::move(poses), random_id()),
-      latest_(kMaxSessions),
+      latest_(kMaxSessions, kMaxWaitingBytes),
+      waiting_(kMaxWaiting, kMaxWaitingBytes),
       start_(seconds_now()),
       instance_id_(random_id()),
       instances_(instance_id_),
-      reported_without_velocities_(poses_.channels().size()) {}
+      reported_without_velocities_(poses_.channels().size()) {
+  arrivals_.reserve(RequestHandler::kMaxInProgress);
+}
 
 void Daemon::inject_faults(const FaultOptions& options) {
   faults_.emplace(options, seconds_now(), [this](const Reply& reply) { publish_reply(reply); });
@@ -112,26 +121,29 @@ Expected<void> Daemon::subscribe() {
   Expected<void> subscribed =
       connection_.subscribe(channels_.states, [this](Bytes request, std::string_view) {
         record_queue_delay();
-        on_request(request);
+        guard([&] { on_request(request); });
       });
   for (std::size_t i = 0; subscribed && i < poses_.channels().size(); ++i) {
-    subscribed = connection_.subscribe(poses_.channels()[i].channel,
-                                       [this, i](Bytes pose, std::string_view) { on_pose(i, pose); });
+    subscribed = connection_.subscribe(poses_.channels()[i].channel, [this, i](Bytes pose, std::string_view) {
+      guard([&] { on_pose(i, pose); });
+    });
   }
   if (!subscribed) return subscribed;
-  subscribed =
-      connection_.subscribe(channels_.sea, [this](Bytes message, std::string_view) { on_sea(message); });
+  subscribed = connection_.subscribe(
+      channels_.sea, [this](Bytes message, std::string_view) { guard([&] { on_sea(message); }); });
   if (subscribed) subscribed = subscribe_to_conditions();
   if (!subscribed) return subscribed;
-  return connection_.subscribe(channels_.status,
-                               [this](Bytes status, std::string_view) { instances_.observe(status); });
+  return connection_.subscribe(channels_.status, [this](Bytes status, std::string_view) {
+    guard([&] { instances_.observe(status); });
+  });
 }
 
 Expected<void> Daemon::subscribe_to_conditions() {
   if (receives_conditions_ || scene_->bodies_with_subdivision() == 0) return {};
   receives_conditions_ = true;
-  return connection_.subscribe(channels_.condition,
-                               [this](Bytes message, std::string_view) { on_condition(message); });
+  return connection_.subscribe(channels_.condition, [this](Bytes message, std::string_view) {
+    guard([&] { on_condition(message); });
+  });
 }
 
 void Daemon::prepare_for_messages() {
@@ -182,13 +194,15 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   publish_status();
   systemd_.ready();
 
+  bool has_worked = false;
   while (true) {
     const bool stalled = is_stalled();
     if (faults_) descriptors.back().fd = stalled ? kIgnored : connection_.fileno();
+    const bool works = has_work() && !stalled;
     bool handled = false;
-    if (latest_.empty() && !stalled) handled = connection_.handle_one_spinning();
+    if (latest_.empty() && !works && !stalled) handled = connection_.handle_one_spinning();
     double max_wait = faults_ ? faults_->wait(seconds_now()) : kForever;
-    if (handled || (!latest_.empty() && !stalled)) max_wait = 0.0;
+    if (handled || works || (!latest_.empty() && !stalled)) max_wait = 0.0;
     if (poll_for(descriptors, max_wait) < 0) {
       if (errno == EINTR) continue;  // interrupted, e.g. by SIGSTOP/SIGCONT or a debugger
       return make_error(
@@ -197,13 +211,23 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (stop_signal.revents != 0) break;
     if (reload_signal.revents != 0 && reload.consume()) begin_reload();
     if (loaded.revents != 0) end_reload();
-    if (status_due.revents != 0 && consume_expiration(status_timer)) publish_status();
+    if (status_due.revents != 0 && consume_expiration(status_timer)) guard([&] { publish_status(); });
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (faults_) faults_->send_due(seconds_now());
-    if (messages.revents != 0) receive();
-    handle_next();
+    has_worked = works && !has_worked;
+    guard([&] {
+      if (has_worked) {
+        work();
+      } else {
+        handle_messages(messages.revents != 0);
+      }
+    });
   }
   systemd_.stopping();
+  if (handler_.in_progress() > 0) {
+    spdlog::warn("not answered, because they take several slices of time: {}",
+                 pluralize(static_cast<std::int64_t>(handler_.in_progress()), "request", "requests"));
+  }
   if (faults_) faults_->send_all();
   publish_status();
   spdlog::info("received {}, exiting; {}", termination.consume(),
@@ -215,10 +239,43 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   return {};
 }
 
-void Daemon::receive() {
-  const int max_messages = mode_ == ServiceMode::kLatest ? kMaxDrained : 1;
-  for (int received = 0; received < max_messages && connection_.handle_one(); ++received) {
+template <typename Task>
+void Daemon::guard(const Task& task) {
+  try {
+    task();
+  } catch (const std::bad_alloc&) {
+    handler_.record_no_memory();
   }
+}
+
+void Daemon::handle_messages(bool have_arrived) {
+  const bool works = has_work();
+  const Deadline end = end_of_slice();
+  const int max_messages = mode_ == ServiceMode::kLatest || works ? kMaxDrained : 1;
+  for (int received = 0; have_arrived && received < max_messages && connection_.handle_one(); ++received) {
+    if (has_passed(end)) break;
+  }
+  while (handle_next() && works && !has_passed(end)) {
+  }
+}
+
+bool Daemon::has_work() const {
+  return handler_.in_progress() > 0 || !waiting_.empty();
+}
+
+void Daemon::work() {
+  const auto has_room = [this](std::int64_t session_id) { return handler_.has_room_for(session_id); };
+  if (waiting_.pop_next(has_room,
+                        [this](Bytes request, double arrival) { handle(request, arrival, false); })) {
+    return;
+  }
+  const std::int64_t session_id = handler_.next_session_id();
+  const RequestHandler::Step step = handler_.resume(end_of_slice());
+  if (step == RequestHandler::Step::kStarted) return;
+  const auto arrival = std::ranges::find(arrivals_, session_id, &Arrival::session_id);
+  const double time = arrival->time;
+  arrivals_.erase(arrival);
+  if (step == RequestHandler::Step::kAnswered) send_reply(time);
 }
 
 void Daemon::record_queue_delay() {
@@ -228,11 +285,15 @@ void Daemon::record_queue_delay() {
 }
 
 void Daemon::on_request(Bytes request) {
-  if (mode_ == ServiceMode::kLockstep) {
-    handle(request, seconds_now());
-  } else {
-    enqueue(request, seconds_now());
+  if (mode_ == ServiceMode::kLatest) return enqueue(request, seconds_now());
+  if (has_work()) {
+    // It is behind others, or would take a slice in which quick requests wait.
+    const auto id = peek_request_id(request);
+    const bool waits = id && (waiting_.contains(id->session_id) || handler_.is_slow(id->session_id)) &&
+                       !handler_.is_retry(id->session_id, request);
+    if (waits) return wait(request, seconds_now());
   }
+  handle(request, seconds_now(), true);
 }
 
 void Daemon::on_pose(std::size_t channel, Bytes pose) {
@@ -273,7 +334,7 @@ void Daemon::on_condition(Bytes message) {
 void Daemon::enqueue(Bytes request, double arrival) {
   const auto id = peek_request_id(request);
   if (!id) {
-    handle(request, arrival);  // rejects it and counts the cause
+    handle(request, arrival, false);  // rejects it and counts the cause
     return;
   }
   LatestRequestQueue::PushResult result = latest_.push(*id, request, arrival);
@@ -283,21 +344,50 @@ void Daemon::enqueue(Bytes request, double arrival) {
   }
   if (result == LatestRequestQueue::PushResult::kReplaced) handler_.record_superseded();
   if (result == LatestRequestQueue::PushResult::kStale) handler_.record_stale();
+  if (result == LatestRequestQueue::PushResult::kFull) handler_.record_busy();
 }
 
-void Daemon::handle_next() {
-  latest_.pop_next([this](Bytes request, double arrival) { handle(request, arrival); });
+bool Daemon::handle_next() {
+  return latest_.pop_next(
+      [this, works = has_work()](std::int64_t session_id) {
+        return handler_.has_room_for(session_id) && !(works && handler_.is_slow(session_id));
+      },
+      [this](Bytes request, double arrival) { handle(request, arrival, false); });
 }
 
-void Daemon::handle(Bytes request, double arrival) {
+void Daemon::wait(Bytes request, double arrival) {
+  switch (waiting_.push(peek_request_id(request).value().session_id, request, arrival)) {
+    case WaitingRequests::PushResult::kQueued:
+      break;
+    case WaitingRequests::PushResult::kRetry:
+      handler_.record_retry();
+      break;
+    case WaitingRequests::PushResult::kFull:
+      handler_.record_busy();
+      break;
+  }
+}
+
+void Daemon::handle(Bytes request, double arrival, bool may_wait) {
+  using Step = RequestHandler::Step;
   const ServiceCounters& counters = handler_.counters();
   const std::int64_t sessions_before = counters.sessions + counters.sessions_evicted;
-  const Bytes bytes = handler_.handle(request);
-  if (bytes.empty()) return;
+  const Step step = handler_.begin(request, end_of_slice());
+  if (step == Step::kRejected) return;
+  if (step == Step::kBusy && may_wait) return wait(request, arrival);
+  if (step == Step::kBusy) return handler_.record_busy();
   if (counters.sessions + counters.sessions_evicted != sessions_before) {
     const RequestId id = peek_request_id(request).value();
     spdlog::debug("session {} starts with seq {}", id.session_id, id.seq);
   }
+  if (step == Step::kAnswered) return send_reply(arrival);
+  const std::int64_t session_id = peek_request_id(request).value().session_id;
+  const bool is_retry = std::ranges::find(arrivals_, session_id, &Arrival::session_id) != arrivals_.end();
+  if (!is_retry) arrivals_.push_back({session_id, arrival});
+}
+
+void Daemon::send_reply(double arrival) {
+  const Bytes bytes = handler_.last_response();
   if (faults_) return faults_->push(copy_reply(bytes, arrival), seconds_now());
   const AddressedResponse response = address(bytes);
   if (publish(response.channel, response.bytes)) latency_.add(seconds_now() - arrival);
@@ -406,6 +496,7 @@ void Daemon::publish_status() {
                        .send_failures = send_failures_,
                        .packets_dropped = drops.packets,
                        .fragments_dropped = drops.fragments,
+                       .partial_messages_evicted = drops.partial_messages_evicted,
                        .faults = faults_ ? faults_->counters(now) : FaultCounters{},
                        .counters = counters,
                        .latency = latency_.percentiles(),

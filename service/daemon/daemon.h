@@ -1,6 +1,11 @@
 // The live service: receives requests over LCM, has a RequestHandler compute the responses, and publishes its
 // status once a second. It runs on one thread; SIGINT and SIGTERM stop it between two messages.
 //
+// A request that takes longer than kSlice is computed in slices (budgets.h). In between, in turn, messages
+// are handled for a slice; signals, reloads, the watchdog and the status have their turn after each. A
+// request whose session has another one in progress waits. When memory runs out, the message that needs it is
+// lost.
+//
 // Poses of single bodies on channels of their own are requests too: each channel is a session. Those without
 // velocities, of bodies with drag or added mass, are logged as a warning that says why they get no load.
 //
@@ -42,6 +47,7 @@
 #include "service/daemon/rate_limited_log.h"
 #include "service/daemon/scene_loader.h"
 #include "service/daemon/systemd_notifier.h"
+#include "service/daemon/waiting_requests.h"
 #include "transport/lcm_connection.h"
 
 namespace buoyancy::service {
@@ -82,15 +88,25 @@ class Daemon {
   Expected<void> subscribe();
   Expected<void> subscribe_to_conditions();  // once, and if the scene has compartments or tanks
   void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
-  void receive();
+  // Handles messages, all that have arrived within a slice of time if others have work to go on with.
+  void handle_messages(bool have_arrived);
+  // Is there a request that takes several slices and can go on?
+  bool has_work() const;
+  void work();  // for a slice. Precondition: has_work()
   void record_queue_delay();
   void on_request(Bytes request);
   void on_sea(Bytes message);
   void on_condition(Bytes message);
   void on_pose(std::size_t channel, Bytes pose);  // channel: an index into poses_.channels()
   void enqueue(Bytes request, double arrival);
-  void handle_next();  // the request at the front of latest_, if there is one
-  void handle(Bytes request, double arrival);
+  bool handle_next();  // the first request of latest_ that can be handled; false: there is none
+  // may_wait: else a request that cannot be handled now is rejected.
+  void handle(Bytes request, double arrival, bool may_wait);
+  void wait(Bytes request, double arrival);
+  void send_reply(double arrival);  // of the last request of handler_
+  // Calls task(). Where memory runs out, that is counted as a message that was rejected for it.
+  template <typename Task>
+  void guard(const Task& task);
   // Where the last response from handler_ goes, and the bytes that go there.
   struct AddressedResponse {
     const std::string& channel;
@@ -116,6 +132,12 @@ class Daemon {
   RequestHandler handler_;
   PoseRequestAdapter poses_;
   LatestRequestQueue latest_;
+  WaitingRequests waiting_;  // mode lockstep
+  struct Arrival {
+    std::int64_t session_id = 0;
+    double time = 0.0;
+  };
+  std::vector<Arrival> arrivals_;  // of the requests in progress
   LatencyHistogram latency_;
   double start_;  // [s], steady clock, like all times here
   std::int64_t instance_id_;

@@ -11,7 +11,8 @@ bool supersedes(std::int64_t later, std::int64_t earlier) {
   return static_cast<std::uint64_t>(earlier) - static_cast<std::uint64_t>(later) > kRestartGap;
 }
 
-LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions) : max_sessions_(max_sessions) {
+LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions, std::size_t max_bytes)
+    : max_sessions_(max_sessions), max_bytes_(max_bytes) {
   assert(max_sessions >= 1);
   sessions_.reserve(max_sessions);
   pending_.reserve(max_sessions);
@@ -24,7 +25,10 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Byt
     return PushResult::kStale;
   }
   if (session == nullptr) session = claim_session();
-  if (session == nullptr) return PushResult::kFull;
+  if (session == nullptr || !make_room(*session, request.size())) return PushResult::kFull;
+  const std::size_t before = session->request.capacity();
+  session->request.assign(request.begin(), request.end());
+  allocated_ += session->request.capacity() - before;
 
   const bool replaces = session->pending;
   if (!replaces) pending_.push_back(static_cast<std::size_t>(session - sessions_.data()));
@@ -33,7 +37,6 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Byt
   session->pending = true;
   session->arrival = arrival;
   session->last_use = ++use_;
-  session->request.assign(request.begin(), request.end());
   return replaces ? PushResult::kReplaced : PushResult::kQueued;
 }
 
@@ -50,6 +53,17 @@ LatestRequestQueue::Session* LatestRequestQueue::claim_session() {
     if (!session.pending && (oldest == nullptr || session.last_use < oldest->last_use)) oldest = &session;
   }
   return oldest;
+}
+
+bool LatestRequestQueue::make_room(Session& session, std::size_t bytes) {
+  const std::size_t needed = std::max(session.request.capacity(), bytes) - session.request.capacity();
+  for (Session& each : sessions_) {
+    if (allocated_ + needed <= max_bytes_) return true;
+    if (each.pending || &each == &session) continue;
+    allocated_ -= each.request.capacity();
+    each.request = std::vector<std::uint8_t>();  // {} would keep the memory
+  }
+  return allocated_ + needed <= max_bytes_;
 }
 
 }  // namespace buoyancy::service

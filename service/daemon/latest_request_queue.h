@@ -6,11 +6,12 @@
 // the network and is stale. A newer request replaces the pending one and takes its place in the queue:
 // otherwise a client that sends faster than it is served would never get a response.
 //
-// Memory is bounded by max_sessions times the largest message. If all places are taken, the least recently
-// used session without a pending request is evicted; only its newest seq is lost, by which stale requests are
-// recognised.
+// Memory is bounded: the pending requests take at most max_bytes, of which what popped ones leave is a part.
+// If all places are taken, the least recently used session without a pending request is evicted; only its
+// newest seq is lost, by which stale requests are recognised.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -30,19 +31,19 @@ class LatestRequestQueue {
     kQueued,    // queued; its session had no pending request
     kReplaced,  // queued in the place of an older request of its session
     kStale,     // dropped: a newer request of its session is pending or was popped
-    kFull,      // dropped: max_sessions sessions have a pending request; pop one and push again
+    kFull,      // dropped: max_sessions or max_bytes are pending; pop one and push again
   };
 
-  explicit LatestRequestQueue(std::size_t max_sessions);  // >= 1
+  LatestRequestQueue(std::size_t max_sessions, std::size_t max_bytes);  // >= 1; [bytes]
 
   // Does not allocate once the session's buffer is as large as its largest message. arrival: [s], of any
   // monotonic clock; pop_next() returns it with the request.
   PushResult push(const RequestId& id, Bytes request, double arrival);
 
-  // Removes the request of the session that has waited longest and calls handle(Bytes request,
-  // double arrival), which must not call push(). False: the queue is empty.
-  template <typename Handler>
-  bool pop_next(Handler&& handle);
+  // Removes the request that has waited longest of the sessions with may_handle(std::int64_t session_id), and
+  // calls handle(Bytes request, double arrival), which must not call push(). False: there is none.
+  template <typename Predicate, typename Handler>
+  bool pop_next(Predicate&& may_handle, Handler&& handle);
 
   bool empty() const { return pending_.empty(); }
 
@@ -59,17 +60,24 @@ class LatestRequestQueue {
   Session* find(std::int64_t id);
   Session* claim_session();  // an unused or evicted one; nullptr: every session has a pending request
 
+  // Frees what popped requests left until there is room. False: there is none.
+  bool make_room(Session& session, std::size_t bytes);
+
   std::size_t max_sessions_;
+  std::size_t max_bytes_;
+  std::size_t allocated_ = 0;  // by all sessions [bytes]
   std::vector<Session> sessions_;
   std::vector<std::size_t> pending_;  // indices into sessions_; the first has waited longest
   std::uint64_t use_ = 0;
 };
 
-template <typename Handler>
-bool LatestRequestQueue::pop_next(Handler&& handle) {
-  if (pending_.empty()) return false;
-  Session& session = sessions_[pending_.front()];
-  pending_.erase(pending_.begin());
+template <typename Predicate, typename Handler>
+bool LatestRequestQueue::pop_next(Predicate&& may_handle, Handler&& handle) {
+  const auto next =
+      std::ranges::find_if(pending_, [&](std::size_t index) { return may_handle(sessions_[index].id); });
+  if (next == pending_.end()) return false;
+  Session& session = sessions_[*next];
+  pending_.erase(next);
   session.pending = false;
   handle(Bytes(session.request), session.arrival);
   return true;

@@ -9,9 +9,9 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "engine/subdivision_load.h"
-#include "messages/wire_views.h"
 
 namespace buoyancy {
 namespace {
@@ -96,13 +96,13 @@ void BodyEvaluator::prepare_buffers(std::size_t states) {
     for (LastPose& last : last_) last.request = 0;
     request_number_ = 1;
   }
-  if (scene_->bodies_with_loads() > 0 && states > loads_.size()) loads_.resize(states);
   // Buffers only grow: shrinking and growing again would initialise them again.
   if (states <= pending_.size()) return;
-  pending_.resize(states);
   repeated_.resize(states);
   pending_order_.reserve(states);
+  unfinished_.reserve(states);
   task_results_.resize(std::max(chunks_of(states), max_pending_tasks()));
+  pending_.resize(states);  // the last one, because its size says that all are large enough
 }
 
 std::size_t BodyEvaluator::max_pending_tasks() const {
@@ -119,17 +119,19 @@ void BodyEvaluator::run(std::size_t tasks, double time, const Task& task) {
   }
 }
 
-void BodyEvaluator::evaluate_all(const RequestView& request, const CurrentWater& water,
-                                 ResponseWriter& response, ServiceCounters& counters) {
-  assert(request.size() == response.size());
+bool BodyEvaluator::evaluate(const RequestView& request, const States& states, const CurrentWater& water,
+                             const Outputs& outputs, ServiceCounters& counters, Deadline deadline) {
+  assert(request.size() == outputs.response.size() && states.size() <= kMaxStates);
   water_ = water;
-  const std::size_t states = request.size();
-  const std::size_t chunks = chunks_of(states);
-  prepare_buffers(states);
-  run(chunks, kBoundsTime * static_cast<double>(states),
-      [&](std::size_t chunk) { evaluate_chunk(request, response, chunk); });
+  outputs_ = outputs;
+  first_state_ = states.first;
+  const std::size_t chunks = chunks_of(states.size());
+  prepare_buffers(states.size());
+  run(chunks, kBoundsTime * static_cast<double>(states.size()),
+      [&](std::size_t chunk) { evaluate_chunk(request, states, chunk); });
   pending_order_.clear();
   repeated_order_.clear();
+  unfinished_.clear();
   for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
     const TaskResult& result = task_results_[chunk];
     counters += result.counters;
@@ -137,26 +139,37 @@ void BodyEvaluator::evaluate_all(const RequestView& request, const CurrentWater&
     for (std::uint32_t n = 0; n < result.pending; ++n) pending_order_.push_back(begin + n);
     for (std::uint32_t n = 0; n < result.repeated; ++n) repeated_order_.push_back(begin + n);
   }
-  compute_pending(request, response, counters);
-  for (const std::uint32_t n : repeated_order_) evaluate_repeated(request, response, repeated_[n], counters);
+  compute_pending(request, counters, deadline);
+  bool stops = !unfinished_.empty();
+  bool is_first = pending_order_.empty();
+  for (const std::uint32_t n : repeated_order_) {
+    stops = stops || (!std::exchange(is_first, false) && has_passed(deadline));
+    if (stops) {
+      unfinished_.push_back(repeated_[n]);
+    } else {
+      evaluate_repeated(request, repeated_[n], counters);
+    }
+  }
+  return unfinished_.empty();
 }
 
-void BodyEvaluator::evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk) {
+void BodyEvaluator::evaluate_chunk(const RequestView& request, const States& states, std::size_t chunk) {
   const std::size_t begin = chunk * kChunkStates;
-  const std::size_t end = std::min(begin + kChunkStates, request.size());
+  const std::size_t end = std::min(begin + kChunkStates, states.size());
   TaskResult& result = task_results_[chunk];
   result = {};
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t n = begin; n < end; ++n) {
+    const std::size_t i = states[n];
     const BodyState state = request.body(i);
     BodyOutcome outcome;
     Pending& pending = pending_[begin + result.pending];
     switch (evaluate_cheaply(state, request.lead_time(), i, pending, outcome)) {
       case Progress::kDone:
         if (has_loads_ && outcome.status == BodyStatus::kOk) {
-          respond(pending, outcome, request, response, result.counters);
+          respond(pending, outcome, request, result.counters);
           break;
         }
-        response.set(i, to_wrench(state.body_id, outcome));
+        outputs_.response.set(i, to_wrench(state.body_id, outcome));
         add_to_counters(outcome, result.counters);
         break;
       case Progress::kPending:
@@ -233,8 +246,8 @@ bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t
   return true;
 }
 
-void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& response,
-                                    ServiceCounters& counters) {
+void BodyEvaluator::compute_pending(const RequestView& request, ServiceCounters& counters,
+                                    Deadline deadline) {
   if (pending_order_.empty()) return;
   double work = 0.0;
   for (const std::uint32_t n : pending_order_) work += kinds_[kind_of_[pending_[n].body]].estimated_time;
@@ -246,20 +259,31 @@ void BodyEvaluator::compute_pending(const RequestView& request, ResponseWriter& 
   run(tasks, work, [&](std::size_t t) {
     TaskResult& result = task_results_[t];
     result = {};
-    const std::size_t end = std::min((t + 1) * grain, count);
-    std::size_t n = t * grain;
-    while (end - n >= kMinGroup && water_.waves == nullptr) {
+    const std::size_t begin = t * grain;
+    const std::size_t end = std::min(begin + grain, count);
+    std::size_t n = begin;
+    while (n < end && (n == 0 || !has_passed(deadline))) {
       const std::size_t size = std::min(kGroup, end - n);
-      compute_group({&pending_order_[n], size}, request, response, result.counters);
-      n += size;
+      if (size >= kMinGroup && water_.waves == nullptr) {
+        compute_group({&pending_order_[n], size}, request, result.counters);
+        n += size;
+      } else {
+        compute(pending_[pending_order_[n++]], request, result.counters);
+      }
     }
-    for (; n < end; ++n) compute(pending_[pending_order_[n]], request, response, result.counters);
+    result.computed = n - begin;
   });
-  for (std::size_t t = 0; t < tasks; ++t) counters += task_results_[t].counters;
+  for (std::size_t t = 0; t < tasks; ++t) {
+    counters += task_results_[t].counters;
+    const std::size_t end = std::min((t + 1) * grain, count);
+    for (std::size_t n = t * grain + task_results_[t].computed; n < end; ++n) {
+      unfinished_.push_back(pending_[pending_order_[n]].state);
+    }
+  }
 }
 
 void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const RequestView& request,
-                                  ResponseWriter& response, ServiceCounters& counters) {
+                                  ServiceCounters& counters) {
   std::array<BuoyancyQuery, kGroup> queries;
   std::array<BuoyancyResult, kGroup> results;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -272,21 +296,19 @@ void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const Re
   buoyancy(std::span(queries).first(order.size()), *water_.at_rest, std::span(results).first(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
     WaveBuoyancyResult computed{.result = results[i]};
-    set_result(pending_[order[i]], computed, request, response, counters);
+    set_result(pending_[order[i]], computed, request, counters);
   }
 }
 
-void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
-                            ServiceCounters& counters) {
+void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ServiceCounters& counters) {
   const Body& example = example_of(pending.body);
   WaveBuoyancyResult computed = buoyancy_of(example.solver, *example.prepared_mesh, water_,
                                             to_pose(last_[pending.body].pose), example.reference_B);
-  set_result(pending, computed, request, response, counters);
+  set_result(pending, computed, request, counters);
 }
 
 void BodyEvaluator::set_result(const Pending& pending, WaveBuoyancyResult& computed,
-                               const RequestView& request, ResponseWriter& response,
-                               ServiceCounters& counters) {
+                               const RequestView& request, ServiceCounters& counters) {
   double flooded_volume = 0.0;
   if (const BodyCondition* inside = condition(pending.body)) {
     flooded_volume = add_subdivision_load(example_of(pending.body), inside, water_,
@@ -299,21 +321,21 @@ void BodyEvaluator::set_result(const Pending& pending, WaveBuoyancyResult& compu
   outcome.in_waves = details_of(computed);
   outcome.flooded_volume = flooded_volume;
   if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
-  respond(pending, outcome, request, response, counters);
+  respond(pending, outcome, request, counters);
 }
 
 void BodyEvaluator::respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
-                            ResponseWriter& response, ServiceCounters& counters) {
+                            ServiceCounters& counters) {
   BodyWrench wrench = to_wrench(request.body_id(pending.state), buoyancy);
   if (!has_loads_ || buoyancy.status != BodyStatus::kOk) {
-    response.set(pending.state, wrench);
+    outputs_.response.set(pending.state, wrench);
     add_to_counters(buoyancy, counters);
     return;
   }
   BodyOutcome outcome = buoyancy;
   outcome.unchanged = add_loads(pending, buoyancy, request, wrench);
   outcome.status = wrench.status;
-  response.set(pending.state, wrench);
+  outputs_.response.set(pending.state, wrench);
   add_to_counters(outcome, counters);
 }
 
@@ -324,7 +346,7 @@ bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyanc
   if (body.hydrodynamics == nullptr) {
     if (body.loads) {
       const Pose pose = to_pose(last_[pending.body].pose);
-      loads_[pending.state] = to_loads(body, wrench, water_motion(water_, current_W, pose.p_WB));
+      set_loads(pending.state, to_loads(body, wrench, water_motion(water_, current_W, pose.p_WB)));
     }
     return buoyancy.unchanged;
   }
@@ -334,7 +356,7 @@ bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyanc
     const Pose pose = to_pose(last_[pending.body].pose);
     const HydrodynamicState state = hydrodynamic_state(body, water_, current_W, pose, twist, buoyancy);
     const HydrodynamicLoad load = body.hydrodynamics->load(state);
-    if (body.loads) loads_[pending.state] = to_loads(body, wrench, state, load);
+    if (body.loads) set_loads(pending.state, to_loads(body, wrench, state, load));
     add_hydrodynamic_load(load, wrench);
   }
   BodyTwist& last = last_twists_[pending.body];
@@ -344,8 +366,11 @@ bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyanc
   return unchanged;
 }
 
-void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
-                                      ServiceCounters& counters) {
+void BodyEvaluator::set_loads(std::size_t state, const BodyLoads& loads) {
+  if (outputs_.loads.size() > 0) outputs_.loads.set(outputs_.load_places[state - first_state_], loads);
+}
+
+void BodyEvaluator::evaluate_repeated(const RequestView& request, std::size_t i, ServiceCounters& counters) {
   const BodyState state = request.body(i);
   const std::size_t body = scene_->index_of(state.body_id, i).value();
   const ValidatedPose validated = validate_pose(state, request.lead_time());
@@ -354,9 +379,9 @@ void BodyEvaluator::evaluate_repeated(const RequestView& request, ResponseWriter
                         .quaternion_normalised = validated.quaternion_normalised};
   BodyOutcome outcome;
   if (evaluate_cheaply(validated, body, outcome)) {
-    respond(pending, outcome, request, response, counters);
+    respond(pending, outcome, request, counters);
   } else {
-    compute(pending, request, response, counters);
+    compute(pending, request, counters);
   }
 }
 

@@ -1,12 +1,15 @@
-// Computes the wrenches on the bodies of one request and skips the work that the scene does not need.
+// Computes the wrenches on the bodies of a request, or of a part of it, and skips the work that the scene
+// does not need.
 //
 // A body whose pose equals, bit for bit, that of its last result gets that result again; drag and added mass,
 // which depend on its velocities, are added to it anew. A dry or a fully
 // submerged body is evaluated from its bounds. The other bodies are computed. Large requests are shared among
 // threads where the estimated work justifies it. One thread computes each body's result from that body's
-// state alone, so the result's bits do not depend on the number of threads.
+// state alone, so the result's bits do not depend on the number of threads, nor on the parts that a request
+// is divided into.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,14 +18,38 @@
 #include "engine/body_evaluation.h"
 #include "engine/load_evaluation.h"
 #include "engine/thread_pool.h"
+#include "messages/wire_views.h"
 
 namespace buoyancy {
 
-class RequestView;
-class ResponseWriter;
+using Deadline = std::chrono::steady_clock::time_point;
+inline constexpr Deadline kNoDeadline = Deadline::max();
+
+inline bool has_passed(Deadline deadline) {
+  return deadline != kNoDeadline && std::chrono::steady_clock::now() >= deadline;
+}
 
 class BodyEvaluator {
  public:
+  // The most states of one evaluate(). A large scene is limited by memory, and several threads pay off.
+  static constexpr std::size_t kMaxStates = 16'384;
+
+  // Which states of a request to evaluate: those listed by their index, or else `count` from `first` on.
+  struct States {
+    std::size_t first = 0, count = 0;
+    std::span<const std::uint32_t> listed;
+
+    std::size_t size() const { return listed.empty() ? count : listed.size(); }
+    std::size_t operator[](std::size_t i) const { return listed.empty() ? first + i : listed[i]; }
+  };
+  // Where the results go.
+  struct Outputs {
+    ResponseWriter response;          // of the whole request
+    BodiesWriter<BodiesLoads> loads;  // with no bodies: the loads are not wanted
+    std::span<const std::uint32_t>
+        load_places;  // by state from `first` on: its place in loads, if it has one
+  };
+
   // scene must outlive the evaluator or the next set_scene(). threads: see ThreadPool.
   BodyEvaluator(const Scene& scene, unsigned threads) : scene_(&scene), thread_pool_(threads) {
     set_scene(scene);
@@ -31,18 +58,18 @@ class BodyEvaluator {
   // Replaces the scene and clears the cached results. The previous scene is not accessed again.
   void set_scene(const Scene& scene);
 
-  // Sets one wrench per state of the request, in its order: those in `water`, which must be that of the
-  // request's time. Results are cached until clear_cache(), which the caller calls where the water is not
-  // that of the last request. Makes no heap allocation of its own once all buffers are as large as the
-  // largest request needs. If a large request contains a body more than once, it is unspecified which of its
-  // poses is cached, which shows in counters.bodies_unchanged only. Precondition: response has as many bodies
-  // as request.
-  void evaluate_all(const RequestView& request, const CurrentWater& water, ResponseWriter& response,
-                    ServiceCounters& counters);
-
-  // The loads of the i-th state of the last request. Precondition: its body has the loads output, and its
-  // wrench the status kOk.
-  const BodyLoads& loads(std::size_t i) const { return loads_[i]; }
+  // Sets one wrench per state: those in `water`, which must be that of the request's time, and the loads of
+  // the states that have this output and get kOk. Results are cached until clear_cache(), which the caller
+  // calls where the water is not that of the last request. Makes no heap allocation of its own once all
+  // buffers are as large as the largest request needs. If the states contain a body more than once, it is
+  // unspecified which of its poses is cached, which shows in counters.bodies_unchanged only. Returns whether
+  // all states were evaluated: after the deadline no other body is begun, except the first. Preconditions:
+  // there are at most kMaxStates, and the outputs are of this request. Throws std::bad_alloc; then evaluate
+  // them again.
+  bool evaluate(const RequestView& request, const States& states, const CurrentWater& water,
+                const Outputs& outputs, ServiceCounters& counters, Deadline deadline = kNoDeadline);
+  // The indices of the states that the last evaluate() has left, valid until the next one.
+  std::span<const std::uint32_t> unfinished() const { return unfinished_; }
 
   // Discards the cached results, so that every body is evaluated anew.
   void clear_cache();
@@ -96,6 +123,7 @@ class BodyEvaluator {
     ServiceCounters counters;
     std::uint32_t pending = 0;   // number of states that it added to pending_
     std::uint32_t repeated = 0;  // number of states that it added to repeated_
+    std::size_t computed = 0;    // number of bodies that it computed, the first ones of its part
   };
 
   enum class Progress {
@@ -112,7 +140,7 @@ class BodyEvaluator {
 
   // Evaluates the states of a chunk as far as cached results and bounds go; adds the others to pending_ and
   // repeated_.
-  void evaluate_chunk(const RequestView& request, ResponseWriter& response, std::size_t chunk);
+  void evaluate_chunk(const RequestView& request, const States& states, std::size_t chunk);
   // state: the i-th of the request. Sets outcome if done; pending if that is the result,
   // and if done with kOk in a scene that has loads.
   Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
@@ -121,25 +149,24 @@ class BodyEvaluator {
   BodyStatus check_body(std::size_t body, const BodyState& state) const;
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
   bool evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
-  void compute_pending(const RequestView& request, ResponseWriter& response, ServiceCounters& counters);
+  void compute_pending(const RequestView& request, ServiceCounters& counters, Deadline deadline);
   // Computes the bodies of a few elements of pending_ together. order: their indices.
   void compute_group(std::span<const std::uint32_t> order, const RequestView& request,
-                     ResponseWriter& response, ServiceCounters& counters);
-  void compute(const Pending& pending, const RequestView& request, ResponseWriter& response,
-               ServiceCounters& counters);
+                     ServiceCounters& counters);
+  void compute(const Pending& pending, const RequestView& request, ServiceCounters& counters);
   // computed: of the body's mesh alone.
   void set_result(const Pending& pending, WaveBuoyancyResult& computed, const RequestView& request,
-                  ResponseWriter& response, ServiceCounters& counters);
+                  ServiceCounters& counters);
   // Sets the wrench of a state, and counts it.
   void respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
-               ResponseWriter& response, ServiceCounters& counters);
+               ServiceCounters& counters);
   // Adds drag and added mass to the wrench of a body, if it has them. Returns whether the body is unchanged.
   bool add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
                  BodyWrench& wrench);
+  void set_loads(std::size_t state, const BodyLoads& loads);
   const Body& example_of(std::size_t body) const { return *kinds_[kind_of_[body]].example; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
-  void evaluate_repeated(const RequestView& request, ResponseWriter& response, std::size_t i,
-                         ServiceCounters& counters);
+  void evaluate_repeated(const RequestView& request, std::size_t i, ServiceCounters& counters);
 
   const Scene* scene_;
   CurrentWater water_;  // of the current request
@@ -155,13 +182,15 @@ class BodyEvaluator {
   std::vector<bool> unknown_conditions_;   // likewise
   std::uint32_t request_number_ = 0;
 
-  // Of the current request. Chunk c's part of pending_ and repeated_ begins at the chunk's first state.
-  std::vector<BodyLoads> loads_;  // by state; empty if no body has this output
+  // Of the current evaluate(). Chunk c's part of pending_ and repeated_ begins at the chunk's first state.
+  Outputs outputs_;
+  std::size_t first_state_ = 0;
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> repeated_;        // indices of states
   std::vector<std::uint32_t> pending_order_;   // indices into pending_, without gaps
   std::vector<std::uint32_t> repeated_order_;  // indices into repeated_, without gaps
   std::vector<TaskResult> task_results_;
+  std::vector<std::uint32_t> unfinished_;
 };
 
 }  // namespace buoyancy

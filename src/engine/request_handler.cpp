@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <new>
+#include <span>
 #include <utility>
 
 #include "engine/body_evaluation.h"
@@ -25,11 +27,14 @@ std::size_t hydrostatics_cache_size(const Scene& scene) {
 RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& options)
     : scene_(&scene),
       max_sessions_(options.max_sessions),
+      budgets_(options.budgets),
       evaluator_(scene, options.threads),
       water_(scene),
       conditions_(scene),
       cached_hydrostatics_(hydrostatics_cache_size(scene)) {
   assert(max_sessions_ >= 1);
+  sessions_.reserve(max_sessions_);
+  in_progress_.reserve(kMaxInProgress);
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
@@ -39,38 +44,137 @@ void RequestHandler::set_scene(const Scene& scene) {
   evaluator_.set_scene(scene);
   water_.set_scene(scene);
   cached_hydrostatics_.assign(hydrostatics_cache_size(scene), {});
+  ++changes_;
 }
 
-Bytes RequestHandler::handle(Bytes bytes) {
+RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   ++counters_.requests;
   last_session_.reset();
   const auto request = RequestView::of(bytes);
   if (!request) {
     count_decode_error(request.error());
-    return {};
+    return Step::kRejected;
+  }
+  const std::size_t scene_bodies = scene_->bodies().size();
+  if (request->size() > scene_bodies && request->size() - scene_bodies > budgets_.extra_bodies) {
+    ++counters_.rejected_bodies;
+    return Step::kRejected;
   }
 
   const RequestId& id = request->id();
   const auto known = std::ranges::find(sessions_, id.session_id, &Session::id);
   const bool is_new = known == sessions_.end();
-  Session& session = is_new ? start_session(id) : *known;
+  if (!is_new && same_bytes(known->last_request, bytes)) {
+    ++counters_.retries;
+    known->last_use = ++use_;
+    if (known->work.in_progress) return Step::kStarted;
+    last_session_ = static_cast<std::size_t>(known - sessions_.begin());
+    return Step::kAnswered;
+  }
+  Session* const found = is_new ? start_session(id) : &*known;
+  if (found == nullptr || found->work.in_progress) {
+    --counters_.requests;
+    return Step::kBusy;
+  }
+  Session& session = *found;
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
-  if (!is_new) {
-    if (same_bytes(session.last_request, bytes)) {
-      ++counters_.retries;
-      last_session_ = index;
-      return session.last_response;
+  const bool has_reply = !session.last_request.empty();
+  try {
+    bool has_room = begin_work(*request, bytes.size(), session);
+    const bool complete =
+        has_room && advance(*request, session, water_.move_to(id.utime, request->lead_time()), deadline);
+    if (!complete && in_progress_.size() == kMaxInProgress) has_room = false;
+    if (!has_room) {
+      session.is_slow = true;
+      discard_reply(session);
+      --counters_.requests;
+      return Step::kBusy;
     }
-    if (id.seq == session.last_seq) ++counters_.conflicting_retries;
-    if (id.seq < session.newest_seq) ++counters_.stale;
+    // The request is stored only when its response is complete or in progress. Otherwise, if memory ran out
+    // in between, a retry of the previous request would get parts of the new response.
+    session.last_request.assign(bytes.begin(), bytes.end());
+    if (has_reply && id.seq == session.last_seq) ++counters_.conflicting_retries;
+    if (!is_new && id.seq < session.newest_seq) ++counters_.stale;
+    session.last_seq = id.seq;
+    session.newest_seq = std::max(session.newest_seq, id.seq);
+    update_retained(session);
+    session.is_slow = !complete;
+    if (!complete) {
+      ++counters_.requests_sliced;
+      session.work.in_progress = true;
+      session.work.sea = water_.sea_at(id.utime);
+      in_progress_.push_back(index);
+      return Step::kStarted;
+    }
+  } catch (const std::bad_alloc&) {
+    discard_reply(session);
+    ++counters_.rejected_memory;
+    return Step::kRejected;
   }
-  session.last_seq = id.seq;
-  session.newest_seq = std::max(session.newest_seq, id.seq);
-  compute(bytes, *request, session);
   ++counters_.computed;
   last_session_ = index;
-  return session.last_response;
+  return Step::kAnswered;
+}
+
+RequestHandler::Step RequestHandler::resume(Deadline deadline) {
+  assert(!in_progress_.empty());
+  last_session_.reset();
+  const std::size_t index = in_progress_.front();
+  in_progress_.erase(in_progress_.begin());
+  Session& session = sessions_[index];
+  Work& work = session.work;
+  const RequestView request = RequestView::of(session.last_request).value();
+  const RequestId& id = request.id();
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    bool has_room = true;
+    WaterAtTime::Change now;
+    if (work.changes != changes_) {
+      has_room = begin_work(request, session.last_request.size(), session);
+      now = water_.move_to(id.utime, request.lead_time());
+      work.sea = water_.sea_at(id.utime);
+    } else if (work.sea != nullptr) {
+      now = water_.move_to(work.sea, id.utime, request.lead_time());
+    }
+    const bool complete = has_room && advance(request, session, now, deadline);
+    update_retained(session);
+    work.spent += std::chrono::steady_clock::now() - start;
+    if (!complete && has_room && work.spent <= budgets_.computing) {
+      in_progress_.push_back(index);
+      return Step::kStarted;
+    }
+    work.in_progress = false;
+    work.sea = nullptr;
+    if (!complete) {
+      discard_reply(session);
+      ++(has_room ? counters_.rejected_work : counters_.rejected_busy);
+      return Step::kRejected;
+    }
+  } catch (const std::bad_alloc&) {
+    discard_reply(session);
+    ++counters_.rejected_memory;
+    return Step::kRejected;
+  }
+  ++counters_.computed;
+  last_session_ = index;
+  return Step::kAnswered;
+}
+
+bool RequestHandler::is_slow(std::int64_t session_id) const {
+  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+  return known != sessions_.end() && known->is_slow;
+}
+
+bool RequestHandler::is_retry(std::int64_t session_id, Bytes request) const {
+  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+  return known != sessions_.end() && same_bytes(known->last_request, request);
+}
+
+bool RequestHandler::has_room_for(std::int64_t session_id) const {
+  if (in_progress_.size() == kMaxInProgress) return false;
+  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+  return known == sessions_.end() || !known->work.in_progress;
 }
 
 Expected<void> RequestHandler::receive_sea(Bytes message) {
@@ -82,6 +186,7 @@ Expected<void> RequestHandler::receive_sea(Bytes message) {
 Expected<void> RequestHandler::receive_condition(Bytes message) {
   Expected<void> received = conditions_.receive(message, *scene_);
   applied_conditions_.reset();
+  ++changes_;
   ++(received ? counters_.conditions_received : counters_.conditions_rejected);
   return received;
 }
@@ -89,10 +194,14 @@ Expected<void> RequestHandler::receive_condition(Bytes message) {
 void RequestHandler::set_conditions(ConditionTimeline conditions) {
   conditions_ = std::move(conditions);
   applied_conditions_.reset();
+  ++changes_;
 }
 
 void RequestHandler::reset() {
   sessions_.clear();
+  in_progress_.clear();
+  counters_.retained_bytes = 0;
+  retained_ = 0;
   last_session_.reset();
   evaluator_.clear_cache();
   for (CachedHydrostatics& cached : cached_hydrostatics_) cached.valid = false;
@@ -121,40 +230,156 @@ void RequestHandler::count_decode_error(DecodeError error) {
   }
 }
 
-RequestHandler::Session& RequestHandler::start_session(const RequestId& first) {
+RequestHandler::Session* RequestHandler::start_session(const RequestId& first) {
   Session* session = nullptr;
   if (sessions_.size() < max_sessions_) {
     session = &sessions_.emplace_back();
     counters_.sessions = static_cast<std::int64_t>(sessions_.size());
   } else {
-    session = &*std::ranges::min_element(sessions_, {}, &Session::last_use);
+    const auto rank = [](const Session& each) { return std::pair(each.work.in_progress, each.last_use); };
+    session = &*std::ranges::min_element(sessions_, {}, rank);
+    if (session->work.in_progress) return nullptr;
+    session->last_request.clear();
     ++counters_.sessions_evicted;
   }
   session->id = first.session_id;
   session->newest_seq = first.seq;
-  return *session;
+  session->is_slow = false;
+  return session;
 }
 
-void RequestHandler::compute(Bytes bytes, const RequestView& request, Session& session) {
-  // The request is stored only when its response is complete. Otherwise, if memory ran out in between, a
-  // retry of the previous request would get parts of the new response.
-  session.last_request.clear();
-  ResponseWriter response(request.id(), request.size(), session.last_response);
-  const WaterAtTime::Change now = water_.move_to(request.id().utime, request.lead_time());
+std::size_t RequestHandler::count_states_with(bool Body::*output, const RequestView& request) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < request.size(); ++i) {
+    const std::optional<std::size_t> index = scene_->index_of(request.body_id(i), i);
+    if (index && scene_->bodies()[*index].*output) ++count;
+  }
+  return count;
+}
+
+bool RequestHandler::begin_work(const RequestView& request, std::size_t request_bytes, Session& session) {
+  const auto wanted = [&](std::size_t bodies_with_output, bool Body::*output,
+                          std::size_t (*size)(std::size_t)) {
+    std::size_t count = bodies_with_output > 0 ? count_states_with(output, request) : 0;
+    if (count > 0 && size(count) > budgets_.message_bytes) {
+      ++counters_.outputs_too_large;
+      count = 0;
+    }
+    return count;
+  };
+  const std::size_t hydrostatics =
+      wanted(scene_->bodies_with_hydrostatics(), &Body::hydrostatics, hydrostatics_size);
+  const std::size_t loads = wanted(scene_->bodies_with_loads(), &Body::loads, loads_size);
+  const std::size_t bytes = request_bytes + response_size(request.size()) +
+                            (hydrostatics > 0 ? hydrostatics_size(hydrostatics) : 0) +
+                            (loads > 0 ? loads_size(loads) : 0);
+  Work& work = session.work;
+  work.next = 0;
+  work.unfinished.clear();
+  work.loads = 0;
+  work.hydrostatics_next = 0;
+  work.hydrostatics = 0;
+  work.changes = changes_;
+  if (!work.in_progress) {
+    work.spent = {};
+    session.last_request.clear();
+  }
+  if (!make_room(session, bytes)) return false;
+  ResponseWriter(request.id(), request.size(), session.last_response);
+  session.last_hydrostatics.clear();
+  if (hydrostatics > 0) {
+    BodiesWriter<BodiesHydrostatics>(request.id(), hydrostatics, session.last_hydrostatics);
+  }
+  session.last_loads.clear();
+  if (loads > 0) BodiesWriter<BodiesLoads>(request.id(), loads, session.last_loads);
+  return true;
+}
+
+bool RequestHandler::make_room(Session& session, std::size_t bytes) {
+  if (retained_ - session.counted + std::max(session.counted, bytes) <= budgets_.retained_bytes) return true;
+  if (!session.work.in_progress) discard_reply(session);
+  const std::size_t own = session.counted;
+  while (retained_ - own + std::max(own, bytes) > budgets_.retained_bytes) {
+    Session* victim = nullptr;
+    for (Session& each : sessions_) {
+      if (&each == &session || each.work.in_progress || each.counted == 0) continue;
+      if (victim == nullptr || each.last_use < victim->last_use) victim = &each;
+    }
+    if (victim == nullptr) return false;
+    if (!victim->last_request.empty()) ++counters_.replies_evicted;
+    discard_reply(*victim);
+  }
+  return true;
+}
+
+void RequestHandler::update_retained(Session& session) {
+  const std::size_t retained = session.retained();
+  retained_ = retained_ - session.counted + retained;
+  session.counted = retained;
+  counters_.retained_bytes = static_cast<std::int64_t>(retained_);
+}
+
+void RequestHandler::discard_reply(Session& session) {
+  using Memory = std::vector<std::uint8_t>;
+  session.last_request = Memory();  // {} would keep the memory
+  session.last_response = Memory();
+  session.last_hydrostatics = Memory();
+  session.last_loads = Memory();
+  session.work = {};
+  update_retained(session);
+}
+
+bool RequestHandler::advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
+                             Deadline deadline) {
   if (now.changed) evaluator_.clear_cache();
   apply_conditions(request.id().utime);
-  evaluator_.evaluate_all(request, now.water, response, counters_);
-  compute_hydrostatics(request, response);
-  session.last_hydrostatics.clear();
-  if (!hydrostatics_.bodies.empty()) encode(hydrostatics_, session.last_hydrostatics);
-  collect_loads(request, response);
-  session.last_loads.clear();
-  if (!loads_.bodies.empty()) encode(loads_, session.last_loads);
-  session.last_request.assign(bytes.begin(), bytes.end());
+  while (session.work.next < request.size()) {
+    if (!evaluate_part(request, session, now.water, deadline)) return false;
+    if (session.work.next < request.size() && has_passed(deadline)) return false;
+  }
+  return session.last_hydrostatics.empty() || compute_hydrostatics(request, session, deadline);
+}
+
+bool RequestHandler::evaluate_part(const RequestView& request, Session& session, const CurrentWater& water,
+                                   Deadline deadline) {
+  Work& work = session.work;
+  const std::size_t count = std::min(request.size() - work.next, BodyEvaluator::kMaxStates);
+  const BodyEvaluator::States states{work.next, count, work.unfinished};
+  BodyEvaluator::Outputs outputs{
+      .response = ResponseWriter(session.last_response), .loads = {}, .load_places = {}};
+  std::size_t loads = work.loads;
+  if (!session.last_loads.empty()) {
+    outputs.loads = BodiesWriter<BodiesLoads>(session.last_loads);
+    load_places_.resize(std::max(load_places_.size(), count));
+    for (std::size_t i = 0; i < count; ++i) {
+      load_places_[i] = static_cast<std::uint32_t>(loads);
+      const std::optional<std::size_t> index =
+          scene_->index_of(request.body_id(work.next + i), work.next + i);
+      if (index && scene_->bodies()[*index].loads) ++loads;
+    }
+    outputs.load_places = std::span(load_places_).first(count);
+  }
+  if (!evaluator_.evaluate(request, states, water, outputs, counters_, deadline)) {
+    const auto unfinished = evaluator_.unfinished();
+    work.unfinished.assign(unfinished.begin(), unfinished.end());
+    return false;
+  }
+  for (std::size_t i = 0; i < count && outputs.loads.size() > 0; ++i) {
+    // A state whose body has loads has a place of its own.
+    const std::size_t end = i + 1 < count ? load_places_[i + 1] : loads;
+    const BodyStatus status = outputs.response.body(work.next + i).status;
+    if (load_places_[i] == end || status == BodyStatus::kOk) continue;
+    outputs.loads.set(load_places_[i], {.body_id = request.body_id(work.next + i), .status = status});
+  }
+  work.loads = loads;
+  work.next += count;
+  work.unfinished.clear();
+  return true;
 }
 
 void RequestHandler::apply_conditions(std::int64_t utime) {
   if (applied_conditions_ && applied_conditions_->contains(utime)) return;
+  applied_conditions_.reset();  // until all are applied
   UtimeRange range;
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const std::size_t body = conditions_.body(i);
@@ -171,43 +396,30 @@ void RequestHandler::apply_conditions(std::int64_t utime) {
   applied_conditions_ = range;
 }
 
-void RequestHandler::compute_hydrostatics(const RequestView& request, const ResponseWriter& response) {
-  hydrostatics_.id = request.id();
-  hydrostatics_.bodies.clear();
-  for (std::size_t i = 0; scene_->bodies_with_hydrostatics() > 0 && i < request.size(); ++i) {
-    const BodyState state = request.body(i);
-    const std::optional<std::size_t> index = scene_->index_of(state.body_id, i);
+bool RequestHandler::compute_hydrostatics(const RequestView& request, Session& session, Deadline deadline) {
+  Work& work = session.work;
+  const ResponseWriter response(session.last_response);
+  BodiesWriter<BodiesHydrostatics> writer(session.last_hydrostatics);
+  bool is_first = true;
+  for (; work.hydrostatics_next < request.size(); ++work.hydrostatics_next) {
+    const std::size_t i = work.hydrostatics_next;
+    const std::optional<std::size_t> index = scene_->index_of(request.body_id(i), i);
     if (!index || !scene_->bodies()[*index].hydrostatics) continue;
-    const BodyStatus status = response.wrench(i).status;
+    if (!std::exchange(is_first, false) && has_passed(deadline)) return false;
+    const BodyStatus status = response.body(i).status;
     CachedHydrostatics& cached = cached_hydrostatics_[*index];
-    const Pose pose = validate_pose(state, request.lead_time()).pose;
+    const Pose pose = validate_pose(request.body(i), request.lead_time()).pose;
     const PoseBits bits = pose_bits(pose);
     if (status != BodyStatus::kOk || !cached.valid || !equal_branch_free(cached.pose, bits)) {
+      cached.valid = false;
       cached.hydrostatics = evaluate_hydrostatics(scene_->bodies()[*index], scene_->water(), pose, status,
                                                   counters_, evaluator_.condition(*index));
       cached.pose = bits;
       cached.valid = cached.hydrostatics.status == BodyStatus::kOk;
     }
-    hydrostatics_.bodies.push_back(cached.hydrostatics);
+    writer.set(work.hydrostatics++, cached.hydrostatics);
   }
-}
-
-void RequestHandler::collect_loads(const RequestView& request, const ResponseWriter& response) {
-  loads_.id = request.id();
-  loads_.bodies.clear();
-  for (std::size_t i = 0; scene_->bodies_with_loads() > 0 && i < request.size(); ++i) {
-    const std::int32_t id = request.body_id(i);
-    const std::optional<std::size_t> index = scene_->index_of(id, i);
-    if (!index || !scene_->bodies()[*index].loads) continue;
-    const BodyStatus status = response.wrench(i).status;
-    BodyLoads& loads = loads_.bodies.emplace_back();
-    if (status == BodyStatus::kOk) {
-      loads = evaluator_.loads(i);
-    } else {
-      loads.body_id = id;
-      loads.status = status;
-    }
-  }
+  return true;
 }
 
 }  // namespace buoyancy

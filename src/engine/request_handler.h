@@ -1,5 +1,6 @@
 // Handles requests: takes the bytes of a request and returns the bytes of its response. The live service, the
-// replay and an embedded client share it; it has no transport and no clock.
+// replay and an embedded client share it; it has no transport, and a clock only where begin() is given a
+// deadline.
 //
 // Contract:
 // - The response carries the request's (utime, session_id, seq).
@@ -11,8 +12,15 @@
 //   one is evicted, which loses only its stored response.
 // - The scene may change between two requests. Sessions, counters and stored responses remain: a retry of a
 //   request that the previous scene handled gets that scene's response.
+// - begin() and resume() divide a request into slices, between which other requests are handled. The response
+//   has the same bytes: it is that of the water at the time of its begin; if the scene or a condition of a
+//   compartment or tank changes meanwhile, the request starts again.
+// - What a request may cost is bounded by RequestBudgets. An allocation that fails costs the request that
+// needs
+//   it, and nothing else.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -30,25 +38,68 @@
 
 namespace buoyancy {
 
+// What a request may cost. The default is no bound.
+struct RequestBudgets {
+  static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+
+  std::size_t extra_bodies = kUnlimited;    // more than the scene has: repeated or unknown ids
+  std::size_t message_bytes = kUnlimited;   // of hydrostatics and loads; larger ones are left out
+  std::size_t retained_bytes = kUnlimited;  // of all requests in progress and all stored replies
+  std::chrono::nanoseconds computing = std::chrono::nanoseconds::max();  // in its resume() calls
+};
+
 struct RequestHandlerOptions {
   std::size_t max_sessions = 64;  // >= 1; the lookup is linear
   unsigned threads = 0;           // for the bodies of one request; 0: number of hardware threads
+  RequestBudgets budgets{};
 };
 
 class RequestHandler {
  public:
+  // Requests that are in progress at a time.
+  static constexpr std::size_t kMaxInProgress = 8;
+
+  enum class Step {
+    kAnswered,  // last_response() and the others have its bytes
+    kRejected,  // and counted by cause
+    kStarted,   // it is in progress: resume() goes on with it
+    kBusy,      // not handled, nor counted: its session has another one in progress, or too many are
+  };
+
   // scene must outlive the handler or the next set_scene().
   explicit RequestHandler(const Scene& scene, const RequestHandlerOptions& options = {});
 
-  // Returns the response's bytes, valid until the next call, or no bytes if the request was rejected (and
-  // counted by cause). A session stores the bytes of its last request, response and hydrostatics; there is no
-  // heap allocation once these buffers are as large as the session's largest message. O(sessions + bytes),
-  // plus the bodies' queries.
-  Bytes handle(Bytes request);
+  // Handles the request until it is complete. Returns the response's bytes, valid until the next call, or no
+  // bytes if the request was rejected. A session stores the bytes of its last request, response, hydrostatics
+  // and loads; there is no heap allocation once these buffers are as large as the session's largest message.
+  // O(sessions + bytes), plus the bodies' queries.
+  Bytes handle(Bytes request) {
+    return begin(request, kNoDeadline) == Step::kAnswered ? last_response() : Bytes();
+  }
 
-  // The hydrostatics of the response that handle() last returned: the bytes of a bodies_hydrostatics_t, valid
-  // until the next call of handle(). A retry gets the same bytes. There are no bytes if no body of the
-  // request has this output, or if the request was rejected.
+  // Handles the request until the deadline. What is left of it is in progress: a body is not divided. A retry
+  // of a request in progress is counted, and answered with it.
+  Step begin(Bytes request, Deadline deadline);
+  // Goes on with a request in progress, with each in turn. Precondition: in_progress() > 0.
+  Step resume(Deadline deadline);
+  std::size_t in_progress() const { return in_progress_.size(); }
+  // The session of the request that resume() goes on with. Precondition: in_progress() > 0.
+  std::int64_t next_session_id() const { return sessions_[in_progress_.front()].id; }
+  // Has the session no request in progress, and is there room for one more?
+  bool has_room_for(std::int64_t session_id) const;
+  // Did the last request of the session take several slices?
+  bool is_slow(std::int64_t session_id) const;
+  // Is it a retry of the session's last request, which begin() answers or counts without computing?
+  bool is_retry(std::int64_t session_id, Bytes request) const;
+
+  // The response of the last call that was answered, valid until the next call.
+  Bytes last_response() const {
+    return last_session_ ? Bytes(sessions_[*last_session_].last_response) : Bytes();
+  }
+
+  // The hydrostatics of that response: the bytes of a bodies_hydrostatics_t, valid
+  // until the next call. A retry gets the same bytes. There are no bytes if no body of the request has this
+  // output, or if they would be more than RequestBudgets::message_bytes.
   Bytes last_hydrostatics() const {
     return last_session_ ? Bytes(sessions_[*last_session_].last_hydrostatics) : Bytes();
   }
@@ -56,7 +107,7 @@ class RequestHandler {
   // Likewise the loads: the bytes of a bodies_loads_t.
   Bytes last_loads() const { return last_session_ ? Bytes(sessions_[*last_session_].last_loads) : Bytes(); }
 
-  // The session of the last request. Precondition: handle() did not reject that request.
+  // The session of the last request. Precondition: it was answered.
   std::int64_t last_session_id() const { return sessions_[last_session_.value()].id; }
 
   // Receives a sea_state_t for a scene whose waves are received (Scene::receives_sea()); see SeaTimeline.
@@ -91,6 +142,11 @@ class RequestHandler {
   void record_stale() { ++counters_.requests, ++counters_.stale; }
   // Counts a message that could not be converted into a request, by cause, like a rejected request.
   void record_rejected(DecodeError cause) { ++counters_.requests, count_decode_error(cause); }
+  // Counts a request that its caller does not handle because of kBusy, or for lack of memory; and a retry of
+  // one that waits.
+  void record_busy() { ++counters_.requests, ++counters_.rejected_busy; }
+  void record_no_memory() { ++counters_.requests, ++counters_.rejected_memory; }
+  void record_retry() { ++counters_.requests, ++counters_.retries; }
   // Discards sessions and cached results; the counters stay.
   void reset();
   // The newest seq handled in the session; nullopt: unknown session.
@@ -102,26 +158,58 @@ class RequestHandler {
   const Scene& scene() const { return *scene_; }
 
  private:
+  // How far a request has come.
+  struct Work {
+    bool in_progress = false;               // between two slices
+    std::size_t next = 0;                   // the states before it are evaluated
+    std::vector<std::uint32_t> unfinished;  // of the part from next on; empty: all of it
+    std::size_t loads = 0;                  // number of loads of the states before next
+    std::size_t hydrostatics_next = 0;      // the hydrostatics of the states before it are computed
+    std::size_t hydrostatics = 0;           // number of them
+    std::uint64_t changes = 0;              // value of changes_ at the begin
+    std::shared_ptr<const SeaPeriod> sea;   // that holds; nullptr: none. Once it is in progress
+    std::chrono::nanoseconds spent{0};      // in resume()
+  };
   struct Session {
     std::int64_t id = 0;
     std::int64_t newest_seq = 0;
     std::int64_t last_seq = 0;
-    std::uint64_t last_use = 0;  // value of use_ at the last use; the smallest is evicted first
-    std::vector<std::uint8_t> last_request;
+    std::uint64_t last_use = 0;              // value of use_ at the last use; the smallest is evicted first
+    std::vector<std::uint8_t> last_request;  // empty: none is stored
     std::vector<std::uint8_t> last_response;
     std::vector<std::uint8_t> last_hydrostatics;  // empty: no body of the last request has this output
     std::vector<std::uint8_t> last_loads;         // likewise
+    Work work;
+    bool is_slow = false;
+    std::size_t counted = 0;  // retained() when retained_ was updated last
+
+    std::size_t retained() const {
+      return last_request.capacity() + last_response.capacity() + last_hydrostatics.capacity() +
+             last_loads.capacity() + work.unfinished.capacity() * sizeof(std::uint32_t);
+    }
   };
 
   void count_decode_error(DecodeError error);
-  Session& start_session(const RequestId& first);  // evicts the least recently used session if necessary
-  void compute(Bytes bytes, const RequestView& request, Session& session);
+  // Evicts the least recently used session if necessary; nullptr: all have a request in progress.
+  Session* start_session(const RequestId& first);
+  // Begins a request, or begins it again. False: there is no room for what it will retain.
+  bool begin_work(const RequestView& request, std::size_t request_bytes, Session& session);
+  // Works on a request until it is complete, or until the deadline. Returns whether it is complete.
+  bool advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
+               Deadline deadline);
+  bool evaluate_part(const RequestView& request, Session& session, const CurrentWater& water,
+                     Deadline deadline);
+  bool compute_hydrostatics(const RequestView& request, Session& session, Deadline deadline);
   void apply_conditions(std::int64_t utime);
-  void compute_hydrostatics(const RequestView& request, const ResponseWriter& response);
-  void collect_loads(const RequestView& request, const ResponseWriter& response);
+  // The number of states whose body has this output.
+  std::size_t count_states_with(bool Body::*output, const RequestView& request) const;
+  bool make_room(Session& session, std::size_t bytes);
+  void update_retained(Session& session);
+  void discard_reply(Session& session);  // and frees its memory
 
   const Scene* scene_;
   std::size_t max_sessions_;
+  RequestBudgets budgets_;
   std::vector<Session> sessions_;
   std::uint64_t use_ = 0;
   ServiceCounters counters_;
@@ -130,16 +218,19 @@ class RequestHandler {
   ConditionTimeline conditions_;
   // Where the conditions that evaluator_ has hold; nullopt: those of the scene file, or outdated ones.
   std::optional<UtimeRange> applied_conditions_;
-  BodyCondition condition_;          // reused
-  BodiesHydrostatics hydrostatics_;  // reused
-  BodiesLoads loads_;                // reused
+  BodyCondition condition_;                 // reused
+  std::vector<std::uint32_t> load_places_;  // reused
   struct CachedHydrostatics {
     bool valid = false;
     PoseBits pose{};
     BodyHydrostatics hydrostatics;
   };
   std::vector<CachedHydrostatics> cached_hydrostatics_;  // by body; empty if no body has this output
-  std::optional<std::size_t> last_session_;  // index into sessions_; nullopt: the last request was rejected
+  std::optional<std::size_t>
+      last_session_;                      // index into sessions_; nullopt: the last request was not answered
+  std::vector<std::size_t> in_progress_;  // indices into sessions_, in the order of their turns
+  std::size_t retained_ = 0;              // by all sessions [bytes]
+  std::uint64_t changes_ = 0;             // of the scene and of conditions
 };
 
 }  // namespace buoyancy

@@ -16,7 +16,8 @@ class ThreadPool {
   unsigned thread_count() const { return arena_.thread_count(); }  // 1 without oneTBB
 
   // Calls task(i) once for every i in [0, count), in any order and on any of the threads, and returns when
-  // all calls have returned. grain: number of calls that make up one unit of work, >= 1. task must not throw.
+  // all calls have returned. grain: number of calls that make up one unit of work, >= 1. If a task throws, an
+  // unspecified part of the others is not called, and one of the exceptions is thrown on.
   void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& task);
 
  private:

@@ -36,13 +36,14 @@ WaterAtTime::Change WaterAtTime::move_to(const std::shared_ptr<const SeaPeriod>&
   if (!std::isfinite(lead_time)) lead_time = 0.0;
   const bool same_sea = period_ == period;
   const bool has_waves = period->sea != nullptr;
-  if (!same_sea) {
-    period_ = period;
-    waves_.reset();
-    if (has_waves) waves_.emplace(*period_->sea);
-  }
   const bool changed = !same_sea || (has_waves && (utime != utime_ || lead_time != lead_time_));
-  if (changed && has_waves) waves_->set_time(utime, lead_time);
+  if (changed) {
+    period_.reset();  // so that an allocation that fails leaves no sea of another time
+    if (!same_sea) waves_.reset();
+    if (!same_sea && has_waves) waves_.emplace(*period->sea);
+    if (has_waves) waves_->set_time(utime, lead_time);
+    period_ = period;
+  }
   utime_ = utime;
   lead_time_ = lead_time;
   const bool moves = has_waves && waves_->snapshot().amplitude_factor() > 0.0;

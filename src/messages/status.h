@@ -26,6 +26,14 @@ struct ServiceCounters {
   std::int64_t rejected_fingerprint = 0;
   std::int64_t rejected_count = 0;
   std::int64_t rejected_length = 0;
+  std::int64_t rejected_bodies = 0;
+  std::int64_t rejected_work = 0;
+  std::int64_t rejected_busy = 0;
+  std::int64_t rejected_memory = 0;
+  std::int64_t outputs_too_large = 0;
+  std::int64_t requests_sliced = 0;
+  std::int64_t retained_bytes = 0;
+  std::int64_t replies_evicted = 0;
   std::int64_t seas_received = 0;
   std::int64_t seas_rejected = 0;
   std::int64_t conditions_received = 0;
@@ -45,7 +53,8 @@ struct ServiceCounters {
   double largest_dropped_torque = 0.0;
 
   std::int64_t rejected() const {
-    return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length;
+    return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length + rejected_bodies +
+           rejected_work + rejected_busy + rejected_memory;
   }
   // Adds the totals and takes the maximum of the largest_* fields.
   ServiceCounters& operator+=(const ServiceCounters& other);
@@ -99,6 +108,7 @@ struct ServiceStatus {
   std::int64_t send_failures = 0;
   std::int64_t packets_dropped = 0;
   std::int64_t fragments_dropped = 0;
+  std::int64_t partial_messages_evicted = 0;
   FaultCounters faults;
   ServiceCounters counters;
   LatencyPercentiles latency;

@@ -80,7 +80,9 @@ std::optional<DecodeError> decode_message(Bytes bytes, Message& message) {
 template <typename Message>
 std::uint8_t* encode_fixed(const Message& message, std::size_t bodies, std::vector<std::uint8_t>& bytes) {
   assert(bodies <= std::numeric_limits<std::int32_t>::max());
-  bytes.resize(encoded_size<Message>(bodies));
+  const std::size_t size = encoded_size<Message>(bodies);
+  if (size > bytes.capacity()) bytes.clear();  // a vector that is not empty would grow to twice its size
+  bytes.resize(size);
   BigEndianWriter writer(bytes.data());
   writer(fingerprint<Message>());
   visit_header(message, writer);
@@ -144,8 +146,18 @@ tl::expected<RequestView, DecodeError> RequestView::of(Bytes bytes) {
   return view;
 }
 
-ResponseWriter::ResponseWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes)
-    : size_(bodies), bodies_(encode_fixed(WrenchResponse{.id = id, .bodies = {}}, bodies, bytes)) {}
+template <typename Message>
+BodiesWriter<Message>::BodiesWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes)
+    : size_(bodies), bodies_(encode_fixed(Message{.id = id, .bodies = {}}, bodies, bytes)) {}
+
+template <typename Message>
+BodiesWriter<Message>::BodiesWriter(std::vector<std::uint8_t>& begun)
+    : size_((begun.size() - fixed_size<Message>()) / body_size<Message>()),
+      bodies_(begun.data() + fixed_size<Message>()) {}
+
+template class BodiesWriter<WrenchResponse>;
+template class BodiesWriter<BodiesHydrostatics>;
+template class BodiesWriter<BodiesLoads>;
 
 std::size_t request_size(std::size_t bodies) {
   return encoded_size<WrenchRequest>(bodies);

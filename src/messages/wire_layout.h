@@ -128,6 +128,14 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.rejected_fingerprint...);
   visitor(c.rejected_count...);
   visitor(c.rejected_length...);
+  visitor(c.rejected_bodies...);
+  visitor(c.rejected_work...);
+  visitor(c.rejected_busy...);
+  visitor(c.rejected_memory...);
+  visitor(c.outputs_too_large...);
+  visitor(c.requests_sliced...);
+  visitor(c.retained_bytes...);
+  visitor(c.replies_evicted...);
   visitor(c.seas_received...);
   visitor(c.seas_rejected...);
   visitor(c.conditions_received...);
@@ -151,7 +159,7 @@ template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_trailer(Status& status, Visitor& visitor) {
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
   visitor(status.reloads, status.reloads_failed, status.send_failures);
-  visitor(status.packets_dropped, status.fragments_dropped);
+  visitor(status.packets_dropped, status.fragments_dropped, status.partial_messages_evicted);
   visitor(status.faults.dropped, status.faults.delayed, status.faults.duplicated);
   visitor(status.faults.reordered, status.faults.corrupted, status.faults.stalls);
   visit_counters(visitor, status.counters);

@@ -61,34 +61,42 @@ class RequestView {
   const std::uint8_t* bodies_ = nullptr;
 };
 
-class ResponseWriter {
+// Message: WrenchResponse, BodiesHydrostatics or BodiesLoads.
+template <typename Message>
+class BodiesWriter {
  public:
-  // Replaces bytes by a response with this number of bodies, all of which must be set; no heap allocation
+  using Body = typename decltype(Message::bodies)::value_type;
+
+  BodiesWriter() = default;  // of no message
+  // Replaces bytes by a message with this number of bodies, all of which must be set; no heap allocation
   // once its capacity suffices. bytes must outlive the writer.
-  ResponseWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes);
+  BodiesWriter(const RequestId& id, std::size_t bodies, std::vector<std::uint8_t>& bytes);
+  // Continues a message that another writer has begun.
+  explicit BodiesWriter(std::vector<std::uint8_t>& begun);
 
   std::size_t size() const { return size_; }  // number of bodies
 
   // Several threads may set different bodies at once. Precondition: i < size().
-  void set(std::size_t i, const BodyWrench& wrench) {
+  void set(std::size_t i, const Body& body) {
     assert(i < size_);
     BigEndianWriter writer(bodies_ + i * body_size_);
-    visit_fields(wrench, writer);
+    visit_fields(body, writer);
   }
 
   // Precondition: i < size(), and body i has been set.
-  BodyWrench wrench(std::size_t i) const {
+  Body body(std::size_t i) const {
     assert(i < size_);
-    BodyWrench wrench;
+    Body body;
     BigEndianReader reader(bodies_ + i * body_size_);
-    visit_fields(wrench, reader);
-    return wrench;
+    visit_fields(body, reader);
+    return body;
   }
 
  private:
-  std::size_t size_;
-  std::size_t body_size_ = encoded_body_size<BodyWrench>();
-  std::uint8_t* bodies_;
+  std::size_t size_ = 0;
+  std::size_t body_size_ = encoded_body_size<Body>();
+  std::uint8_t* bodies_ = nullptr;
 };
+using ResponseWriter = BodiesWriter<WrenchResponse>;
 
 }  // namespace buoyancy

@@ -18,7 +18,9 @@ inline void evaluate_all(BodyEvaluator& evaluator, const WrenchRequest& request,
   encode(request, request_bytes);
   const RequestView view = RequestView::of(request_bytes).value();
   ResponseWriter writer(view.id(), view.size(), response_bytes);
-  evaluator.evaluate_all(view, {&evaluator.scene().water(), nullptr}, writer, counters);
+  evaluator.evaluate(view, {.first = 0, .count = view.size(), .listed = {}},
+                     {&evaluator.scene().water(), nullptr},
+                     {.response = writer, .loads = {}, .load_places = {}}, counters);
   WrenchResponse response;
   if (decode(response_bytes, response)) throw std::logic_error("an invalid response");
   wrenches = std::move(response.bodies);

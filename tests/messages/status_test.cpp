@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{5 + 6 + 16 + 11 + 1 + 9 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{6 + 6 + 24 + 11 + 1 + 9 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -47,6 +47,14 @@ ServiceStatus random_status() {
                                 &c.rejected_fingerprint,
                                 &c.rejected_count,
                                 &c.rejected_length,
+                                &c.rejected_bodies,
+                                &c.rejected_work,
+                                &c.rejected_busy,
+                                &c.rejected_memory,
+                                &c.outputs_too_large,
+                                &c.requests_sliced,
+                                &c.retained_bytes,
+                                &c.replies_evicted,
                                 &c.seas_received,
                                 &c.seas_rejected,
                                 &c.conditions_received,
@@ -66,6 +74,7 @@ ServiceStatus random_status() {
                                 &status.send_failures,
                                 &status.packets_dropped,
                                 &status.fragments_dropped,
+                                &status.partial_messages_evicted,
                                 &status.faults.dropped,
                                 &status.faults.delayed,
                                 &status.faults.duplicated,
@@ -105,6 +114,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.send_failures = status.send_failures;
   message.packets_dropped = status.packets_dropped;
   message.fragments_dropped = status.fragments_dropped;
+  message.partial_messages_evicted = status.partial_messages_evicted;
   message.faults_dropped = status.faults.dropped;
   message.faults_delayed = status.faults.delayed;
   message.faults_duplicated = status.faults.duplicated;
@@ -123,6 +133,14 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.rejected_fingerprint = c.rejected_fingerprint;
   message.rejected_count = c.rejected_count;
   message.rejected_length = c.rejected_length;
+  message.rejected_bodies = c.rejected_bodies;
+  message.rejected_work = c.rejected_work;
+  message.rejected_busy = c.rejected_busy;
+  message.rejected_memory = c.rejected_memory;
+  message.outputs_too_large = c.outputs_too_large;
+  message.requests_sliced = c.requests_sliced;
+  message.retained_bytes = c.retained_bytes;
+  message.replies_evicted = c.replies_evicted;
   message.seas_received = c.seas_received;
   message.seas_rejected = c.seas_rejected;
   message.conditions_received = c.conditions_received;

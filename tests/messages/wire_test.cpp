@@ -263,7 +263,7 @@ RC_GTEST_PROP(ResponseWriter, WritesSameBytesAsEncode, ()) {
   for (std::size_t i = response.bodies.size(); i-- > 0;) writer.set(i, response.bodies[i]);
   RC_ASSERT(bytes == encoded(response));
   for (std::size_t i = 0; i < response.bodies.size(); ++i) {
-    RC_ASSERT(encoded(WrenchResponse{.id = {}, .bodies = {writer.wrench(i)}}) ==
+    RC_ASSERT(encoded(WrenchResponse{.id = {}, .bodies = {writer.body(i)}}) ==
               encoded(WrenchResponse{.id = {}, .bodies = {response.bodies[i]}}));
   }
 }

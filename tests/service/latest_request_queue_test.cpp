@@ -12,6 +12,8 @@ namespace {
 
 using PushResult = LatestRequestQueue::PushResult;
 
+constexpr std::size_t kManyBytes = 1'000'000;
+
 Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -22,7 +24,8 @@ PushResult push(LatestRequestQueue& queue, std::int64_t session, std::int64_t se
 
 std::vector<std::string> pop_all(LatestRequestQueue& queue) {
   std::vector<std::string> popped;
-  while (queue.pop_next([&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); })) {
+  while (queue.pop_next([](std::int64_t) { return true; },
+                        [&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); })) {
   }
   return popped;
 }
@@ -30,7 +33,7 @@ std::vector<std::string> pop_all(LatestRequestQueue& queue) {
 using Strings = std::vector<std::string>;
 
 TEST(LatestRequestQueue, KeepsNewestOfEachSession) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   EXPECT_EQ(push(queue, 1, 10, "a10"), PushResult::kQueued);
   EXPECT_EQ(push(queue, 2, 5, "b5"), PushResult::kQueued);
   EXPECT_EQ(push(queue, 1, 11, "a11"), PushResult::kReplaced);
@@ -41,7 +44,7 @@ TEST(LatestRequestQueue, KeepsNewestOfEachSession) {
 }
 
 TEST(LatestRequestQueue, KeepsLastArrivalOfEqualSeqs) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   push(queue, 1, 10, "first");
   EXPECT_EQ(push(queue, 1, 10, "second"), PushResult::kReplaced);
   EXPECT_EQ(pop_all(queue), Strings{"second"});
@@ -49,7 +52,7 @@ TEST(LatestRequestQueue, KeepsLastArrivalOfEqualSeqs) {
 }
 
 TEST(LatestRequestQueue, DropsStaleRequestsAfterNewestWasPopped) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   push(queue, 1, 100, "a");
   pop_all(queue);
   EXPECT_EQ(push(queue, 1, 99, "b"), PushResult::kStale);
@@ -60,7 +63,7 @@ TEST(LatestRequestQueue, DropsStaleRequestsAfterNewestWasPopped) {
 }
 
 TEST(LatestRequestQueue, AcceptsLowerSeqAfterRestartIdleTime) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   queue.push({0, 1, 30}, bytes_of("old"), 10.0);
   pop_all(queue);
   EXPECT_EQ(queue.push({0, 1, 0}, bytes_of("late"), 10.1), PushResult::kStale);
@@ -71,7 +74,7 @@ TEST(LatestRequestQueue, AcceptsLowerSeqAfterRestartIdleTime) {
 }
 
 TEST(LatestRequestQueue, QueuesEveryRequestOfRestartedClient) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   push(queue, 1, 1000, "old");
   pop_all(queue);
   for (std::int64_t seq = 0; seq < 1100; ++seq) {
@@ -92,7 +95,7 @@ TEST(LatestRequestQueue, ComparesSeqsAtLimitsOfTheirRange) {
 }
 
 TEST(LatestRequestQueue, ReportsFullIfEverySessionHasPendingRequest) {
-  LatestRequestQueue queue(2);
+  LatestRequestQueue queue(2, kManyBytes);
   push(queue, 1, 1, "a");
   push(queue, 2, 1, "b");
   EXPECT_EQ(push(queue, 3, 1, "c"), PushResult::kFull);
@@ -103,7 +106,7 @@ TEST(LatestRequestQueue, ReportsFullIfEverySessionHasPendingRequest) {
 }
 
 TEST(LatestRequestQueue, ServesSessionsInTurnWhateverTheirRequestRates) {
-  LatestRequestQueue queue(8);
+  LatestRequestQueue queue(8, kManyBytes);
   Strings popped;
   std::int64_t seq = 0;
   push(queue, 1, 1, "slow");
@@ -113,14 +116,15 @@ TEST(LatestRequestQueue, ServesSessionsInTurnWhateverTheirRequestRates) {
       push(queue, 2, seq, "fast" + std::to_string(seq));
       push(queue, 3, seq, "faster" + std::to_string(seq));
     }
-    queue.pop_next([&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); });
+    queue.pop_next([](std::int64_t) { return true; },
+                   [&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); });
     push(queue, 1, seq, "slow");
   }
   EXPECT_EQ(popped, (Strings{"slow", "fast20", "faster30", "slow", "fast50", "faster60"}));
 }
 
 TEST(LatestRequestQueue, EvictsLeastRecentlyUsedSession) {
-  LatestRequestQueue queue(2);
+  LatestRequestQueue queue(2, kManyBytes);
   push(queue, 1, 50, "a");
   push(queue, 2, 50, "b");
   push(queue, 1, 51, "a");
@@ -132,10 +136,24 @@ TEST(LatestRequestQueue, EvictsLeastRecentlyUsedSession) {
 }
 
 TEST(LatestRequestQueue, ReturnsArrivalTimeOfNewestRequest) {
-  LatestRequestQueue queue(2);
+  LatestRequestQueue queue(2, kManyBytes);
   queue.push({0, 1, 1}, bytes_of("a"), 1.5);
   queue.push({0, 1, 2}, bytes_of("b"), 2.5);
-  EXPECT_TRUE(queue.pop_next([](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
+  EXPECT_TRUE(queue.pop_next([](std::int64_t) { return true; },
+                             [](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
+}
+
+TEST(LatestRequestQueue, KeepsPendingRequestsWithinTheirMemory) {
+  LatestRequestQueue queue(8, 1'000);
+  const std::string large(400, 'a');
+  EXPECT_EQ(push(queue, 1, 1, large), PushResult::kQueued);
+  EXPECT_EQ(push(queue, 2, 1, large), PushResult::kQueued);
+  EXPECT_EQ(push(queue, 3, 1, large), PushResult::kFull);
+  EXPECT_EQ(push(queue, 1, 2, large), PushResult::kReplaced);
+  EXPECT_TRUE(queue.pop_next([](std::int64_t session) { return session == 2; }, [](Bytes, double) {}));
+  EXPECT_FALSE(queue.pop_next([](std::int64_t session) { return session == 2; }, [](Bytes, double) {}));
+  EXPECT_EQ(push(queue, 3, 1, large), PushResult::kQueued) << "in the memory of a popped one";
+  EXPECT_EQ(push(queue, 4, 1, std::string(2'000, 'a')), PushResult::kFull);
 }
 
 }  // namespace

@@ -1,0 +1,255 @@
+// Requests in slices, and what they may cost.
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/request_handler.h"
+#include "tests/engine/box_scene.h"
+#include "tests/support/allocation_count.h"
+#include "tests/support/byte_vector.h"
+#include "tests/support/scene_of.h"
+
+namespace buoyancy {
+namespace {
+
+using Step = RequestHandler::Step;
+
+constexpr Deadline kPassed{};  // a slice of one body
+
+// Bodies of every kind of output that there is in this water.
+Scene mixed_scene(const std::string& water) {
+  const bool has_waves = water.find("waves") != water.npos;
+  const std::string hydrostatics = has_waves ? "" : ", \"hydrostatics\"";
+  return scene_of(water + R"(
+    [[body]]
+    id = 1
+    shape = { type = "box", segments = [2, 2, 2] }
+    outputs = ["wrench")" +
+                  hydrostatics + R"(]
+    [[body]]
+    id = 2
+    shape = { type = "sphere", segments = 6 }
+    [[body]]
+    id = 3
+    shape = { type = "box", segments = [2, 2, 2] }
+    outputs = ["wrench", "loads"]
+    [body.drag]
+    linear = [20, 60, 60, 5, 5, 8]
+    [[body]]
+    id = 4
+    shape = { type = "box", segments = [2, 2, 2] }
+    outputs = ["wrench", "loads")" +
+                  hydrostatics + R"(]
+  )");
+}
+
+const std::string kStill = "[water]\ndensity = 1000\n";
+const std::string kWaves = kStill + R"([water.waves]
+type = "jonswap"
+significant_wave_height = 0.5
+peak_period = 4.0
+)";
+
+const Scene& shared_scene() {
+  static const Scene scene = mixed_scene(kStill);
+  return scene;
+}
+
+// Bodies 1 to 5, of which the last is unknown, some of them twice or at no valid pose.
+ByteVector mixed_request(std::int64_t session_id, std::int64_t utime, std::size_t bodies) {
+  std::mt19937 random(static_cast<unsigned>(utime));
+  std::uniform_real_distribution<double> height(-0.7, 0.7);
+  std::vector<BodyState> states;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    states.push_back(upright(static_cast<std::int32_t>(1 + i % 5), height(random)));
+    states.back().linear_velocity = {height(random), 0.1, 0.0};
+    if (i % 11 == 7) states.back().position[0] = std::nan("");
+  }
+  return request_bytes({.utime = utime, .session_id = session_id, .seq = utime}, states);
+}
+
+struct Reply {
+  ByteVector response, hydrostatics, loads;
+  bool operator==(const Reply&) const = default;
+};
+
+Reply reply_of(const RequestHandler& handler) {
+  return {copy_of(handler.last_response()), copy_of(handler.last_hydrostatics()),
+          copy_of(handler.last_loads())};
+}
+
+Reply whole_reply(const Scene& scene, const ByteVector& request) {
+  RequestHandler handler(scene, {.threads = 1});
+  handler.handle(request);
+  return reply_of(handler);
+}
+
+TEST(RequestBudgets, SlicesHaveTheBytesOfTheWholeRequest) {
+  for (const std::string& water : {kStill, kWaves}) {
+    const Scene scene = mixed_scene(water);
+    const ByteVector sliced = mixed_request(1, 1'000'000, 60);
+    const Reply whole = whole_reply(scene, sliced);
+    ASSERT_FALSE(whole.loads.empty());
+    for (const unsigned threads : {1U, 4U}) {
+      RequestHandler handler(scene, {.threads = threads});
+      ASSERT_EQ(handler.begin(sliced, kPassed), Step::kStarted);
+      int slices = 1;
+      for (; handler.in_progress() > 0; ++slices) {
+        // Another session has the same bodies elsewhere, at another time.
+        const ByteVector other = mixed_request(2, 5'000'000 + slices, 7);
+        handler.handle(other);
+        ASSERT_EQ(reply_of(handler), whole_reply(scene, other));
+        handler.resume(kPassed);
+      }
+      EXPECT_EQ(reply_of(handler), whole);
+      EXPECT_GT(slices, threads == 1 ? 30 : 5);
+      EXPECT_EQ(handler.counters().requests, slices);
+      EXPECT_EQ(handler.counters().computed, slices);
+      EXPECT_EQ(handler.counters().requests_sliced, 1);
+      handler.handle(sliced);
+      EXPECT_EQ(reply_of(handler), whole);
+      EXPECT_EQ(handler.counters().retries, 1);
+    }
+  }
+}
+
+TEST(RequestBudgets, RequestsInProgressTakeTurns) {
+  const Scene scene = mixed_scene(kStill);
+  RequestHandler handler(scene, {.threads = 1});
+  std::vector<ByteVector> requests;
+  for (std::int64_t session = 0; session < 3; ++session) {
+    requests.push_back(mixed_request(session, 10 + session, 20 + 10 * static_cast<std::size_t>(session)));
+    EXPECT_EQ(handler.begin(requests.back(), kPassed), Step::kStarted);
+  }
+  for (std::size_t finished = 0; finished < 3;) {
+    const std::int64_t session = handler.next_session_id();
+    if (handler.resume(kPassed) != Step::kAnswered) continue;
+    EXPECT_EQ(static_cast<std::size_t>(session), finished++) << "the shortest first";
+    EXPECT_EQ(reply_of(handler), whole_reply(scene, requests[static_cast<std::size_t>(session)]));
+  }
+}
+
+TEST(RequestBudgets, CountsRetriesOfARequestInProgress) {
+  RequestHandler handler(shared_scene(), {.threads = 1});
+  const ByteVector request = mixed_request(1, 1, 20);
+  EXPECT_EQ(handler.begin(request, kPassed), Step::kStarted);
+  EXPECT_EQ(handler.begin(request, kPassed), Step::kStarted);
+  EXPECT_EQ(handler.counters().retries, 1);
+  EXPECT_EQ(handler.in_progress(), 1U);
+  EXPECT_EQ(handler.begin(mixed_request(1, 2, 1), kPassed), Step::kBusy) << "another one of the session";
+  EXPECT_FALSE(handler.has_room_for(1));
+  EXPECT_TRUE(handler.has_room_for(2));
+  EXPECT_EQ(handler.counters().requests, 2);
+}
+
+TEST(RequestBudgets, LimitsTheRequestsInProgress) {
+  RequestHandler handler(shared_scene(), {.threads = 1});
+  const auto limit = static_cast<std::int64_t>(RequestHandler::kMaxInProgress);
+  for (std::int64_t session = 0; session < limit; ++session) {
+    EXPECT_EQ(handler.begin(mixed_request(session, 1, 20), kPassed), Step::kStarted);
+  }
+  EXPECT_EQ(handler.begin(mixed_request(limit, 1, 20), kPassed), Step::kBusy);
+  EXPECT_EQ(handler.begin(mixed_request(limit, 1, 1), kPassed), Step::kAnswered) << "one slice is enough";
+  EXPECT_FALSE(handler.has_room_for(limit));
+}
+
+TEST(RequestBudgets, StartsAgainInANewScene) {
+  const Scene before = mixed_scene(kStill);
+  const Scene after = mixed_scene("[water]\ndensity = 1030\n");
+  RequestHandler handler(before, {.threads = 1});
+  const ByteVector request = mixed_request(1, 1, 30);
+  EXPECT_EQ(handler.begin(request, kPassed), Step::kStarted);
+  handler.resume(kPassed);
+  handler.set_scene(after);
+  while (handler.in_progress() > 0) handler.resume(kPassed);
+  EXPECT_EQ(reply_of(handler), whole_reply(after, request));
+}
+
+TEST(RequestBudgets, RejectsMoreBodiesThanTheSceneHas) {
+  RequestHandler handler(shared_box_scene(), {.threads = 1, .budgets = {.extra_bodies = 10}});
+  const std::size_t most = shared_box_scene().bodies().size() + 10;
+  const std::vector<BodyState> bodies(most + 1, upright(kBox, 0.0));
+  EXPECT_TRUE(handler.handle(request_bytes({.session_id = 1, .seq = 1}, bodies)).empty());
+  EXPECT_EQ(handler.counters().rejected_bodies, 1);
+  EXPECT_EQ(handler.counters().rejected(), 1);
+  EXPECT_EQ(handler.counters().sessions, 0) << "before any work";
+  EXPECT_FALSE(
+      handler.handle(request_bytes({.session_id = 1, .seq = 1}, {bodies.begin(), bodies.end() - 1})).empty());
+}
+
+TEST(RequestBudgets, RejectsARequestThatComputesTooLong) {
+  RequestHandler handler(shared_scene(), {.threads = 1, .budgets = {.computing = {}}});
+  const ByteVector request = mixed_request(1, 1, 20);
+  EXPECT_EQ(handler.begin(request, kPassed), Step::kStarted);
+  EXPECT_EQ(handler.resume(kPassed), Step::kRejected);
+  EXPECT_EQ(handler.counters().rejected_work, 1);
+  EXPECT_EQ(handler.in_progress(), 0U);
+  EXPECT_EQ(handler.counters().retained_bytes, 0);
+  EXPECT_EQ(handler.begin(request, kNoDeadline), Step::kAnswered);
+}
+
+TEST(RequestBudgets, LeavesOutWhatNoReceiverAccepts) {
+  const Scene scene = mixed_scene(kStill);
+  RequestHandler handler(scene, {.threads = 1, .budgets = {.message_bytes = 2 * loads_size(1)}});
+  const Reply small = (handler.handle(mixed_request(1, 1, 3)), reply_of(handler));
+  EXPECT_EQ(small, whole_reply(scene, mixed_request(1, 1, 3)));
+  EXPECT_FALSE(small.loads.empty());
+  const Reply large = (handler.handle(mixed_request(1, 2, 60)), reply_of(handler));
+  EXPECT_EQ(large.response, whole_reply(scene, mixed_request(1, 2, 60)).response);
+  EXPECT_TRUE(large.loads.empty());
+  EXPECT_TRUE(large.hydrostatics.empty());
+  EXPECT_EQ(handler.counters().outputs_too_large, 2);
+}
+
+TEST(RequestBudgets, RetainsRepliesOfTheSessionsUsedLast) {
+  constexpr std::size_t kBudget = 100'000;
+  RequestHandler handler(shared_scene(), {.threads = 1, .budgets = {.retained_bytes = kBudget}});
+  std::int64_t largest = 0;
+  for (std::int64_t session = 0; session < 20; ++session) {
+    EXPECT_FALSE(handler.handle(mixed_request(session, 1, 50)).empty());
+    largest = std::max(largest, handler.counters().retained_bytes);
+  }
+  EXPECT_LE(largest, static_cast<std::int64_t>(kBudget));
+  EXPECT_GT(largest, static_cast<std::int64_t>(kBudget / 2));
+  EXPECT_GT(handler.counters().replies_evicted, 10);
+  handler.handle(mixed_request(19, 1, 50));
+  EXPECT_EQ(handler.counters().retries, 1) << "of the newest";
+  EXPECT_FALSE(handler.handle(mixed_request(0, 1, 50)).empty());
+  EXPECT_EQ(handler.counters().retries, 1) << "of the oldest: computed again";
+  EXPECT_EQ(handler.counters().conflicting_retries, 0);
+  EXPECT_EQ(handler.begin(mixed_request(0, 2, 1'000), kNoDeadline), Step::kBusy) << "larger than all";
+}
+
+TEST(RequestBudgets, AFailedAllocationCostsThatRequestOnly) {
+  for (const std::string& water : {kStill, kWaves}) {
+    const Scene scene = mixed_scene(water);
+    const ByteVector request = mixed_request(1, 1'000'000, 60);
+    const ByteVector other = mixed_request(2, 2'000'000, 50);
+    const Reply expected = whole_reply(scene, request);
+    const Reply expected_of_other = whole_reply(scene, other);
+    bool has_failed = true;
+    std::int64_t n = 1;
+    for (; has_failed; ++n) {
+      RequestHandler handler(scene, {.threads = 1});
+      handler.handle(other);
+      Step step = Step::kStarted;
+      {
+        const FailingAllocation failing(n);
+        step = handler.begin(request, kPassed);
+        while (step == Step::kStarted) step = handler.resume(kPassed);
+        has_failed = failing.has_failed();
+      }
+      ASSERT_EQ(step, has_failed ? Step::kRejected : Step::kAnswered) << n;
+      ASSERT_EQ(handler.counters().rejected_memory, has_failed ? 1 : 0) << n;
+      handler.handle(other);
+      ASSERT_EQ(reply_of(handler), expected_of_other) << n;
+      handler.handle(request);
+      ASSERT_EQ(reply_of(handler), expected) << n;
+    }
+    EXPECT_GT(n, 4);
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
