@@ -10,7 +10,7 @@
 // With --channel-names, sends that many messages on channels of different names afterwards and checks that
 // the service keeps none of the names.
 //
-// Run it in a network namespace with a multicast route (scripts/attack_service). Exit status: 0 if every
+// Run it in a network namespace with a multicast route (scripts/attack packets). Exit status: 0 if every
 // request got its response, the counters match and memory did not grow; 1 if not; 2 on invalid arguments.
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 //
 //   malformed_view_traffic [--requests N] [--connections N]
 //
-// Must run in a network namespace with a multicast route (scripts/attack_view). Exit status: 0 if the view
+// Must run in a network namespace with a multicast route (scripts/attack view). Exit status: 0 if the view
 // kept serving; 1 if it did not; 2 on invalid arguments.
 #include <chrono>
 #include <cinttypes>
