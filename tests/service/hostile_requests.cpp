@@ -68,19 +68,22 @@ class Watchdog {
             "WATCHDOG_USEC=" + std::to_string(static_cast<int>(2 * kWatchdogInterval * 1e6))};
   }
   void restart() { longest_ = 0.0; }
-  double longest_delay() const { return std::max(0.0, longest_ - kWatchdogInterval); }
+  // Beyond the interval, until now.
+  double longest_delay() const {
+    const double since_last = seconds_since(Clock::time_point(Clock::duration(last_)));
+    return std::max(0.0, std::max<double>(longest_, since_last) - kWatchdogInterval);
+  }
 
  private:
   void listen(const std::stop_token& stop) {
     const timeval timeout{.tv_sec = 0, .tv_usec = 50'000};
     ::setsockopt(socket_.value(), SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
-    Clock::time_point last = Clock::now();
     while (!stop.stop_requested()) {
       std::array<char, 512> text{};
       if (::recv(socket_.value(), text.data(), text.size() - 1, 0) <= 0) continue;
       if (std::string(text.data()).find("WATCHDOG=1") == std::string::npos) continue;
-      longest_ = std::max<double>(longest_, seconds_since(last));
-      last = Clock::now();
+      longest_ = std::max<double>(longest_, seconds_since(Clock::time_point(Clock::duration(last_))));
+      last_ = Clock::now().time_since_epoch().count();
     }
   }
 
@@ -88,6 +91,7 @@ class Watchdog {
   std::string path_ = directory_.path("notify");
   UniqueFd socket_;
   std::atomic<double> longest_{0.0};
+  std::atomic<Clock::rep> last_{Clock::now().time_since_epoch().count()};
   std::jthread thread_;
 };
 
@@ -147,6 +151,31 @@ RawBytes request_of(std::int32_t body, std::size_t bodies, std::int64_t session,
   return encode_states(states);
 }
 
+// Sends a message so slowly that the service can read it with the smallest receive buffer.
+void send_slowly(RawLcmSocket& socket, const RawBytes& message, std::int64_t n) {
+  constexpr std::size_t kFragment = 65'000;
+  const std::size_t count = (message.size() + kFragment - 1) / kFragment;
+  for (std::size_t i = 0; i < count; ++i) {
+    RawWriter packet;
+    packet.int32(0x4c433033)
+        .int32(static_cast<std::int32_t>(n))
+        .int32(static_cast<std::int32_t>(message.size()));
+    packet.int32(static_cast<std::int32_t>(i * kFragment));
+    packet.int16(static_cast<std::int16_t>(i)).int16(static_cast<std::int16_t>(count));
+    if (i == 0) {
+      for (const char c : std::string("BUOYANCY_STATES"))
+        packet.bytes.push_back(static_cast<std::uint8_t>(c));
+      packet.bytes.push_back(0);
+    }
+    const auto begin = message.begin() + static_cast<std::ptrdiff_t>(i * kFragment);
+    packet.bytes.insert(
+        packet.bytes.end(), begin,
+        begin + static_cast<std::ptrdiff_t>(std::min(kFragment, message.size() - i * kFragment)));
+    socket.send_packet(packet.bytes);
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+}
+
 // The first fragment of a message of 16 MB, of which no other is sent: from a socket of its own each time.
 void send_forged_fragment(std::int64_t n) {
   RawLcmSocket sender;
@@ -188,9 +217,11 @@ std::vector<Attack> attacks() {
   return {
       {"R1", "150,000 times one id, 16 MB, 64 sessions", kTestWater + light, 1,
        [](RawLcmSocket& socket, std::int64_t n) {
-         socket.send("BUOYANCY_STATES", request_of(1, 150'000, 1'000 + n % 64, n));
+         static RawBytes request = request_of(1, 150'000, 0, 0);
+         request[23] = static_cast<std::uint8_t>(n % 64);  // the session
+         send_slowly(socket, request, n);
        },
-       0.05},
+       0.3},
       {"R1, legal", "40,000 bodies of the scene, 4 MB, 64 sessions", many_boxes(kManyBodies), 1,
        [](RawLcmSocket& socket, std::int64_t n) {
          socket.send("BUOYANCY_STATES", request_of_all(kManyBodies, 1'000 + n % 64, n));
@@ -241,6 +272,7 @@ bool run(const Attack& attack, double seconds) {
   std::int64_t peak = before;
   watchdog.restart();
   Honest honest;
+  double delay = 0.0;
   double stop = 0.0;
   {
     const std::jthread attacker([&](const std::stop_token& stopped) {
@@ -256,6 +288,7 @@ bool run(const Attack& attack, double seconds) {
       if (n % 16 == 0) peak = std::max(peak, resident_kb(service.child().pid()));
       return seconds_since(start) < seconds;
     });
+    delay = watchdog.longest_delay();
     const Clock::time_point signalled = Clock::now();
     service.child().send_signal(SIGTERM);
     service.child().wait(kWaitTimeout);
@@ -265,14 +298,14 @@ bool run(const Attack& attack, double seconds) {
   const bool answers = honest.lost == 0 && honest.answered > 0;
   const bool is_fast = attack.honest_bodies > 1 || honest.p99() <= 3.0 * alone.p99() + slice;
   const bool is_small = peak - before <= kMaxGrowth;
-  const bool watches = watchdog.longest_delay() <= kMaxStop;
+  const bool watches = delay <= kMaxStop;
   const bool stops = stop <= kMaxStop;
   std::printf("%-10s %-54s %6" PRId64 " %8" PRId64 "%s %7" PRId64 " %5" PRId64
               " %6.1f %8.2f %8.2f%s %8.1f%s %8.0f%s %8.0f%s\n",
               attack.name, attack.sends, sent.load(), honest.answered, mark(answers), honest.retries,
               honest.lost, 1e3 * body, 1e3 * alone.p99(), 1e3 * honest.p99(), mark(is_fast),
-              static_cast<double>(peak - before) / 1024.0, mark(is_small), 1e3 * watchdog.longest_delay(),
-              mark(watches), 1e3 * stop, mark(stops));
+              static_cast<double>(peak - before) / 1024.0, mark(is_small), 1e3 * delay, mark(watches),
+              1e3 * stop, mark(stops));
   std::fflush(stdout);
   return answers && is_fast && is_small && watches && stops;
 }
