@@ -263,6 +263,12 @@ bool Daemon::has_work() const {
   return handler_.in_progress() > 0 || !waiting_.empty();
 }
 
+bool Daemon::may_take_long(std::int64_t session_id) const {
+  using Pace = RequestHandler::Pace;
+  const Pace pace = handler_.pace_of(session_id);
+  return pace == Pace::kSeveralSlices || (pace == Pace::kUnknown && handler_.has_room_for(session_id));
+}
+
 void Daemon::work() {
   const auto has_room = [this](std::int64_t session_id) { return handler_.has_room_for(session_id); };
   if (waiting_.pop_next(has_room,
@@ -287,9 +293,8 @@ void Daemon::record_queue_delay() {
 void Daemon::on_request(Bytes request) {
   if (mode_ == ServiceMode::kLatest) return enqueue(request, seconds_now());
   if (has_work()) {
-    // It is behind others, or would take a slice in which quick requests wait.
     const auto id = peek_request_id(request);
-    const bool waits = id && (waiting_.contains(id->session_id) || handler_.is_slow(id->session_id)) &&
+    const bool waits = id && (waiting_.contains(id->session_id) || may_take_long(id->session_id)) &&
                        !handler_.is_retry(id->session_id, request);
     if (waits) return wait(request, seconds_now());
   }
@@ -350,7 +355,7 @@ void Daemon::enqueue(Bytes request, double arrival) {
 bool Daemon::handle_next() {
   return latest_.pop_next(
       [this, works = has_work()](std::int64_t session_id) {
-        return handler_.has_room_for(session_id) && !(works && handler_.is_slow(session_id));
+        return handler_.has_room_for(session_id) && !(works && may_take_long(session_id));
       },
       [this](Bytes request, double arrival) { handle(request, arrival, false); });
 }

@@ -3,8 +3,8 @@
 //
 // A request that takes longer than kSlice is computed in slices (budgets.h). In between, in turn, messages
 // are handled for a slice; signals, reloads, the watchdog and the status have their turn after each. A
-// request whose session has another one in progress waits. When memory runs out, the message that needs it is
-// lost.
+// request whose session has another one in progress, or may need several slices, waits for its turn. When
+// memory runs out, the message that needs it is lost.
 //
 // Poses of single bodies on channels of their own are requests too: each channel is a session. Those without
 // velocities, of bodies with drag or added mass, are logged as a warning that says why they get no load.
@@ -92,6 +92,9 @@ class Daemon {
   void handle_messages(bool have_arrived);
   // Is there a request that takes several slices and can go on?
   bool has_work() const;
+  // Would the session's next request take a slice in which quick ones wait? One that is not known yet would,
+  // if it can have its turn soon.
+  bool may_take_long(std::int64_t session_id) const;
   void work();  // for a slice. Precondition: has_work()
   void record_queue_delay();
   void on_request(Bytes request);

@@ -86,7 +86,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
         has_room && advance(*request, session, water_.move_to(id.utime, request->lead_time()), deadline);
     if (!complete && in_progress_.size() == kMaxInProgress) has_room = false;
     if (!has_room) {
-      session.is_slow = true;
+      session.pace = Pace::kSeveralSlices;
       discard_reply(session);
       --counters_.requests;
       return Step::kBusy;
@@ -99,7 +99,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
     session.last_seq = id.seq;
     session.newest_seq = std::max(session.newest_seq, id.seq);
     update_retained(session);
-    session.is_slow = !complete;
+    session.pace = complete ? Pace::kOneSlice : Pace::kSeveralSlices;
     if (!complete) {
       ++counters_.requests_sliced;
       session.work.in_progress = true;
@@ -161,9 +161,9 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
   return Step::kAnswered;
 }
 
-bool RequestHandler::is_slow(std::int64_t session_id) const {
+RequestHandler::Pace RequestHandler::pace_of(std::int64_t session_id) const {
   const auto known = std::ranges::find(sessions_, session_id, &Session::id);
-  return known != sessions_.end() && known->is_slow;
+  return known == sessions_.end() ? Pace::kUnknown : known->pace;
 }
 
 bool RequestHandler::is_retry(std::int64_t session_id, Bytes request) const {
@@ -244,7 +244,7 @@ RequestHandler::Session* RequestHandler::start_session(const RequestId& first) {
   }
   session->id = first.session_id;
   session->newest_seq = first.seq;
-  session->is_slow = false;
+  session->pace = Pace::kUnknown;
   return session;
 }
 

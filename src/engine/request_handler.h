@@ -87,8 +87,9 @@ class RequestHandler {
   std::int64_t next_session_id() const { return sessions_[in_progress_.front()].id; }
   // Has the session no request in progress, and is there room for one more?
   bool has_room_for(std::int64_t session_id) const;
-  // Did the last request of the session take several slices?
-  bool is_slow(std::int64_t session_id) const;
+  // What the last request of a session took.
+  enum class Pace { kUnknown, kOneSlice, kSeveralSlices };
+  Pace pace_of(std::int64_t session_id) const;
   // Is it a retry of the session's last request, which begin() answers or counts without computing?
   bool is_retry(std::int64_t session_id, Bytes request) const;
 
@@ -180,7 +181,7 @@ class RequestHandler {
     std::vector<std::uint8_t> last_hydrostatics;  // empty: no body of the last request has this output
     std::vector<std::uint8_t> last_loads;         // likewise
     Work work;
-    bool is_slow = false;
+    Pace pace = Pace::kUnknown;
     std::size_t counted = 0;  // retained() when retained_ was updated last
 
     std::size_t retained() const {
