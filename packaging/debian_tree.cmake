@@ -46,7 +46,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   file(WRITE "${root}/usr/share/lintian/overrides/${package}"
        "# Not uploaded to Debian, so that there is no bug to close.\n${package}: initial-upload-closes-no-bugs *\n")
 
-  file(GLOB binaries "${root}/usr/bin/*")
+  file(GLOB binaries "${root}/usr/bin/*" "${root}/usr/libexec/buoyancy/*")
   foreach(binary IN LISTS binaries)
     file(READ "${binary}" magic LIMIT 4 HEX)
     if(magic STREQUAL "7f454c46")  # ELF; other files are scripts
@@ -71,7 +71,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     if(result)
       message(FATAL_ERROR "dpkg-shlibdeps: ${error}")
     endif()
-    string(REGEX REPLACE "^shlibs:Depends=" "" CPACK_DEBIAN_C_LIBRARY_PACKAGE_DEPENDS "${depends}")
+    string(REGEX REPLACE "^shlibs:Depends=" "" CPACK_DEBIAN_C_LIBRARY_PACKAGE_DEPENDS
+           "${CPACK_DEBIAN_C_LIBRARY_PACKAGE_DEPENDS}, ${depends}")
     file(REMOVE_RECURSE "${work}")
   endif()
   file(GLOB_RECURSE archives "${root}/usr/lib/*.a")
@@ -79,7 +80,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     run(strip --strip-debug --remove-section=.comment --remove-section=.note --enable-deterministic-archives
         ${archives})
   endif()
-  run(find "${root}" -type f -not -path "*/usr/bin/*" -exec chmod 644 {} +)
+  run(find "${root}" -type f -not -path "*/usr/bin/*" -not -path "*/usr/libexec/*" -exec chmod 644 {} +)
   run(find "${root}" -type d -empty -delete)
   run(find "${root}" -type d -exec chmod 755 {} +)
 endforeach()

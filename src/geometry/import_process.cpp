@@ -5,13 +5,8 @@
 #include <cassert>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -19,106 +14,19 @@
 #include <utility>
 #include <variant>
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
+#include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/format.h"
 #include "base/unique_fd.h"
-#include "geometry/assimp_reader.h"
-#include "geometry/import_pipe.h"
+#include "geometry/import_channel.h"
+#include "geometry/importer_program.h"
+#include "geometry/mesh_folder.h"
 
 namespace buoyancy {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kShadowMemory = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kShadowMemory = true;
-#else
-constexpr bool kShadowMemory = false;
-#endif
-#else
-constexpr bool kShadowMemory = false;
-#endif
-
-constexpr int kOutOfMemoryExit = 71;
-
-// ---- child process ----------------------------------------------------------------------------------------
-
-void limit_resource(__rlimit_resource resource, std::uint64_t max) {
-  rlimit limit{};
-  if (::getrlimit(resource, &limit) != 0) return;
-  limit.rlim_cur = std::min<rlim_t>(max, limit.rlim_max);
-  ::setrlimit(resource, &limit);
-}
-
-std::uint64_t address_space_in_use() {
-  unsigned long pages = 0;
-  if (std::FILE* statm = std::fopen("/proc/self/statm", "re")) {
-    if (std::fscanf(statm, "%lu", &pages) != 1) pages = 0;  // NOLINT(cert-err34-c): written by the kernel
-    std::fclose(statm);
-  }
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
-
-// Makes the kernel's out-of-memory killer prefer the child to its parent.
-void prefer_for_oom_kill() {
-  if (std::FILE* score = std::fopen("/proc/self/oom_score_adj", "we")) {
-    std::fputs("1000", score);
-    std::fclose(score);
-  }
-}
-
-// Restores default handlers, so that a crash ends the child instead of running a handler of the parent.
-void restore_signals() {
-  struct sigaction by_default {};
-  by_default.sa_handler = SIG_DFL;
-  for (int signal = 1; signal < NSIG; ++signal) ::sigaction(signal, &by_default, nullptr);
-  sigset_t none;
-  ::sigemptyset(&none);
-  ::pthread_sigmask(SIG_SETMASK, &none, nullptr);
-}
-
-// Redirects standard input and outputs to /dev/null (assimp prints) and moves the pipe to descriptor 3.
-// Closes all other descriptors, since sockets and pipes of concurrent imports would stay open in the child.
-int keep_only_pipe(int pipe) {
-  constexpr int kPipe = 3;
-  if (pipe != kPipe) ::dup2(pipe, kPipe);
-  const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  for (int standard = 0; standard < kPipe; ++standard) {
-    if (null >= 0) ::dup2(null, standard);
-  }
-  ::close_range(kPipe + 1, ~0U, 0);
-  return kPipe;
-}
-
-[[noreturn]] void run_child(int pipe, pid_t parent, const std::filesystem::path& path, MeshFormat format,
-                            const ImportLimits& limits) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(EXIT_FAILURE);  // the parent died before the line above
-  restore_signals();
-  if (!kShadowMemory) limit_resource(RLIMIT_AS, address_space_in_use() + limits.memory_bytes);
-  limit_resource(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(limits.import_seconds)) + 1);
-  limit_resource(RLIMIT_CORE, 0);
-  prefer_for_oom_kill();
-  ::prctl(PR_SET_DUMPABLE, 0);  // no core dump through a core_pattern pipe
-  pipe = keep_only_pipe(pipe);
-  std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
-  try {
-    const Expected<ImportedMesh> result = read_with_assimp(path, format, limits);
-    ::_exit(send_import(pipe, result) ? EXIT_SUCCESS : EXIT_FAILURE);
-  } catch (const std::bad_alloc&) {
-    ::_exit(kOutOfMemoryExit);
-  } catch (...) {
-    ::_exit(EXIT_FAILURE);
-  }
-}
-
-// ---- parent process ---------------------------------------------------------------------------------------
 
 // Kills and reaps the child on destruction if it still runs.
 class Child {
@@ -186,10 +94,16 @@ Error crashed(const std::string& how) {
           "Open it in a mesh editor and export it again"};
 }
 
-Error system_failure(const char* call) {
-  return {"", std::string(call) + " failed: " + std::generic_category().message(errno),
+Error system_failure(const std::string& call, int error) {
+  return {"", call + " failed: " + std::generic_category().message(error),
           "a child process that reads the file",
           "a resource limit of this process or of the machine is reached", "Try again; see ulimit -a"};
+}
+
+Error other_release() {
+  return {"", "buoyancy-import-mesh is of another release",
+          "the one that was built with this program or library", "one of them was upgraded without the other",
+          "Install both from the same release"};
 }
 
 Error explain(std::optional<int> status, const ImportLimits& limits) {
@@ -203,7 +117,55 @@ Error explain(std::optional<int> status, const ImportLimits& limits) {
                    ")");
   }
   if (WEXITSTATUS(*status) == kOutOfMemoryExit) return out_of_memory(limits);
+  if (WEXITSTATUS(*status) == kOtherProtocolExit) return other_release();
   return crashed("failed (exit status " + std::to_string(WEXITSTATUS(*status)) + ")");
+}
+
+// What the importer starts with: its socket, no other descriptor, no environment, no handler of ours.
+class SpawnSettings {
+ public:
+  explicit SpawnSettings(int socket) {
+    ::posix_spawn_file_actions_init(&actions_);
+    ::posix_spawn_file_actions_adddup2(&actions_, socket, kImporterSocket);
+    for (int standard = 0; standard < kImporterSocket; ++standard) {
+      ::posix_spawn_file_actions_addclose(&actions_,
+                                          standard);  // the importer opens /dev/null, if there is one
+    }
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, kImporterSocket + 1);
+    ::posix_spawnattr_init(&attributes_);
+    sigset_t signals;
+    ::sigfillset(&signals);
+    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
+    ::sigemptyset(&signals);
+    ::posix_spawnattr_setsigmask(&attributes_, &signals);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  }
+  ~SpawnSettings() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+  // Returns 0 or the number of the error.
+  int start(std::string program, pid_t& pid) const {
+    std::string protocol = kImportProtocol;
+    std::array<char*, 3> arguments{program.data(), protocol.data(), nullptr};
+    std::array<char*, 1> environment{nullptr};
+    return ::posix_spawn(&pid, program.c_str(), &actions_, &attributes_, arguments.data(),
+                         environment.data());
+  }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+Error named_outside(Error error, const std::string& name) {
+  error.cause = "it refers to '" + printable_ascii(name) +
+                "', which leads out of its folder, and nothing is read from there";
+  error.hint = "Put the files that the mesh needs into its folder";
+  return error;
 }
 
 }  // namespace
@@ -215,22 +177,33 @@ Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path
   const std::chrono::duration<double> timeout(std::min(limits.import_seconds, kMaxSeconds));
   const ImportDeadline deadline =
       ImportDeadline::clock::now() + std::chrono::duration_cast<ImportDeadline::clock::duration>(timeout);
+  const Expected<std::string> program = importer_program();
+  if (!program) return make_error(program.error());
+  MeshFolder folder(path, limits.mesh_bytes);
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return make_error(system_failure("pipe"));
-  const UniqueFd read_end(ends[0]);
-  UniqueFd write_end(ends[1]);
-
-  const pid_t parent = ::getpid();
-  const pid_t pid = ::fork();
-  if (pid < 0) return make_error(system_failure("fork"));
-  if (pid == 0) run_child(write_end.value(), parent, path, format, limits);
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    return make_error(system_failure("socketpair", errno));
+  }
+  const UniqueFd socket(ends[0]);
+  UniqueFd importers_end(ends[1]);
+  pid_t pid = 0;
+  if (const int failed = SpawnSettings(importers_end.value()).start(*program, pid); failed != 0) {
+    return make_error(system_failure("starting " + *program, failed));
+  }
   Child child(pid);
-  write_end.close();  // the pipe then ends when the child ends
+  importers_end.close();  // the channel then ends when the importer ends
 
-  auto outcome = receive_import(read_end.value(), limits, deadline);
-  if (auto* result = std::get_if<Expected<ImportedMesh>>(&outcome)) return std::move(*result);
+  send_request(socket.value(), {path.filename().string(), format, limits});
+  auto outcome = receive_import(socket.value(), limits, deadline,
+                                [&folder](const std::string& name) { return folder.open(name); });
+  if (auto* result = std::get_if<Expected<ImportedMesh>>(&outcome)) {
+    if (!*result && !folder.outside().empty()) {
+      return make_error(named_outside(std::move(result->error()), folder.outside()));
+    }
+    return std::move(*result);
+  }
   if (std::get<ImportFailure>(outcome) == ImportFailure::kTimedOut) return make_error(timed_out(limits));
-  // The pipe has ended, so the child is about to end, unless it has only closed the pipe.
+  // The channel has ended, so the child is about to end, unless it has only closed its socket.
   return make_error(explain(
       child.wait_until(std::min(deadline, ImportDeadline::clock::now() + std::chrono::seconds(5))), limits));
 }

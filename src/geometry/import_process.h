@@ -1,8 +1,8 @@
 // Internal to mesh import: runs the importer in a child process and returns its result, or the reason for its
 // failure: a crash, a timeout or the memory limit.
 //
-// The child is forked without exec: it needs no program file, and it closes every descriptor that it does not
-// use. It ends with its parent. Linux only.
+// The child is the program buoyancy-import-mesh (src/importer), started without descriptors, environment or
+// handlers of this process, and without its rights. It ends with its parent. Linux only.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,8 @@
 // Reads a mesh file into triangles, safely for files that crash the importer.
 //
-// assimp runs in a child process with limits on memory and time: a file on which it crashes, hangs or
-// exhausts memory gives an Error that names the file. The geometry is not edited: polygons are split into
+// assimp runs in a program of its own, with limits on memory and time and without rights: a file on which it
+// crashes, hangs or exhausts memory gives an Error that names the file, and a file may refer only to files in
+// its own folder and below. The geometry is not edited: polygons are split into
 // triangles, node transforms are applied in double, and the winding of mirrored nodes is reversed so that
 // normals keep pointing outward; points and lines are left out and counted. Vertices are returned as stored:
 // unwelded, in assimp's single precision. Formats, by extension: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX,
@@ -39,12 +40,12 @@ struct ImportedMesh {
   MeshSource source;
 };
 
-// The function forks, so call it before the program starts threads if possible. Complexity: time and memory
-// are linear in the file's size, for an undamaged file.
+// The function starts a child process and waits for its end. Complexity: time and memory are linear in the
+// file's size, for an undamaged file.
 //
 // Errors: no such file; not a regular file; empty or too large; format unknown or not accepted; unreadable;
-// importer crashed, timed out or out of memory; more vertices or faces than the limits; no triangles;
-// non-finite vertices.
+// importer missing, crashed, timed out or out of memory; more vertices or faces than the limits; no
+// triangles; non-finite vertices.
 Expected<ImportedMesh> import_mesh(const std::filesystem::path& path, const ImportLimits& limits = {});
 
 }  // namespace buoyancy

@@ -201,5 +201,41 @@ TEST_F(ImportProcess, ClosesInheritedDescriptors) {
   EXPECT_TRUE(contains(result.error().message(), "was killed while reading the file (signal 9)"));
 }
 
+// Returns the value in a line "Name:<tab>value" of /proc/<pid>/status.
+std::string status_of(pid_t pid, const std::string& name) {
+  const std::string status = "\n" + read_file("/proc/" + std::to_string(pid) + "/status");
+  const std::size_t start = status.find("\n" + name + ":\t");
+  if (start == std::string::npos) return "";
+  const std::size_t value = start + name.size() + 3;
+  return status.substr(value, status.find('\n', value) - value);
+}
+
+TEST_F(ImportProcess, LeavesImporterNoRights) {
+  std::promise<pid_t> thread;
+  const fs::path endless = directory_.write("endless.obj", endless_obj());
+  auto import = std::async(std::launch::async, [&] {
+    thread.set_value(::gettid());
+    return import_mesh(endless, long_timeout());
+  });
+  const pid_t importer = importer_of(::getpid(), thread.get_future().get());
+  ASSERT_GT(importer, 0);
+  EXPECT_TRUE(wait_until([&] { return status_of(importer, "Seccomp") == "2"; }));  // a filter
+  EXPECT_EQ(status_of(importer, "NoNewPrivs"), "1");
+  EXPECT_EQ(status_of(importer, "CapEff"), "0000000000000000");
+  const std::string process = "/proc/" + std::to_string(importer);
+  EXPECT_EQ(read_file(process + "/environ"), "");
+  if (::geteuid() == 0) {
+    EXPECT_EQ(status_of(importer, "Uid"), "65534\t65534\t65534\t65534");
+    EXPECT_EQ(status_of(importer, "Gid"), "65534\t65534\t65534\t65534");
+    EXPECT_EQ(status_of(importer, "Groups"), " ");
+    for (const auto& descriptor : fs::directory_iterator(process + "/fd")) {
+      const std::string file = fs::read_symlink(descriptor).string();
+      EXPECT_TRUE(file == "/dev/null" || file == endless || file.starts_with("socket:")) << file;
+    }
+  }
+  ::kill(importer, SIGKILL);
+  EXPECT_FALSE(import.get());
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-#include "geometry/import_pipe.h"
+#include "geometry/import_channel.h"
 
 #include <array>
 #include <chrono>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "tests/support/timeouts.h"
@@ -26,10 +27,14 @@ ImportDeadline deadline_in(std::chrono::milliseconds delay) {
 const auto kShortTimeout = std::chrono::milliseconds(50);
 const auto kLongTimeout = std::chrono::milliseconds(to_milliseconds(kWaitTimeout));
 
-class ImportPipe : public testing::Test {
+UniqueFd no_files(const std::string& /*name*/) {
+  return {};
+}
+
+class ImportChannel : public testing::Test {
  protected:
-  ImportPipe() { EXPECT_EQ(::pipe(ends_.data()), 0); }
-  ~ImportPipe() override {
+  ImportChannel() { EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_.data()), 0); }
+  ~ImportChannel() override {
     ::close(ends_[0]);
     close_write_end();
   }
@@ -42,7 +47,7 @@ class ImportPipe : public testing::Test {
     ASSERT_EQ(::write(ends_[1], bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
   }
   auto receive(const ImportLimits& limits = {}) {
-    return receive_import(ends_[0], limits, deadline_in(kLongTimeout));
+    return receive_import(ends_[0], limits, deadline_in(kLongTimeout), no_files);
   }
 
   std::array<int, 2> ends_{-1, -1};
@@ -61,7 +66,7 @@ ImportedMesh triangle() {
 // Returns the bytes that send_import writes.
 std::string serialize(const Expected<ImportedMesh>& result) {
   std::array<int, 2> ends{};
-  EXPECT_EQ(::pipe(ends.data()), 0);
+  EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
   EXPECT_TRUE(send_import(ends[1], result));
   ::close(ends[1]);
   std::string bytes(65'536, '\0');
@@ -76,7 +81,7 @@ bool is_broken(const std::variant<ImportFailure, Expected<ImportedMesh>>& outcom
   return failure != nullptr && *failure == ImportFailure::kBroken;
 }
 
-TEST_F(ImportPipe, TransfersMeshBitForBit) {
+TEST_F(ImportChannel, TransfersMeshBitForBit) {
   ASSERT_TRUE(send_import(ends_[1], triangle()));
   const auto outcome = receive();
   const auto& result = std::get<Expected<ImportedMesh>>(outcome);
@@ -92,7 +97,7 @@ TEST_F(ImportPipe, TransfersMeshBitForBit) {
   EXPECT_EQ(result->source.ignored_primitives, 4);
 }
 
-TEST_F(ImportPipe, TransfersMoreThanPipeCapacity) {
+TEST_F(ImportChannel, TransfersMoreThanSocketBuffer) {
   ImportedMesh large = triangle();
   for (int i = 0; i < 300'000; ++i) large.mesh.add_vertex({1.0 * i, 2.0 * i, 3.0 * i});
   std::thread sender([&] { EXPECT_TRUE(send_import(ends_[1], large)); });
@@ -101,7 +106,7 @@ TEST_F(ImportPipe, TransfersMoreThanPipeCapacity) {
   EXPECT_EQ(std::get<Expected<ImportedMesh>>(outcome)->mesh.z, large.mesh.z);
 }
 
-TEST_F(ImportPipe, TransfersErrorsInPrintableCharacters) {
+TEST_F(ImportChannel, TransfersErrorsInPrintableCharacters) {
   ASSERT_TRUE(send_import(ends_[1], make_error({"", "a\nb\x1b[31m", "exp\xff", "", "do"})));
   const auto outcome = receive();
   const Error& error = std::get<Expected<ImportedMesh>>(outcome).error();
@@ -110,46 +115,46 @@ TEST_F(ImportPipe, TransfersErrorsInPrintableCharacters) {
   EXPECT_EQ(error.hint, "do");
 }
 
-TEST_F(ImportPipe, RejectsTruncatedResults) {
+TEST_F(ImportChannel, RejectsTruncatedResults) {
   const std::string complete = serialize(triangle());
   for (std::size_t length = 0; length < complete.size(); length += 7) {
     std::array<int, 2> ends{};
-    ASSERT_EQ(::pipe(ends.data()), 0);
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     ASSERT_EQ(::write(ends[1], complete.data(), length), static_cast<ssize_t>(length));
     ::close(ends[1]);
-    EXPECT_TRUE(is_broken(receive_import(ends[0], {}, deadline_in(kLongTimeout)))) << length;
+    EXPECT_TRUE(is_broken(receive_import(ends[0], {}, deadline_in(kLongTimeout), no_files))) << length;
     ::close(ends[0]);
   }
 }
 
-TEST_F(ImportPipe, TimesOutAtDeadline) {
+TEST_F(ImportChannel, TimesOutAtDeadline) {
   write(serialize(triangle()).substr(0, 20));
-  const auto outcome = receive_import(ends_[0], {}, deadline_in(kShortTimeout));
+  const auto outcome = receive_import(ends_[0], {}, deadline_in(kShortTimeout), no_files);
   EXPECT_EQ(std::get<ImportFailure>(outcome), ImportFailure::kTimedOut);
 }
 
-TEST_F(ImportPipe, RejectsVertexCountsAboveLimit) {
+TEST_F(ImportChannel, RejectsVertexCountsAboveLimit) {
   ImportLimits limits;
   limits.vertices = 2;
   write(serialize(triangle()));
   EXPECT_TRUE(is_broken(receive(limits)));
 }
 
-TEST_F(ImportPipe, RejectsFaceCountsAboveLimit) {
+TEST_F(ImportChannel, RejectsFaceCountsAboveLimit) {
   ImportLimits limits;
   limits.faces = 0;
   write(serialize(triangle()));
   EXPECT_TRUE(is_broken(receive(limits)));
 }
 
-TEST_F(ImportPipe, RejectsMeshesWithoutTriangles) {
+TEST_F(ImportChannel, RejectsMeshesWithoutTriangles) {
   ImportedMesh empty = triangle();
   empty.mesh.triangles.clear();
   write(serialize(empty));
   EXPECT_TRUE(is_broken(receive()));
 }
 
-TEST_F(ImportPipe, RejectsVertexIndicesOutOfRange) {
+TEST_F(ImportChannel, RejectsVertexIndicesOutOfRange) {
   for (const std::int32_t outside : {-1, 3, std::numeric_limits<std::int32_t>::max()}) {
     ImportedMesh wrong = triangle();
     wrong.mesh.triangles[0][2] = outside;
@@ -158,7 +163,7 @@ TEST_F(ImportPipe, RejectsVertexIndicesOutOfRange) {
   }
 }
 
-TEST_F(ImportPipe, AllocatesNoMemoryForMissingBytes) {
+TEST_F(ImportChannel, AllocatesNoMemoryForMissingBytes) {
   // Each 8-byte field of the header in turn is set to the maximum and to a large number: either the header is
   // rejected or the data ends early.
   const std::string complete = serialize(triangle());
@@ -170,10 +175,10 @@ TEST_F(ImportPipe, AllocatesNoMemoryForMissingBytes) {
       std::string wrong = complete;
       std::memcpy(wrong.data() + at, &value, sizeof(value));
       std::array<int, 2> ends{};
-      ASSERT_EQ(::pipe(ends.data()), 0);
+      ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
       ASSERT_EQ(::write(ends[1], wrong.data(), wrong.size()), static_cast<ssize_t>(wrong.size()));
       ::close(ends[1]);
-      const auto outcome = receive_import(ends[0], {}, deadline_in(kLongTimeout));
+      const auto outcome = receive_import(ends[0], {}, deadline_in(kLongTimeout), no_files);
       ::close(ends[0]);
       const auto* result = std::get_if<Expected<ImportedMesh>>(&outcome);
       EXPECT_TRUE(is_broken(outcome) || (result != nullptr && !*result)) << at << ": " << value;
@@ -181,7 +186,7 @@ TEST_F(ImportPipe, AllocatesNoMemoryForMissingBytes) {
   }
 }
 
-TEST_F(ImportPipe, ReportsClosedReadEnd) {
+TEST_F(ImportChannel, ReportsClosedReadEnd) {
   const auto before = std::signal(SIGPIPE, SIG_IGN);
   ::close(ends_[0]);
   EXPECT_FALSE(send_import(ends_[1], triangle()));

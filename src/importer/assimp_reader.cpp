@@ -1,26 +1,28 @@
-#include "geometry/assimp_reader.h"
+#include "importer/assimp_reader.h"
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <exception>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <set>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <Eigen/LU>
 #include <assimp/BaseImporter.h>
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <unistd.h>
 
 #include "base/format.h"
 
@@ -43,23 +45,58 @@ Transform compose(const Transform& outer, const Transform& inner) {
   return product;
 }
 
-// A mesh file may refer to other files (buffers, materials). These must be regular files too, since reading a
-// device or a pipe may never end.
-class RegularFiles : public Assimp::DefaultIOSystem {
+class OpenedFile : public Assimp::IOStream {
  public:
-  explicit RegularFiles(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
+  explicit OpenedFile(UniqueFd file) : file_(std::move(file)) {}
 
-  bool Exists(const char* file) const override {
-    std::error_code error;
-    return std::filesystem::is_regular_file(file, error) &&
-           std::filesystem::file_size(file, error) <= max_bytes_ && !error;
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    std::size_t done = 0;
+    while (done < size * count) {
+      const ssize_t got = ::pread(file_.value(), static_cast<std::byte*>(buffer) + done, size * count - done,
+                                  static_cast<off_t>(offset_ + done));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) break;
+      done += static_cast<std::size_t>(got);
+    }
+    offset_ += done;
+    return size == 0 ? 0 : done / size;
   }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  std::size_t Write(const void* /*buffer*/, std::size_t /*size*/, std::size_t /*count*/) override {
+    return 0;
   }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    if (origin == aiOrigin_CUR) offset += offset_;
+    if (origin == aiOrigin_END) offset = FileSize() - offset;
+    if (offset > FileSize()) return aiReturn_FAILURE;
+    offset_ = offset;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return offset_; }
+  std::size_t FileSize() const override {
+    const off_t end = ::lseek(file_.value(), 0, SEEK_END);
+    return end > 0 ? static_cast<std::size_t>(end) : 0;
+  }
+  void Flush() override {}
 
  private:
-  std::uint64_t max_bytes_;
+  UniqueFd file_;
+  std::size_t offset_ = 0;
+};
+
+class OpenedFiles : public Assimp::IOSystem {
+ public:
+  explicit OpenedFiles(OpenFile open) : open_(std::move(open)) {}
+
+  bool Exists(const char* name) const override { return open_(name).valid(); }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    UniqueFd file = *mode == 'r' ? open_(name) : UniqueFd();
+    return file.valid() ? new OpenedFile(std::move(file)) : nullptr;
+  }
+  void Close(Assimp::IOStream* file) override { delete file; }
+
+ private:
+  OpenFile open_;
 };
 
 // assimp continues after errors that change the geometry (an index out of range, a polygon that it cannot
@@ -231,20 +268,19 @@ double root_scale(const aiScene& scene) {
   return to_transform(scene.mRootNode->mTransformation).col(0).norm();
 }
 
-bool states_up_axis(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
+bool states_up_axis(UniqueFd file) {
   std::string head(65'536, '\0');  // <asset> is a Collada file's first element
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  OpenedFile(std::move(file)).Read(head.data(), 1, head.size());
   return head.find("up_axis>") != std::string::npos;
 }
 
 // Returns "z", "x", "y" or "" (not stated). The root's transform shows how the importer rotated the axes.
-std::string collada_up_axis(const aiScene& scene, const std::filesystem::path& path) {
+std::string collada_up_axis(const aiScene& scene, UniqueFd file) {
   const Transform root = to_transform(scene.mRootNode->mTransformation);
   const double scale = root_scale(scene);
   if (root(1, 2) > 0.5 * scale) return "z";
   if (root(1, 0) > 0.5 * scale) return "x";
-  return states_up_axis(path) ? "y" : "";
+  return states_up_axis(std::move(file)) ? "y" : "";
 }
 
 std::string fbx_up_axis(const aiScene& scene) {
@@ -255,10 +291,11 @@ std::string fbx_up_axis(const aiScene& scene) {
   return scene.mMetaData->Get("UpAxisSign", sign) && sign < 0 ? "-" + name : name;
 }
 
-std::string up_axis_of(const aiScene& scene, const std::filesystem::path& path, MeshFormat format) {
+std::string up_axis_of(const aiScene& scene, const ImportRequest& request, const OpenFile& open) {
+  const MeshFormat format = request.format;
   std::string axis;
   if (format == MeshFormat::kGltf) return "y";  // by its specification
-  if (format == MeshFormat::kCollada) axis = collada_up_axis(scene, path);
+  if (format == MeshFormat::kCollada) axis = collada_up_axis(scene, open(request.name));
   if (format == MeshFormat::kFbx) axis = fbx_up_axis(scene);
   return axis.empty() ? "not stated" : axis;
 }
@@ -288,10 +325,11 @@ void note_fbx(const aiScene& scene, MeshSource& source) {
                        " makes metres of it");
 }
 
-void describe(const aiScene& scene, const std::filesystem::path& path, MeshFormat format,
+void describe(const aiScene& scene, const ImportRequest& request, const OpenFile& open,
               const LoggedErrors& logged, MeshSource& source) {
+  const MeshFormat format = request.format;
   source.format = to_string(format);
-  source.up_axis = up_axis_of(scene, path, format);
+  source.up_axis = up_axis_of(scene, request, open);
   if (format == MeshFormat::kCollada) note_collada(scene, source);
   if (format == MeshFormat::k3ds) note_3ds(scene, source);
   if (format == MeshFormat::kFbx) note_fbx(scene, source);
@@ -335,15 +373,15 @@ Error no_mesh(MeshFormat format, const std::string& message) {
 
 }  // namespace
 
-Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshFormat format,
-                                        const ImportLimits& limits) {
+Expected<ImportedMesh> read_with_assimp(const ImportRequest& request, const OpenFile& open) {
+  const MeshFormat format = request.format;
   const ErrorLogging logging;
   Assimp::Importer importer;
-  importer.SetIOHandler(new RegularFiles(limits.mesh_bytes));  // the importer owns it
-  keep_only(importer, lowercase_extension(path).substr(1));
+  importer.SetIOHandler(new OpenedFiles(open));  // the importer owns it
+  keep_only(importer, lowercase_extension(request.name).substr(1));
   // These steps do not edit geometry; assimp's other steps delete small triangles and move vertices.
   const aiScene* scene =
-      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
+      importer.ReadFile(request.name, aiProcess_Triangulate | aiProcess_ValidateDataStructure);
   if (scene == nullptr) {
     if (const std::exception_ptr& exception = importer.GetException()) {
       try {
@@ -364,10 +402,10 @@ Expected<ImportedMesh> read_with_assimp(const std::filesystem::path& path, MeshF
   }
   if (scene->mRootNode == nullptr) return make_error(unreadable(format, "no scene in it"));
 
-  Expected<ImportedMesh> imported = flatten(*scene, limits);
+  Expected<ImportedMesh> imported = flatten(*scene, request.limits);
   if (imported && imported->mesh.triangles.empty())
     return make_error(no_triangles(imported->source.ignored_primitives));
-  if (imported) describe(*scene, path, format, logging.errors(), imported->source);
+  if (imported) describe(*scene, request, open, logging.errors(), imported->source);
   return imported;
 }
 

@@ -1,0 +1,69 @@
+// Internal to mesh import: what this process and the importer say to each other through a pair of connected
+// sockets. This process sends one request; the importer asks for the files that it needs, gets a descriptor
+// for each, and sends the mesh or an error.
+//
+// The file being read may corrupt the importer, so this side trusts nothing: it checks counts against the
+// limits before it reserves memory, bounds texts and makes them printable, touches memory only for bytes that
+// have arrived, and checks that vertex indices are in range. The caller checks the coordinates.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "base/error.h"
+#include "base/unique_fd.h"
+#include "geometry/mesh_format.h"
+#include "geometry/mesh_import.h"
+
+namespace buoyancy {
+
+using ImportDeadline = std::chrono::steady_clock::time_point;
+
+// Both sides are of the same architecture but perhaps of different releases: the importer ends with
+// kOtherProtocolExit if its first argument is not this number, which every change of the format raises.
+inline constexpr const char* kImportProtocol = "1";
+
+// The importer's descriptor of its socket.
+inline constexpr int kImporterSocket = 3;
+
+// Exit statuses of the importer, apart from EXIT_SUCCESS and EXIT_FAILURE.
+inline constexpr int kOutOfMemoryExit = 71;
+inline constexpr int kOtherProtocolExit = 72;
+
+// Returns a descriptor of a regular file, by its name relative to the mesh's folder; not valid: it may not be
+// read. Two descriptors of one file may share their offset.
+using OpenFile = std::function<UniqueFd(const std::string&)>;
+
+struct ImportRequest {
+  std::string name;  // the mesh's, in its folder
+  MeshFormat format = MeshFormat::kObj;
+  ImportLimits limits;
+};
+
+// The importer's side. Each returns false, nullopt or no descriptor if the other side has closed its socket;
+// request_file() returns no descriptor for a file that may not be read, too.
+std::optional<ImportRequest> receive_request(int socket);
+UniqueFd request_file(int socket, std::string_view name);
+bool send_import(int socket, const Expected<ImportedMesh>& result);
+
+enum class ImportFailure {
+  kTimedOut,  // the deadline passed
+  kBroken,    // the importer ended early, or its bytes are neither a valid mesh nor an error
+};
+
+// Returns the text with every byte that is no printable ASCII character replaced by '?'.
+std::string printable_ascii(std::string text);
+
+// This side. send_request() does not block: the socket is empty.
+bool send_request(int socket, const ImportRequest& request);
+// Opens files for the importer and waits for the complete result until the deadline. Throws std::bad_alloc
+// when this process is out of memory.
+std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int socket, const ImportLimits& limits,
+                                                                   ImportDeadline deadline,
+                                                                   const OpenFile& open);
+
+}  // namespace buoyancy

@@ -1,0 +1,43 @@
+// Internal to mesh import: the files that the importer may read. It can open none itself; it asks for them by
+// name, and this side opens them (import_channel.h).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "base/unique_fd.h"
+
+namespace buoyancy {
+
+// A regular file below a folder, by its name relative to it.
+struct FileBelow {
+  UniqueFd file;         // not valid if there is none
+  bool outside = false;  // the name leads out of the folder: absolute, by "..", or by a symbolic link
+};
+FileBelow open_below(const std::filesystem::path& folder, const std::string& name);
+// The same for kernels without openat2: a link that is set while this function runs may still lead out.
+FileBelow open_below_by_path(const std::filesystem::path& folder, const std::string& name);
+
+class MeshFolder {
+ public:
+  // Opens the mesh. It may be a symbolic link to anywhere, since the user has named it.
+  MeshFolder(const std::filesystem::path& mesh, std::uint64_t max_bytes);
+
+  // Returns a descriptor for reading the mesh itself or a file below its folder; not valid if there is no
+  // such regular file of at most max_bytes. The mesh is the same open file each time, so do not move its
+  // offset.
+  UniqueFd open(const std::string& name);
+
+  // The first name that led out of the folder; empty if none did.
+  const std::string& outside() const { return outside_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::string mesh_name_;
+  UniqueFd mesh_;
+  std::uint64_t max_bytes_;
+  std::string outside_;
+};
+
+}  // namespace buoyancy

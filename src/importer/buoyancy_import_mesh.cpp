@@ -1,0 +1,49 @@
+// buoyancy-import-mesh: reads one mesh file for the program that has started it, which
+// geometry/import_process.h describes. It does so in a cage, since files exist that crash importers or make
+// them do what the file says.
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <optional>
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/standard_descriptors.h"
+#include "geometry/import_channel.h"
+#include "importer/assimp_reader.h"
+#include "importer/cage.h"
+
+namespace buoyancy {
+namespace {
+
+// The kernel sends no signal for a parent that had died before it was asked to.
+bool parent_is_gone() {
+  char byte = 0;
+  return ::recv(kImporterSocket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+}
+
+int run() {
+  const std::optional<ImportRequest> request = receive_request(kImporterSocket);
+  if (!request) return EXIT_FAILURE;
+  enter_cage(request->limits);
+  if (parent_is_gone()) return EXIT_FAILURE;
+  const auto open = [](const std::string& name) { return request_file(kImporterSocket, name); };
+  std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
+  try {
+    return send_import(kImporterSocket, read_with_assimp(*request, open)) ? EXIT_SUCCESS : EXIT_FAILURE;
+  } catch (const std::bad_alloc&) {
+    return kOutOfMemoryExit;
+  } catch (...) {
+    return EXIT_FAILURE;
+  }
+}
+
+}  // namespace
+}  // namespace buoyancy
+
+int main(int argc, char** argv) {
+  buoyancy::open_standard_descriptors();
+  const bool same_protocol = argc == 2 && std::strcmp(argv[1], buoyancy::kImportProtocol) == 0;
+  ::_exit(same_protocol ? buoyancy::run() : buoyancy::kOtherProtocolExit);
+}
