@@ -1,6 +1,8 @@
 #include "service/daemon/scene_loader.h"
 
+#include <exception>
 #include <new>
+#include <string>
 #include <utility>
 
 #include <sys/eventfd.h>
@@ -18,6 +20,9 @@ SceneLoader::Loaded load(const std::filesystem::path& path) {
     return make_error({path.string(), "out of memory while loading it",
                        "enough memory for two scenes: the current one is served until the new one is ready",
                        "", "Restart the service with the new scene, or give it more memory"});
+  } catch (const std::exception& exception) {  // whatever a file makes a library do, the service goes on
+    return make_error({path.string(), std::string("the scene could not be loaded: ") + exception.what(),
+                       "a scene that buoyancyd --check accepts", "", ""});
   }
 }
 

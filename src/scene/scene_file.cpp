@@ -14,6 +14,7 @@
 #include "scene/loads_toml.h"
 #include "scene/sea_toml.h"
 #include "scene/subdivision_toml.h"
+#include "scene/toml_nesting.h"
 #include "scene/toml_table.h"
 
 namespace buoyancy {
@@ -254,7 +255,13 @@ void read_bodies(TomlTable& top, SceneDescription& scene, const std::filesystem:
   }
 }
 
+// Every TOML text of all programs and libraries is parsed here.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxSceneFileBytes) {
+    return make_error({name, std::to_string(text.size()) + " bytes",
+                       "at most " + std::to_string(kMaxSceneFileBytes) + " bytes of TOML", "", ""});
+  }
+  if (std::optional<Error> too_deep = check_toml_nesting(text, name)) return make_error(*std::move(too_deep));
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {

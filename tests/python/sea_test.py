@@ -1,4 +1,5 @@
 """A Sea takes the keys of the scene file and gives the motion of its water."""
+import tempfile
 import unittest
 
 import numpy as np
@@ -66,6 +67,14 @@ class DescribesWaterInMotion(TestCase):
         self.assertEqual(buoyancy.Sea(level=np.float32(0.5), up=np.array([0, 2.0, 0])).up.tolist(), [0, 1, 0])
         components = [dict(amplitude=0.5, angular_frequency=0.8), dict(amplitude=np.float64(0.2), angular_frequency=1)]
         self.assertTrue(buoyancy.Sea(waves={"type": "components", "components": components}).has_waves)
+
+    def test_deep_files_are_refused(self):
+        for text in ("a" + ".a" * 50_000 + " = 1", "[" + "a." * 50_000 + "a]", "a = " + "[" * 1_000_000):
+            with tempfile.NamedTemporaryFile("w", suffix=".toml") as scene:
+                scene.write("\n" + text)
+                scene.flush()
+                with self.assertRaisesRegex(buoyancy.InputError, r"\.toml:2: more than 32 levels of tables"):
+                    buoyancy.Sea(scene.name)
 
     def test_text_is_escaped(self):
         for text in ('"', "\\", "\n", "]]", "\x00", "\x7f", "é", '"\n[world]\ngravity = 0\n#'):

@@ -98,11 +98,15 @@ TEST(Reload, KeepsOldSceneIfNewOneIsInvalid) {
   reload(service, "[[body]]\nid = ", "reload failed");
   EXPECT_NE(service.log().find("scene.toml:2"), std::string::npos) << service.log();
   EXPECT_NEAR(vertical_force(socket, 2), kForceBefore, 1e-6);
-  reload(service, "[[body]]\nid = 1\nmesh = \"gone.stl\"\n", "gone.stl");
+  std::string deep = "a";  // toml++ would overflow the stack
+  for (int i = 0; i < 50'000; ++i) deep += ".a";
+  reload(service, kBefore + deep + " = 1\n", "more than 32 levels of tables and arrays");
   EXPECT_NEAR(vertical_force(socket, 3), kForceBefore, 1e-6);
+  reload(service, "[[body]]\nid = 1\nmesh = \"gone.stl\"\n", "gone.stl");
+  EXPECT_NEAR(vertical_force(socket, 4), kForceBefore, 1e-6);
   reload(service, box_scene(500.0, 4.0), "reloaded:");
-  EXPECT_NEAR(vertical_force(socket, 4), 0.5 * kForceBefore, 1e-6);
-  EXPECT_EQ(lines_with("reload failed", service.log()), 2U) << service.log();
+  EXPECT_NEAR(vertical_force(socket, 5), 0.5 * kForceBefore, 1e-6);
+  EXPECT_EQ(lines_with("reload failed", service.log()), 3U) << service.log();
 }
 
 TEST(Reload, LosesNoResponseOfSteadyStream) {

@@ -1,0 +1,22 @@
+// Internal to scene_file.cpp: a check of TOML text before toml++ parses it, which calls itself for every
+// level of tables within tables and so ends the process on a text of a few thousand dots.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace buoyancy {
+
+// Levels of one value: those of its header, of its key, and of the arrays and inline tables around it, each
+// up to this number. The deepest key of a scene has 5 in all.
+inline constexpr std::size_t kMaxTomlLevels = 32;
+
+// Returns an Error that names the line if a header, or a key with the arrays and inline tables around it, has
+// more than kMaxTomlLevels levels. Text that is no TOML may pass: its first fault ends the parser.
+std::optional<Error> check_toml_nesting(std::string_view text, const std::string& name);
+
+}  // namespace buoyancy
