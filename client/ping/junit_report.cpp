@@ -196,7 +196,7 @@ std::string to_junit(const PingTask& task, const PingResult& result) {
 Expected<void> write_file(const std::filesystem::path& path, const std::string& text) {
   Expected<StagedFile> staged = StagedFile::create(path);
   if (!staged) return make_error(staged.error());
-  Expected<RecordWriter> file = RecordWriter::create(staged->temporary());
+  Expected<RecordWriter> file = RecordWriter::create(*staged);
   if (!file) return make_error(file.error());
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   if (Expected<void> written = file->append(bytes); !written) return written;

@@ -192,7 +192,7 @@ Expected<void> write_manifest(const std::filesystem::path& part, const PartManif
       to_json(manifest).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
   Expected<StagedFile> staged = StagedFile::create(manifest_path(part));
   if (!staged) return tl::unexpected(staged.error());
-  Expected<RecordWriter> file = RecordWriter::create(staged->temporary());
+  Expected<RecordWriter> file = RecordWriter::create(*staged);
   if (!file) return tl::unexpected(file.error());
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   if (Expected<void> written = file->append(bytes); !written) return written;

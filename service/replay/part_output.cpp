@@ -31,7 +31,7 @@ Expected<PartOutput> PartOutput::create(const std::filesystem::path& output, Fil
   const std::filesystem::path path = part_path(output, part);
   Expected<StagedFile> staged = StagedFile::create(path);
   if (!staged) return tl::unexpected(staged.error());
-  Expected<ReplayOutput> responses = ReplayOutput::create_part(staged->temporary(), format, part);
+  Expected<ReplayOutput> responses = ReplayOutput::create_part(*staged, format, part);
   if (!responses) return tl::unexpected(responses.error());
   PartManifest manifest;
   manifest.part = part;

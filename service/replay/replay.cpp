@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -92,7 +93,7 @@ void read(const ReplayTask& task, const TerminationSignals& signals, Received& r
       state = ReadState::kStopped;
     } else {
       const bool more = fill(task, received, round.batches[round.filled++], summary);
-      if (!more) state = ReadState::kAtEnd;
+      if (!more) state = task.input.stopped() ? ReadState::kStopped : ReadState::kAtEnd;
     }
   }
 }
@@ -145,6 +146,9 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
     return sum;
   };
 
+  const auto stop = [&signals] { return signals.pending(); };
+  task.input.stop_when(stop);
+  if (task.comparison != nullptr) task.comparison->stop_when(stop);
   task.output.give_up_after(signals.fileno());
   if (task.loads != nullptr) task.loads->give_up_after(signals.fileno());
   ReadState state = ReadState::kReading;
@@ -177,8 +181,13 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   if (task.loads != nullptr) {
     if (Expected<void> flushed = task.loads->flush(); !flushed) return tl::unexpected(flushed.error());
   }
+  if (task.input.read_error()) return make_error(*task.input.read_error());
+  if (task.comparison != nullptr) {
+    task.comparison->finish();
+    if (const std::optional<Error> error = task.comparison->read_error()) return make_error(*error);
+    if (task.comparison->stopped()) state = ReadState::kStopped;
+  }
   if (state == ReadState::kStopped) summary.stopped_by = signals.consume();
-  if (task.comparison != nullptr) task.comparison->finish();
   const ReplaySummary sum = total();
   summary.counters = sum.counters;
   summary.copied = sum.copied;

@@ -57,7 +57,9 @@ struct ReplayTask {
 };
 
 // Stops at the end of the input or, between two requests, after a signal. Memory: jobs times a bounded number
-// of requests. Errors: the output cannot be written; after a signal, the output is a pipe without a reader.
+// of requests. Errors: the input or the baseline cannot be read to its end: the output then holds the
+// responses to what was read; the output cannot be written; after a signal, the output is a pipe without a
+// reader.
 Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signals,
                                const ReplayCallbacks& callbacks);
 

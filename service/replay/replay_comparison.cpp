@@ -39,6 +39,23 @@ Expected<ReplayComparison> ReplayComparison::open(const std::filesystem::path& b
   return ReplayComparison(std::move(*responses), std::move(*hydrostatics), std::move(*loads), scene);
 }
 
+void ReplayComparison::stop_when(const std::function<bool()>& stop) {
+  responses_.baseline.file().stop_when(stop);
+  hydrostatics_.baseline.file().stop_when(stop);
+  loads_.baseline.file().stop_when(stop);
+}
+
+bool ReplayComparison::stopped() const {
+  return std::ranges::any_of(files(), [](const FileWindow* file) { return file->stopped(); });
+}
+
+std::optional<Error> ReplayComparison::read_error() const {
+  for (const FileWindow* file : files()) {
+    if (file->read_error()) return file->read_error();
+  }
+  return std::nullopt;
+}
+
 template <typename Message>
 bool ReplayComparison::Channel<Message>::read_one() {
   while (true) {

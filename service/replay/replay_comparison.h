@@ -6,10 +6,12 @@
 // parts of a wrench, within its bounds (docs/replay.md).
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -55,6 +57,11 @@ class ReplayComparison {
   void add_loads(Bytes loads);
   // Call this after the last response: counts the rest of the baseline as unmatched.
   void finish();
+
+  // Ends the baseline once stop() is true; see FileWindow.
+  void stop_when(const std::function<bool()>& stop);
+  bool stopped() const;
+  std::optional<Error> read_error() const;  // the baseline could not be read to its end
 
   const std::map<std::int32_t, BodyDifferences>& bodies() const { return bodies_; }  // by id
   // Responses, hydrostatics and loads without a counterpart.
@@ -106,6 +113,10 @@ class ReplayComparison {
         loads_{std::move(loads)} {}
   template <typename Message, typename CompareBody>
   void add(Channel<Message>& channel, Bytes bytes, const CompareBody& compare_body);
+
+  std::array<const FileWindow*, 3> files() const {
+    return {&responses_.baseline.file(), &hydrostatics_.baseline.file(), &loads_.baseline.file()};
+  }
 
   const Scene* scene_;
   Channel<WrenchResponse> responses_;

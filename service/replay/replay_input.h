@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,7 +32,9 @@ class ReplayInput {
   // Errors: not readable.
   Expected<void> restrict_to(const Part& part, std::optional<std::int64_t> start);
 
-  // LimitReached: the block has ended. EndOfLog: the input or the part has ended.
+  // Ends the input once stop() is true, also while nothing but damage is read.
+  void stop_when(std::function<bool()> stop) { file().stop_when(std::move(stop)); }
+  // LimitReached: the block has ended. EndOfLog: the input or the part has ended, or it was broken off.
   LogItem next();
 
   // For a progress bar: bytes read of the input or part, of about bytes_expected().
@@ -47,6 +50,9 @@ class ReplayInput {
     const auto* csv = std::get_if<StateCsvReader>(&reader_);
     return csv == nullptr || csv->states_velocities();
   }
+  bool stopped() const { return file().stopped(); }  // by stop_when()
+  const std::optional<Error>& read_error() const { return file().read_error(); }
+
   // The range of bytes that was read [bytes], from begin() to before position(). The first part begins at 0.
   std::int64_t begin() const { return begin_; }
   std::int64_t position() const {
@@ -61,6 +67,9 @@ class ReplayInput {
 
   const FileWindow& file() const {
     return std::visit([](const auto& reader) -> const FileWindow& { return reader.file(); }, reader_);
+  }
+  FileWindow& file() {
+    return std::visit([](auto& reader) -> FileWindow& { return reader.file(); }, reader_);
   }
   void update_hash();
   bool reached(std::int64_t limit) const {

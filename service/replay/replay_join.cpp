@@ -302,7 +302,7 @@ Expected<JoinResult> Join::run() {
 
   Expected<StagedFile> staged = StagedFile::create(output_);
   if (!staged) return tl::unexpected(staged.error());
-  Expected<RecordWriter> file = RecordWriter::create(staged->temporary());
+  Expected<RecordWriter> file = RecordWriter::create(*staged);
   if (!file) return tl::unexpected(file.error());
   if (const Expected<void> written = write_output(*file); !written) return tl::unexpected(written.error());
   if (const Expected<void> committed = staged->commit(); !committed) return tl::unexpected(committed.error());

@@ -78,9 +78,9 @@ Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, F
   return output;
 }
 
-Expected<ReplayOutput> ReplayOutput::create_part(const std::filesystem::path& path, FileFormat format,
+Expected<ReplayOutput> ReplayOutput::create_part(const StagedFile& staged, FileFormat format,
                                                  const Part& part) {
-  Expected<RecordWriter> file = RecordWriter::create(path);
+  Expected<RecordWriter> file = RecordWriter::create(staged);
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), format, true);
   if (part.number > 1) return output;

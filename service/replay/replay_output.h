@@ -89,8 +89,7 @@ class ReplayOutput {
   // Creates or truncates the file. Errors: see RecordWriter.
   static Expected<ReplayOutput> create(const std::filesystem::path& path, FileFormat format);
   // Creates the output of a part (replay_part.h), which keeps account of its contents.
-  static Expected<ReplayOutput> create_part(const std::filesystem::path& path, FileFormat format,
-                                            const Part& part);
+  static Expected<ReplayOutput> create_part(const StagedFile& staged, FileFormat format, const Part& part);
   // Creates or truncates the CSV file of loads.
   static Expected<ReplayOutput> create_loads(const std::filesystem::path& path);
 

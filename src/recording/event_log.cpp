@@ -47,7 +47,13 @@ EventLogReader::EventLogReader(FileWindow file, ChannelFilter wanted)
     : file_(std::move(file)), wanted_(std::move(wanted)) {}
 
 LogItem EventLogReader::next(std::int64_t limit) {
-  while (offset_ < size()) {
+  LogItem item = read_next(limit);
+  if (file_.broken_off()) return EndOfLog{};
+  return item;
+}
+
+LogItem EventLogReader::read_next(std::int64_t limit) {
+  while (offset_ < size() && !file_.broken_off()) {
     if (reached(limit)) return LimitReached{};
     const tl::expected<Frame, std::string> frame = frame_at(offset_);
     if (!frame) return skip_corrupt_section(frame.error());
@@ -59,7 +65,7 @@ LogItem EventLogReader::next(std::int64_t limit) {
     }
     const std::size_t event_size = frame->data_start + frame->data_size;
     const Bytes event = file_.read_at(start, event_size + kMagic.size());
-    if (event.size() < event_size) break;  // a read error
+    if (event.size() < event_size) break;
     const Bytes data = event.subspan(frame->data_start, frame->data_size);
     const bool followed = frame->next == size() || starts_with_magic(event.subspan(event_size));
     if (!followed && (is_truncated(data) || !is_request_or_pose(data))) {
@@ -68,11 +74,6 @@ LogItem EventLogReader::next(std::int64_t limit) {
     offset_ = frame->next;
     const Bytes channel = event.subspan(kEventHeaderSize, frame->data_start - kEventHeaderSize);
     return RecordedEvent{frame->timestamp, as_text(channel), data};
-  }
-  if (file_.read_error()) {
-    offset_ = size();
-    const CorruptSection unreadable{file_.read_error()->message()};
-    return unreadable;
   }
   return EndOfLog{};
 }
@@ -126,7 +127,7 @@ void EventLogReader::find_header() {
     offset_ += found - window.begin();
     if (found != window.end()) return;
     // The window may end within the first bytes of a header, which are then searched again. It is shorter
-    // than those only at the end of the file or after a read error.
+    // than those only at the end of the file or where that is broken off.
     const bool more = offset_ < size() && window.size() >= kMagic.size();
     offset_ = more ? offset_ - static_cast<std::int64_t>(kMagic.size()) + 1 : size();
   }

@@ -46,12 +46,14 @@ class EventLogReader {
   // Reads the events of the wanted channels and skips the others.
   static Expected<EventLogReader> open(const std::filesystem::path& path, ChannelFilter wanted);
 
+  // Once file().broken_off(), returns EndOfLog.
   LogItem next(std::int64_t limit = kNoLimit);
   bool reached(std::int64_t limit) const { return offset_ >= limit; }
   std::int64_t position() const { return offset_; }
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
   const FileWindow& file() const { return file_; }
+  FileWindow& file() { return file_; }
 
   // Moves to the cut for `offset`, as far as the events of the `distance` bytes before show it. O(distance).
   void seek(std::int64_t offset, std::int64_t distance = kSeekDistance);
@@ -68,6 +70,7 @@ class EventLogReader {
   };
 
   EventLogReader(FileWindow file, ChannelFilter wanted);
+  LogItem read_next(std::int64_t limit);                           // wrong once file().broken_off()
   tl::expected<Frame, std::string> frame_at(std::int64_t offset);  // or the reason why it is invalid
   bool header_or_end_at(std::int64_t offset);
   void find_header();  // moves to the first header at or after the offset, or to the end

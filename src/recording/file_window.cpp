@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
+#include <string>
 #include <system_error>
 
 #include <fcntl.h>
@@ -13,6 +14,17 @@ namespace {
 
 tl::unexpected<Error> unreadable(const std::filesystem::path& path, int error) {
   return make_error({path.string(), std::generic_category().message(error), "a readable file", "", ""});
+}
+
+Error broken_off_at(const std::filesystem::path& path, std::int64_t offset, int error) {
+  const std::string byte = std::to_string(offset);
+  if (error == 0) {
+    return {path.string(), "ends at byte " + byte, "the bytes that it had when it was opened",
+            "it was truncated or replaced while it was read", "Read it again when it is complete"};
+  }
+  return {path.string(),
+          "cannot be read from byte " + byte + " on: " + std::generic_category().message(error),
+          "a readable file", "the disk or the network failed", ""};
 }
 
 }  // namespace
@@ -40,11 +52,13 @@ Expected<FileWindow> FileWindow::duplicate(std::size_t read_ahead) const {
 
 Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
   assert(offset >= 0);
-  if (offset >= size_) return {};
+  if (offset >= size_ || broken_off()) return {};
   const auto left = static_cast<std::uint64_t>(size_ - offset);
   count = static_cast<std::size_t>(std::min<std::uint64_t>(count, left));
   const auto window_end = start_ + static_cast<std::int64_t>(window_.size());
   if (offset < start_ || offset + static_cast<std::int64_t>(count) > window_end) {
+    stopped_ = stop_ && stop_();
+    if (stopped_) return {};
     start_ = offset;
     window_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, read_ahead_), left)));
     std::size_t filled = 0;
@@ -52,8 +66,11 @@ Bytes FileWindow::read_at(std::int64_t offset, std::size_t count) {
       const ssize_t got = ::pread(file_.value(), window_.data() + filled, window_.size() - filled,
                                   offset + static_cast<std::int64_t>(filled));
       if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) {
-        read_error_ = unreadable(path_, got < 0 ? errno : ESTALE).value();
+      if (got <= 0) {  // what was read ahead may suffice
+        if (filled < count) {
+          const auto from = offset + static_cast<std::int64_t>(filled);
+          read_error_ = broken_off_at(path_, from, got < 0 ? errno : 0);
+        }
         break;
       }
       filled += static_cast<std::size_t>(got);

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -21,8 +23,12 @@ class FileWindow {
   // the process has too many open files.
   Expected<FileWindow> duplicate(std::size_t read_ahead = kReadAhead) const;
 
-  // Returns the bytes from offset on: at least `count`, or all that are left of the file. Valid until the
-  // next call. Memory: the largest count requested, or 1 MB.
+  // Ends reading once stop() is true, which is asked before each read from the disk.
+  void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
+
+  // Returns the bytes from offset on: at least `count`, or all that are left of the file; fewer or none if
+  // they cannot be read, and none from then on. Valid until the next call. Memory: the largest count
+  // requested, or 1 MB.
   Bytes read_at(std::int64_t offset, std::size_t count);
   // Returns the bytes from offset on as far as the last read_at() has left them in memory; perhaps none.
   Bytes buffered(std::int64_t offset) const;
@@ -30,8 +36,10 @@ class FileWindow {
   // The file's size when it was opened; bytes appended later are not read.
   std::int64_t size() const { return size_; }
   const std::filesystem::path& path() const { return path_; }
-  // Set once read_at() returned fewer bytes than it should have.
+  // Set once read_at() returned fewer bytes than it should have: the disk failed, or the file was truncated.
   const std::optional<Error>& read_error() const { return read_error_; }
+  bool stopped() const { return stopped_; }  // by stop_when()
+  bool broken_off() const { return read_error_ || stopped_; }
 
  private:
   static constexpr std::size_t kReadAhead = 1'048'576;  // [bytes]
@@ -45,6 +53,8 @@ class FileWindow {
   std::int64_t start_ = 0;  // offset of the window in the file
   std::vector<std::uint8_t> window_;
   std::optional<Error> read_error_;
+  std::function<bool()> stop_;
+  bool stopped_ = false;
 };
 
 }  // namespace buoyancy

@@ -29,7 +29,7 @@ struct CorruptSection {
   std::string description;  // what could not be read, where, and how much was skipped
 };
 struct LimitReached {};  // returned only if next() was called with a limit
-struct EndOfLog {};
+struct EndOfLog {};      // or of what can be read of it: see FileWindow::broken_off()
 
 using LogItem = std::variant<RecordedEvent, CorruptSection, LimitReached, EndOfLog>;
 

@@ -52,6 +52,12 @@ Expected<RecordWriter> RecordWriter::create(const std::filesystem::path& path) {
   return RecordWriter(path, std::move(file), S_ISFIFO(status.st_mode));
 }
 
+Expected<RecordWriter> RecordWriter::create(const StagedFile& staged) {
+  UniqueFd file = staged.duplicate();
+  if (!file.valid() || ::ftruncate(file.value(), 0) != 0) return write_error(staged.temporary(), errno);
+  return RecordWriter(staged.temporary(), std::move(file), false);
+}
+
 RecordWriter::RecordWriter(std::filesystem::path path, UniqueFd file, bool is_pipe)
     : path_(std::move(path)), file_(std::move(file)), is_pipe_(is_pipe) {}
 

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/unique_fd.h"
 #include "messages/wire.h"
+#include "recording/staged_file.h"
 
 namespace buoyancy {
 
@@ -22,6 +23,8 @@ class RecordWriter {
   // Creates or truncates the file. Blocks until a named pipe has a reader. Errors: the file cannot be
   // written.
   static Expected<RecordWriter> create(const std::filesystem::path& path);
+  // Truncates the temporary file and writes it. Errors: the file cannot be written.
+  static Expected<RecordWriter> create(const StagedFile& staged);
 
   // signal: a descriptor that becomes readable, such as a signalfd. Once it is readable, a write to a full
   // pipe or terminal fails after kGrace, counted from the first such write.

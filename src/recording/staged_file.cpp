@@ -18,11 +18,16 @@ tl::unexpected<Error> file_error(const std::filesystem::path& path, const char* 
                      "a writable file in a writable directory", "", ""});
 }
 
+bool is_own_regular_file(int file) {
+  struct stat status {};
+  return ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
+}
+
 // Does the name still belong to this open file? Another process may have renamed it meanwhile.
 bool is_name_of(const std::filesystem::path& path, int file) {
   struct stat named {};
   struct stat opened {};
-  return ::stat(path.c_str(), &named) == 0 && ::fstat(file, &opened) == 0 && named.st_dev == opened.st_dev &&
+  return ::lstat(path.c_str(), &named) == 0 && ::fstat(file, &opened) == 0 && named.st_dev == opened.st_dev &&
          named.st_ino == opened.st_ino;
 }
 
@@ -34,10 +39,18 @@ Expected<StagedFile> StagedFile::create(const std::filesystem::path& path) {
     return make_error({path.string(), "is not a regular file", "the name of a regular file",
                        "the output is renamed when it is complete, which a pipe or device cannot be", ""});
   }
-  std::filesystem::path temporary = path;
-  temporary += ".tmp";
+  std::filesystem::path temporary = temporary_name(path);
   while (true) {
-    UniqueFd file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kPermissions));
+    constexpr int kFlags = O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // a pipe is then opened at once
+    UniqueFd file(::open(temporary.c_str(), kFlags | O_CREAT | O_EXCL, kPermissions));
+    if (!file.valid() && errno == EEXIST) {
+      file = UniqueFd(::open(temporary.c_str(), kFlags));
+      if (!file.valid() && errno == ENOENT) continue;  // renamed or removed meanwhile
+      if (!file.valid() ? errno == ELOOP || errno == ENXIO : !is_own_regular_file(file.value())) {
+        return make_error({temporary.string(), "is a link, or not a regular file", "a name that is free",
+                           "writing it would overwrite another file", "Remove it, or choose another output"});
+      }
+    }
     if (!file.valid()) return file_error(temporary, "could not be created", errno);
     if (::flock(file.value(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       return make_error({temporary.string(), "is being written by another process",

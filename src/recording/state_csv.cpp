@@ -57,6 +57,7 @@ std::int64_t StateCsvReader::position() const {
 }
 
 LogItem StateCsvReader::next(std::int64_t limit) {
+  if (file_.broken_off()) return EndOfLog{};
   if (reached(limit)) return LimitReached{};
   if (corrupt_line_) {
     CorruptSection corrupt = std::move(corrupt_line_->section);
@@ -88,16 +89,13 @@ LogItem StateCsvReader::next(std::int64_t limit) {
     }
     append(*row);
   }
+  if (file_.broken_off()) return EndOfLog{};  // the line, or the run of rows, may be cut off
   if (!request_.bodies.empty()) {
     encode(request_, bytes_);
     ++request_.id.seq;
     return RecordedEvent{request_.id.utime, {}, bytes_};
   }
   if (corrupt_line_ || pending_) return next(limit);
-  if (file_.read_error() && offset_ < size()) {
-    offset_ = size();
-    return CorruptSection{file_.read_error()->message()};
-  }
   return EndOfLog{};
 }
 

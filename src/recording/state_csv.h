@@ -38,12 +38,14 @@ class StateCsvReader {
   // Does the header name velocities? Also true for an empty file, which has no rows without them.
   bool states_velocities() const;
 
+  // Once file().broken_off(), returns EndOfLog.
   LogItem next(std::int64_t limit = kNoLimit);
   bool reached(std::int64_t limit) const;
   std::int64_t position() const;
   std::int64_t offset() const { return offset_; }  // read so far [bytes]
   std::int64_t size() const { return file_.size(); }
   const FileWindow& file() const { return file_; }
+  FileWindow& file() { return file_; }
 
   // Lines are counted from here on in the descriptions of malformed lines. O(rows of the run around offset).
   void seek(std::int64_t offset);

@@ -395,6 +395,61 @@ TEST_F(Replay, StopsOnSignalIfItsPipeHasNoActiveReader) {
   }
 }
 
+// Waits until the child has opened the file, and returns whether it still runs then.
+bool wait_until_open(ChildProcess& child, const std::string& file) {
+  while (!child.wait(0.002)) {
+    const std::string descriptors = "/proc/" + std::to_string(child.pid()) + "/fd";
+    std::error_code ended;
+    for (std::filesystem::directory_iterator open(descriptors, ended), end; open != end;
+         open.increment(ended)) {
+      if (std::filesystem::read_symlink(open->path(), ended) == file) return true;
+      if (ended) break;
+    }
+  }
+  return false;
+}
+
+TEST_F(Replay, EndsAtEventIfLogIsTruncatedMeanwhile) {
+  constexpr int kRequests = 20'000;
+  const std::string log = log_of_requests(kRequests);
+  const std::string input = write("in.lcmlog", log);
+  const std::string pipe = path("out.lcmlog");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  ChildProcess child(command({"--scene", scene_, input, pipe}));
+  ASSERT_TRUE(wait_until_open(child, input)) << child.standard_error();
+  std::filesystem::resize_file(input, log.size() / 2 + 7);
+  // Only now may it write, and so read.
+  const UniqueFd reader(::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  std::string output;
+  std::string part(65'536, ' ');
+  for (bool ended = false; !ended;) {
+    ended = child.wait(0.001).has_value();
+    for (ssize_t got = 0; (got = ::read(reader.value(), part.data(), part.size())) > 0;) {
+      output.append(part, 0, static_cast<std::size_t>(got));
+    }
+  }
+  EXPECT_EQ(child.wait(kWaitTimeout), 1);
+  EXPECT_NE(child.standard_error().find("it was truncated or replaced while it was read"), std::string::npos)
+      << child.standard_error();
+  const std::vector<LoggedEvent> events = events_of(write("out_copy.lcmlog", output));
+  ASSERT_GE(events.size(), kRequests / 2U - 2);
+  std::string again;
+  for (std::size_t i = 0; i < events.size(); ++i)
+    again += event(events[i].channel, events[i].timestamp, events[i].bytes);
+  EXPECT_EQ(again.size(), output.size()) << "OUTPUT ends within an event";
+}
+
+TEST_F(Replay, EndsWithinDamageAfterSignal) {
+  const std::string input = write("in.lcmlog", "");
+  std::filesystem::resize_file(input, 1'000'000'000'000);  // of zeros, and no byte on the disk
+  ChildProcess child(command({"--scene", scene_, input, path("out.lcmlog")}));
+  ASSERT_TRUE(wait_until_open(child, path("out.lcmlog"))) << child.standard_error();
+  child.send_signal(SIGTERM);
+  EXPECT_EQ(child.wait(kWaitTimeout), 1);
+  EXPECT_NE(child.standard_error().find("terminated by SIGTERM"), std::string::npos)
+      << child.standard_error();
+}
+
 TEST_F(Replay, AcceptsOpenMeshesWithDryBoundaryOnRequest) {
   const std::string lid = "f 5 6 7 8\n";
   std::string cup = kCube;

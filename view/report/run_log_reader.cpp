@@ -221,6 +221,7 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
       break;
     }
   }
+  if (log->file().read_error()) return make_error(*log->file().read_error());
   matcher.flush();
   return {};
 }
