@@ -9,7 +9,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "base/standard_descriptors.h"
 #include "cli/logging.h"
+#include "recording/staged_file.h"
 
 namespace buoyancy {
 namespace {
@@ -26,6 +28,7 @@ std::string exit_status_help(const ExitStatusHelp& help) {
 }
 
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
+  open_standard_descriptors();  // every program comes here before it opens a file
   try {
     app.parse(argc, argv);
     return std::nullopt;
@@ -43,7 +46,8 @@ Expected<void> check_output_not_input(const std::filesystem::path& output,
                                       std::initializer_list<std::filesystem::path> inputs) {
   for (const std::filesystem::path& file : inputs) {
     std::error_code no_such_file;
-    if (std::filesystem::equivalent(file, output, no_such_file)) {
+    if (std::filesystem::equivalent(file, output, no_such_file) ||
+        std::filesystem::equivalent(file, StagedFile::temporary_name(output), no_such_file)) {
       return make_error({output.string(), "the same file as " + file.string(), "a separate output file",
                          "writing it would overwrite the input", ""});
     }

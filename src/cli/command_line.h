@@ -29,11 +29,13 @@ struct ExitStatusHelp {
 // Returns "Exit status: 0 on success, ...; 1 ...; 2 ....", the end of every program's description.
 std::string exit_status_help(const ExitStatusHelp& help = {});
 
+// Opens the standard descriptors that are closed (standard_descriptors.h); call it before opening any file.
 // Returns nullopt if the program should continue, else its exit code: kSuccess after --help or --version,
 // kUsageError after one line on standard error.
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-// Errors: output exists and is one of the input files. Empty paths are ignored.
+// Errors: output, or the temporary name under which it is written, exists and is one of the input files.
+// Empty paths are ignored.
 Expected<void> check_output_not_input(const std::filesystem::path& output,
                                       std::initializer_list<std::filesystem::path> inputs);
 

@@ -600,5 +600,19 @@ TEST_F(InterruptedPart, KeepsEarlierCompletePart) {
   EXPECT_TRUE(read_file(part) + read_file(manifest_of(part)) == before);
 }
 
+TEST_F(ReplayParts, RefuseTemporaryNamesThatAreLinks) {
+  const std::string log = mixed_log(3 * kBlock);
+  const std::string input = write("in.lcmlog", log);
+  const std::string temporary = path("out.part-1-of-2.lcmlog.tmp");
+  std::filesystem::create_hard_link(input, temporary);
+  EXPECT_EQ(run_part(input, path("out.lcmlog"), {1, 2}).exit_code, 2);
+  std::filesystem::remove(temporary);
+  const std::string other = write("other", "precious");
+  std::filesystem::create_symlink(other, temporary);
+  EXPECT_EQ(run_part(input, path("out.lcmlog"), {1, 2}).exit_code, 1);
+  EXPECT_EQ(read_file(input), log);
+  EXPECT_EQ(read_file(other), "precious");
+}
+
 }  // namespace
 }  // namespace buoyancy
