@@ -264,7 +264,7 @@ typedef struct buoyancy_mesh_info {
   int64_t degenerate_faces;    // of zero area
   int64_t dropped_faces;       // that used a vertex twice
   int64_t duplicate_faces;     // with the vertices of another
-  int64_t intersecting_pairs;  // of faces; -1: not counted
+  int64_t intersecting_pairs;  // of faces, at least; -1: not counted
   int64_t components;          // parts that share no edge
   int64_t holes;               // loops of boundary edges
   int32_t closed;              // 1: every edge has two faces

@@ -23,10 +23,12 @@ class AabbTree {
     if (!nodes_.empty()) descend(0, meets, visit);
   }
 
-  // Calls visit(i, j) once for every pair of boxes that share a point.
+  // Calls visit(i, j) once for every pair of boxes that share a point, until it returns false. Returns
+  // whether it never did. Complexity: O(n log n) plus the pairs, of which there are n^2 / 2 if all boxes
+  // overlap.
   template <typename Visit>
-  void for_each_overlapping_pair(Visit&& visit) const {
-    if (!nodes_.empty()) pairs_within(0, visit);
+  bool for_each_overlapping_pair(Visit&& visit) const {
+    return nodes_.empty() || pairs_within(0, visit);
   }
 
  private:
@@ -63,41 +65,43 @@ class AabbTree {
   }
 
   template <typename Visit>
-  void pairs_within(std::int32_t n, Visit& visit) const {
+  bool pairs_within(std::int32_t n, Visit& visit) const {
     const Node& here = node(n);
     if (here.right != kLeaf) {
-      pairs_within(n + 1, visit);
-      pairs_within(here.right, visit);
-      pairs_between(n + 1, here.right, visit);
-      return;
+      return pairs_within(n + 1, visit) && pairs_within(here.right, visit) &&
+             pairs_between(n + 1, here.right, visit);
     }
     for (std::int32_t i = here.begin; i < here.end; ++i) {
-      for (std::int32_t j = i + 1; j < here.end; ++j) visit_if_overlapping(i, j, visit);
-    }
-  }
-
-  template <typename Visit>
-  void pairs_between(std::int32_t a, std::int32_t b, Visit& visit) const {
-    const Node& left = node(a);
-    const Node& right = node(b);
-    if (!overlap(left.box, right.box)) return;
-    const bool left_is_larger = left.end - left.begin > right.end - right.begin;
-    if (left.right != kLeaf && (left_is_larger || right.right == kLeaf)) {
-      pairs_between(a + 1, b, visit);
-      pairs_between(left.right, b, visit);
-    } else if (right.right != kLeaf) {
-      pairs_between(a, b + 1, visit);
-      pairs_between(a, right.right, visit);
-    } else {
-      for (std::int32_t i = left.begin; i < left.end; ++i) {
-        for (std::int32_t j = right.begin; j < right.end; ++j) visit_if_overlapping(i, j, visit);
+      for (std::int32_t j = i + 1; j < here.end; ++j) {
+        if (!visit_if_overlapping(i, j, visit)) return false;
       }
     }
+    return true;
   }
 
   template <typename Visit>
-  void visit_if_overlapping(std::int32_t i, std::int32_t j, Visit& visit) const {
-    if (overlap(box_of_item(i), box_of_item(j))) visit(item(i), item(j));
+  bool pairs_between(std::int32_t a, std::int32_t b, Visit& visit) const {
+    const Node& left = node(a);
+    const Node& right = node(b);
+    if (!overlap(left.box, right.box)) return true;
+    const bool left_is_larger = left.end - left.begin > right.end - right.begin;
+    if (left.right != kLeaf && (left_is_larger || right.right == kLeaf)) {
+      return pairs_between(a + 1, b, visit) && pairs_between(left.right, b, visit);
+    }
+    if (right.right != kLeaf) {
+      return pairs_between(a, b + 1, visit) && pairs_between(a, right.right, visit);
+    }
+    for (std::int32_t i = left.begin; i < left.end; ++i) {
+      for (std::int32_t j = right.begin; j < right.end; ++j) {
+        if (!visit_if_overlapping(i, j, visit)) return false;
+      }
+    }
+    return true;
+  }
+
+  template <typename Visit>
+  bool visit_if_overlapping(std::int32_t i, std::int32_t j, Visit& visit) const {
+    return !overlap(box_of_item(i), box_of_item(j)) || visit(item(i), item(j));
   }
 
   std::vector<BoundingBox> boxes_;   // in the order of items_

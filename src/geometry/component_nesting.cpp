@@ -12,6 +12,8 @@ namespace buoyancy {
 namespace {
 
 constexpr std::size_t kSamplesPerComponent = 8;
+constexpr std::int64_t kMaxOverlaps = 50'000'000;  // pairs of boxes, each 10 ns
+constexpr std::int64_t kMaxEnclosed = 2'000'000;   // pairs of components, each up to a microsecond
 
 using ComponentLists = std::vector<std::vector<std::int32_t>>;
 
@@ -34,15 +36,26 @@ bool contains(const BoundingBox& outer, const BoundingBox& inner) {
          (inner.max_B.array() <= outer.max_B.array()).all();
 }
 
-// Returns, by component, the components whose boxes contain its own, ascending.
-ComponentLists enclosing_boxes(const std::vector<BoundingBox>& boxes) {
+// Returns, by component, the components whose boxes contain its own, ascending; nullopt if there are too
+// many.
+std::optional<ComponentLists> enclosing_boxes(const std::vector<BoundingBox>& boxes) {
   ComponentLists enclosing(boxes.size());
-  AabbTree(boxes).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
+  const auto components = static_cast<std::int64_t>(boxes.size());
+  std::int64_t overlaps_left = kMaxOverlaps + 100 * components;
+  std::int64_t enclosed_left = kMaxEnclosed + 100 * components;
+  const auto add = [&](std::int32_t i, std::int32_t j) {
     const auto a = static_cast<std::size_t>(i);
     const auto b = static_cast<std::size_t>(j);
-    if (contains(boxes[b], boxes[a])) enclosing[a].push_back(j);
-    if (contains(boxes[a], boxes[b])) enclosing[b].push_back(i);
-  });
+    const auto enclose = [&](std::size_t inner, std::size_t outer) {
+      if (!contains(boxes[outer], boxes[inner])) return;
+      enclosing[inner].push_back(static_cast<std::int32_t>(outer));
+      --enclosed_left;
+    };
+    enclose(a, b);
+    enclose(b, a);
+    return --overlaps_left > 0 && enclosed_left > 0;
+  };
+  if (!AabbTree(boxes).for_each_overlapping_pair(add)) return std::nullopt;
   for (auto& list : enclosing) std::sort(list.begin(), list.end());
   return enclosing;
 }
@@ -97,101 +110,85 @@ Crossing cross(const TriangleMesh& mesh, const Triangle& face, const Vec3& point
   return {in_front == side ? 0 : side, false};
 }
 
-// Casts rays along +x against the faces of the candidate outer components.
-class RayCaster {
+// The faces of one component, against which rays along +x are cast.
+class Surface {
  public:
-  RayCaster(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<bool>& is_candidate)
-      : mesh_(mesh),
-        topology_(topology),
-        faces_(faces_of(topology, is_candidate)),
-        tree_(boxes_of(mesh, faces_)),
-        winding_(is_candidate.size(), 0),
-        touched_(is_candidate.size(), false) {}
+  Surface(const TriangleMesh& mesh, std::vector<Triangle> faces)
+      : mesh_(&mesh), faces_(std::move(faces)), tree_(boxes_of(mesh, faces_)) {}
 
-  // Sets winding(i) and touched(i) for the point.
-  void cast(const Vec3& point) {
-    for (const std::size_t component : changed_components_) {
-      winding_[component] = 0;
-      touched_[component] = false;
-    }
-    changed_components_.clear();
+  struct Position {
+    int winding = 0;
+    bool touched = false;  // the point lies on a face
+  };
+  Position position_of(const Vec3& point) const {
+    Position position;
     const auto meets_ray = [&point](const BoundingBox& box) {
       return box.max_B.x() >= point.x() && box.min_B.y() <= point.y() && point.y() <= box.max_B.y() &&
              box.min_B.z() <= point.z() && point.z() <= box.max_B.z();
     };
-    tree_.for_each(meets_ray, [this, &point](std::int32_t item) {
-      const auto face = static_cast<std::size_t>(faces_[static_cast<std::size_t>(item)]);
-      const auto component = static_cast<std::size_t>(topology_.component_of_face[face]);
-      const Crossing crossing = cross(mesh_, mesh_.triangles[face], point);
-      if (crossing.direction != 0 || crossing.touches) changed_components_.push_back(component);
-      winding_[component] += crossing.direction;
-      if (crossing.touches) touched_[component] = true;
+    tree_.for_each(meets_ray, [&](std::int32_t item) {
+      const Crossing crossing = cross(*mesh_, faces_[static_cast<std::size_t>(item)], point);
+      position.winding += crossing.direction;
+      if (crossing.touches) position.touched = true;
     });
+    return position;
   }
-
-  int winding(std::int32_t component) const { return winding_[static_cast<std::size_t>(component)]; }
-  bool touched(std::int32_t component) const { return touched_[static_cast<std::size_t>(component)]; }
 
  private:
-  static std::vector<std::int32_t> faces_of(const MeshTopology& topology,
-                                            const std::vector<bool>& is_candidate) {
-    std::vector<std::int32_t> faces;
-    for (std::size_t f = 0; f < topology.component_of_face.size(); ++f) {
-      if (is_candidate[static_cast<std::size_t>(topology.component_of_face[f])]) {
-        faces.push_back(static_cast<std::int32_t>(f));
-      }
-    }
-    return faces;
-  }
-
-  static std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
+  static std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh, const std::vector<Triangle>& faces) {
     std::vector<BoundingBox> boxes;
     boxes.reserve(faces.size());
-    for (const std::int32_t f : faces) {
-      boxes.push_back(box_of_face(mesh, mesh.triangles[static_cast<std::size_t>(f)]));
-    }
+    for (const Triangle& face : faces) boxes.push_back(box_of_face(mesh, face));
     return boxes;
   }
 
-  const TriangleMesh& mesh_;
-  const MeshTopology& topology_;
-  std::vector<std::int32_t> faces_;
+  const TriangleMesh* mesh_;
+  std::vector<Triangle> faces_;
   AabbTree tree_;
-  std::vector<int> winding_;                     // by component
-  std::vector<bool> touched_;                    // by component
-  std::vector<std::size_t> changed_components_;  // components whose entries above are set
 };
+
+// Returns, by component, the surfaces of those that are candidates.
+std::vector<std::optional<Surface>> candidate_surfaces(const TriangleMesh& mesh, const MeshTopology& topology,
+                                                       const std::vector<bool>& is_candidate) {
+  std::vector<std::vector<Triangle>> faces(is_candidate.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
+    if (is_candidate[component]) faces[component].push_back(mesh.triangles[f]);
+  }
+  std::vector<std::optional<Surface>> surfaces(is_candidate.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (is_candidate[i]) surfaces[i].emplace(mesh, std::move(faces[i]));
+  }
+  return surfaces;
+}
 
 }  // namespace
 
-std::vector<std::vector<std::int32_t>> enclosing_components(const TriangleMesh& mesh,
-                                                            const MeshTopology& topology) {
-  ComponentLists enclosing = enclosing_boxes(component_boxes(mesh, topology));
-  std::vector<bool> is_candidate(enclosing.size(), false);
-  for (const auto& list : enclosing) {
+std::optional<std::vector<std::vector<std::int32_t>>> enclosing_components(const TriangleMesh& mesh,
+                                                                           const MeshTopology& topology) {
+  std::optional<ComponentLists> enclosing = enclosing_boxes(component_boxes(mesh, topology));
+  if (!enclosing) return std::nullopt;
+  std::vector<bool> is_candidate(enclosing->size(), false);
+  for (const auto& list : *enclosing) {
     for (const std::int32_t outer : list) is_candidate[static_cast<std::size_t>(outer)] = true;
   }
   if (std::find(is_candidate.begin(), is_candidate.end(), true) == is_candidate.end()) return enclosing;
 
-  RayCaster caster(mesh, topology, is_candidate);
+  const std::vector<std::optional<Surface>> surfaces = candidate_surfaces(mesh, topology, is_candidate);
   const ComponentLists samples = sample_vertices(mesh, topology);
-  for (std::size_t inner = 0; inner < enclosing.size(); ++inner) {
-    auto& candidates = enclosing[inner];
-    if (candidates.empty()) continue;
-    std::vector<std::size_t> inside(candidates.size(), 0);
-    std::vector<std::size_t> outside(candidates.size(), 0);
-    for (const std::int32_t v : samples[inner]) {
-      caster.cast(mesh.vertex(v));
-      for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (caster.touched(candidates[i])) continue;
-        ++(caster.winding(candidates[i]) != 0 ? inside : outside)[i];
+  for (std::size_t inner = 0; inner < enclosing->size(); ++inner) {
+    const auto is_outside = [&](std::int32_t outer) {
+      bool inside = false;
+      for (const std::int32_t v : samples[inner]) {
+        const auto [winding, touched] =
+            surfaces[static_cast<std::size_t>(outer)]->position_of(mesh.vertex(v));
+        if (touched) continue;
+        if (winding == 0) return true;
+        inside = true;
       }
-    }
-    std::vector<std::int32_t> confirmed;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (inside[i] > 0 && outside[i] == 0) confirmed.push_back(candidates[i]);
-    }
-    candidates = std::move(confirmed);
+      return !inside;
+    };
+    std::erase_if((*enclosing)[inner], is_outside);
   }
   return enclosing;
 }

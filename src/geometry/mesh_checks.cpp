@@ -112,6 +112,16 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
                "a closed surface: each edge used as often in one direction as in the other", cause, hint};
 }
 
+Error too_many_overlaps(const MeshReport& report) {
+  return {
+      report.name,
+      "has so many parts inside or across each other that it would take too long to tell which lie inside "
+      "which",
+      "parts beside each other, or some thousands within each other",
+      "copies of a part that were not removed, or a damaged file",
+      "Remove the copies, or join overlapping parts into one surface (boolean union)"};
+}
+
 std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report) {
   const double rounding_error = std::numeric_limits<double>::epsilon() *
                                 (64.0 * std::abs(volume) + report.diagonal * sheet_rounding_area(mesh));

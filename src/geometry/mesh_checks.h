@@ -24,6 +24,9 @@ std::optional<Error> check_size(const MeshReport& report);
 std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
                                  const MeshReport& report, OpenPolicy open);
 
+// For a mesh of which orient_closed() could not tell which components lie inside which others.
+Error too_many_overlaps(const MeshReport& report);
+
 // Requires V > eps (64 |V| + L A), where A is the mesh's sheet_rounding_area(). volume [m^3]: the volume V
 // that the mesh encloses, or would enclose with its holes closed, less its cavities.
 std::optional<Error> check_volume(const TriangleMesh& mesh, double volume, const MeshReport& report);

@@ -114,14 +114,17 @@ std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const
   return components;
 }
 
-void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
+bool orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components) {
-  classify_components(enclosing_components(mesh, topology), components);
+  const auto enclosing = enclosing_components(mesh, topology);
+  if (!enclosing) return false;
+  classify_components(*enclosing, components);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     if (components[static_cast<std::size_t>(topology.component_of_face[f])].flipped) {
       std::swap(mesh.triangles[f][1], mesh.triangles[f][2]);
     }
   }
+  return true;
 }
 
 double orient_open(TriangleMesh& mesh, const std::vector<Hole>& holes,

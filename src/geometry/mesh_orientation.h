@@ -23,7 +23,8 @@ namespace buoyancy {
 std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const MeshTopology& topology);
 
 // Flips inside-out components of a mesh whose edges are all matched, and records that in `components`.
-void orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
+// Returns false and flips nothing if too many components overlap (component_nesting.h).
+bool orient_closed(TriangleMesh& mesh, const MeshTopology& topology,
                    std::vector<ComponentReport>& components);
 
 // Flips all faces of an open mesh if its volume is negative with its holes closed, each by a fan of triangles

@@ -162,6 +162,7 @@ std::string to_text(const MeshReport& report) {
   if (report.intersecting_pairs) {
     lines.add("intersecting",
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
+                  (report.intersections_cut_off ? " at least, too many to count" : "") +
                   (*report.intersecting_pairs == 0 ? "" : ": overlapping volumes count twice"));
   }
   if (report.flipped) lines.add("flipped", "was inside out: the winding of all faces was reversed");

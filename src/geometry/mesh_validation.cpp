@@ -115,17 +115,19 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   if (!validation.refusal) {
     double volume = 0.0;
     if (holes.empty()) {
-      orient_closed(mesh, topology, components);
+      if (!orient_closed(mesh, topology, components)) validation.refusal = too_many_overlaps(report);
       report_surface(mesh, report);
       volume = report.volume;
     } else {
       volume = orient_open(mesh, holes, components);
       report_surface(mesh, report);
     }
-    validation.refusal = check_volume(mesh, volume, report);
+    if (!validation.refusal) validation.refusal = check_volume(mesh, volume, report);
   }
   report_components(std::move(components), report);
-  if (options.count_intersecting_pairs) report.intersecting_pairs = count_intersecting_pairs(mesh);
+  if (options.count_intersecting_pairs) {
+    report.intersecting_pairs = count_intersecting_pairs(mesh, &report.intersections_cut_off);
+  }
   if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
   return validation;
 }

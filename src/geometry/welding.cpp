@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -111,10 +113,13 @@ std::vector<Cell> sort_into_cells(const TriangleMesh& mesh, const std::vector<st
   return cells;
 }
 
+// comparisons_left: is reduced by those that were made, perhaps below 0.
 void unite_cells(const TriangleMesh& mesh, const Cell& a, const Cell& b, double tolerance,
-                 DisjointSets& clusters) {
+                 DisjointSets& clusters, std::int64_t& comparisons_left) {
   if (clusters.representative(a.vertices.front()) == clusters.representative(b.vertices.front())) return;
   for (const std::int32_t v : a.vertices) {
+    comparisons_left -= static_cast<std::int64_t>(b.vertices.size());
+    if (comparisons_left < 0) return;
     for (const std::int32_t w : b.vertices) {
       if ((mesh.vertex(v) - mesh.vertex(w)).norm() <= tolerance) {
         clusters.unite(v, w);
@@ -126,10 +131,12 @@ void unite_cells(const TriangleMesh& mesh, const Cell& a, const Cell& b, double 
 
 // Unites the given vertices that are within the tolerance of each other. Each cell is compared with the rest
 // of its row and with the rows ahead. A row's neighbours are contiguous in the order of the cells and form a
-// sliding window.
-DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& vertices,
-                                  double tolerance) {
+// sliding window. Returns nullopt if too many vertices are close to the tolerance, but not within it.
+std::optional<DisjointSets> unite_close_vertices(const TriangleMesh& mesh,
+                                                 const std::vector<std::int32_t>& vertices,
+                                                 double tolerance) {
   DisjointSets clusters(mesh.vertex_count());
+  std::int64_t comparisons_left = 100'000'000 + 1'000 * static_cast<std::int64_t>(vertices.size());
   const std::vector<Cell> cells = sort_into_cells(mesh, vertices, tolerance);
   for (const Cell& cell : cells) {
     for (const std::int32_t v : cell.vertices) clusters.unite(cell.vertices.front(), v);
@@ -143,8 +150,9 @@ DisjointSets unite_close_vertices(const TriangleMesh& mesh, const std::vector<st
         const std::array<std::int32_t, 3> end{z + ahead_z, y + ahead_y, x + kMaxCellOffset};
         while (window < cells.size() && cells[window].index < begin) ++window;
         for (std::size_t i = window; i < cells.size() && cells[i].index <= end; ++i) {
-          unite_cells(mesh, cell, cells[i], tolerance, clusters);
+          unite_cells(mesh, cell, cells[i], tolerance, clusters, comparisons_left);
         }
+        if (comparisons_left < 0) return std::nullopt;
       }
     }
   }
@@ -169,12 +177,14 @@ void close_cracks(WeldedMesh& welded) {
   const double tolerance = kWeldTolerance * bounding_box(welded.mesh).diagonal();
   if (!std::isnormal(tolerance)) return;
 
-  DisjointSets clusters = unite_close_vertices(welded.mesh, vertices_of_unmatched_edges(topology), tolerance);
+  std::optional<DisjointSets> clusters =
+      unite_close_vertices(welded.mesh, vertices_of_unmatched_edges(topology), tolerance);
+  if (!clusters) return;
   std::vector<std::int32_t> representative(welded.mesh.vertex_count());
   double max_move = 0.0;
   for (std::size_t v = 0; v < representative.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);
-    representative[v] = clusters.representative(vertex);
+    representative[v] = clusters->representative(vertex);
     const double move = (welded.mesh.vertex(vertex) - welded.mesh.vertex(representative[v])).norm();
     max_move = std::max(max_move, move);
   }

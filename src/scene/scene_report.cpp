@@ -275,6 +275,7 @@ Json to_json(const MeshReport& report) {
           {"dropped_faces", report.dropped_faces},
           {"duplicate_faces", report.duplicate_faces},
           {"intersecting_pairs", to_json(report.intersecting_pairs)},
+          {"intersections_cut_off", report.intersections_cut_off},
           {"components", std::move(components)},
           {"holes", std::move(holes)},
           {"turned", report.flipped}};

@@ -224,5 +224,38 @@ TEST(MeshValidation, StaysAccurateFarFromOrigin) {
   EXPECT_DOUBLE_EQ(report.volume, 8.0);
 }
 
+// Tetrahedra around the origin, each this factor as large as the one before.
+TriangleMesh concentric_tetrahedra(int count, double factor) {
+  TriangleMesh all;
+  double size = 1.0;
+  for (int i = 0; i < count; ++i, size *= factor) {
+    const auto first = static_cast<std::int32_t>(all.vertex_count());
+    for (const Vec3& v : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, -1, 1), Vec3(-1, 1, -1)}) {
+      all.add_vertex(size * v);
+    }
+    for (const Triangle& t : {Triangle{0, 1, 3}, {0, 3, 2}, {0, 2, 1}, {1, 2, 3}}) {
+      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return all;
+}
+
+TEST(MeshValidation, RefusesTooManyPartsWithinEachOther) {
+  EXPECT_EQ(validate(concentric_tetrahedra(100, 1.001)).report.components.size(), 100U);
+  expect_refused(validate(concentric_tetrahedra(2'500, 1.001)), "so many parts inside or across each other");
+}
+
+TEST(MeshValidation, CutsOffCountOfIntersectingFaces) {
+  TriangleMesh crossing = concentric_tetrahedra(1'500, 1.0);
+  for (std::size_t v = 0; v < crossing.vertex_count(); ++v) crossing.x[v] += 1e-4 * std::floor(v / 4.0);
+  const MeshReport report = validate_mesh({crossing, {}}, "hull.stl", {OpenPolicy::kRefuse, true}).report;
+  EXPECT_TRUE(report.intersections_cut_off);
+  EXPECT_GT(report.intersecting_pairs.value_or(0), 100'000);
+  EXPECT_NE(to_text(report).find("at least, too many to count"), std::string::npos) << to_text(report);
+  const MeshReport few =
+      validate_mesh({concentric_tetrahedra(20, 1.001), {}}, "hull.stl", {OpenPolicy::kRefuse, true}).report;
+  EXPECT_FALSE(few.intersections_cut_off);
+}
+
 }  // namespace
 }  // namespace buoyancy
