@@ -74,7 +74,7 @@ TEST(TomlNesting, SkipsStringsAndComments) {
 
 TEST(TomlNesting, SeesWhatFollowsStringsAndComments) {
   const std::string deep = repeated("[", 40);
-  for (const std::string& before :
+  for (const std::string before :
        {"a = \"x\\\\\"", "a = 'x\\'", "a = \"\"\"x\"\"\"\"\"", "a = ''''''", "a = \"\"", "# '"}) {
     EXPECT_TRUE(check_toml_nesting(before + "\nb = " + deep, "")) << before;
   }

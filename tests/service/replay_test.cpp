@@ -432,7 +432,7 @@ TEST_F(Replay, EndsAtEventIfLogIsTruncatedMeanwhile) {
   EXPECT_NE(child.standard_error().find("it was truncated or replaced while it was read"), std::string::npos)
       << child.standard_error();
   const std::vector<LoggedEvent> events = events_of(write("out_copy.lcmlog", output));
-  ASSERT_GE(events.size(), kRequests / 2U - 2);
+  ASSERT_GE(events.size(), kRequests / 2U - 10);  // the last kilobyte before the fault is not used
   std::string again;
   for (std::size_t i = 0; i < events.size(); ++i)
     again += event(events[i].channel, events[i].timestamp, events[i].bytes);
