@@ -215,11 +215,11 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (faults_) faults_->send_due(seconds_now());
     has_worked = works && !has_worked;
-    guard([&] {
+    guard([this, has_worked, have_arrived = messages.revents != 0] {
       if (has_worked) {
         work();
       } else {
-        handle_messages(messages.revents != 0);
+        handle_messages(have_arrived);
       }
     });
   }
