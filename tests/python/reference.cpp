@@ -153,7 +153,7 @@ void write_all(const std::filesystem::path& directory) {
       {"tilted", "[world]\ngravity = 3.7\nup = [0.3, -0.2, 2]\n[water]\nlevel = 0.1\ndensity = 998.2\n"},
       {"waves",
        "[water]\ndepth = 30\nwaves = { type = \"jonswap\", significant_wave_height = 0.5, peak_period = 4.0, "
-       "seed = 3 }\n"}};
+       "frequencies = 40, seed = 3 }\n"}};
   for (const auto& [name, toml] : waters) {
     const std::string text = scene_text(toml);
     std::ofstream(directory / (name + ".toml")) << text;

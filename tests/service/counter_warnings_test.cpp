@@ -87,7 +87,7 @@ TEST(CounterWarnings, SayWhatToDoAboutWaves) {
   ASSERT_EQ(warnings.size(), 3U);
   EXPECT_EQ(warnings[0].message, "seas rejected");
   EXPECT_EQ(warnings[0].count, 1);
-  EXPECT_THAT(warnings[0].detail, HasSubstr("up or gravity"));
+  EXPECT_THAT(warnings[0].detail, HasSubstr("up, gravity or the current"));
   EXPECT_EQ(warnings[1].message, "bodies in waves with an error bound above their tolerance");
   EXPECT_EQ(warnings[1].count, 20);
   EXPECT_THAT(warnings[1].detail, HasSubstr("Raise the tolerance"));

@@ -455,7 +455,7 @@ TEST_F(RunFileManyBodies, SummarizesEveryBody) {
   const BodyRun& body = run.bodies[0];
   EXPECT_FALSE(body.shown);
   EXPECT_EQ(body.recorded, 5);
-  EXPECT_EQ(body.statuses, (decltype(body.statuses){3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(body.statuses, (decltype(body.statuses){3, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
   EXPECT_EQ(body.max_force, 5.0) << "of the rows that are OK";
   EXPECT_EQ(run.bodies.back().max_force, 5.0);
 }
