@@ -315,15 +315,15 @@ class Builder {
                                   corner(t, 2) - patch.center};
       patch.moments += moments_of_triangle(y[0], y[1], y[2]);
       for (const Vec3& v : y) radius_squared = std::max(radius_squared, v.squaredNorm());
-      const auto [normal, area, largest_area] = swept(t);
+      const SweptTriangle triangle = swept(t);
       Cubes cubes = Cubes::Zero();
       for_each_point_of_rule(y, [&](double weight, const Vec3& p) {
         const double squared = p.squaredNorm();
-        patch.mu2 += area * weight * squared;
-        mu4 += area * weight * squared * squared;
+        patch.mu2 += triangle.area * weight * squared;
+        mu4 += triangle.area * weight * squared * squared;
         cubes += weight * cubes_of(p);
       });
-      third += cubes * normal.transpose();
+      third += cubes * triangle.normal.transpose();
     }
     patch.radius = std::sqrt(radius_squared);
     patch.mu3 = std::sqrt(patch.mu2 * mu4);  // Cauchy's inequality
