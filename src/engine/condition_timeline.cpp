@@ -90,6 +90,7 @@ bool has_same_subdivision(const Body& a, const Body& b) {
 void ConditionHistory::add(const Change& change) {
   const auto replaced = std::ranges::lower_bound(changes_, change.from_utime, {}, &Change::from_utime);
   changes_.erase(replaced, changes_.end());
+  if (dropped_ && dropped_->from_utime >= change.from_utime) dropped_.reset();
   if (!changes_.empty() && changes_.back().usable == change.usable && changes_.back().value == change.value) {
     return;
   }

@@ -98,6 +98,25 @@ TEST(ConditionTimeline, KeepsTheLastChangesOfEachItem) {
   EXPECT_EQ(hull_at(timeline, 1000)->flooded[0], 1.0);
 }
 
+TEST(ConditionTimeline, ForgetsTheDroppedChangeOfARunThatStartsOver) {
+  constexpr auto kCount = static_cast<std::int64_t>(ConditionHistory::kMaxChanges) + 1;
+  ConditionTimeline timeline(boxes());
+  const auto share = [](std::int64_t utime) { return static_cast<double>(utime) / 1000.0; };
+  for (std::int64_t utime = 1; utime <= kCount; ++utime) {
+    ASSERT_TRUE(receive(timeline, flooded(100 + utime, 0, share(utime))));
+  }
+  ASSERT_EQ(hull_at(timeline, 101)->flooded[0], share(1)) << "dropped";
+  ConditionTimeline from_second = timeline;
+  ASSERT_TRUE(receive(from_second, flooded(102, 0, 1.0)));
+  EXPECT_EQ(hull_at(from_second, 101)->flooded[0], share(1)) << "nothing has replaced it";
+  for (const std::int64_t start : {101, 50}) {
+    ConditionTimeline restarted = timeline;
+    ASSERT_TRUE(receive(restarted, flooded(start, 0, 1.0)));
+    EXPECT_EQ(hull_at(restarted, start - 1)->flooded[0], 0.0) << start;
+    EXPECT_EQ(hull_at(restarted, start)->flooded[0], 1.0) << start;
+  }
+}
+
 TEST(ConditionTimeline, AcceptsRoundedVolumesOfFullTanks) {
   ConditionTimeline timeline(boxes());
   const double capacity = boxes().bodies()[0].subdivision->tanks[0].capacity();
