@@ -26,6 +26,7 @@ struct Arguments {
   std::string scene;
   std::string lcm_url;
   std::string address = "127.0.0.1";
+  std::vector<std::string> host_names;
   int port = 8667;
   std::string three = kThreeJs;
   std::string scheduling = "idle";
@@ -44,6 +45,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Address to listen on. There is no authentication: anyone who can reach a non-loopback "
                  "address sees the scene and the run")
       ->capture_default_str();
+  app.add_option("--host", arguments.host_names,
+                 "Further name, without port, by which browsers may open the page, such as that of a proxy; "
+                 "repeatable. Addresses, localhost and the machine's name are known")
+      ->allow_extra_args(false)
+      ->option_text("NAME");
   app.add_option("--three", arguments.three, "three.js library (three.min.js), which draws the bodies")
       ->capture_default_str();
   app.add_option("--scheduling", arguments.scheduling,
@@ -100,7 +106,8 @@ int show(const CLI::App& app, const Arguments& arguments) {
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, broadcaster);
   if (!view) return report(app, view.error(), kFailure);
   if (view->buffer_warning()) print_warning(app, *view->buffer_warning());
-  const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), broadcaster);
+  const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), broadcaster, {},
+                                        arguments.host_names);
   if (!server) return report(app, server.error(), kFailure);
 
   if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailure;

@@ -1,12 +1,16 @@
 #include "view/live/page_server.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <list>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/support/timeouts.h"
 #include "tests/view/http_peer.h"
@@ -38,11 +42,12 @@ class PageServerTest : public testing::Test {
   PageServerTest()
       : PageServerTest(PageLimits{.header_timeout = kWaitTimeout, .write_timeout = kWaitTimeout}) {}
   // port: 0 selects a free one.
-  explicit PageServerTest(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0) {
+  explicit PageServerTest(const PageLimits& limits, const std::string& address = "127.0.0.1", int port = 0,
+                          std::vector<std::string> host_names = {}) {
     auto started = PageServer::start(
         address, port,
         {{"/", "text/html; charset=utf-8", "<!doctype html>"}, {"/model", "application/json", kModel}},
-        broadcaster_, limits);
+        broadcaster_, limits, std::move(host_names));
     if (!started) throw std::runtime_error(started.error().message());
     server_ = std::move(*started);
     port_ = static_cast<std::uint16_t>(std::stoul(server_->url().substr(server_->url().rfind(':') + 1)));
@@ -134,6 +139,27 @@ TEST_F(PageServerTest, RejectsHostsOtherThanLoopback) {
   }
   EXPECT_EQ(status_for(""), "HTTP/1.1 403 Forbidden") << "no Host";
   EXPECT_EQ(status_for("Host: 127.0.0.1\r\nHost: evil.example\r\n"), "HTTP/1.1 403 Forbidden") << "two";
+}
+
+// On all addresses.
+class PageServerAnyAddress : public PageServerTest {
+ protected:
+  PageServerAnyAddress() : PageServerTest(kLimits, "0.0.0.0", 0, {"Proxy.example"}) {}
+};
+
+TEST_F(PageServerAnyAddress, RejectsNamesOfOthers) {
+  std::array<char, 256> machine{};
+  ASSERT_EQ(::gethostname(machine.data(), machine.size() - 1), 0);
+  for (const std::string& host :
+       {std::string("127.0.0.1:8667"), std::string("192.0.2.7"), std::string("[2001:db8::7]:8667"),
+        std::string("localhost"), std::string(machine.data()), std::string("proxy.EXAMPLE:80")}) {
+    EXPECT_EQ(status_for("Host: " + host + "\r\n"), "HTTP/1.1 200 OK") << host;
+  }
+  for (const char* host : {"evil.example", "192.0.2.7.evil.example", "proxy.example.evil.example:8667", "",
+                           "[192.0.2.7]", "2001:db8::7", "[proxy.example]"}) {
+    EXPECT_EQ(status_for("Host: " + std::string(host) + "\r\n"), "HTTP/1.1 403 Forbidden") << host;
+  }
+  EXPECT_EQ(status_for(""), "HTTP/1.1 403 Forbidden") << "no Host";
 }
 
 // On 127.0.0.1 as an IPv4-mapped IPv6 address.

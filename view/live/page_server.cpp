@@ -1,11 +1,14 @@
 #include "view/live/page_server.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <condition_variable>
 #include <functional>
+#include <iterator>
 #include <list>
 #include <mutex>
 #include <string_view>
@@ -136,11 +139,24 @@ std::string_view without_port(std::string_view host) {
   return has_port ? host.substr(0, colon) : host;
 }
 
-// True if a Host without its port names the loopback. No web page of another origin has one of these hosts.
-bool names_loopback(std::string_view host) {
+// The address that a Host without its port is; empty if it is none. IPv6 addresses have brackets.
+std::string address_of(std::string_view host) {
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
-  const std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
-  return address == "localhost" ? !bracketed : bracketed == is_ipv6(address) && is_loopback(address);
+  std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
+  return bracketed == is_ipv6(address) && check_listen_address(address) ? address : "";
+}
+
+std::string in_lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c; });
+  return text;
+}
+
+// Of this machine, as people type it; none if it is unknown.
+std::vector<std::string> machine_names() {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
+  return {name.data(), std::string(name.data()) + ".local"};
 }
 
 void set_text(httplib::Response& response, int status, const std::string& text) {
@@ -167,11 +183,15 @@ Expected<void> check_listen_address(const std::string& address) {
 class PageServer::Http : public httplib::Server {
  public:
   Http(std::string address, std::vector<StaticResource> resources, SnapshotBroadcaster& broadcaster,
-       const PageLimits& limits)
+       const PageLimits& limits, std::vector<std::string> host_names)
       : address_(std::move(address)),
+        host_names_(std::move(host_names)),
         broadcaster_(broadcaster),
         limits_(limits),
         connections_(limits.connections) {
+    host_names_.emplace_back("localhost");
+    if (!is_loopback(address_)) std::ranges::copy(machine_names(), std::back_inserter(host_names_));
+    for (std::string& name : host_names_) name = in_lower_case(std::move(name));
     for (StaticResource& resource : resources) {
       resources_.emplace(std::move(resource.path),
                          Resource{std::move(resource.content_type),
@@ -285,16 +305,21 @@ class PageServer::Http : public httplib::Server {
   }
 
   bool is_host_allowed(const httplib::Request& request) const {
-    if (!is_loopback(address_)) return true;
-    return request.get_header_value_count("Host") == 1 &&
-           names_loopback(without_port(request.get_header_value("Host")));
+    if (request.get_header_value_count("Host") != 1) return false;
+    const std::string value = request.get_header_value("Host");
+    const std::string_view host = without_port(value);
+    if (std::ranges::find(host_names_, in_lower_case(std::string(host))) != host_names_.end()) return true;
+    // An address is no name that someone else could have pointed here; this machine may have any, also that
+    // of a router.
+    const std::string address = address_of(host);
+    return !address.empty() && (!is_loopback(address_) || is_loopback(address));
   }
 
   void respond(const httplib::Request& request, httplib::Response& response) {
     if (!is_host_allowed(request)) {
       set_text(response, 403,
-               "The Host of this request is not a name of the loopback. Open http://" + url_host(address_) +
-                   " with the port.");
+               "The Host of this request is no name of this view. Open http://" + url_host(address_) +
+                   " with the port, or start buoyancy-view with --host and the name.");
       return;
     }
     if (request.method != "GET") {
@@ -354,6 +379,7 @@ class PageServer::Http : public httplib::Server {
   using Seconds = std::chrono::duration<double>;
 
   std::string address_;
+  std::vector<std::string> host_names_;  // in lower case
   SnapshotBroadcaster& broadcaster_;
   PageLimits limits_;
   std::unordered_map<std::string, Resource> resources_;
@@ -373,10 +399,12 @@ PageServer::~PageServer() {
 Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& address, int port,
                                                         std::vector<StaticResource> resources,
                                                         SnapshotBroadcaster& broadcaster,
-                                                        const PageLimits& limits) {
+                                                        const PageLimits& limits,
+                                                        std::vector<std::string> host_names) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
-  auto http = std::make_unique<Http>(address, std::move(resources), broadcaster, limits);
+  auto http =
+      std::make_unique<Http>(address, std::move(resources), broadcaster, limits, std::move(host_names));
   const int bound = http->bind(port);
   if (bound < 0) {
     const std::string reason = errno != 0 ? std::generic_category().message(errno) : "it cannot be bound";

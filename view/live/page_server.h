@@ -4,9 +4,10 @@
 // Everything that a client can use is limited: the number of connections and streams, the size and duration
 // of a request's header, the size of what is buffered and the time to read it. Request bodies are never read,
 // and a connection carries one request. A client that holds connections cannot lock others out: when all are
-// in use, the one that has waited longest for its request is closed. Bound to a loopback address, the server
-// only responds to requests whose Host names the loopback, so that a web page of another origin cannot read
-// it through a name of its own (DNS rebinding).
+// in use, the one that has waited longest for its request is closed. The server only responds to requests
+// whose Host is an address or a name of its own, so that a web page of another origin cannot read it through
+// a name of that page's (DNS rebinding). Bound to a loopback address, its own are those of the loopback;
+// otherwise all addresses and the machine's name too.
 #pragma once
 
 #include <cstddef>
@@ -40,11 +41,13 @@ struct PageLimits {
 class PageServer {
  public:
   // Listens and serves on threads of its own, which inherit the signal mask. port: 0 selects a free one.
-  // "/events" streams from the broadcaster, which must outlive the server. Errors: the port is not available.
+  // "/events" streams from the broadcaster, which must outlive the server. host_names: further names, without
+  // ports. Errors: the port is not available.
   static Expected<std::unique_ptr<PageServer>> start(const std::string& address, int port,
                                                      std::vector<StaticResource> resources,
                                                      SnapshotBroadcaster& broadcaster,
-                                                     const PageLimits& limits = {});
+                                                     const PageLimits& limits = {},
+                                                     std::vector<std::string> host_names = {});
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
   ~PageServer();  // closes the broadcaster and every connection
