@@ -1,12 +1,15 @@
 #include "view/report/run_file.h"
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "engine/request_handler.h"
 #include "messages/sea_state.h"
@@ -116,6 +119,31 @@ TEST_F(RunFileTest, SkipsInvalidRowsWithWarning) {
   EXPECT_EQ(run.bodies[0].recorded, 2);
   EXPECT_EQ(run.warnings, (std::vector<std::string>{"line 3 skipped: expected 9 numbers",
                                                     "line 4 skipped: expected 9 numbers"}));
+}
+
+TEST_F(RunFileTest, SkipsNumbersOutOfRangeAndLongLines) {
+  const auto row = [](const std::string& key, const std::string& status) {
+    return key + ",0,0,0,1,0,0,0," + status + ",1,2,3,4,5,6,7,8,9,10\n";
+  };
+  const RecordedRun run =
+      read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz\n" +
+               row("0,1", "0") + row("1000,4294967297", "0") + row("2000,1", "1e300") + row("3000,1", "nan") +
+               row("4000," + std::string(100'000, '0') + "1", "0") + row("5000,1", "0"))
+          .value();
+  EXPECT_EQ(run.bodies[0].recorded, 2) << "4294967297 is 1 in 32 bits";
+  EXPECT_EQ(run.unknown_bodies, 0);
+  EXPECT_EQ(run.warnings.size(), 4U);
+}
+
+TEST_F(RunFileTest, ReadsPipe) {
+  const std::string path = directory_.path("pipe.csv");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::thread writer(
+      [&path] { std::ofstream(path) << "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n"; });
+  const Expected<RecordedRun> run = read(path);
+  writer.join();
+  ASSERT_TRUE(run) << run.error().message();
+  EXPECT_EQ(run->bodies[0].recorded, 1);
 }
 
 TEST_F(RunFileTest, RejectsFilesWithoutPoses) {

@@ -1,15 +1,44 @@
 #include "view/report/run_csv_reader.h"
 
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <initializer_list>
+#include <limits>
 #include <string_view>
+#include <system_error>
+
+#include "base/csv_field.h"
 
 namespace buoyancy::view {
 namespace {
 
 constexpr std::int64_t kRowsBetweenProgress = 4'096;
+constexpr std::size_t kMaxLine = 65'536;  // [bytes]
+
+enum class LineEnd { kNewline, kTooLong, kNone };
+
+// Reads a line, of one that is too long the first kMaxLine bytes. kNone: there are no more lines.
+LineEnd read_line(std::istream& file, std::vector<char>& buffer, std::string_view& line) {
+  buffer.resize(kMaxLine + 1);
+  file.getline(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+  const auto bytes = static_cast<std::size_t>(file.gcount());
+  line = {buffer.data(), bytes};
+  if (file.good()) {
+    line.remove_suffix(1);  // the newline
+    return LineEnd::kNewline;
+  }
+  if (file.eof()) return bytes > 0 ? LineEnd::kNewline : LineEnd::kNone;
+  if (bytes < kMaxLine) return LineEnd::kNone;  // not readable
+  file.clear();
+  file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  return LineEnd::kTooLong;
+}
+
+template <typename Number>
+bool is_int32(Number number) {
+  return number >= static_cast<Number>(std::numeric_limits<std::int32_t>::min()) &&
+         number <= static_cast<Number>(std::numeric_limits<std::int32_t>::max());
+}
 
 std::vector<std::string_view> split_fields(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
@@ -52,9 +81,7 @@ template <typename T>
 bool read(const std::vector<std::string_view>& fields, const std::vector<std::size_t>& positions,
           T* numbers) {
   for (const std::size_t position : positions) {
-    const std::string_view field = fields[position];
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), *numbers++);
-    if (error != std::errc() || end != field.data() + field.size()) return false;
+    if (!parse_number(fields[position], *numbers++)) return false;
   }
   return true;
 }
@@ -78,6 +105,7 @@ bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions
       !read(fields, positions.wrench, wrench.data()) || !read(fields, positions.energy, &energy)) {
     return false;
   }
+  if (!is_int32(key[1]) || !is_int32(wrench[0])) return false;
   row.utime = key[0];
   row.state = {.body_id = static_cast<std::int32_t>(key[1]),
                .position = array_from<3>(pose.data()),
@@ -102,13 +130,14 @@ bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions
 Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOptions& options,
                             RunBuilder& builder) {
   std::ifstream file(path, std::ios::binary);
-  std::string header_line;
-  if (!file.is_open() || (!std::getline(file, header_line) && !file.eof())) {
+  std::vector<char> buffer;
+  std::string_view line;
+  if (!file.is_open() || (read_line(file, buffer, line) == LineEnd::kNone && !file.eof())) {
     return make_error(
         {path.string(), "cannot be read", "a CSV file", "the file does not exist or is not readable", ""});
   }
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (header_line.starts_with(kByteOrderMark)) header_line.erase(0, kByteOrderMark.size());
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  const std::string header_line(line);
   const Header header(header_line);
   const ColumnPositions positions{
       header.positions({"utime", "body_id"}), header.positions({"px", "py", "pz", "qw", "qx", "qy", "qz"}),
@@ -121,13 +150,16 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
          "columns utime, body_id, px, py, pz, qw, qx, qy, qz; optionally the others of buoyancy-client --csv",
          "the output of buoyancy-replay contains no poses", "Use the file that was replayed"});
   }
-  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  std::string line;
-  for (std::int64_t number = 2; std::getline(file, line); ++number) {
+  std::error_code unknown_size;  // a pipe has none
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown_size);
+  const std::int64_t bytes = unknown_size ? 0 : static_cast<std::int64_t>(size);
+  for (std::int64_t number = 2;; ++number) {
+    const LineEnd end = read_line(file, buffer, line);
+    if (end == LineEnd::kNone) break;
     if (line.empty() || line == "\r") continue;
     const std::vector<std::string_view> fields = split_fields(line);
     RecordedState row;
-    if (fields.size() != header.size() || !read_row(fields, positions, row)) {
+    if (end == LineEnd::kTooLong || fields.size() != header.size() || !read_row(fields, positions, row)) {
       builder.add_warning("line " + std::to_string(number) + " skipped: expected " +
                           std::to_string(header.size()) + " numbers");
       continue;
