@@ -37,6 +37,7 @@ struct PlaneLanes {
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
+namespace hydrostatics {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -211,6 +212,11 @@ void compute_planes(const Water& water, std::size_t count, PlaneLanes& lanes) {
     store(found.h, lanes.h, lanes.h_rest);
   }
 }
+
+}  // namespace hydrostatics
+
+using hydrostatics::compute_plane;
+using hydrostatics::compute_planes;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace buoyancy

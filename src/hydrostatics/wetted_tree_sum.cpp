@@ -27,6 +27,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
+namespace hydrostatics {
 
 template <typename T>
 HWY_INLINE void prefetch(const T& item) {
@@ -281,6 +282,11 @@ void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLis
   pruned.finish(sum.pruned);
   descent.finish();
 }
+
+}  // namespace hydrostatics
+
+using hydrostatics::sum_exactly;
+using hydrostatics::sum_within_budget;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace buoyancy
