@@ -24,6 +24,12 @@
 //   Functions that take `threads` share their work among that many: 1 is the caller's own thread, 0 all of
 //   the machine, at most BUOYANCY_MAX_THREADS. Little work stays on the caller's thread. Results have the
 //   same bits for every number of threads.
+//   A thread that calls a function needs BUOYANCY_STACK_SIZE bytes of stack. A thread that calls none needs
+//   nothing of it: what a thread needs from call to call is on the heap.
+//
+// Floating point
+//   Results do not depend on the caller's rounding mode, its treatment of subnormal numbers or its
+//   floating-point exceptions (traps), and a call changes none of them, nor the exception flags.
 //
 // Compatibility
 //   Functions, constants and the order of the members of structs stay as they are in all versions of
@@ -50,6 +56,7 @@ extern "C" {
 #endif
 
 #define BUOYANCY_MAX_THREADS 1024
+#define BUOYANCY_STACK_SIZE 131072 /* [bytes] */
 
 // ---------- version and errors
 

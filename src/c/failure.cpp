@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/floating_point_environment.h"
+
 namespace buoyancy {
 namespace {
 
@@ -34,6 +36,7 @@ buoyancy_error record(buoyancy_error code, const std::string& message) noexcept 
 }  // namespace
 
 buoyancy_error run_call(CallBody call, void* context) noexcept {
+  const DefaultFloatingPoint floating_point;
   try {
     const CallResult result = call(context);
     return result ? record(result->code, result->error.message()) : BUOYANCY_OK;

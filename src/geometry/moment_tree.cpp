@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -366,7 +367,7 @@ class Builder {
     tree_.nodes.reserve(leaves_.size() / (kTreeWidth - 1) + 1);
     tree_.nodes.emplace_back();
     parents_.push_back(0);
-    build_node(0, order, {0, order.size()});
+    build_node(0, order, {0, order.size()}, 1);
   }
 
   // Splits the range into a node's children, each as large as a full subtree, so that the few nodes near the
@@ -388,7 +389,9 @@ class Builder {
     return ranges;
   }
 
-  void build_node(std::size_t index, std::vector<Item>& order, const Range& range) {
+  // Descents reserve room for kMaxTreeLevels and do not check again.
+  void build_node(std::size_t index, std::vector<Item>& order, const Range& range, std::size_t level) {
+    if (level > kMaxTreeLevels) throw std::length_error("a moment tree has more levels than descents allow");
     const std::vector<Range> ranges = children_of(order, range);
     TreeNode node{};
     node.first_node = static_cast<std::uint32_t>(tree_.nodes.size());
@@ -406,7 +409,8 @@ class Builder {
       }
     }
     tree_.nodes[index] = node;
-    for (std::size_t i = 0; i < node.inner_nodes; ++i) build_node(node.first_node + i, order, ranges[i]);
+    for (std::size_t i = 0; i < node.inner_nodes; ++i)
+      build_node(node.first_node + i, order, ranges[i], level + 1);
   }
 
   void fill_leaves() {

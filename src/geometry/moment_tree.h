@@ -33,6 +33,8 @@ namespace buoyancy {
 inline constexpr int kTreeWidth = 8;       // children per inner node, at most
 inline constexpr int kLeafTriangles = 24;  // per leaf, at most
 inline constexpr int kLeafVertices = 24;   // per leaf, at most
+// Levels of inner nodes, at most: every child is a full subtree, so that 2^32 leaves have no more.
+inline constexpr std::size_t kMaxTreeLevels = 11;
 
 // The ten surface moments about c that belong to one component n_a of the normal.
 struct AxisMoments {

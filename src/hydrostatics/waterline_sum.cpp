@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstddef>
 
 // See wetted_tree_sum.cpp.
@@ -122,8 +121,8 @@ class WaterlineDescent {
         sums_(u, v) {}
 
   HWY_INLINE void run(WaterlineSum& sum) {
-    // Each node that is taken leaves at most kTreeWidth; a tree is not 100 levels deep.
-    std::array<std::uint32_t, std::size_t{101} * kTreeWidth> stack;
+    // Each node that is taken leaves at most kTreeWidth.
+    std::array<std::uint32_t, kMaxTreeLevels * kTreeWidth> stack;
     std::size_t depth = 1;
     stack[0] = 0;
     while (depth > 0) {
@@ -133,7 +132,6 @@ class WaterlineDescent {
       num_leaves_ += append_places((crossing ^ inner) >> node.inner_nodes, node.first_leaf,
                                    leaf_queue_.data() + num_leaves_);
       depth += append_places(inner, node.first_node, stack.data() + depth);
-      assert(depth + kTreeWidth <= stack.size());
       if (num_leaves_ >= kQueue) drain();
     }
     drain();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -174,8 +173,7 @@ HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nod
                                 Descent& descent) {
   constexpr std::size_t kTogether = 64;
   // Nodes of a level are added only when no deeper ones remain: a level holds at most kTogether kTreeWidth.
-  constexpr std::size_t kLevels = 16;
-  std::array<std::uint32_t, (kLevels * kTogether + 1) * kTreeWidth> stack;
+  std::array<std::uint32_t, (kMaxTreeLevels * kTogether + 1) * kTreeWidth> stack;
   std::array<std::uint32_t, kTogether> together;
   std::copy_n(nodes, count, stack.data());
   std::size_t depth = count;
@@ -185,7 +183,6 @@ HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nod
     std::copy_n(stack.data() + depth, count, together.data());
     for (std::size_t i = 0; i < count; ++i) {
       depth += descent.expand(tree.nodes[together[i]], stack.data() + depth);
-      assert(depth + kTreeWidth <= stack.size());
     }
   }
 }

@@ -19,6 +19,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/thread_workspace.h"
 #include "wave_loads/wave_clips-inl.h"
 #include "wave_loads/wave_inherited-inl.h"
 #include "wave_loads/wave_integrals-inl.h"
@@ -318,8 +319,7 @@ class Descent {
 
 template <typename Number>
 WaveLoad run_descent(const WaveQuery& query) {
-  thread_local DescentWorkspace<Number> work;
-  return Descent<Number>(query, work).run();
+  return Descent<Number>(query, thread_workspace<DescentWorkspace<Number>>()).run();
 }
 
 }  // namespace HWY_NAMESPACE

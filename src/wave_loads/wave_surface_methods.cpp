@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/thread_workspace.h"
 #include "geometry/pairwise_sum.h"
 #include "hydrostatics/point.h"
 
@@ -265,8 +266,7 @@ class SurfaceIntegral {
 
 template <typename Number>
 SurfaceSum integrate(const SurfaceQuery& query, const DirectSea<Number>& sea) {
-  thread_local SurfaceWorkspace<Number> work;
-  return SurfaceIntegral<Number>(query, sea, work).run();
+  return SurfaceIntegral<Number>(query, sea, thread_workspace<SurfaceWorkspace<Number>>()).run();
 }
 
 }  // namespace direct
@@ -329,11 +329,11 @@ WaveLoad surface_load(SurfaceMethod method, Precision precision, const Hydrostat
   thread_local std::vector<double> phases;
   SurfaceSum sum;
   if (single) {
-    thread_local DirectSea<float> direct;
+    auto& direct = thread_workspace<DirectSea<float>>();
     direct.prepare(snapshot, x1, x2, phases);
     sum = HWY_DYNAMIC_DISPATCH(integrate_single)(query, direct);
   } else {
-    thread_local DirectSea<double> direct;
+    auto& direct = thread_workspace<DirectSea<double>>();
     direct.prepare(snapshot, x1, x2, phases);
     sum = HWY_DYNAMIC_DISPATCH(integrate_double)(query, direct);
   }

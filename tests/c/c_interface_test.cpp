@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cfenv>
+#include <climits>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <sys/resource.h>
 
 #include "c/buoyancy.h"
@@ -607,6 +610,117 @@ TEST(CInterface, ReportsThatMemoryIsUsedUp) {
   EXPECT_EXIT(query_beyond_limit(), testing::ExitedWithCode(0), "");
 }
 #endif
+
+// What a program does with every kind of call.
+struct Tour {
+  std::vector<WrenchTable> wrenches;
+  std::vector<double> elevations;
+  std::vector<std::int32_t> hydrostatics;
+  std::string report;
+
+  bool operator==(const Tour&) const = default;
+};
+
+PoseTable poses_of_tour() {
+  PoseTable table = random_poses(20, 0.5, 3);
+  table.utimes = {kNow};
+  return table;
+}
+
+Tour make_tour(const PoseTable& table) {
+  Tour tour;
+  const std::size_t n = table.size();
+  const buoyancy_poses poses = poses_of(table);
+  buoyancy_scene* scene = scene_from(kWaves + kBodies);
+  buoyancy_sea* sea = nullptr;
+  EXPECT_EQ(buoyancy_scene_sea(scene, &sea), BUOYANCY_OK) << last_error();
+  buoyancy_mesh* mesh = tetrahedron();
+  std::size_t length = 0;
+  EXPECT_EQ(buoyancy_mesh_report(mesh, nullptr, 0, &length), BUOYANCY_OK);
+  tour.report.resize(length + 1);
+  EXPECT_EQ(buoyancy_mesh_report(mesh, tour.report.data(), length + 1, nullptr), BUOYANCY_OK);
+  for (const std::int32_t id : {3, 4}) {
+    const buoyancy_wrenches to = wrenches_of(tour.wrenches.emplace_back(n));
+    EXPECT_EQ(buoyancy_scene_query(scene, id, &poses, &to, nullptr, 1), BUOYANCY_OK) << last_error();
+  }
+  for (const bool waves : {false, true}) {
+    buoyancy_water water{};
+    buoyancy_default_water(&water, sizeof water);
+    if (waves) water.sea = sea;
+    for (buoyancy_method method = 0; method <= BUOYANCY_METHOD_EXACT_SURFACE; ++method) {
+      const buoyancy_wrenches to = wrenches_of(tour.wrenches.emplace_back(n));
+      const double tolerance = method == BUOYANCY_METHOD_HIERARCHICAL ? 1e-4 : 0.0;
+      buoyancy_mesh_query(mesh, &water, method, tolerance, &poses, &to, 1);  // refuses some methods in waves
+    }
+  }
+  tour.hydrostatics.resize(n);
+  buoyancy_hydrostatics hydrostatics{};
+  hydrostatics.size = sizeof hydrostatics;
+  hydrostatics.statuses = tour.hydrostatics.data();
+  EXPECT_EQ(buoyancy_mesh_hydrostatics(mesh, nullptr, nullptr, &poses, &hydrostatics, 1), BUOYANCY_OK);
+  tour.elevations.resize(n);
+  EXPECT_EQ(buoyancy_sea_elevations(sea, poses.count, table.positions.data(), table.positions.data(), &kNow,
+                                    1, tour.elevations.data(), 1),
+            BUOYANCY_OK);
+  buoyancy_mesh_free(mesh);
+  buoyancy_sea_free(sea);
+  buoyancy_scene_free(scene);
+  return tour;
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their frames are larger
+void run_with_stack(std::size_t bytes, void* (*task)(void*), void* argument) {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  ASSERT_EQ(pthread_attr_setstacksize(&attributes, bytes), 0);
+  pthread_t thread{};
+  ASSERT_EQ(pthread_create(&thread, &attributes, task, argument), 0) << bytes;
+  pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+}
+
+TEST(CInterface, NeedsTheStackThatItStates) {
+  struct Call {
+    const PoseTable table = poses_of_tour();
+    Tour tour;
+  } call;
+  const Tour expected = make_tour(call.table);
+  run_with_stack(
+      BUOYANCY_STACK_SIZE,
+      [](void* argument) -> void* {
+        auto& [table, tour] = *static_cast<Call*>(argument);
+        tour = make_tour(table);
+        return nullptr;
+      },
+      &call);
+  EXPECT_EQ(call.tour, expected);
+}
+
+TEST(CInterface, LeavesThreadsThatDoNotCallItTheirStack) {
+  run_with_stack(
+      static_cast<std::size_t>(PTHREAD_STACK_MIN) + 8192, [](void*) -> void* { return nullptr; }, nullptr);
+}
+#endif
+
+TEST(CInterface, IsIndependentOfTheCallersFloatingPoint) {
+  const PoseTable table = poses_of_tour();
+  const Tour expected = make_tour(table);
+  for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    std::feclearexcept(FE_ALL_EXCEPT);
+    std::fesetround(rounding);
+    const int flags = std::fetestexcept(FE_ALL_EXCEPT);
+    feenableexcept(FE_ALL_EXCEPT & ~FE_INEXACT);
+    const Tour tour = make_tour(table);
+    const int traps = fedisableexcept(FE_ALL_EXCEPT);
+    const int rounding_after = std::fegetround();
+    const int flags_after = std::fetestexcept(FE_ALL_EXCEPT & ~FE_INEXACT);
+    std::fesetround(FE_TONEAREST);
+    EXPECT_EQ(tour, expected) << rounding;
+    EXPECT_EQ(rounding_after, rounding);
+    EXPECT_EQ(traps, FE_ALL_EXCEPT & ~FE_INEXACT);
+    EXPECT_EQ(flags_after, flags);
+  }
+}
 
 TEST(CInterface, ServesThreadsInParallel) {
   buoyancy_mesh* mesh = tetrahedron();

@@ -155,6 +155,30 @@ TEST(MomentTree, StoresEveryTriangleInOneLeaf) {
   }
 }
 
+std::size_t levels_below(const MomentTree& tree, const TreeNode& node) {
+  std::size_t levels = 0;
+  for (std::uint32_t i = 0; i < node.inner_nodes; ++i) {
+    levels = std::max(levels, levels_below(tree, tree.nodes[node.first_node + i]));
+  }
+  return levels + 1;
+}
+
+TEST(MomentTree, HasNoMoreLevelsThanItsLeavesNeed) {
+  for (const TriangleMesh& surface : surfaces()) {
+    // Every number of triangles up to the shape's: every remainder of leaves over full subtrees.
+    const std::size_t step = surface.triangles.size() / 150 + 1;
+    for (std::size_t triangles = 1; triangles <= surface.triangles.size(); triangles += step) {
+      TriangleMesh part = surface;
+      part.triangles.resize(triangles);
+      const MomentTree tree = build_moment_tree(part);
+      std::size_t needed = 1;
+      for (std::size_t full = kTreeWidth; full < tree.num_leaves(); full *= kTreeWidth) ++needed;
+      ASSERT_EQ(levels_below(tree, tree.nodes[0]), needed) << triangles;
+      ASSERT_LE(needed, kMaxTreeLevels);
+    }
+  }
+}
+
 TEST(MomentTree, BoundsEveryVertexBelowNode) {
   for (const TriangleMesh& surface : surfaces()) {
     const MomentTree tree = build_moment_tree(surface);
