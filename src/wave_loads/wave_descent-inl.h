@@ -164,9 +164,10 @@ class Descent {
   // Returns whether any could be refined.
   bool refine_found(double limit) {
     bool refined = false;
+    const std::size_t max_units = query_.cap_on(kMaxUnits);
     for (const std::uint32_t n : work_.refined) {
       // What one round adds is capped as well: it may reach a new cell with each of its units.
-      if (units_of_next_round() > kMaxUnits) break;
+      if (units_of_next_round() > max_units) break;
       const Unit unit = work_.results.unit_of(n);
       const std::size_t lane = unit.first + n % kUnit<Number>;
       const PatchBlock& block = work_.patches.block(unit.block);

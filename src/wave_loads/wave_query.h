@@ -1,6 +1,7 @@
 // Internal to wave_load.cpp and its descents: what all instruction sets share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -20,6 +21,9 @@ inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 2'048;   // of the surface, and of the volume, before a round
 inline constexpr std::size_t kMaxPlaces = 4'096;  // in the cells' grid, as well
 inline constexpr std::size_t kMaxUnits = 20'000;  // of a round; a result that is replaced may add some more
+// The number of components up to which these caps hold. Beyond, cells and units are as many fewer: the
+// expansion of a cell, which a unit may need, sums over all components.
+inline constexpr std::size_t kCappedComponents = 256;
 
 // No unit, cell or model.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -52,6 +56,10 @@ struct WaveQuery {
   CellGrid grid;
 
   bool deep_water() const { return std::isinf(depth); }
+  // Of the caps that hold for up to kCappedComponents.
+  std::size_t cap_on(std::size_t most) const {
+    return most * kCappedComponents / std::max(kCappedComponents, expansion->filled_components);
+  }
 };
 
 // The load by a descent through the patches, with the best instruction set of this processor. One source

@@ -165,7 +165,7 @@ class SeaCells {
 
   // Whether no round may add any.
   bool full() const {
-    return std::max(surface_count(), volume_count()) > kMaxCells ||
+    return std::max(surface_count(), volume_count()) > query_->cap_on(kMaxCells) ||
            std::max(surface_places_.count(), volume_places_.count()) > kMaxPlaces;
   }
   std::size_t surface_count() const { return surface_centers_.size(); }

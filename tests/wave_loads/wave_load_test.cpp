@@ -430,5 +430,26 @@ TEST(WaveLoad, CapsItsWorkAndStillBounds) {
   EXPECT_LE(std::abs(load.volume - truth.volume), load.volume_bound + truth.volume_error);
 }
 
+// A cell's expansion sums over all components: as many cells of the largest sea as of a small one would take a
+// second.
+TEST(WaveLoad, CapsItsWorkInSeasOfManyComponents) {
+  for (const int components : {256, 4096}) {
+    IrregularWaves waves;
+    waves.significant_wave_height = 0.3;
+    waves.peak_period = 2.0;
+    waves.cutoff = 6.0;
+    waves.frequencies = components;
+    SeaDescription description;
+    description.systems = {waves};
+    const Case one(RockShape{20.0, 30, 0.1, 3}, description, 1e-6);
+    Pose pose;
+    pose.p_WB = {1.0, 2.0, -1.0};
+    const WaveLoad load = one.load(pose);
+    EXPECT_TRUE(load.capped);
+    EXPECT_GT(load.cells, 200) << "the case is no hard one";
+    EXPECT_LE(load.cells * components, (2'048 + 2 * 20'000) * 256);
+  }
+}
+
 }  // namespace
 }  // namespace buoyancy
