@@ -210,7 +210,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     }
     if (stop_signal.revents != 0) break;
     if (reload_signal.revents != 0 && reload.consume()) begin_reload();
-    if (loaded.revents != 0) end_reload();
+    if (loaded.revents != 0) guard([this] { end_reload(); });
     if (status_due.revents != 0 && consume_expiration(status_timer)) guard([&] { publish_status(); });
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (faults_) faults_->send_due(seconds_now());
@@ -381,9 +381,11 @@ void Daemon::handle(Bytes request, double arrival, bool may_wait) {
   if (step == Step::kRejected) return;
   if (step == Step::kBusy && may_wait) return wait(request, arrival);
   if (step == Step::kBusy) return handler_.record_busy();
-  if (counters.sessions + counters.sessions_evicted != sessions_before) {
+  if (counters.sessions + counters.sessions_evicted != sessions_before &&
+      spdlog::should_log(spdlog::level::debug)) {
     const RequestId id = peek_request_id(request).value();
-    spdlog::debug("session {} starts with seq {}", id.session_id, id.seq);
+    details_.add({"sessions started", 1, fmt::format("session {} with seq {}", id.session_id, id.seq)},
+                 seconds_now());
   }
   if (step == Step::kAnswered) return send_reply(arrival);
   const std::int64_t session_id = peek_request_id(request).value().session_id;
@@ -462,6 +464,11 @@ void Daemon::begin_reload() {
 void Daemon::end_reload() {
   std::optional<SceneLoader::Loaded> loaded = loader_.poll();
   if (!loaded) return;
+  try {
+    if (*loaded) handler_.set_scene(***loaded);
+  } catch (const std::bad_alloc&) {
+    loaded.emplace(tl::unexpect, out_of_memory_for(scene_->name()));
+  }
   last_reload_failed_ = !loaded->has_value();
   if (last_reload_failed_) {
     ++reloads_failed_;
@@ -469,17 +476,20 @@ void Daemon::end_reload() {
   } else {
     ++reloads_;
     const std::size_t bodies_before = scene_->bodies().size();
-    handler_.set_scene(***loaded);
     loader_.release(std::exchange(scene_, std::move(**loaded)));
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
-    prepare_for_messages();
-    if (const Expected<void> subscribed = subscribe_to_conditions(); !subscribed) {
-      spdlog::error("conditions are not received: {}", subscribed.error().message());
-    }
-    publish_sea();
+    guard([this] { prepare_for_scene(); });
   }
   if (!loader_.is_loading()) systemd_.ready();
+}
+
+void Daemon::prepare_for_scene() {
+  prepare_for_messages();
+  if (const Expected<void> subscribed = subscribe_to_conditions(); !subscribed) {
+    spdlog::error("conditions are not received: {}", subscribed.error().message());
+  }
+  publish_sea();
 }
 
 void Daemon::publish_status() {
@@ -519,6 +529,7 @@ void Daemon::publish_status() {
   }
   warn_of_missing_velocities(now);
   for (const std::string& line : warnings_.drain(now)) spdlog::warn("{}", line);
+  for (const std::string& line : details_.drain(now)) spdlog::debug("{}", line);
   for (const std::int64_t other : instances_.take_new()) {
     spdlog::warn(
         "another buoyancyd (instance {}) publishes on {}: if it also receives {}, every request gets two "

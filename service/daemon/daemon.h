@@ -88,6 +88,7 @@ class Daemon {
   Expected<void> subscribe();
   Expected<void> subscribe_to_conditions();  // once, and if the scene has compartments or tanks
   void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
+  void prepare_for_scene();     // that has been loaded again: its messages, its conditions, its sea
   // Handles messages, all that have arrived within a slice of time if others have work to go on with.
   void handle_messages(bool have_arrived);
   // Is there a request that takes several slices and can go on?
@@ -151,6 +152,7 @@ class Daemon {
   double queue_delay_ = 0.0;  // [s], longest since the last status
   InstanceMonitor instances_;
   RateLimitedLog warnings_;
+  RateLimitedLog details_;                       // for --log-level debug
   std::shared_ptr<const SeaPeriod> newest_sea_;  // the last received one that warnings_ has been told about
   SystemdNotifier systemd_;
   std::optional<FaultySender> faults_;  // nullopt: the service behaves

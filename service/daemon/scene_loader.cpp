@@ -17,9 +17,7 @@ SceneLoader::Loaded load(const std::filesystem::path& path) {
     if (!scene) return tl::unexpected(std::move(scene.error()));
     return std::make_unique<const Scene>(std::move(*scene));
   } catch (const std::bad_alloc&) {
-    return make_error({path.string(), "out of memory while loading it",
-                       "enough memory for two scenes: the current one is served until the new one is ready",
-                       "", "Restart the service with the new scene, or give it more memory"});
+    return tl::unexpected(out_of_memory_for(path.string()));
   } catch (const std::exception& exception) {  // whatever a file makes a library do, the service goes on
     return make_error({path.string(), std::string("the scene could not be loaded: ") + exception.what(),
                        "a scene that buoyancyd --check accepts", "", ""});
@@ -27,6 +25,12 @@ SceneLoader::Loaded load(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+Error out_of_memory_for(const std::string& scene) {
+  return {scene, "out of memory while loading it",
+          "enough memory for two scenes: the current one is served until the new one is ready", "",
+          "Restart the service with the new scene, or give it more memory"};
+}
 
 SceneLoader::SceneLoader(std::filesystem::path path)
     : path_(std::move(path)), ended_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)), thread_([this] { run(); }) {}

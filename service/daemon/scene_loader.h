@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "base/error.h"
@@ -19,6 +20,9 @@
 #include "scene/scene.h"
 
 namespace buoyancy::service {
+
+// Why a scene that was loaded again is not in use.
+Error out_of_memory_for(const std::string& scene);
 
 class SceneLoader {
  public:

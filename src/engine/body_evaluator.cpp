@@ -49,35 +49,44 @@ bool mark_first(std::uint32_t& last_request, std::uint32_t request) {
 
 void BodyEvaluator::set_scene(const Scene& scene) {
   using Key = std::tuple<const PreparedMesh*, const Subdivision*, Method, double, double, double, double>;
-  scene_ = &scene;
-  kinds_.clear();
-  kind_of_.clear();
-  kind_of_.reserve(scene.bodies().size());
+  const std::size_t bodies = scene.bodies().size();
+  std::vector<BodyKind> kinds;
+  std::vector<std::uint32_t> kind_of;
+  kind_of.reserve(bodies);
   std::map<Key, std::uint32_t> known;
   for (const Body& body : scene.bodies()) {
     const Vec3& reference = body.reference_B;
     const Key key{body.prepared_mesh, body.subdivision, body.solver.method(), body.solver.tolerance(),
                   reference.x(),      reference.y(),    reference.z()};
-    const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds_.size()));
+    const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds.size()));
     if (is_new) {
-      kinds_.push_back(
+      kinds.push_back(
           {.example = &body,
            .submerged = submerged_constants(body.solver.mesh(), scene.water(), reference),
            .estimated_time = estimated_time(body.solver, scene.sea() != nullptr || scene.receives_sea())});
     }
-    kind_of_.push_back(kind->second);
+    kind_of.push_back(kind->second);
   }
-  last_.assign(scene.bodies().size(), {});
-  results_.assign(scene.bodies().size(), {});
+  std::vector<LastPose> last(bodies);
+  std::vector<BodyOutcome> results(bodies);
+  std::vector<BodyTwist> last_twists(scene.bodies_with_hydrodynamics() > 0 ? bodies : 0);
+  std::vector<BodyCondition> conditions(scene.bodies_with_subdivision() > 0 ? bodies : 0);
+  std::vector<bool> unknown_conditions(conditions.size(), false);
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    const Subdivision* subdivision = scene.bodies()[i].subdivision;
+    if (subdivision != nullptr) conditions[i] = initial_condition(*subdivision);
+  }
+
+  scene_ = &scene;
+  kinds_ = std::move(kinds);
+  kind_of_ = std::move(kind_of);
+  last_ = std::move(last);
+  results_ = std::move(results);
   has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
   checks_bodies_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_subdivision() > 0;
-  last_twists_.assign(scene.bodies_with_hydrodynamics() > 0 ? scene.bodies().size() : 0, {});
-  conditions_.assign(scene.bodies_with_subdivision() > 0 ? scene.bodies().size() : 0, {});
-  unknown_conditions_.assign(conditions_.size(), false);
-  for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    const Subdivision* subdivision = scene.bodies()[i].subdivision;
-    if (subdivision != nullptr) conditions_[i] = initial_condition(*subdivision);
-  }
+  last_twists_ = std::move(last_twists);
+  conditions_ = std::move(conditions);
+  unknown_conditions_ = std::move(unknown_conditions);
 }
 
 void BodyEvaluator::set_condition(std::size_t body, const BodyCondition& condition) {

@@ -55,7 +55,8 @@ class BodyEvaluator {
     set_scene(scene);
   }
 
-  // Replaces the scene and clears the cached results. The previous scene is not accessed again.
+  // Replaces the scene and clears the cached results. The previous scene is not accessed again. Throws
+  // std::bad_alloc; then nothing has changed.
   void set_scene(const Scene& scene);
 
   // Sets one wrench per state: those in `water`, which must be that of the request's time, and the loads of

@@ -161,7 +161,7 @@ Expected<void> ConditionTimeline::receive(Bytes message, const Scene& scene) {
   return {};
 }
 
-void ConditionTimeline::set_scene(const Scene& before, const Scene& scene) {
+ConditionTimeline ConditionTimeline::for_scene(const Scene& before, const Scene& scene) const {
   ConditionTimeline next(scene);
   for (const BodyHistories& to : next.bodies_) {
     const Body& body = scene.bodies()[to.body];
@@ -169,10 +169,10 @@ void ConditionTimeline::set_scene(const Scene& before, const Scene& scene) {
     const BodyHistories* const from = index ? find(*index) : nullptr;
     if (from == nullptr || !has_same_subdivision(before.bodies()[*index], body)) continue;
     for (std::size_t i = 0; from->first + i <= from->unnamed(); ++i) {
-      next.histories_[to.first + i] = std::move(histories_[from->first + i]);
+      next.histories_[to.first + i] = histories_[from->first + i];
     }
   }
-  *this = std::move(next);
+  return next;
 }
 
 bool ConditionTimeline::condition_at(std::int64_t utime, std::size_t i, const Scene& scene,

@@ -68,10 +68,10 @@ class ConditionTimeline {
   // that of its tank by rounding alone counts as the tank's. O(log bodies + kMaxChanges).
   Expected<void> receive(Bytes message, const Scene& scene);
 
-  // Goes over to another scene. Of bodies whose id has the same compartments and tanks there, by number, by
-  // name and, for tanks, by volume, what was received remains; other bodies begin with the condition of the
-  // scene file.
-  void set_scene(const Scene& before, const Scene& scene);
+  // The timeline for another scene than the one that this is for, `before`. Of bodies whose id has the same
+  // compartments and tanks there, by number, by name and, for tanks, by volume, it has what was received;
+  // other bodies begin with the condition of the scene file.
+  ConditionTimeline for_scene(const Scene& before, const Scene& scene) const;
 
   // The bodies with compartments or tanks, in the order of the scene.
   std::size_t size() const { return bodies_.size(); }

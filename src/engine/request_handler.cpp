@@ -38,12 +38,16 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
-  conditions_.set_scene(*scene_, scene);
+  // What needs memory comes first.
+  ConditionTimeline conditions = conditions_.for_scene(*scene_, scene);
+  SeaTimeline seas(scene);
+  std::vector<CachedHydrostatics> cached_hydrostatics(hydrostatics_cache_size(scene));
+  evaluator_.set_scene(scene);
+  water_.set_scene(scene, std::move(seas));
+  conditions_ = std::move(conditions);
   applied_conditions_.reset();
   scene_ = &scene;
-  evaluator_.set_scene(scene);
-  water_.set_scene(scene);
-  cached_hydrostatics_.assign(hydrostatics_cache_size(scene), {});
+  cached_hydrostatics_ = std::move(cached_hydrostatics);
   ++changes_;
 }
 
@@ -80,7 +84,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   const bool has_reply = !session.last_request.empty();
-  try {
+  return finish(index, [&] {
     bool has_room = begin_work(*request, bytes.size(), session);
     const bool complete =
         has_room && advance(*request, session, water_.move_to(id.utime, request->lead_time()), deadline);
@@ -107,14 +111,24 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
       in_progress_.push_back(index);
       return Step::kStarted;
     }
+    return Step::kAnswered;
+  });
+}
+
+template <typename Task>
+RequestHandler::Step RequestHandler::finish(std::size_t index, const Task& task) {
+  Step step = Step::kRejected;
+  try {
+    step = task();
   } catch (const std::bad_alloc&) {
-    discard_reply(session);
+    discard_reply(sessions_[index]);
     ++counters_.rejected_memory;
-    return Step::kRejected;
   }
-  ++counters_.computed;
-  last_session_ = index;
-  return Step::kAnswered;
+  if (step == Step::kAnswered) {
+    ++counters_.computed;
+    last_session_ = index;
+  }
+  return step;
 }
 
 RequestHandler::Step RequestHandler::resume(Deadline deadline) {
@@ -127,7 +141,7 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
   const RequestView request = RequestView::of(session.last_request).value();
   const RequestId& id = request.id();
   const auto start = std::chrono::steady_clock::now();
-  try {
+  return finish(index, [&] {
     bool has_room = true;
     WaterAtTime::Change now;
     if (work.changes != changes_) {
@@ -151,14 +165,8 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
       ++(has_room ? counters_.rejected_work : counters_.rejected_busy);
       return Step::kRejected;
     }
-  } catch (const std::bad_alloc&) {
-    discard_reply(session);
-    ++counters_.rejected_memory;
-    return Step::kRejected;
-  }
-  ++counters_.computed;
-  last_session_ = index;
-  return Step::kAnswered;
+    return Step::kAnswered;
+  });
 }
 
 RequestHandler::Pace RequestHandler::pace_of(std::int64_t session_id) const {

@@ -134,7 +134,8 @@ class RequestHandler {
 
   // Evaluates new requests in this scene, which must outlive the handler or the next call. The previous scene
   // is not accessed again. For received seas see WaterAtTime::set_scene(), for conditions
-  // ConditionTimeline::set_scene(). O(bodies of both scenes), independent of their meshes.
+  // ConditionTimeline::for_scene(). Throws std::bad_alloc; then the current scene stays in use, as it was.
+  // O(bodies of both scenes), independent of their meshes.
   void set_scene(const Scene& scene);
 
   // Mode latest: counts a request that was superseded before it was handled.
@@ -195,6 +196,10 @@ class RequestHandler {
   Session* start_session(const RequestId& first);
   // Begins a request, or begins it again. False: there is no room for what it will retain.
   bool begin_work(const RequestView& request, std::size_t request_bytes, Session& session);
+  // Does a step of the work on the request of this session: the end of it if it is the last one, or if it
+  // throws std::bad_alloc.
+  template <typename Task>
+  Step finish(std::size_t index, const Task& task);
   // Works on a request until it is complete, or until the deadline. Returns whether it is complete.
   bool advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
                Deadline deadline);

@@ -13,9 +13,9 @@ bool is_same_medium(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-void WaterAtTime::set_scene(const Scene& scene) {
+void WaterAtTime::set_scene(const Scene& scene, SeaTimeline seas) noexcept {
   const bool keeps_seas = scene_->receives_sea() && scene.receives_sea() && is_same_medium(*scene_, scene);
-  if (!keeps_seas) seas_ = SeaTimeline(scene);
+  if (!keeps_seas) seas_ = std::move(seas);
   scene_ = &scene;
 }
 

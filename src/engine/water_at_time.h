@@ -18,8 +18,8 @@ class WaterAtTime {
   explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
 
   // Received seas remain where both scenes receive them and agree about the water's density, up, gravity and
-  // current. The previous scene is not accessed again.
-  void set_scene(const Scene& scene);
+  // current; else these hold. seas: those of the scene itself. The previous scene is not accessed again.
+  void set_scene(const Scene& scene, SeaTimeline seas) noexcept;
 
   // See SeaTimeline::receive().
   Expected<void> receive_sea(Bytes message) { return seas_.receive(message, *scene_); }

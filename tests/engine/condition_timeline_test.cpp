@@ -219,7 +219,7 @@ TEST(ConditionTimeline, KeepsWhatWasReceivedForTheSameItems) {
   const auto after = [&timeline](const std::string& text, std::int64_t utime) {
     ConditionTimeline next = timeline;
     const Scene scene = scene_of(text);
-    next.set_scene(boxes(), scene);
+    next = next.for_scene(boxes(), scene);
     return hull_at(next, utime, scene);
   };
   EXPECT_EQ(after(same, 100), (BodyCondition{{1.0, 0.75}, {0.5}}));
@@ -231,7 +231,7 @@ TEST(ConditionTimeline, KeepsWhatWasReceivedForTheSameItems) {
   EXPECT_EQ(after(with("\"bow\"", "\"forepeak\""), 100), kAtFirst);
   EXPECT_EQ(after(with("[1, 1, 1]", "[1, 1, 0.5]"), 100)->flooded, kAtFirst.flooded) << "a smaller tank";
   const Scene other_ids = scene_of(with("id = 1\n", "id = 8\n"));
-  timeline.set_scene(boxes(), other_ids);
+  timeline = timeline.for_scene(boxes(), other_ids);
   EXPECT_EQ(hull_at(timeline, 100, other_ids), kAtFirst);
   BodyCondition barge;
   UtimeRange range;

@@ -1,6 +1,7 @@
 // Requests about bodies whose compartments and tanks change during the run.
 #include <array>
 #include <limits>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -148,6 +149,34 @@ TEST(RequestHandlerWithConditions, KeepsConditionsWithTheSceneWhereItemsRemain) 
   handler.set_scene(scene);
   RequestHandler fresh(scene);
   EXPECT_EQ(reply_to(handler, request(100, 4)), reply_to(fresh, request(100, 4))) << "begins anew";
+}
+
+TEST(RequestHandlerWithConditions, KeepsSceneAndConditionsWhereMemoryEnds) {
+  const Scene scene = scene_of(damaged_boxes());
+  const Scene larger = scene_of(damaged_boxes() + "[[body]]\nid = 9\nshape = { type = \"box\" }\n");
+  const auto flooded_handler = [](const Scene& of) {
+    RequestHandler handler(of, {.threads = 1});
+    EXPECT_TRUE(receive(handler, flooded(100, 0, 1.0)));
+    return handler;
+  };
+  RequestHandler expected = flooded_handler(scene);
+  RequestHandler expected_in_larger = flooded_handler(larger);
+  const ByteVector asked = request(100, 1, {1, 2, 3, 9});
+  bool has_failed = true;
+  std::int64_t n = 1;
+  for (; has_failed; ++n) {
+    RequestHandler handler = flooded_handler(scene);
+    {
+      const FailingAllocation failing(n);
+      try {
+        handler.set_scene(larger);
+      } catch (const std::bad_alloc&) {
+      }
+      has_failed = failing.has_failed();
+    }
+    ASSERT_EQ(reply_to(handler, asked), reply_to(has_failed ? expected : expected_in_larger, asked)) << n;
+  }
+  EXPECT_GT(n, 5);
 }
 
 TEST(RequestHandlerWithConditions, FollowsConditionsThatAreReplaced) {

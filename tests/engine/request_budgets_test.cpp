@@ -251,5 +251,24 @@ TEST(RequestBudgets, AFailedAllocationCostsThatRequestOnly) {
   }
 }
 
+TEST(RequestBudgets, AFailedAllocationOnAWorkerThreadCostsThatRequestOnly) {
+  const Scene scene = mixed_scene(kWaves);
+  const ByteVector request = mixed_request(1, 1'000'000, 400);
+  const Reply expected = whole_reply(scene, request);
+  bool has_failed = true;
+  for (std::int64_t n = 1; has_failed; ++n) {
+    RequestHandler handler(scene, {.threads = 2});
+    Step step = Step::kStarted;
+    {
+      const FailingAllocation failing(n);
+      step = handler.begin(request, kNoDeadline);
+      has_failed = failing.has_failed();
+    }
+    ASSERT_EQ(step, has_failed ? Step::kRejected : Step::kAnswered) << n;
+    handler.handle(request);
+    ASSERT_EQ(reply_of(handler), expected) << n;
+  }
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -1,4 +1,5 @@
 // What requests may cost the service, over UDP.
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,21 @@ TEST(Budgets, RejectsARequestThatRepeatsABodyTooOften) {
       socket, [](const ServiceStatus& status) { return status.counters.rejected_bodies == 1; }));
   send_request(socket, many_bodies(1, 10'002, 1));
   EXPECT_EQ(receive(socket).bodies.size(), 10'002U);
+}
+
+TEST(Budgets, LogsManySessionsInFewLines) {
+  constexpr std::int64_t kSessions = 500;
+  RunningService service({"--log-level", "debug"}, kWavyScene);
+  RawLcmSocket socket;
+  for (std::int64_t session = 1; session <= kSessions; ++session) {
+    send_request(socket, one_body(session, 1, 0.0));
+    EXPECT_EQ(receive(socket).session_id, session);
+  }
+  ASSERT_TRUE(service.child().wait_for_text("sessions started", kWaitTimeout)) << service.log();
+  service.child().send_signal(SIGTERM);
+  EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();
+  const std::string log = service.log();
+  EXPECT_LT(std::ranges::count(log, '\n'), kSessions / 5) << log;
 }
 
 TEST(Budgets, OutOfMemoryCostsTheRequest) {
