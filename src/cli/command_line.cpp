@@ -1,6 +1,7 @@
 #include "cli/command_line.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -28,7 +29,10 @@ std::string exit_status_help(const ExitStatusHelp& help) {
 }
 
 std::optional<ExitCode> parse_command_line(CLI::App& app, int argc, const char* const* argv) {
-  open_standard_descriptors();  // every program comes here before it opens a file
+  // Every program comes here before it opens a file.
+  open_standard_descriptors();
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file as large as `ulimit -f` allows becomes a write error with a message
   try {
     app.parse(argc, argv);
     return std::nullopt;

@@ -343,6 +343,16 @@ TEST_F(Replay, FailsIfOutputCannotBeWritten) {
   }
 }
 
+TEST_F(Replay, ReportsTheLimitOnTheSizeOfItsOutput) {
+  const std::string program = built_program("buoyancy-replay");
+  const FinishedProcess limited =
+      run_to_end(command_of({"/bin/sh", "-c", "ulimit -f 1; exec \"$@\"", "sh", program, "--scene", scene_,
+                             write("in.lcmlog", log_of_requests(100)), path("out.csv")}),
+                 kWaitTimeout);
+  EXPECT_EQ(limited.exit_code, 1) << limited.standard_error;
+  EXPECT_NE(limited.standard_error.find("File too large"), std::string::npos) << limited.standard_error;
+}
+
 TEST_F(Replay, EndsItsOutputWithWholeRowWhenTerminated) {
   write("scene.toml",
         "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 3, 4], segments = [20, 20, 20] }\n"
