@@ -2,14 +2,15 @@
 
 #include <array>
 #include <charconv>
-#include <cstdio>
 
 namespace buoyancy {
 
 std::string format_number(double value, int digits) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return text.data();
+  // As printf's %g, which writes the decimal point of the program's locale.
+  const std::to_chars_result end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
+  return {text.data(), end.ptr};
 }
 
 std::string format_shortest(double value) {

@@ -1,9 +1,9 @@
 #include "client/request_with_retries.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "base/format.h"
 
 namespace buoyancy {
 namespace {
@@ -73,12 +73,10 @@ Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
 }
 
 tl::unexpected<Error> no_response_error(const LcmRequestChannel& channel, std::int64_t seq, double waited) {
-  std::array<char, 64> actual{};
-  std::snprintf(actual.data(), actual.size(), "no %s for %.3g s",
-                channel.lacks_only_loads() ? "loads" : "response", waited);
+  const std::string missing = channel.lacks_only_loads() ? "loads" : "response";
   const auto [cause, hint] = channel.explain_no_response();
   return make_error(
-      {subject(channel, seq), actual.data(),
+      {subject(channel, seq), "no " + missing + " for " + format_number(waited, 3) + " s",
        channel.waits_for_loads() ? "a response and its loads from buoyancyd" : "a response from buoyancyd",
        cause, hint});
 }

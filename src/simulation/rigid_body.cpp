@@ -1,15 +1,14 @@
 #include "simulation/rigid_body.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <string>
 
 #include <Eigen/Eigenvalues>
 
+#include "base/format.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/hierarchical.h"
 #include "messages/conversions.h"
@@ -18,12 +17,6 @@
 
 namespace buoyancy {
 namespace {
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
 
 Error open_mesh_error(const std::string& subject) {
   return {subject, "an open mesh without mass, center_of_mass and inertia", "all three in [body.client]",
@@ -97,9 +90,9 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water, const 
   const double density = spec.density.value_or(0.5 * water.density);
   rigid.mass = spec.mass.value_or(density * enclosed.volume);
   if (!(rigid.mass > 0.0) || !std::isfinite(rigid.mass)) {
-    return make_error({subject, "mass = " + number(rigid.mass) + " kg", "a mass above 0",
-                       "a density of " + number(density) + " kg/m^3 times an enclosed volume of " +
-                           number(enclosed.volume) + " m^3",
+    return make_error({subject, "mass = " + format_number(rigid.mass, 6) + " kg", "a mass above 0",
+                       "a density of " + format_number(density, 6) + " kg/m^3 times an enclosed volume of " +
+                           format_number(enclosed.volume, 6) + " m^3",
                        "Set mass or density in [body.client]"});
   }
 
@@ -117,9 +110,9 @@ Expected<RigidBody> make_rigid_body(const Body& body, const Water& water, const 
     rigid.contents = {own, tanks_of(body, condition), open_compartments(body, condition)};
   }
   if (!set_mass(total, rigid)) {
-    return make_error({subject, "smallest principal inertia = " + number(rigid.principal_inertia.minCoeff()),
-                       "a positive definite inertia matrix (kg m^2)", "",
-                       "Set or correct inertia in [body.client]"});
+    return make_error(
+        {subject, "smallest principal inertia = " + format_number(rigid.principal_inertia.minCoeff(), 6),
+         "a positive definite inertia matrix (kg m^2)", "", "Set or correct inertia in [body.client]"});
   }
   return rigid;
 }

@@ -1,11 +1,10 @@
 #include "simulation/run_warnings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
+#include "base/format.h"
 #include "simulation/natural_frequency.h"
 
 namespace buoyancy {
@@ -17,9 +16,7 @@ constexpr double kMaxEnergyRise = 0.5;
 constexpr double kEnergyNoise = 1e-9;
 
 std::string number(double value, int digits = 3) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
-  return text.data();
+  return format_number(value, digits);
 }
 
 // Rounds down to two significant digits, so that the recommended value is not too large.

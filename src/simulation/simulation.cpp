@@ -1,14 +1,13 @@
 #include "simulation/simulation.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "base/format.h"
 #include "scene/start_pose.h"
 
 namespace buoyancy {
@@ -45,12 +44,6 @@ void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, cons
 // Of the highest waves that were measured at sea, for a sea that is received: [m], and [m/s] of its longest.
 constexpr double kReceivedWaveHeight = 30.0;
 constexpr double kReceivedWaveSpeed = 50.0;
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
 
 constexpr const char* kDiverged = "the simulation diverged: the step is too large for the body";
 constexpr const char* kUseSmallerStep = "Use a smaller --step";
@@ -267,9 +260,9 @@ Expected<void> Simulation::check_motion() const {
     if (!(rise > kEnergyLimit * body.energy.available)) continue;
     return make_error(
         {body_at(body, time()),
-         "its mechanical energy rose by " + number(rise) + " J, to a speed of " +
-             number(state.velocity_W.norm()) + " m/s",
-         "a rise of at most " + number(kEnergyLimit * body.energy.available) +
+         "its mechanical energy rose by " + format_number(rise, 3) + " J, to a speed of " +
+             format_number(state.velocity_W.norm(), 3) + " m/s",
+         "a rise of at most " + format_number(kEnergyLimit * body.energy.available, 3) +
              " J: ten times what gravity, waves and current can give to it here",
          std::string(kDiverged) + ", responses are late, or the waves are too steep for linear theory",
          std::string(kUseSmallerStep) + " or lock-step mode, and see buoyancyd --check"});
