@@ -73,6 +73,7 @@ class Signature {
 // Python's error indicator set.
 template <typename Function>
 PyObject* guarded(Function function) noexcept {
+  const DefaultFloatingPoint floating_point;
   try {
     return function().release().ptr();
   } catch (...) {

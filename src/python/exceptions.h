@@ -9,6 +9,7 @@
 #include <pybind11/pybind11.h>
 
 #include "base/error.h"
+#include "base/floating_point_environment.h"
 
 namespace buoyancy::python {
 
@@ -83,7 +84,8 @@ T& instance_of(py::handle object) {
 // that need the lock. It waits here instead for the end of the process, as it does from Python 3.14 on.
 void take_gil_again(PyThreadState* state) noexcept;
 
-// Releases Python's global interpreter lock for the life of this object.
+// Releases Python's global interpreter lock for the life of this object, and keeps the program's
+// floating-point environment away from what is computed meanwhile.
 class WithoutGil {
  public:
   WithoutGil() : state_(PyEval_SaveThread()) {}
@@ -93,6 +95,7 @@ class WithoutGil {
 
  private:
   PyThreadState* state_;
+  DefaultFloatingPoint floating_point_;
 };
 
 }  // namespace buoyancy::python

@@ -1,5 +1,6 @@
 #include "python/number_array.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -212,6 +213,14 @@ void NumberArray<Number>::refer_to_numpy(PyObject* object) {
     size_ *= static_cast<std::size_t>(shape_[i]);
   }
   data_ = reinterpret_cast<const Number*>(array->data);
+  keep_from_resizing(object);
+}
+
+template <typename Number>
+void NumberArray<Number>::keep_from_resizing(PyObject* object) {
+  if (PyType_SUPPORTS_WEAKREFS(Py_TYPE(object)) == 0) return;
+  weak_reference_ = py::reinterpret_steal<py::object>(PyWeakref_NewRef(object, nullptr));
+  if (!weak_reference_) throw py::error_already_set();
 }
 
 template <typename Number>
@@ -241,10 +250,20 @@ void NumberArray<Number>::refer_to_buffer(PyObject* object, const char* name) {
   const bool aligned = reinterpret_cast<std::uintptr_t>(view.buf) % alignof(Number) == 0;
   if (own_type && aligned && PyBuffer_IsContiguous(&view, 'C') != 0) {
     data_ = static_cast<const Number*>(view.buf);
+    keep_from_resizing(object);
     return;
   }
   copy_.resize(size_);
   if (size_ > 0 && !copy_buffer(view, kind, copy_.data())) refuse(object, name, expected_numbers<Number>());
+  if constexpr (std::is_same_v<Number, std::int64_t>) {
+    const auto too_large =
+        kind == Kind::kUnsigned ? std::ranges::find_if(copy_, [](Number n) { return n < 0; }) : copy_.end();
+    if (too_large != copy_.end()) {
+      throw py::value_error(std::string(name) + " has " +
+                            std::to_string(static_cast<std::uint64_t>(*too_large)) +
+                            "; expected integers below 2^63");
+    }
+  }
   data_ = copy_.data();
   buffer_.release();
 }

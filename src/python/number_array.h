@@ -58,6 +58,7 @@ class NumberArray {
  private:
   void refer_to_numpy(PyObject* array);
   void refer_to_buffer(PyObject* object, const char* name);
+  void keep_from_resizing(PyObject* object);
   void copy_sequence(PyObject* sequence, const char* name);
   void append(PyObject* item, int depth, const char* name);
   void add_dimension(Py_ssize_t extent, int depth, const char* name);
@@ -67,6 +68,9 @@ class NumberArray {
   int dimensions_ = 0;
   std::array<Py_ssize_t, kMaxDimensions> shape_{};
   HeldBuffer buffer_;
+  // To the array whose memory this is: numpy does not resize an array that one refers to, whereas it ignores
+  // the buffers that an array has exported.
+  py::object weak_reference_;
   std::vector<Number> copy_;
   int leaf_depth_ = -1;  // of the numbers in nested sequences; -1: not known yet
 };

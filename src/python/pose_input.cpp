@@ -3,13 +3,15 @@
 #include <cmath>
 #include <string>
 
+#include "base/format.h"
+
 namespace buoyancy::python {
 namespace {
 
 std::int64_t to_utime(double seconds) {
   constexpr double kMaxSeconds = 9.2e12;  // as many microseconds as an int64 holds
   if (!(std::abs(seconds) <= kMaxSeconds)) {
-    throw py::value_error("time is " + std::to_string(seconds) +
+    throw py::value_error("time is " + format_shortest(seconds) +
                           " s; expected finite seconds within 9.2e12 of 0, as the "
                           "utimes of messages have them");
   }

@@ -12,6 +12,7 @@
 #include "python/pose_input.h"
 #include "python/query_water.h"
 #include "python/result_array.h"
+#include "python/slices.h"
 #include "python/toml_text.h"
 #include "python/wrenches.h"
 #include "scene/scene_file.h"
@@ -79,6 +80,11 @@ struct Points {
   std::vector<std::int64_t> utimes;  // one, or one per point
   std::vector<Py_ssize_t> shape;
   std::size_t size = 0;
+
+  std::span<const std::int64_t> times(std::size_t begin, std::size_t end) const {
+    const std::span<const std::int64_t> all = utimes;
+    return all.size() == 1 ? all : all.subspan(begin, end - begin);
+  }
 };
 
 Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coordinates, py::handle time) {
@@ -105,14 +111,18 @@ Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coord
 }
 
 py::object elevation(py::handle self, py::handle x, py::handle y, py::handle time, py::handle threads) {
+  const DefaultFloatingPoint floating_point;
   const QuerySea& sea = instance_of<SeaObject>(self).sea;
   const unsigned count = to_threads(threads.ptr());
   const Points points = to_points({{"x", x}, {"y", y}}, time);
   std::vector<double> values(points.size);
-  {
-    const WithoutGil released;
-    sea_elevations(sea, points.columns[0], points.columns[1], points.utimes, values, count);
-  }
+  run_in_slices(points.size, [&](std::size_t begin, std::size_t end) {
+    const auto part = [&](const std::vector<double>& all) {
+      return std::span(all).subspan(begin, end - begin);
+    };
+    sea_elevations(sea, part(points.columns[0]), part(points.columns[1]), points.times(begin, end),
+                   std::span(values).subspan(begin, end - begin), count);
+  });
   if (points.shape.empty()) return py::float_(values[0]);
   return make_owned_array(points.shape, std::move(values));
 }
@@ -120,6 +130,7 @@ py::object elevation(py::handle self, py::handle x, py::handle y, py::handle tim
 // wanted: the member of WaterMotionArrays; width: numbers per point.
 py::object motion(py::handle self, py::handle x, py::handle y, py::handle z, py::handle time,
                   py::handle threads, std::span<double> WaterMotionArrays::*wanted, std::size_t width) {
+  const DefaultFloatingPoint floating_point;
   const QuerySea& sea = instance_of<SeaObject>(self).sea;
   const unsigned count = to_threads(threads.ptr());
   Points points = to_points({{"x", x}, {"y", y}, {"z", z}}, time);
@@ -128,12 +139,12 @@ py::object motion(py::handle self, py::handle x, py::handle y, py::handle z, py:
     for (std::size_t axis = 0; axis < 3; ++axis) at[3 * i + axis] = points.columns[axis][i];
   }
   std::vector<double> values(width * points.size);
-  WaterMotionArrays out;
-  out.*wanted = values;
-  {
-    const WithoutGil released;
-    water_at_points(sea, at, points.utimes, out, count);
-  }
+  run_in_slices(points.size, [&](std::size_t begin, std::size_t end) {
+    WaterMotionArrays out;
+    out.*wanted = std::span(values).subspan(width * begin, width * (end - begin));
+    water_at_points(sea, std::span(at).subspan(3 * begin, 3 * (end - begin)), points.times(begin, end), out,
+                    count);
+  });
   if (width == 1 && points.shape.empty()) return py::float_(values[0]);
   if (width > 1) points.shape.push_back(static_cast<Py_ssize_t>(width));
   return make_owned_array(points.shape, std::move(values));
@@ -150,6 +161,7 @@ QuerySea sea_of_file(const std::filesystem::path& path) {
 
 std::unique_ptr<SeaObject> make_sea(const std::optional<std::filesystem::path>& path,
                                     const py::kwargs& keys) {
+  const DefaultFloatingPoint floating_point;
   if (path) {
     if (!keys.empty()) throw py::type_error("Sea() got a scene file and keys; expected one of them");
     return std::make_unique<SeaObject>(SeaObject{sea_of_file(*path)});

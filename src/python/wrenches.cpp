@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "python/call_arguments.h"
+#include "python/slices.h"
 
 namespace buoyancy::python {
 namespace {
@@ -253,9 +254,13 @@ py::object evaluate(const Body& body, const QueryWater& water, const PoseInput& 
   // Of poses that cannot be evaluated the loads are zeros.
   if (with_loads || !wrenches.loads.empty())
     wrenches.loads.assign(with_loads ? poses.size() : 0, BodyLoads{});
+  const PoseArrays of_poses = poses.arrays();
   const WrenchArrays arrays = wrenches.arrays();
-  const WithoutGil released;
-  evaluate_poses(body, water, poses.arrays(), arrays, wrenches.loads, threads);
+  const std::span<BodyLoads> loads = wrenches.loads;
+  run_in_slices(poses.size(), [&](std::size_t begin, std::size_t end) {
+    evaluate_poses(body, water, of_poses.part(begin, end), arrays.part(begin, end),
+                   loads.empty() ? loads : loads.subspan(begin, end - begin), threads);
+  });
   return result;
 }
 
@@ -264,10 +269,12 @@ py::object evaluate_hydrostatics(const Body& body, const Water& water, const Pos
   auto table = std::make_unique<HydrostaticsTable>();
   table->rows.resize(poses.size());
   table->single = poses.single();
-  {
-    const WithoutGil released;
-    buoyancy::evaluate_hydrostatics(body, water, poses.arrays(), table->rows, threads);
-  }
+  const PoseArrays of_poses = poses.arrays();
+  const std::span<BodyHydrostatics> rows = table->rows;
+  run_in_slices(poses.size(), [&](std::size_t begin, std::size_t end) {
+    buoyancy::evaluate_hydrostatics(body, water, of_poses.part(begin, end), rows.subspan(begin, end - begin),
+                                    threads);
+  });
   return py::cast(std::move(table));
 }
 

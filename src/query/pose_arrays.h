@@ -21,6 +21,13 @@ struct PoseArrays {
     if (utimes.empty()) return 0;
     return utimes.size() == 1 ? utimes.front() : utimes[i];
   }
+  PoseArrays part(std::size_t begin, std::size_t end) const {
+    const auto rows = [begin, end](std::span<const double> all, std::size_t columns) {
+      return all.empty() ? all : all.subspan(begin * columns, (end - begin) * columns);
+    };
+    return {rows(positions, 3), rows(quaternions_wxyz, 4), rows(linear_velocities, 3),
+            rows(angular_velocities, 3), utimes.size() <= 1 ? utimes : utimes.subspan(begin, end - begin)};
+  }
 };
 
 // What the wrench of a message holds of each pose (messages/request.h), with the same units and frames. A
@@ -33,6 +40,19 @@ struct WrenchArrays {
   std::span<double> centers_of_buoyancy;  // [m], W axes, relative to the position; 3 n
   std::span<double> force_error_bounds;   // [N]; n
   std::span<double> torque_error_bounds;  // [N m]; n
+
+  WrenchArrays part(std::size_t begin, std::size_t end) const {
+    const auto rows = [begin, end](auto all, std::size_t columns) {
+      return all.subspan(begin * columns, (end - begin) * columns);
+    };
+    return {rows(statuses, 1),
+            rows(forces, 3),
+            rows(torques, 3),
+            rows(volumes, 1),
+            rows(centers_of_buoyancy, 3),
+            rows(force_error_bounds, 1),
+            rows(torque_error_bounds, 1)};
+  }
 };
 
 }  // namespace buoyancy

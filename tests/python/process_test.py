@@ -1,15 +1,20 @@
 """The module beside threads, child processes, and without numpy."""
+import ctypes
 import os
+import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
+import weakref
+from pathlib import Path
 
 import numpy as np
 
 import buoyancy
-from support import SANITIZED, SOURCE, Reference, TestCase, box, rows_of
+from support import SANITIZED, SOURCE, WATERS, Reference, TestCase, box, rows_of
 
 TIMEOUT = 60.0 * float(os.environ.get("BUOYANCY_TEST_TIMEOUT_FACTOR", "1"))
 
@@ -85,6 +90,98 @@ class WorksWithThreadsAndProcesses(TestCase):
             thread.join(TIMEOUT)
         self.assertEqual(len({mesh.volume for mesh in meshes}), 1)
         self.assertEqual(len(meshes), 4)
+
+    def test_arrays_of_a_query_cannot_be_resized(self):
+        mesh = self.reference.mesh("rock")
+        for name in ("position", "quaternion"):
+            # np.tile() makes views, which numpy resizes never.
+            arrays = {"position": np.tile(self.reference.position, (100, 1)).copy(),
+                      "quaternion": np.tile(self.reference.quaternion, (100, 1)).copy()}
+            thread = threading.Thread(target=lambda: mesh.query(**arrays, method="exact_surface"))
+            thread.start()
+            deadline = time.monotonic() + TIMEOUT
+            while weakref.getweakrefcount(arrays[name]) == 0 and time.monotonic() < deadline:
+                pass
+            with self.assertRaisesRegex(ValueError, "referenced"):
+                arrays[name].resize((1, 1), refcheck=False)
+            thread.join(TIMEOUT)
+            self.assertEqual(weakref.getweakrefcount(arrays[name]), 0)
+
+    def test_a_signal_ends_a_long_query(self):
+        mesh = self.reference.mesh("rock")
+        count = 20 * len(self.reference.position)
+        position, quaternion = np.tile(self.reference.position, (20, 1)), np.tile(self.reference.quaternion, (20, 1))
+        sea = buoyancy.Sea(**WATERS["waves"])
+        points = np.zeros(2_000_000)
+        out = mesh.query(position, quaternion, sea=sea, tolerance=1e-2)
+
+        class Interrupted(Exception):
+            pass
+
+        def interrupt(*_):
+            raise Interrupted
+
+        before = signal.signal(signal.SIGALRM, interrupt)
+        try:
+            for call in (lambda: mesh.query(position, quaternion, method="exact_surface", out=out),
+                         lambda: sea.elevation(points, points, np.arange(2_000_000.0))):
+                out.force[:] = np.nan
+                signal.setitimer(signal.ITIMER_REAL, 0.01)
+                with self.assertRaises(Interrupted):
+                    call()
+                    self.fail("the call was too short")
+            self.assertTrue(np.isnan(out.force[count - 1]).any(), "the query went on")
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, before)
+
+    def test_results_do_not_depend_on_the_rounding_mode(self):
+        mesh, sea = self.reference.mesh("rock"), buoyancy.Sea(**WATERS["waves"])
+        poses = self.reference.position, self.reference.quaternion
+
+        def results(mesh, sea):
+            return [rows_of(mesh.query(*poses)), rows_of(mesh.query(*poses, sea=sea, tolerance=1e-3)),
+                    sea.elevation(0.5, np.arange(9.0), 3.0), mesh.hydrostatics(*poses).stiffness]
+
+        expected = results(mesh, sea)
+        math = ctypes.CDLL("libm.so.6")
+        before = math.fegetround()
+        for mode in (0x400, 0x800, 0xC00):  # of x86
+            self.assertEqual(math.fesetround(mode), 0)
+            try:
+                found = results(self.reference.mesh("rock"), buoyancy.Sea(**WATERS["waves"]))
+                self.assertEqual(math.fegetround(), mode)
+            finally:
+                math.fesetround(before)
+            for left, right in zip(found, expected, strict=True):
+                self.assert_same_bits(left, right)
+
+    def test_text_has_decimal_points_in_every_locale(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source = Path(folder, "comma.src")
+            source.write_text('LC_NUMERIC\ndecimal_point ","\nthousands_sep "."\ngrouping 3;3\nEND LC_NUMERIC\n')
+            subprocess.run(["localedef", "--no-archive", "-c", "-i", source, "-f", "/dev/null", Path(folder, "xx_XX")],
+                           stderr=subprocess.DEVNULL)
+            program = """
+import locale, sys
+import numpy as np, buoyancy
+sys.path.insert(0, sys.argv[1])
+from support import box
+locale.setlocale(locale.LC_ALL, "xx_XX")
+assert locale.format_string("%.1f", 0.5) == "0,5"
+mesh = buoyancy.Mesh(*box(1.5))
+assert "3.375 m" in mesh.report, mesh.report
+try:
+    mesh.query([0, 0, 0], [1, 0, 0, 0], time=1e300)
+except ValueError as error:
+    assert "1e+300" in str(error), error
+try:
+    buoyancy.Sea(density=-0.5)
+except buoyancy.InputError as error:
+    assert "-0.5" in str(error), error
+"""
+            subprocess.run([sys.executable, "-c", program, Path(__file__).parent], check=True, timeout=TIMEOUT,
+                           env={**os.environ, "LOCPATH": folder})
 
     def test_forked_children_give_the_same_results(self):
         mesh = self.reference.mesh("rock")
