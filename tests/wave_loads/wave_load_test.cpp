@@ -430,8 +430,8 @@ TEST(WaveLoad, CapsItsWorkAndStillBounds) {
   EXPECT_LE(std::abs(load.volume - truth.volume), load.volume_bound + truth.volume_error);
 }
 
-// A cell's expansion sums over all components: as many cells of the largest sea as of a small one would take a
-// second.
+// A cell's expansion sums over all components: as many cells of the largest sea as of a small one would take
+// a second.
 TEST(WaveLoad, CapsItsWorkInSeasOfManyComponents) {
   for (const int components : {256, 4096}) {
     IrregularWaves waves;
