@@ -26,7 +26,7 @@ Expected<const Body*> body_of(const Scene& scene, std::optional<std::int32_t> id
 
 SceneDescription mesh_scene(const HydrostaticsOptions& options) {
   SceneDescription scene = single_mesh_scene(options.mesh, Method::kHierarchical, 0.0, options.open);
-  scene.bodies.front().scale = options.scale;
+  scene.bodies.front().mesh.placement.scale = Vec3::Constant(options.scale);
   scene.water.density = options.density;
   scene.water.gravity = options.gravity;
   return scene;

@@ -68,7 +68,7 @@ Expected<std::shared_ptr<const QueryMesh>> QueryMesh::load(const std::filesystem
   Expected<ImportedMesh> imported = import_mesh(path, options.limits);
   if (!imported) return make_error(std::move(imported.error()));
   Expected<PreparedMesh> prepared =
-      prepare_mesh(*std::move(imported), path.string(), {.scale = options.scale},
+      prepare_mesh(*std::move(imported), path.string(), {.scale = Vec3::Constant(options.scale)},
                    {options.open, options.count_intersecting_pairs});
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
@@ -84,8 +84,9 @@ Expected<std::shared_ptr<const QueryMesh>> QueryMesh::make(std::span<const doubl
   ImportedMesh imported;
   imported.mesh = *std::move(mesh);
   imported.source.format = "arrays";
-  Expected<PreparedMesh> prepared = prepare_mesh(std::move(imported), name, {.scale = options.scale},
-                                                 {options.open, options.count_intersecting_pairs});
+  Expected<PreparedMesh> prepared =
+      prepare_mesh(std::move(imported), name, {.scale = Vec3::Constant(options.scale)},
+                   {options.open, options.count_intersecting_pairs});
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
 }

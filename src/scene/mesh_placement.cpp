@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "base/double_double.h"
@@ -36,11 +37,27 @@ RotationMatrix rotation_of(const Eigen::Quaterniond& q) {
 
 }  // namespace
 
+MeshPlacement compose(const MeshPlacement& outer, const MeshPlacement& inner) {
+  MeshPlacement both = outer;
+  both.scale = inner.scale;
+  if (inner.position_B != Vec3::Zero()) {
+    both.position_B += outer.orientation_B.normalized() * inner.position_B;
+  }
+  if (inner.orientation_B.vec() != Vec3::Zero()) {
+    both.orientation_B = outer.orientation_B.normalized() * inner.orientation_B.normalized();
+  }
+  return both;
+}
+
 void place(TriangleMesh& mesh, const MeshPlacement& placement) {
-  if (placement.scale != 1.0) {
-    for (std::vector<double>* coordinates : {&mesh.x, &mesh.y, &mesh.z}) {
-      for (double& coordinate : *coordinates) coordinate *= placement.scale;
-    }
+  const std::array<std::vector<double>*, 3> coordinates{&mesh.x, &mesh.y, &mesh.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double factor = placement.scale[static_cast<Eigen::Index>(axis)];
+    if (factor == 1.0) continue;
+    for (double& coordinate : *coordinates[axis]) coordinate *= factor;
+  }
+  if (placement.mirrors()) {
+    for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   }
   const bool is_turned = placement.orientation_B.vec() != Vec3::Zero();
   if (!is_turned && placement.position_B == Vec3::Zero()) return;

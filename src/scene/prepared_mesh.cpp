@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/format.h"
-#include "scene/mesh_placement.h"
 
 namespace buoyancy {
 namespace {
@@ -63,7 +62,7 @@ Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& na
     return make_error(*std::move(validation.refusal));
   }
   return PreparedMesh{std::move(validation.report),
-                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, placement.scale),
+                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, placement.size_factor()),
                       mass_properties(validation.mesh->mesh), std::nullopt};
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/mesh_validation.h"
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/solver.h"
+#include "scene/mesh_placement.h"
 #include "wave_loads/wave_buoyancy.h"
 
 namespace buoyancy {
@@ -23,13 +24,6 @@ struct PreparedMesh {
   HydrostaticMesh mesh;
   MassProperties mass_properties;     // density 1 kg/m^3; for an open mesh, the integrals over its faces
   std::optional<WaveMesh> wave_mesh;  // if queries in waves need it
-};
-
-// How the vertices of a mesh are moved to the frame of a body: x_B = orientation (scale x) + position.
-struct MeshPlacement {
-  double scale = 1.0;                                                 // > 0
-  Vec3 position_B = Vec3::Zero();                                     // [m]
-  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
 };
 
 // Scales the mesh in double, moves it and rounds once, validates and prepares it; without a moment tree.

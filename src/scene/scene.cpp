@@ -140,8 +140,7 @@ struct BodyMesh {
 Expected<BodyMesh> prepare_body_mesh(const BodyDescription& body, SceneMeshes& meshes) {
   BodyMesh result;
   if (!body.is_parts_only) {
-    const MeshDescription mesh{.source = body.source, .scale = body.scale};
-    const Expected<PreparedMesh*> prepared = meshes.find_or_prepare(mesh, body.open, user_of(body));
+    const Expected<PreparedMesh*> prepared = meshes.find_or_prepare(body.mesh, body.open, user_of(body));
     if (!prepared) return make_error(prepared.error());
     result.prepared = *prepared;
     const bool is_alone = body.parts.empty() && body.compartments.empty() && body.tanks.empty();

@@ -199,8 +199,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
   body.source_location = context.location(toml.source());
 
   table.read("name", body.name);
-  const bool has_source = parse_mesh_source(table, "body " + std::to_string(body.id) + ", shape", directory,
-                                            context, body.source, body.scale);
+  const bool has_source = parse_mesh(table, "body " + std::to_string(body.id), directory, context, body.mesh);
   read_method(table, body.method);
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
@@ -319,7 +318,7 @@ SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method met
   BodyDescription body;
   body.id = 1;
   body.name = mesh.filename().string();
-  body.source = MeshFile{mesh};
+  body.mesh.source = MeshFile{mesh};
   body.method = method;
   body.tolerance = tolerance;
   body.open = open;

@@ -21,6 +21,7 @@
 #include "hydrodynamics/coefficients.h"
 #include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
+#include "scene/mesh_placement.h"
 #include "waves/sea_description.h"
 
 namespace buoyancy {
@@ -76,12 +77,10 @@ struct MeshFile {
   std::filesystem::path path;  // resolved against the scene file's directory
 };
 
-// A mesh in the frame of a body: x_B = orientation (scale x) + position.
+// A mesh in the frame of a body.
 struct MeshDescription {
   std::variant<MeshFile, Shape> source;
-  double scale = 1.0;                                                 // > 0; mesh files only
-  Vec3 position_B = Vec3::Zero();                                     // [m]
-  Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // any norm but 0; read as q/|q|
+  MeshPlacement placement;  // of a shape without a scale
 };
 
 // Sections [[body.part]], [[body.compartment]] and [[body.tank]]: meshes that make up a body, or lie in it.
@@ -108,10 +107,8 @@ struct TankDescription {
 
 struct BodyDescription {
   std::int32_t id = 0;
-  std::string name;  // default: "body <id>"
-  // The body's mesh, with its origin and axes; unused where the body consists of its parts alone.
-  std::variant<MeshFile, Shape> source;
-  double scale = 1.0;          // factor for the mesh's coordinates, > 0; mesh files only
+  std::string name;            // default: "body <id>"
+  MeshDescription mesh;        // unused where the body consists of its parts alone
   bool is_parts_only = false;  // has no mesh beside its parts
   std::vector<PartDescription> parts;
   std::vector<CompartmentDescription> compartments;

@@ -31,9 +31,9 @@ Error MeshUser::error(Error error) const {
 
 SceneMeshes::Key SceneMeshes::key_of(const MeshDescription& mesh, OpenPolicy open) {
   Key key{.source = {},
-          .scale = mesh.scale,
-          .position_B = mesh.position_B,
-          .orientation_B = mesh.orientation_B.coeffs(),
+          .scale = mesh.placement.scale,
+          .position_B = mesh.placement.position_B,
+          .orientation_B = mesh.placement.orientation_B.coeffs(),
           .open = open,
           .merged = {}};
   if (const auto* file = std::get_if<MeshFile>(&mesh.source)) {
@@ -65,8 +65,8 @@ Expected<PreparedMesh*> SceneMeshes::find_or_prepare(const MeshDescription& mesh
   if (!imported) return make_error(user.error(std::move(imported.error())));
   ValidationOptions options = options_;
   options.open = open;
-  Expected<PreparedMesh> prepared = prepare_mesh(*std::move(imported), source_name(mesh),
-                                                 {mesh.scale, mesh.position_B, mesh.orientation_B}, options);
+  Expected<PreparedMesh> prepared =
+      prepare_mesh(*std::move(imported), source_name(mesh), mesh.placement, options);
   if (!prepared) return make_error(user.error(std::move(prepared.error())));
   return add(std::move(key), *std::move(prepared));
 }

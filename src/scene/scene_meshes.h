@@ -39,7 +39,7 @@ class SceneMeshes {
   // Identifies a prepared mesh: two bodies with equal keys share it.
   struct Key {
     std::variant<std::filesystem::path, Shape> source;  // canonical path
-    double scale = 1.0;
+    Vec3 scale = Vec3::Ones();
     Vec3 position_B = Vec3::Zero();
     Eigen::Vector4d orientation_B = Eigen::Vector4d::Zero();
     OpenPolicy open = OpenPolicy::kRefuse;

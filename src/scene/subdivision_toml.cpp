@@ -39,15 +39,35 @@ void parse_sections(TomlTable& body, std::string_view key, const SectionContext&
     const std::string label = where.body_name + ", " + description.name;
     TomlTable table(toml, label, where.context);
     table.read("name", description.name);
-    const bool has_source = parse_mesh_source(table, label + ", shape", where.directory, where.context,
-                                              description.mesh.source, description.mesh.scale);
-    table.read("position", description.mesh.position_B, "m");
-    parse_orientation(table, description.mesh.orientation_B);
+    const bool has_source = parse_mesh(table, label, where.directory, where.context, description.mesh);
+    MeshPlacement in_body;
+    table.read("position", in_body.position_B, "m");
+    parse_orientation(table, in_body.orientation_B);
+    description.mesh.placement = compose(in_body, description.mesh.placement);
     read(description, table);
     if (!has_source) {
       table.fail("neither 'mesh' nor 'shape'", "one of them", {},
                  "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
     }
+  }
+}
+
+// Reads `scale`: a number for all coordinates, or one for each.
+void parse_scale(TomlTable& table, Vec3& scale) {
+  const toml::node* const given = table.node("scale");
+  if (given == nullptr || !given->is_array()) {
+    double factor = 1.0;
+    table.read("scale", factor, NumberRange::above_zero(""));
+    if (given != nullptr) scale = Vec3::Constant(factor);
+    return;
+  }
+  Vec3 factors = scale;
+  table.read("scale", factors, "factors of x, y and z");
+  if ((factors.array() != 0.0).all()) {
+    scale = factors;
+  } else {
+    table.fail_at("scale", "a number above 0, or factors of x, y and z of which none is 0",
+                  "a mesh without an extent", "Use a negative factor to mirror the mesh");
   }
 }
 
@@ -83,24 +103,38 @@ void parse_orientation(TomlTable& table, Eigen::Quaterniond& orientation) {
   }
 }
 
-bool parse_mesh_source(TomlTable& table, const std::string& shape_name,
-                       const std::filesystem::path& directory, SceneParseContext& context,
-                       std::variant<MeshFile, Shape>& source, double& scale) {
-  std::string mesh;
-  table.read("mesh", mesh);
-  table.read("scale", scale, NumberRange::above_zero(""));
+bool parse_mesh(TomlTable& table, const std::string& name, const std::filesystem::path& directory,
+                SceneParseContext& context, MeshDescription& mesh) {
   const bool has_mesh = table.has("mesh");
+  const bool has_scale = table.has("scale");
   const bool has_shape = table.has("shape");
+  std::string file;
+  parse_scale(table, mesh.placement.scale);
+  const toml::node* const given = table.node("mesh");
+  if (given != nullptr && given->is_table()) {
+    TomlTable placed(*given->as_table(), name + ", mesh", context);
+    placed.read("file", file);
+    parse_scale(placed, mesh.placement.scale);
+    placed.read("position", mesh.placement.position_B, "m");
+    parse_orientation(placed, mesh.placement.orientation_B);
+    placed.finish();
+    if (!placed.has("file")) placed.fail_missing("file", "the name of a mesh file");
+    if (has_scale && placed.has("scale")) {
+      table.fail("'scale' both beside and in 'mesh'", "one of them", {}, "Remove one");
+    }
+  } else {
+    table.read("mesh", file);
+  }
   if (has_mesh && has_shape) {
     table.fail("both 'mesh' and 'shape'", "one of them", {}, "Remove one");
-  } else if (has_shape && table.has("scale")) {
+  } else if (has_shape && has_scale) {
     table.fail("both 'scale' and 'shape'", "a scale only with a mesh file", {},
                "Give the shape its sizes in metres");
   }
-  if (has_mesh) source = MeshFile{(directory / mesh).lexically_normal()};
+  if (has_mesh) mesh.source = MeshFile{(directory / file).lexically_normal()};
   if (const toml::table* shape = table.table("shape")) {
-    TomlTable shape_table(*shape, shape_name, context);
-    if (std::optional<Shape> read = parse_shape(shape_table)) source = *read;
+    TomlTable shape_table(*shape, name + ", shape", context);
+    if (std::optional<Shape> read = parse_shape(shape_table)) mesh.source = *read;
   }
   return has_mesh || has_shape;
 }

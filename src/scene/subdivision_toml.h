@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <variant>
 
 #include "scene/scene_file.h"
 #include "scene/toml_table.h"
@@ -15,11 +14,10 @@ namespace buoyancy {
 // of about 1.
 void parse_orientation(TomlTable& table, Eigen::Quaterniond& orientation);
 
-// Reads `mesh`, `scale` and `shape`. shape_name: identifies the shape's table in errors. Returns whether
-// there is a mesh or a shape.
-bool parse_mesh_source(TomlTable& table, const std::string& shape_name,
-                       const std::filesystem::path& directory, SceneParseContext& context,
-                       std::variant<MeshFile, Shape>& source, double& scale);
+// Reads `mesh`, `scale` and `shape`. name: of the table, for errors. Returns whether there is a mesh or a
+// shape.
+bool parse_mesh(TomlTable& table, const std::string& name, const std::filesystem::path& directory,
+                SceneParseContext& context, MeshDescription& mesh);
 
 // Reads `part`, `compartment` and `tank`. body_name: identifies the body in errors. water: of the scene.
 void parse_subdivision(TomlTable& body_table, const std::string& body_name, const Water& water,

@@ -124,7 +124,7 @@ T checked(Expected<T> result) {
 
 TriangleMesh shape_of(const std::string& shape) {
   const std::string text = "[[body]]\nid = 1\nshape = " + shape + "\n";
-  return make_shape(std::get<Shape>(checked(parse_scene(text, "shape", {})).bodies[0].source));
+  return make_shape(std::get<Shape>(checked(parse_scene(text, "shape", {})).bodies[0].mesh.source));
 }
 
 void write_obj(const TriangleMesh& mesh, const std::string& path) {

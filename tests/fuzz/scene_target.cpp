@@ -160,14 +160,15 @@ void check_description(const SceneDescription& scene) {
   for (const BodyDescription& body : scene.bodies) {
     require(ids.insert(body.id).second, "ids are unique");
     require(!body.name.empty() && !body.source_location.empty(), "a body has a name and a source location");
-    require(std::isfinite(body.scale) && body.scale > 0.0, "a scale is above 0");
+    require(body.mesh.placement.scale.allFinite() && (body.mesh.placement.scale.array() != 0.0).all(),
+            "a scale is finite and not 0");
     const double tolerance = body.tolerance.value_or(0.0);
     require(tolerance >= 0.0 && tolerance <= 1.0, "a tolerance is from 0 to 1");
     require(body.reference_B.allFinite(), "the reference point is finite");
-    if (const auto* file = std::get_if<MeshFile>(&body.source)) {
+    if (const auto* file = std::get_if<MeshFile>(&body.mesh.source)) {
       require(!file->path.empty(), "a mesh file has a name");
     } else {
-      require(check_shape(std::get<Shape>(body.source)).has_value(), "a shape is within its ranges");
+      require(check_shape(std::get<Shape>(body.mesh.source)).has_value(), "a shape is within its ranges");
     }
     check_dynamics(body.dynamics);
     check_coefficients(body);
@@ -181,7 +182,7 @@ bool is_small_and_generated(const SceneDescription& scene) {
   if (components > kMaxComponents) return false;
   std::int64_t triangles = 0;
   for (const BodyDescription& body : scene.bodies) {
-    const auto* shape = std::get_if<Shape>(&body.source);
+    const auto* shape = std::get_if<Shape>(&body.mesh.source);
     if (shape == nullptr) return false;
     triangles += triangle_count(*shape);
     if (triangles > kMaxTriangles) return false;

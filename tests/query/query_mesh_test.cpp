@@ -69,7 +69,7 @@ TEST(QueryMesh, GivesWhatASceneWithTheSameMeshGives) {
                                "\"\nshape = { type = \"rock\", frequency = 6, radius = 1.0, seed = 5 }\n";
       const Scene scene = scene_of(text);
       const TriangleMesh rock =
-          make_shape(std::get<Shape>(parse_scene(text, "rock", {}).value().bodies[0].source));
+          make_shape(std::get<Shape>(parse_scene(text, "rock", {}).value().bodies[0].mesh.source));
       std::vector<double> vertices;
       for (std::size_t i = 0; i < rock.vertex_count(); ++i) {
         vertices.insert(vertices.end(), {rock.x[i], rock.y[i], rock.z[i]});

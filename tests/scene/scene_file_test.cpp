@@ -27,8 +27,8 @@ TEST(SceneFile, UsesDefaultsForMissingKeys) {
   const BodyDescription& body = scene->bodies[0];
   EXPECT_EQ(body.id, 7);
   EXPECT_EQ(body.name, "body 7");
-  EXPECT_EQ(std::get<Shape>(body.source), Shape(BoxShape{}));
-  EXPECT_EQ(body.scale, 1.0);
+  EXPECT_EQ(std::get<Shape>(body.mesh.source), Shape(BoxShape{}));
+  EXPECT_EQ(body.mesh.placement.scale, Vec3::Ones());
   EXPECT_EQ(body.method, Method::kHierarchical);
   EXPECT_EQ(body.tolerance, std::nullopt);
   EXPECT_EQ(body.open, OpenPolicy::kRefuse);
@@ -87,8 +87,8 @@ angular_damping_quadratic = 13
   const BodyDescription& body = scene->bodies.at(0);
   EXPECT_EQ(body.id, 3);
   EXPECT_EQ(body.name, "duck");
-  EXPECT_EQ(std::get<MeshFile>(body.source).path, std::filesystem::path("scenes/meshes/duck.dae"));
-  EXPECT_EQ(body.scale, 0.01);
+  EXPECT_EQ(std::get<MeshFile>(body.mesh.source).path, std::filesystem::path("scenes/meshes/duck.dae"));
+  EXPECT_EQ(body.mesh.placement.scale, Vec3::Constant(0.01));
   EXPECT_EQ(body.method, Method::kFastSurface);
   EXPECT_EQ(body.tolerance, 0.5);
   EXPECT_EQ(body.open, OpenPolicy::kDryBoundary);
@@ -142,7 +142,7 @@ TEST(SceneFile, KeepsOrderOfBodies) {
 TEST(SceneFile, KeepsAbsoluteMeshPaths) {
   const auto scene = parse("[[body]]\nid = 1\nmesh = \"/models/../models/duck.dae\"\n");
   ASSERT_TRUE(scene) << scene.error().message();
-  EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].source).path, std::filesystem::path("/models/duck.dae"));
+  EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].mesh.source).path, std::filesystem::path("/models/duck.dae"));
 }
 
 TEST(SceneFile, NormalisesDirectionsOfAnyLength) {
@@ -325,7 +325,7 @@ TEST(SceneFile, ResolvesMeshesAgainstItsDirectory) {
   const Expected<SceneDescription> scene = read_scene_file(path);
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->name, path);
-  EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].source).path, directory.path() / "duck.dae");
+  EXPECT_EQ(std::get<MeshFile>(scene->bodies[0].mesh.source).path, directory.path() / "duck.dae");
 }
 
 std::string file_error(const std::filesystem::path& path) {
@@ -353,7 +353,7 @@ TEST(SingleMeshScene, HasOneBodyInDefaultWater) {
   ASSERT_EQ(scene.bodies.size(), 1U);
   EXPECT_EQ(scene.bodies[0].id, 1);
   EXPECT_EQ(scene.bodies[0].name, "duck.dae");
-  EXPECT_EQ(std::get<MeshFile>(scene.bodies[0].source).path, std::filesystem::path("models/duck.dae"));
+  EXPECT_EQ(std::get<MeshFile>(scene.bodies[0].mesh.source).path, std::filesystem::path("models/duck.dae"));
   EXPECT_EQ(scene.bodies[0].method, Method::kExactSurface);
   EXPECT_EQ(scene.bodies[0].tolerance, 0.25);
   EXPECT_EQ(scene.bodies[0].open, OpenPolicy::kDryBoundary);

@@ -30,7 +30,7 @@ TEST(ParseShape, ReadsAllSizesOfEveryShape) {
   for (const auto& [text, shape] : shapes) {
     const auto scene = parse(with_shape(text));
     ASSERT_TRUE(scene) << scene.error().message();
-    EXPECT_EQ(std::get<Shape>(scene->bodies[0].source), shape) << text;
+    EXPECT_EQ(std::get<Shape>(scene->bodies[0].mesh.source), shape) << text;
   }
 }
 
@@ -40,7 +40,7 @@ TEST(ParseShape, UsesDefaultsForMissingSizes) {
   for (const Shape& shape : defaults) {
     const auto scene = parse(with_shape("{ type = \"" + std::string(type_name(shape)) + "\" }"));
     ASSERT_TRUE(scene) << scene.error().message();
-    EXPECT_EQ(std::get<Shape>(scene->bodies[0].source), shape);
+    EXPECT_EQ(std::get<Shape>(scene->bodies[0].mesh.source), shape);
   }
 }
 

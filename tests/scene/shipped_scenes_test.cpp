@@ -59,7 +59,7 @@ TEST(ShippedScenes, HaveFloatingBodies) {
 TEST(ShippedScenes, ScaleDuckToPlausibleSize) {
   const Expected<SceneDescription> description = read_scene_file(shipped("duck.toml"));
   ASSERT_TRUE(description) << description.error().message();
-  const std::filesystem::path model = std::get<MeshFile>(description->bodies.at(0).source).path;
+  const std::filesystem::path model = std::get<MeshFile>(description->bodies.at(0).mesh.source).path;
   if (!std::filesystem::exists(model)) {
     GTEST_SKIP() << model << " was not found; install the Debian package assimp-testmodels";
   }

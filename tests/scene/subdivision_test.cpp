@@ -41,8 +41,9 @@ TEST(Subdivision, ReadsEverySection) {
   const BodyDescription& body = scene->bodies[0];
   ASSERT_EQ(body.parts.size(), 1U);
   EXPECT_EQ(body.parts[0].name, "float");
-  EXPECT_EQ(body.parts[0].mesh.position_B, Vec3(3, 0, 0));
-  EXPECT_EQ(body.parts[0].mesh.orientation_B.w(), body.parts[0].mesh.orientation_B.z()) << "not normalised";
+  EXPECT_EQ(body.parts[0].mesh.placement.position_B, Vec3(3, 0, 0));
+  EXPECT_EQ(body.parts[0].mesh.placement.orientation_B.w(), body.parts[0].mesh.placement.orientation_B.z())
+      << "not normalised";
   ASSERT_EQ(body.compartments.size(), 1U);
   EXPECT_EQ(body.compartments[0].name, "compartment 0");
   EXPECT_EQ(body.compartments[0].permeability, 0.85);
@@ -51,7 +52,7 @@ TEST(Subdivision, ReadsEverySection) {
   EXPECT_EQ(body.tanks[0].density, 1025.0) << "the water's";
   EXPECT_EQ(body.tanks[0].fill, 0.5);
   EXPECT_EQ(body.tanks[1].name, "tank 1");
-  EXPECT_EQ(body.tanks[1].mesh.scale, 0.001);
+  EXPECT_EQ(body.tanks[1].mesh.placement.scale, Vec3::Constant(0.001));
   EXPECT_EQ(body.tanks[1].liquid_volume, 0.75);
   EXPECT_EQ(body.tanks[1].density, 850.0);
 }
