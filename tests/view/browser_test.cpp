@@ -1,6 +1,5 @@
 #include "tests/view/browser.h"
 
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -14,13 +13,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 #include <sys/stat.h>
 
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
+#include "view/live/page_server.h"
 
 namespace buoyancy::view {
 namespace {
@@ -238,35 +237,30 @@ TEST_F(BrowserTest, ResolvesNoOtherHost) {
 }
 
 TEST_F(BrowserTest, OpensPageWithEndlessEventStream) {
-  httplib::Server server;
-  server.set_keep_alive_timeout(1);  // s; stopping waits for it
-  std::atomic<bool> over = false;
-  server.Get("/", [](const httplib::Request&, httplib::Response& response) {
-    response.set_content(
-        "<!doctype html><link rel='icon' href='data:,'><script>const received = [];"
-        "new EventSource('events').onmessage = event => received.push(event.data);</script>",
-        "text/html");
-  });
-  server.Get("/events", [&](const httplib::Request&, httplib::Response& response) {
-    response.set_chunked_content_provider("text/event-stream", [&](std::size_t, httplib::DataSink& sink) {
-      const std::string event = "data: a wave\n\n";
-      sink.write(event.data(), event.size());
+  SnapshotBroadcaster broadcaster;
+  const auto server = PageServer::start("127.0.0.1", 0,
+                                        {{"/", "text/html",
+                                          "<!doctype html><link rel='icon' href='data:,'>"
+                                          "<script src='page.js'></script>"},
+                                         {"/page.js", "text/javascript",
+                                          "const received = [];"
+                                          "new EventSource('events').onmessage = event => "
+                                          "received.push(event.data);"}},
+                                        broadcaster);
+  ASSERT_TRUE(server) << server.error().message();
+  const std::jthread publishing([&broadcaster](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      broadcaster.publish("[]", "a wave");
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      return !over;
-    });
+    }
   });
-  const int port = server.bind_to_any_port("127.0.0.1");
-  std::thread serving([&] { server.listen_after_bind(); });
 
   const std::string error = thrown_message([&] {
-    browser().open("http://127.0.0.1:" + std::to_string(port) + "/");
+    browser().open((*server)->url());
     EXPECT_EQ(browser().wait_until("received.length > 3 && received[3]"), "a wave");
     EXPECT_THAT(browser().console_errors(), IsEmpty());
     browser().open("about:blank");
   });
-  over = true;
-  server.stop();
-  serving.join();
   EXPECT_EQ(error, "nothing");
 }
 

@@ -128,6 +128,25 @@ TEST_F(PageServerTest, RejectsMethodsOtherThanGet) {
   }
 }
 
+TEST_F(PageServerTest, SendsNoBodyInResponseToHead) {
+  const std::string response = response_to("HEAD / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  EXPECT_NE(response.find("\r\nAllow: GET\r\n"), std::string::npos) << response;
+  EXPECT_TRUE(response.ends_with("\r\n\r\n")) << response;
+}
+
+TEST_F(PageServerTest, RejectsWhatIsNoRequest) {
+  for (const char* request :
+       {"GET /", "GET / HTTP/1.1\r\nHost: 127.0.0.1", "GET / HTTP/1.1\nHost: 127.0.0.1\n\n",
+        "GET / HTTP/2.0\r\nHost: 127.0.0.1\r\n\r\n", "GET / HTTP/1.1\r\nHost : 127.0.0.1\r\n\r\n",
+        "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: -1\r\n\r\n"}) {
+    EXPECT_EQ(status_of(request), "HTTP/1.1 400 Bad Request") << request;
+  }
+}
+
+TEST_F(PageServerTest, IgnoresQuery) {
+  EXPECT_EQ(body(response_to(get_request("/?reload=1"))), "<!doctype html>");
+}
+
 TEST_F(PageServerTest, RejectsHostsOtherThanLoopback) {
   for (const char* host : {"127.0.0.1", "localhost", "[::1]", "127.0.0.1:8667", "localhost:1", "[::1]:80",
                            "127.0.0.2", "[::ffff:7f00:1]:8667"}) {
@@ -199,6 +218,32 @@ TEST_F(PageServerTest, StreamsHistoryAndSnapshotsToAllListeners) {
     more += *part;
   }
   EXPECT_EQ(more.find("history"), std::string::npos) << "sent once per listener";
+}
+
+TEST_F(PageServerTest, StreamsInChunksUnlessClientIsOfHttp10) {
+  HttpPeer current(port_);
+  HttpPeer old(port_);
+  current.send("GET /events HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  old.send("GET /events HTTP/1.0\r\nHost: 127.0.0.1\r\n\r\n");
+  wait_for_listeners(2);
+  broadcaster_.publish("[]", "{}");
+  const std::string events = "retry: 1000\nevent: history\ndata: []\n\ndata: {}\n\n";
+  std::string chunks;
+  std::string plain;
+  for (const auto& [peer, text] : {std::pair(&current, &chunks), std::pair(&old, &plain)}) {
+    while (text->find(events) == std::string::npos) {
+      const std::optional<std::string> part = peer->receive(kWaitTimeout);
+      ASSERT_TRUE(part && !part->empty()) << *text;
+      *text += *part;
+    }
+  }
+  broadcaster_.close();
+  chunks += current.receive_all(kWaitTimeout);
+  plain += old.receive_all(kWaitTimeout);
+  EXPECT_NE(chunks.find("\r\nTransfer-Encoding: chunked\r\n"), std::string::npos) << chunks;
+  EXPECT_EQ(body(chunks), "2f\r\n" + events + "\r\n0\r\n\r\n");
+  EXPECT_EQ(plain.find("Transfer-Encoding"), std::string::npos) << plain;
+  EXPECT_EQ(body(plain), events);
 }
 
 TEST_F(PageServerTest, RemovesDisconnectedListener) {

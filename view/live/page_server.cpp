@@ -7,6 +7,8 @@
 #include <chrono>
 #include <climits>
 #include <condition_variable>
+#include <cstdint>
+#include <exception>
 #include <functional>
 #include <iterator>
 #include <list>
@@ -18,44 +20,73 @@
 #include <utility>
 
 #include <arpa/inet.h>
-#include <httplib.h>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/http/chunk_encode.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <netdb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "base/unique_fd.h"
 #include "view/live/request_stream.h"
 
 namespace buoyancy::view {
 namespace {
 
+namespace http = boost::beast::http;
+using Request = http::request<http::empty_body>;
+
 constexpr std::size_t kMaxChunkBytes = 65'536;  // of a resource's body
+
+constexpr const char* kHeaders =  // of every response
+    "Connection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
+    "Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
+    "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n";
 
 // Size of a connection's send buffer. By default the kernel grows it to megabytes of outdated snapshots, for
 // each of many connections.
 constexpr int kSendBufferBytes = 131'072;
 
-// The open connections, in order of arrival.
+// The open connections, in order of arrival, each served by a thread of its own.
 class Connections {
  public:
   enum class Phase { kHeader, kResponse, kStream };
   struct Connection {
-    explicit Connection(socket_t socket_of_client) : socket(socket_of_client) {}
-    socket_t socket;
+    explicit Connection(UniqueFd client) : socket(std::move(client)) {}
+    UniqueFd socket;
     Phase phase = Phase::kHeader;
     std::atomic<bool> stopping{false};
+    std::jthread thread;
   };
 
-  // max_connections: more than there can be streams.
-  explicit Connections(int max_connections) : max_connections_(static_cast<std::size_t>(max_connections)) {}
+  // max_connections: more than there can be streams. serve: must not throw.
+  Connections(int max_connections, std::function<void(Connection&)> serve)
+      : max_connections_(static_cast<std::size_t>(max_connections)), serve_(std::move(serve)) {}
+  ~Connections() {  // after stop_all()
+    std::unique_lock lock(mutex_);
+    closed_.wait(lock, [this] { return open_.empty(); });
+  }
 
-  // If all places are taken, evicts a connection and waits for its thread, which ends immediately.
-  Connection& add(socket_t socket) {
+  // If all places are taken, evicts a connection and waits for its thread, which ends immediately. Throws
+  // std::system_error if there is no thread for the connection, which is then closed.
+  void add(UniqueFd socket) {
+    std::list<Connection> ended;  // joined without the lock
     std::unique_lock lock(mutex_);
     if (open_.size() >= max_connections_) evict_one();
     closed_.wait(lock, [this] { return open_.size() < max_connections_; });
-    Connection& added = open_.emplace_back(socket);
-    added.stopping = stopping_;
-    return added;
+    ended.swap(ended_);
+    std::list<Connection> added;
+    Connection& connection = added.emplace_back(std::move(socket));
+    connection.stopping = stopping_;
+    connection.thread = std::jthread([this, self = added.begin()] {
+      serve_(*self);
+      close(self);
+    });
+    open_.splice(open_.end(), added);
   }
 
   // False: the connection is being closed.
@@ -63,16 +94,6 @@ class Connections {
     const std::lock_guard lock(mutex_);
     connection.phase = phase;
     return !connection.stopping;
-  }
-
-  void close(const Connection& connection) {
-    {
-      // Under the lock, so that evict_one() cannot shut down a reused file descriptor.
-      const std::lock_guard lock(mutex_);
-      ::close(connection.socket);
-      open_.remove_if([&connection](const Connection& other) { return &other == &connection; });
-    }
-    closed_.notify_one();
   }
 
   // Stops all connections, including those added later.
@@ -83,6 +104,14 @@ class Connections {
   }
 
  private:
+  void close(std::list<Connection>::iterator connection) {
+    // Under the lock, so that evict_one() cannot shut down a reused file descriptor.
+    const std::lock_guard lock(mutex_);
+    connection->socket.close();
+    ended_.splice(ended_.end(), open_, connection);
+    closed_.notify_all();
+  }
+
   // Evicts the oldest connection that still waits for its request; if there is none, the oldest that is
   // sending a response. Streams are never evicted.
   void evict_one() {
@@ -91,26 +120,18 @@ class Connections {
           open_, [phase](const Connection& other) { return other.phase == phase && !other.stopping; });
       if (oldest == open_.end()) continue;
       oldest->stopping = true;
-      ::shutdown(oldest->socket, SHUT_RDWR);  // wakes the connection's thread
+      ::shutdown(oldest->socket.value(), SHUT_RDWR);  // wakes the connection's thread
       return;
     }
   }
 
   const std::size_t max_connections_;
+  const std::function<void(Connection&)> serve_;
   std::mutex mutex_;
   std::condition_variable closed_;
-  std::list<Connection> open_;
   bool stopping_ = false;
-};
-
-// The connection that the current thread serves.
-thread_local Connections::Connection* current_connection = nullptr;
-
-// Runs httplib's tasks on the accepting thread; they only hand the connection to a worker thread.
-class InlineTaskQueue : public httplib::TaskQueue {
- public:
-  void enqueue(std::function<void()> task) override { task(); }
-  void shutdown() override {}
+  std::list<Connection> open_;
+  std::list<Connection> ended_;  // their threads are at their end
 };
 
 bool is_ipv6(const std::string& address) {
@@ -159,15 +180,44 @@ std::vector<std::string> machine_names() {
   return {name.data(), std::string(name.data()) + ".local"};
 }
 
-void set_text(httplib::Response& response, int status, const std::string& text) {
-  response.status = status;
-  response.set_content(text + "\n", "text/plain; charset=utf-8");
+// Invalid: failed, errno has the reason. address: in numeric form. port: if 0, becomes that of the socket.
+UniqueFd listen_on(const std::string& address, int& port, int backlog) {
+  addrinfo hints{};
+  hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  errno = EADDRNOTAVAIL;
+  if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return {};
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, ::freeaddrinfo);
+  UniqueFd listening(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const auto set = [&listening](int level, int option, int value) {
+    ::setsockopt(listening.value(), level, option, &value, sizeof value);
+  };
+  // Not SO_REUSEPORT, which would share the port with another view instead of reporting that it is taken.
+  set(SOL_SOCKET, SO_REUSEADDR, 1);
+  if (found->ai_family == AF_INET6) set(IPPROTO_IPV6, IPV6_V6ONLY, 0);
+  // Connections inherit these.
+  set(SOL_SOCKET, SO_SNDBUF, kSendBufferBytes);
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+  if (::bind(listening.value(), found->ai_addr, found->ai_addrlen) != 0) return {};
+  if (::listen(listening.value(), backlog) != 0) return {};
+  sockaddr_in6 bound{};  // the port of a sockaddr_in is at the same place
+  socklen_t size = sizeof bound;
+  if (::getsockname(listening.value(), reinterpret_cast<sockaddr*>(&bound), &size) != 0) return {};
+  port = ntohs(bound.sin6_port);
+  return listening;
 }
 
-std::string raw_response(const std::string& status, const std::string& text) {
-  return "HTTP/1.1 " + status +
-         "\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: " + std::to_string(text.size() + 1) +
-         "\r\nConnection: close\r\n\r\n" + text + "\n";
+// headers: further ones, each with its line end.
+std::string head(const std::string& status, const std::string& headers) {
+  return "HTTP/1.1 " + status + "\r\n" + kHeaders + headers + "\r\n";
+}
+
+std::string text_response(const std::string& status, const std::string& text,
+                          const std::string& headers = "") {
+  return head(status, headers + "Content-Type: text/plain; charset=utf-8\r\nContent-Length: " +
+                          std::to_string(text.size() + 1) + "\r\n") +
+         text + "\n";
 }
 
 }  // namespace
@@ -180,133 +230,101 @@ Expected<void> check_listen_address(const std::string& address) {
                      "Specify the address of the interface to listen on"});
 }
 
-class PageServer::Http : public httplib::Server {
+class PageServer::Http {
  public:
-  Http(std::string address, std::vector<StaticResource> resources, SnapshotBroadcaster& broadcaster,
-       const PageLimits& limits, std::vector<std::string> host_names)
-      : address_(std::move(address)),
+  // Serves from now on.
+  Http(UniqueFd listening, const std::string& address, std::vector<StaticResource> resources,
+       SnapshotBroadcaster& broadcaster, const PageLimits& limits, std::vector<std::string> host_names)
+      : listening_(std::move(listening)),
+        address_(address),
         host_names_(std::move(host_names)),
         broadcaster_(broadcaster),
         limits_(limits),
-        connections_(limits.connections) {
+        connections_(limits.connections, [this](Connections::Connection& client) { serve(client); }) {
     host_names_.emplace_back("localhost");
     if (!is_loopback(address_)) std::ranges::copy(machine_names(), std::back_inserter(host_names_));
     for (std::string& name : host_names_) name = in_lower_case(std::move(name));
     for (StaticResource& resource : resources) {
-      resources_.emplace(std::move(resource.path),
-                         Resource{std::move(resource.content_type),
-                                  std::make_shared<const std::string>(std::move(resource.body))});
+      resources_.emplace(std::string(resource.path), std::move(resource));
     }
-    new_task_queue = [] { return new InlineTaskQueue; };  // httplib deletes it
-    // httplib's default, SO_REUSEPORT, would share the port with another view instead of reporting that it is
-    // taken.
-    set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-      ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &kSendBufferBytes,
-                   sizeof kSendBufferBytes);  // inherited by connections
-    });
-    set_tcp_nodelay(true);
-    set_default_headers({
-        {"Cache-Control", "no-store"},
-        {"X-Content-Type-Options", "nosniff"},
-        {"Referrer-Policy", "no-referrer"},
-        {"Cross-Origin-Resource-Policy", "same-origin"},
-        {"Content-Security-Policy",
-         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
-         "img-src data:; "
-         "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-    });
-    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      respond(request, response);
-      return HandlerResponse::Handled;
-    });
-    set_exception_handler(
-        [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-          set_text(response, 500, "The request could not be processed.");
-        });
+    thread_ = std::jthread([this](const std::stop_token& stop) { accept_connections(stop); });
   }
-
-  // Returns the port; negative: failed, errno has the reason.
-  int bind(int port) {
-    errno = 0;
-    const int bound = port == 0 ? bind_to_any_port(address_) : bind_to_port(address_, port) ? port : -1;
-    // httplib's backlog is 5; a client beyond it would retry only after a second.
-    if (bound >= 0) ::listen(svr_sock_, limits_.connections);
-    return bound;
-  }
-
-  void start() {
-    serving_ = true;
-    threads_ = std::make_unique<httplib::ThreadPool>(static_cast<std::size_t>(limits_.connections));
-    thread_ = std::thread([this] {
-      listen_after_bind();
-      serving_ = false;
-    });
-    while (serving_ && !is_running()) std::this_thread::yield();  // a stop() before that has no effect
-  }
-  bool serving() const { return serving_; }
-
-  void end() {
+  ~Http() {
+    thread_.request_stop();
+    ::shutdown(listening_.value(), SHUT_RDWR);  // wakes the thread
     connections_.stop_all();
     broadcaster_.close();
-    stop();
     thread_.join();
-    threads_->shutdown();
   }
+
+  bool serving() const { return serving_; }
 
  private:
-  struct Resource {
-    std::string content_type;
-    std::shared_ptr<const std::string> body;
-  };
+  using Seconds = std::chrono::duration<double>;
+  using Connection = Connections::Connection;
+  using Phase = Connections::Phase;
 
-  bool process_and_close_socket(socket_t socket) override {
-    Connections::Connection& connection = connections_.add(socket);
-    threads_->enqueue([this, &connection] { serve(connection); });
-    return true;
+  void accept_connections(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      UniqueFd client(::accept4(listening_.value(), nullptr, nullptr, SOCK_CLOEXEC));
+      if (client.valid()) {
+        try {
+          connections_.add(std::move(client));
+        } catch (const std::exception&) {
+          // Without a thread or memory for it, this client is dropped; others may end and make room.
+        }
+      } else if (errno == EMFILE) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until a connection ends
+      } else if (errno != EINTR && errno != ECONNABORTED) {
+        break;
+      }
+    }
+    serving_ = false;
   }
 
-  void serve(Connections::Connection& connection) {
-    current_connection = &connection;
+  void serve(Connection& client) {
     RequestStream stream(
-        connection.socket,
+        client.socket.value(),
         {limits_.max_header_bytes, Seconds(limits_.header_timeout), Seconds(limits_.write_timeout)},
-        connection.stopping);
-    const RequestStream::HeaderResult header = stream.read_header();
-    if (connections_.set_phase(connection, Connections::Phase::kResponse)) respond(stream, header);
-    connections_.set_phase(connection, Connections::Phase::kResponse);  // may be evicted again after a stream
+        client.stopping);
+    try {
+      respond(client, stream);
+    } catch (const std::exception&) {
+      if (!stream.has_written()) stream.write(failure_);
+    }
+    connections_.set_phase(client, Phase::kResponse);  // may be evicted again after a stream
     stream.finish();
-    connections_.close(connection);
   }
 
-  void respond(RequestStream& stream, RequestStream::HeaderResult header) {
+  void respond(Connection& client, RequestStream& stream) {
+    const RequestStream::HeaderResult header = stream.read_header();
+    if (!connections_.set_phase(client, Phase::kResponse)) return;
     switch (header) {
       case RequestStream::HeaderResult::kComplete: {
-        bool closed = false;
-        // Resources are sent completely and uncompressed: ranges and compression only cost time.
-        process_request(stream, true, closed, [](httplib::Request& request) {
-          request.ranges.clear();
-          request.headers.erase("Accept-Encoding");
-        });
+        http::request_parser<http::empty_body> parser;
+        parser.header_limit(UINT32_MAX);  // limited already
+        boost::system::error_code error;
+        parser.put(boost::asio::buffer(stream.header()), error);
+        if (parser.is_header_done()) return respond(client, stream, parser.get());
+        stream.write(text_response("400 Bad Request", "This is no complete HTTP/1.1 request."));
         break;
       }
       case RequestStream::HeaderResult::kTooLarge:
-        stream.write(raw_response(
+        stream.write(text_response(
             "431 Request Header Fields Too Large",
             "The header of a request is limited to " + std::to_string(limits_.max_header_bytes) + " bytes."));
         break;
       case RequestStream::HeaderResult::kTooSlow:
-        stream.write(raw_response("408 Request Timeout", "The request did not arrive in time."));
+        stream.write(text_response("408 Request Timeout", "The request did not arrive in time."));
         break;
       case RequestStream::HeaderResult::kEmpty:
         break;
     }
   }
 
-  bool is_host_allowed(const httplib::Request& request) const {
-    if (request.get_header_value_count("Host") != 1) return false;
-    const std::string value = request.get_header_value("Host");
+  bool is_host_allowed(const Request& request) const {
+    if (request.count(http::field::host) != 1) return false;
+    const std::string value(request[http::field::host]);
     const std::string_view host = without_port(value);
     if (std::ranges::find(host_names_, in_lower_case(std::string(host))) != host_names_.end()) return true;
     // An address is no name that someone else could have pointed here; this machine may have any, also that
@@ -315,86 +333,88 @@ class PageServer::Http : public httplib::Server {
     return !address.empty() && (!is_loopback(address_) || is_loopback(address));
   }
 
-  void respond(const httplib::Request& request, httplib::Response& response) {
+  void respond(Connection& client, RequestStream& stream, const Request& request) {
     if (!is_host_allowed(request)) {
-      set_text(response, 403,
-               "The Host of this request is no name of this view. Open http://" + url_host(address_) +
-                   " with the port, or start buoyancy-view with --host and the name.");
-      return;
+      return refuse(stream, request, "403 Forbidden",
+                    "The Host of this request is no name of this view. Open http://" + url_host(address_) +
+                        " with the port, or start buoyancy-view with --host and the name.");
     }
-    if (request.method != "GET") {
-      response.set_header("Allow", "GET");
-      set_text(response, 405, "Only GET is supported.");
-      return;
+    if (request.method() != http::verb::get) {
+      return refuse(stream, request, "405 Method Not Allowed", "Only GET is supported.", "Allow: GET\r\n");
     }
-    if (request.path == "/events") {
-      stream_events(response);
-      return;
-    }
-    const auto found = resources_.find(request.path);
-    if (found == resources_.end()) {
-      set_text(response, 404, "Not found; the page is at /.");
-      return;
-    }
-    const Resource& resource = found->second;
-    response.status = 200;
-    response.set_content_provider(
-        resource.body->size(), resource.content_type,
-        [body = resource.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-          return sink.write(body->data() + offset, std::min(length, kMaxChunkBytes));
-        });
+    const std::string target(request.target());
+    const std::string path = target.substr(0, target.find('?'));
+    if (path == "/events") return stream_events(client, stream, request);
+    const auto found = resources_.find(path);
+    if (found == resources_.end())
+      return refuse(stream, request, "404 Not Found", "Not found; the page is at /.");
+    const StaticResource& resource = found->second;
+    const std::string_view body = resource.body;
+    bool reads =
+        stream.write(head("200 OK", "Content-Type: " + resource.content_type +
+                                        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n"));
+    for (std::size_t sent = 0; reads && sent < body.size(); sent += kMaxChunkBytes)
+      reads = stream.write(body.substr(sent, kMaxChunkBytes));
   }
 
-  void stream_events(httplib::Response& response) {
-    auto listener = std::make_shared<SnapshotBroadcaster::Listener>(broadcaster_, limits_.streams);
-    if (!listener->admitted()) {
-      response.set_header("Retry-After", "5");
-      set_text(response, 503,
-               std::to_string(limits_.streams) + " pages are already connected to this view; close one.");
-      return;
-    }
-    if (!connections_.set_phase(*current_connection, Connections::Phase::kStream)) return;
-    response.status = 200;
-    response.set_chunked_content_provider(
-        "text/event-stream", [listener, first = true, sea = SnapshotBroadcaster::Text()](
-                                 std::size_t /*offset*/, httplib::DataSink& sink) mutable {
-          const SnapshotBroadcaster::Published published = listener->next();
-          if (published.number == 0) {
-            sink.done();
-            return true;
-          }
-          std::string events;
-          if (std::exchange(first, false)) {
-            events = "retry: 1000\nevent: history\ndata: " + *published.history + "\n\n";
-          }
-          if (published.sea && published.sea != sea) {
-            sea = published.sea;
-            events += "event: sea\ndata: " + *sea + "\n\n";
-          }
-          events += "data: " + *published.snapshot + "\n\n";
-          return sink.write(events.data(), events.size());
-        });
+  // A response to HEAD has no body.
+  static void refuse(RequestStream& stream, const Request& request, const std::string& status,
+                     const std::string& text, const std::string& headers = "") {
+    const std::string response = text_response(status, text, headers);
+    const bool head_only = request.method() == http::verb::head;
+    stream.write(std::string_view(response).substr(0, response.size() - (head_only ? text.size() + 1 : 0)));
   }
 
-  using Seconds = std::chrono::duration<double>;
+  void stream_events(Connection& client, RequestStream& stream, const Request& request) {
+    SnapshotBroadcaster::Listener listener(broadcaster_, limits_.streams);
+    if (!listener.admitted()) {
+      return refuse(stream, request, "503 Service Unavailable",
+                    std::to_string(limits_.streams) + " pages are already connected to this view; close one.",
+                    "Retry-After: 5\r\n");
+    }
+    if (!connections_.set_phase(client, Phase::kStream)) return;
+    const bool chunked = request.version() >= 11;  // without chunks, a stream ends with its connection
+    bool reads = stream.write(head("200 OK", std::string("Content-Type: text/event-stream\r\n") +
+                                                 (chunked ? "Transfer-Encoding: chunked\r\n" : "")));
+    bool first = true;
+    SnapshotBroadcaster::Text sea;
+    while (reads) {
+      const SnapshotBroadcaster::Published published = listener.next();
+      if (published.number == 0) {
+        if (chunked) stream.write(boost::beast::buffers_to_string(http::make_chunk_last()));
+        return;
+      }
+      std::string events;
+      if (std::exchange(first, false))
+        events = "retry: 1000\nevent: history\ndata: " + *published.history + "\n\n";
+      if (published.sea && published.sea != sea) {
+        sea = published.sea;
+        events += "event: sea\ndata: " + *sea + "\n\n";
+      }
+      events += "data: " + *published.snapshot + "\n\n";
+      if (chunked) events = boost::beast::buffers_to_string(http::make_chunk(boost::asio::buffer(events)));
+      reads = stream.write(events);
+    }
+  }
 
-  std::string address_;
+  const UniqueFd listening_;
+  // Made in advance: there may be no memory for it when it is needed.
+  const std::string failure_ =
+      text_response("500 Internal Server Error", "The request could not be processed.");
+  const std::string address_;
   std::vector<std::string> host_names_;  // in lower case
   SnapshotBroadcaster& broadcaster_;
-  PageLimits limits_;
-  std::unordered_map<std::string, Resource> resources_;
+  const PageLimits limits_;
+  std::unordered_map<std::string, StaticResource> resources_;
   Connections connections_;
-  std::atomic<bool> serving_{false};
-  std::unique_ptr<httplib::ThreadPool> threads_;
-  std::thread thread_;
+  std::atomic<bool> serving_{true};
+  std::jthread thread_;
 };
 
 PageServer::PageServer(std::unique_ptr<Http> http, std::string url)
     : http_(std::move(http)), url_(std::move(url)) {}
 
-PageServer::~PageServer() {
-  http_->end();
-}
+PageServer::~PageServer() = default;
 
 Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& address, int port,
                                                         std::vector<StaticResource> resources,
@@ -403,18 +423,17 @@ Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& addre
                                                         std::vector<std::string> host_names) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
-  auto http =
-      std::make_unique<Http>(address, std::move(resources), broadcaster, limits, std::move(host_names));
-  const int bound = http->bind(port);
-  if (bound < 0) {
-    const std::string reason = errno != 0 ? std::generic_category().message(errno) : "it cannot be bound";
+  UniqueFd listening = listen_on(address, port, limits.connections);
+  if (!listening.valid()) {
     return make_error(
-        {"port " + std::to_string(port) + " of " + address, reason, "a free port of this machine",
+        {"port " + std::to_string(port) + " of " + address, std::generic_category().message(errno),
+         "a free port of this machine",
          "another program, such as another view, uses it, or the address is not one of this machine",
          "Choose another --port, or 0 for a free one"});
   }
-  http->start();
-  const std::string url = "http://" + url_host(address) + ":" + std::to_string(bound) + "/";
+  const std::string url = "http://" + url_host(address) + ":" + std::to_string(port) + "/";
+  auto http = std::make_unique<Http>(std::move(listening), address, std::move(resources), broadcaster, limits,
+                                     std::move(host_names));
   return std::unique_ptr<PageServer>(new PageServer(std::move(http), url));
 }
 

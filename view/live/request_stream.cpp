@@ -64,16 +64,6 @@ void RequestStream::finish() {
   }
 }
 
-bool RequestStream::is_writable() const {
-  return wait_for(POLLOUT, deadline_after(limits_.write_timeout));
-}
-
-ssize_t RequestStream::read(char* to, std::size_t size) {
-  const std::size_t copied = header_.copy(to, size, read_);
-  read_ += copied;
-  return static_cast<ssize_t>(copied);
-}
-
 bool RequestStream::peer_is_reading() {
   int pending = 0;
   if (::ioctl(socket_, SIOCOUTQ, &pending) != 0) return false;
@@ -86,20 +76,19 @@ bool RequestStream::peer_is_reading() {
   return now - acknowledged_at_ <= limits_.write_timeout;
 }
 
-ssize_t RequestStream::write(const char* from, std::size_t size) {
-  if (!peer_is_reading()) return -1;
+bool RequestStream::write(std::string_view bytes) {
+  if (!peer_is_reading()) return false;
   const auto deadline = deadline_after(limits_.write_timeout);
-  std::size_t sent = 0;
-  while (sent < size) {
-    const ssize_t part = ::send(socket_, from + sent, size - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (part > 0) {
-      sent += static_cast<std::size_t>(part);
-      written_ += static_cast<std::size_t>(part);
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent > 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+      written_ += static_cast<std::size_t>(sent);
     } else if (!would_block() || !wait_for(POLLOUT, deadline)) {
-      return -1;
+      return false;
     }
   }
-  return static_cast<ssize_t>(size);
+  return true;
 }
 
 }  // namespace buoyancy::view

@@ -1,19 +1,17 @@
-// One HTTP request and its response on a socket, with limits that httplib's own stream does not have. The
-// header of a request is read completely, within limits, before httplib parses it; what follows it is never
-// read. The connection is dropped if the peer does not read what was written in time, even while the kernel
-// still has room to buffer it.
+// One HTTP request and its response on a socket. The header of a request is read completely, within limits,
+// before it is parsed; what follows it is never read. The connection is dropped if the peer does not read
+// what was written in time, even while the kernel still has room to buffer it.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string>
-
-#include <httplib.h>
+#include <string_view>
 
 namespace buoyancy::view {
 
-class RequestStream : public httplib::Stream {
+class RequestStream {
  public:
   struct Limits {
     std::size_t max_header_bytes;
@@ -23,22 +21,17 @@ class RequestStream : public httplib::Stream {
   enum class HeaderResult { kComplete, kEmpty, kTooLarge, kTooSlow };
 
   // The caller keeps the socket. stopping: if set, no wait continues; must outlive the stream.
-  RequestStream(socket_t socket, const Limits& limits, const std::atomic<bool>& stopping)
+  RequestStream(int socket, const Limits& limits, const std::atomic<bool>& stopping)
       : socket_(socket), limits_(limits), stopping_(stopping) {}
 
-  // Also returns kComplete if the peer closes in the middle of the header; httplib then rejects it.
+  // Also returns kComplete if the peer closes in the middle of the header.
   HeaderResult read_header();
+  const std::string& header() const { return header_; }  // with what the peer has sent after it so far
+  // False: the peer has gone or does not read; the response cannot be continued.
+  bool write(std::string_view bytes);
+  bool has_written() const { return written_ > 0; }
   // Ends the response and lets the peer read the rest of it before the caller closes the socket.
   void finish();
-
-  bool is_readable() const override { return read_ < header_.size(); }
-  bool is_writable() const override;
-  ssize_t read(char* to, std::size_t size) override;           // 0 after the header
-  ssize_t write(const char* from, std::size_t size) override;  // size, or -1
-  using Stream::write;
-  void get_remote_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  void get_local_ip_and_port(std::string& /*ip*/, int& /*port*/) const override {}
-  socket_t socket() const override { return socket_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -50,11 +43,10 @@ class RequestStream : public httplib::Stream {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
   }
 
-  socket_t socket_;
+  int socket_;
   Limits limits_;
   const std::atomic<bool>& stopping_;
   std::string header_;
-  std::size_t read_ = 0;
   std::size_t written_ = 0;
   std::size_t acknowledged_ = 0;  // bytes of written_, when the peer last acknowledged some
   Clock::time_point acknowledged_at_;
