@@ -11,7 +11,11 @@
 namespace buoyancy::python {
 namespace {
 
-bool numpy_found = false;
+// Of numpy, once it is found: its class of arrays, and its numbers of the types that are not copied. The
+// class stays: numpy is never unloaded.
+PyTypeObject* numpy_array = nullptr;
+int numpy_float64 = 0;
+int numpy_int64 = 0;
 
 template <typename Number>
 constexpr const char* expected_numbers() {
@@ -118,13 +122,15 @@ bool is_sequence(PyObject* object) {
 }  // namespace
 
 bool has_numpy() {
-  return numpy_found;
+  return numpy_array != nullptr;
 }
 
 void look_for_numpy() {
   try {
-    py::detail::npy_api::get();
-    numpy_found = true;
+    numpy_float64 = py::dtype::of<double>().num();
+    numpy_int64 = py::dtype::of<std::int64_t>().num();
+    const py::object array = py::module_::import("numpy").attr("ndarray");
+    numpy_array = reinterpret_cast<PyTypeObject*>(array.inc_ref().ptr());
   } catch (py::error_already_set& error) {
     // A numpy that is broken counts as missing too: the module works without it.
     error.restore();
@@ -159,7 +165,7 @@ double to_double(PyObject* object, const char* name) {
 template <typename Number>
 NumberArray<Number>::NumberArray(PyObject* object, const char* name) {
   if (object == nullptr) return;
-  if (numpy_found && Py_TYPE(object) == py::detail::npy_api::get().PyArray_Type_) {
+  if (Py_TYPE(object) == numpy_array) {
     refer_to_numpy(object);
     if (data_ != nullptr) return;
   }
@@ -182,7 +188,7 @@ NumberArray<Number>::NumberArray(PyObject* object, const char* name) {
     return;
   }
   // Tensors and tables of other libraries convert themselves.
-  if (numpy_found && PyObject_HasAttrString(object, "__array__") != 0) {
+  if (has_numpy() && PyObject_HasAttrString(object, "__array__") != 0) {
     const py::object array = py::module_::import("numpy").attr("asarray")(py::handle(object));
     if (PyObject_CheckBuffer(array.ptr()) != 0) {
       refer_to_buffer(array.ptr(), name);
@@ -195,24 +201,19 @@ NumberArray<Number>::NumberArray(PyObject* object, const char* name) {
 // The buffer protocol takes half a microsecond of numpy, which is half of what a call costs.
 template <typename Number>
 void NumberArray<Number>::refer_to_numpy(PyObject* object) {
-  namespace numpy = py::detail;
-  const auto* const array = numpy::array_proxy(object);
-  constexpr int kUsable = numpy::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | numpy::npy_api::NPY_ARRAY_ALIGNED_;
-  constexpr int kType =
-      std::is_same_v<Number, double> ? numpy::npy_api::NPY_DOUBLE_ : numpy::npy_api::NPY_INT64_;
-  const auto* const type = numpy::array_descriptor_proxy(array->descr);
-  const bool own_order = type->byteorder == '=' || type->byteorder == '|';
-  if ((array->flags & kUsable) != kUsable || type->type_num != kType || !own_order ||
-      array->nd > kMaxDimensions) {
+  const auto array = py::reinterpret_borrow<py::array>(object);
+  const py::dtype type = array.dtype();
+  const bool own_type = type.num() == (std::is_same_v<Number, double> ? numpy_float64 : numpy_int64);
+  const bool own_order = type.byteorder() == '=' || type.byteorder() == '|';
+  const bool aligned = reinterpret_cast<std::uintptr_t>(array.data()) % alignof(Number) == 0;
+  if ((array.flags() & py::array::c_style) == 0 || !own_type || !own_order || !aligned ||
+      array.ndim() > kMaxDimensions) {
     return;
   }
-  dimensions_ = array->nd;
-  size_ = 1;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(dimensions_); ++i) {
-    shape_[i] = array->dimensions[i];
-    size_ *= static_cast<std::size_t>(shape_[i]);
-  }
-  data_ = reinterpret_cast<const Number*>(array->data);
+  dimensions_ = static_cast<int>(array.ndim());
+  size_ = static_cast<std::size_t>(array.size());
+  std::copy_n(array.shape(), dimensions_, shape_.begin());
+  data_ = static_cast<const Number*>(array.data());
   keep_from_resizing(object);
 }
 
