@@ -107,6 +107,14 @@ std::int64_t count_components(const MeshReport& report, bool ComponentReport::*f
                        [flag](const ComponentReport& component) { return component.*flag; });
 }
 
+void add_repair(const RepairReport& repair, AlignedLines& lines) {
+  std::string_view label = "repair";
+  for (const std::string& line : to_lines(repair)) {
+    lines.add(label, line);
+    label = "";
+  }
+}
+
 void add_components(const MeshReport& report, AlignedLines& lines) {
   if (report.components.size() < 2) return;
   const std::int64_t cavities = count_components(report, &ComponentReport::cavity);
@@ -148,6 +156,7 @@ std::string to_text(const MeshReport& report) {
   lines.add("vertices", vertices_text(report));
   const std::string faces = faces_text(report);
   if (!faces.empty()) lines.add("faces", faces);
+  add_repair(report.repair, lines);
   if (report.triangles == 0) return report.name + "\n" + lines.text();
   lines.add("edges", edges_text(report));
   lines.add("box", "from " + format_vector(report.box.min_B) + " to " + format_vector(report.box.max_B) +

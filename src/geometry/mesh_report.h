@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/mesh_import.h"
+#include "geometry/repair_report.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/welding.h"
 
@@ -28,6 +29,7 @@ struct HoleReport {
   BoundingBox box{Vec3::Zero(), Vec3::Zero()};
 };
 
+// Describes the mesh after its repair, also if it is refused.
 struct MeshReport {
   std::string name;  // file or shape
   MeshSource source;
@@ -37,6 +39,7 @@ struct MeshReport {
   std::int64_t vertices_welded = 0;
   WeldKind weld = WeldKind::kExact;
   double weld_largest_move = 0.0;  // largest displacement of a vertex by welding [m]
+  RepairReport repair;             // empty if the mesh was left as it is
 
   BoundingBox box{Vec3::Zero(), Vec3::Zero()};
   double diagonal = 0.0;  // L [m]

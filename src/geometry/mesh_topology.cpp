@@ -4,71 +4,22 @@
 #include <cassert>
 #include <limits>
 #include <map>
-#include <tuple>
+#include <span>
 
 #include "geometry/disjoint_sets.h"
 
 namespace buoyancy {
 namespace {
 
-// The use of an edge by one face; stored under the edge's lower vertex.
-struct EdgeUse {
-  std::int32_t high;
-  std::int32_t third;  // the face's vertex that is not on the edge
-  std::int32_t face;
-  bool forward;
-
-  bool operator<(const EdgeUse& other) const {
-    return std::tie(high, third, face) < std::tie(other.high, other.third, other.face);
-  }
-};
-
-// All edge uses, grouped by lower vertex (counting sort), each group sorted.
-struct EdgeUses {
-  std::vector<EdgeUse> uses;
-  std::vector<std::size_t> first;  // start of each lower vertex's group, and the end of the last
-};
-
-EdgeUses collect_edge_uses(const TriangleMesh& mesh) {
-  EdgeUses edges;
-  edges.first.assign(mesh.vertex_count() + 1, 0);
-  for (const Triangle& face : mesh.triangles) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int32_t low = std::min(face[corner], face[(corner + 1) % 3]);
-      ++edges.first[static_cast<std::size_t>(low) + 1];
-    }
-  }
-  for (std::size_t v = 1; v < edges.first.size(); ++v) edges.first[v] += edges.first[v - 1];
-
-  edges.uses.resize(3 * mesh.triangles.size());
-  std::vector<std::size_t> next(edges.first.begin(), edges.first.end() - 1);
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    const Triangle& face = mesh.triangles[f];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::int32_t from = face[corner];
-      const std::int32_t to = face[(corner + 1) % 3];
-      edges.uses[next[static_cast<std::size_t>(std::min(from, to))]++] = {
-          std::max(from, to), face[(corner + 2) % 3], static_cast<std::int32_t>(f), from < to};
-    }
-  }
-  for (std::size_t v = 0; v + 1 < edges.first.size(); ++v) {
-    std::sort(edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v]),
-              edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v + 1]));
-  }
-  return edges;
-}
-
-void classify_edge(std::int32_t low, const EdgeUse* begin, const EdgeUse* end, MeshTopology& topology) {
-  const auto uses = end - begin;
-  const auto forward = std::count_if(begin, end, [](const EdgeUse& use) { return use.forward; });
-  const std::int32_t high = begin->high;
-  if (uses == 1) {
+void classify_edge(std::int32_t low, std::span<const EdgeUse> uses, MeshTopology& topology) {
+  const std::int32_t high = uses.front().high;
+  if (uses.size() == 1) {
     ++topology.counts.boundary;
-    topology.boundary.push_back(begin->forward ? Edge{low, high} : Edge{high, low});
-    topology.boundary_faces.push_back(begin->face);
-  } else if (2 * forward == uses) {
-    ++(uses == 2 ? topology.counts.manifold : topology.counts.balanced);
-  } else if (uses == 2) {
+    topology.boundary.push_back(uses.front().forward ? Edge{low, high} : Edge{high, low});
+    topology.boundary_faces.push_back(uses.front().face);
+  } else if (net_uses(uses) == 0) {
+    ++(uses.size() == 2 ? topology.counts.manifold : topology.counts.balanced);
+  } else if (uses.size() == 2) {
     ++topology.counts.misoriented;
     topology.misoriented.push_back({low, high});
   } else {
@@ -78,10 +29,10 @@ void classify_edge(std::int32_t low, const EdgeUse* begin, const EdgeUse* end, M
 }
 
 // Compares faces only at the edge between their two lowest vertices, so that each face is counted once.
-std::int64_t count_duplicates(const EdgeUse* begin, const EdgeUse* end) {
+std::int64_t count_duplicates(std::span<const EdgeUse> uses) {
   std::int64_t duplicates = 0;
-  for (const EdgeUse* use = begin + 1; use < end; ++use) {
-    if (use->third > use->high && use->third == (use - 1)->third) ++duplicates;
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].third > uses[i].high && uses[i].third == uses[i - 1].third) ++duplicates;
   }
   return duplicates;
 }
@@ -93,16 +44,11 @@ MeshTopology mesh_topology(const TriangleMesh& mesh) {
   MeshTopology topology;
   const EdgeUses edges = collect_edge_uses(mesh);
   DisjointSets connected(mesh.triangles.size());
-  for (std::size_t v = 0; v + 1 < edges.first.size(); ++v) {
-    const EdgeUse* const last = edges.uses.data() + edges.first[v + 1];
-    for (const EdgeUse* begin = edges.uses.data() + edges.first[v]; begin != last;) {
-      const EdgeUse* end = begin + 1;
-      for (; end != last && end->high == begin->high; ++end) connected.unite(begin->face, end->face);
-      classify_edge(static_cast<std::int32_t>(v), begin, end, topology);
-      topology.duplicate_faces += count_duplicates(begin, end);
-      begin = end;
-    }
-  }
+  edges.for_each_edge([&](std::int32_t low, std::span<const EdgeUse> uses) {
+    for (const EdgeUse& use : uses.subspan(1)) connected.unite(uses.front().face, use.face);
+    classify_edge(low, uses, topology);
+    topology.duplicate_faces += count_duplicates(uses);
+  });
 
   topology.component_of_face.resize(mesh.triangles.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

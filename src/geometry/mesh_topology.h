@@ -11,15 +11,13 @@
 // Complexity: O(n) for n faces; O(n log n) if many faces share one vertex.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "geometry/edge_uses.h"
 #include "geometry/triangle_mesh.h"
 
 namespace buoyancy {
-
-using Edge = std::array<std::int32_t, 2>;  // vertex indices
 
 struct EdgeCounts {
   std::int64_t manifold = 0;
@@ -28,7 +26,8 @@ struct EdgeCounts {
   std::int64_t balanced = 0;
   std::int64_t non_manifold = 0;
 
-  bool all_matched() const { return boundary == 0 && misoriented == 0 && non_manifold == 0; }
+  std::int64_t unmatched() const { return boundary + misoriented + non_manifold; }
+  bool all_matched() const { return unmatched() == 0; }
 };
 
 struct MeshTopology {

@@ -7,6 +7,7 @@
 #include "geometry/exact_predicates.h"
 #include "geometry/mesh_checks.h"
 #include "geometry/mesh_orientation.h"
+#include "geometry/mesh_repair.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/pairwise_sum.h"
 #include "geometry/self_intersection.h"
@@ -28,11 +29,18 @@ struct SurfaceTotals {
   }
 };
 
+void report_repair(RepairReport repair, MeshReport& report) {
+  for (const RepairStep& step : repair.steps) {
+    if (step.kind != RepairKind::kWeld) continue;
+    report.weld = WeldKind::kTolerance;
+    report.weld_largest_move = std::max(report.weld_largest_move, step.max_move);
+  }
+  report.repair = std::move(repair);
+}
+
 void report_weld(const WeldedMesh& welded, MeshReport& report) {
   report.triangles = static_cast<std::int64_t>(welded.mesh.triangles.size());
   report.vertices_welded = static_cast<std::int64_t>(welded.mesh.vertex_count());
-  report.weld = welded.kind;
-  report.weld_largest_move = welded.max_move;
   report.dropped_faces = welded.faces_dropped;
 }
 
@@ -102,10 +110,14 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   if (validation.refusal) return validation;
 
   WeldedMesh welded = weld(imported.mesh);
-  report_weld(welded, report);
   TriangleMesh& mesh = welded.mesh;
+  MeshTopology topology = mesh_topology(mesh);
+  if (options.repair == RepairPolicy::kAutomatic && needs_repair(topology)) {
+    report_repair(repair_mesh(mesh), report);
+    topology = mesh_topology(mesh);
+  }
+  report_weld(welded, report);
   report_surface(mesh, report);
-  const MeshTopology topology = mesh_topology(mesh);
   const std::vector<Hole> holes = find_holes(mesh, topology.boundary);
   report_topology(topology, holes, report);
   std::vector<ComponentReport> components = describe_components(mesh, topology);

@@ -1,5 +1,8 @@
 // Decides whether a mesh is usable for hydrostatic queries; if not, reports why.
 //
+// Faults that can be repaired without moving the surface are repaired first (mesh_repair.h), unless the
+// caller switches that off. A mesh without faults keeps its triangles, in their order.
+//
 // Rule: every volume and first-moment integral over the wetted part is exact if each directed edge is matched
 // by an opposite one. "Closed" meshes (each edge used once in each direction) and "balanced" meshes (each
 // edge used equally often in both directions) satisfy it and are accepted. A mesh, or a component outside all
@@ -18,10 +21,12 @@
 namespace buoyancy {
 
 enum class OpenPolicy { kRefuse, kDryBoundary };
+enum class RepairPolicy { kAutomatic, kNone };
 
 struct ValidationOptions {
   OpenPolicy open = OpenPolicy::kRefuse;
   bool count_intersecting_pairs = false;  // O(n log n), several times the rest of the validation
+  RepairPolicy repair = RepairPolicy::kAutomatic;
 };
 
 // A mesh that is usable for hydrostatic queries: welded, finite, oriented, and closed or balanced except for
@@ -37,7 +42,7 @@ struct MeshValidation {
   std::optional<Error> refusal;       // set if rejected
 };
 
-// Welds, checks and orients the mesh. name: identifies it in the report and the error.
+// Welds, repairs, checks and orients the mesh. name: identifies it in the report and the error.
 MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& name,
                              const ValidationOptions& options = {});
 

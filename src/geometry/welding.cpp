@@ -13,6 +13,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/swept_volume.h"
 
 namespace buoyancy {
 namespace {
@@ -23,32 +24,6 @@ constexpr double kMaxMove = 2.0;
 
 bool uses_vertex_twice(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-}
-
-// Returns the mesh with each vertex replaced by its representative, without faces that then use a vertex
-// twice and without unused vertices.
-TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& representative) {
-  constexpr std::int32_t kUnused = -1;
-  constexpr std::int32_t kUsed = 0;
-  std::vector<std::int32_t> new_index(mesh.vertex_count(), kUnused);
-  TriangleMesh merged;
-  merged.triangles.reserve(mesh.triangles.size());
-  for (const Triangle& stored : mesh.triangles) {
-    Triangle face{};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      face[corner] = representative[static_cast<std::size_t>(stored[corner])];
-    }
-    if (uses_vertex_twice(face)) continue;
-    for (const std::int32_t vertex : face) new_index[static_cast<std::size_t>(vertex)] = kUsed;
-    merged.triangles.push_back(face);
-  }
-  for (std::size_t v = 0; v < new_index.size(); ++v) {
-    if (new_index[v] == kUsed) new_index[v] = merged.add_vertex(mesh.vertex(static_cast<std::int32_t>(v)));
-  }
-  for (Triangle& face : merged.triangles) {
-    for (std::int32_t& vertex : face) vertex = new_index[static_cast<std::size_t>(vertex)];
-  }
-  return merged;
 }
 
 // Returns the bits of the coordinates; adding 0 turns -0 into 0.
@@ -170,43 +145,94 @@ std::vector<std::int32_t> vertices_of_unmatched_edges(const MeshTopology& topolo
   return vertices;
 }
 
-// Replaces the exact weld by a tolerance weld if that leaves no unmatched edge.
-void close_cracks(WeldedMesh& welded) {
-  const MeshTopology topology = mesh_topology(welded.mesh);
-  if (topology.counts.all_matched()) return;
-  const double tolerance = kWeldTolerance * bounding_box(welded.mesh).diagonal();
-  if (!std::isnormal(tolerance)) return;
-
-  std::optional<DisjointSets> clusters =
-      unite_close_vertices(welded.mesh, vertices_of_unmatched_edges(topology), tolerance);
-  if (!clusters) return;
-  std::vector<std::int32_t> representative(welded.mesh.vertex_count());
-  double max_move = 0.0;
+// Returns the vertex with which each vertex is merged.
+std::vector<std::int32_t> representatives(const TriangleMesh& mesh, DisjointSets& clusters,
+                                          double tolerance) {
+  std::vector<std::int32_t> representative(mesh.vertex_count());
+  std::vector<bool> too_long(mesh.vertex_count(), false);
   for (std::size_t v = 0; v < representative.size(); ++v) {
     const auto vertex = static_cast<std::int32_t>(v);
-    representative[v] = clusters->representative(vertex);
-    const double move = (welded.mesh.vertex(vertex) - welded.mesh.vertex(representative[v])).norm();
-    max_move = std::max(max_move, move);
+    representative[v] = clusters.representative(vertex);
+    const double move = (mesh.vertex(vertex) - mesh.vertex(representative[v])).norm();
+    if (!(move <= kMaxMove * tolerance)) too_long[static_cast<std::size_t>(representative[v])] = true;
   }
-  if (max_move == 0.0 || max_move > kMaxMove * tolerance) return;
-
-  TriangleMesh closed = merge_vertices(welded.mesh, representative);
-  if (closed.triangles.empty() || !mesh_topology(closed).counts.all_matched()) return;
-  welded.faces_dropped += static_cast<std::int64_t>(welded.mesh.triangles.size() - closed.triangles.size());
-  welded.mesh = std::move(closed);
-  welded.kind = WeldKind::kTolerance;
-  welded.max_move = max_move;
+  for (std::size_t v = 0; v < representative.size(); ++v) {
+    if (too_long[static_cast<std::size_t>(representative[v])])
+      representative[v] = static_cast<std::int32_t>(v);
+  }
+  return representative;
 }
 
 }  // namespace
+
+// Returns the mesh with each vertex replaced by its representative, without faces that then use a vertex
+// twice and without unused vertices.
+TriangleMesh merge_vertices(const TriangleMesh& mesh, const std::vector<std::int32_t>& representative) {
+  constexpr std::int32_t kUnused = -1;
+  constexpr std::int32_t kUsed = 0;
+  std::vector<std::int32_t> new_index(mesh.vertex_count(), kUnused);
+  TriangleMesh merged;
+  merged.triangles.reserve(mesh.triangles.size());
+  for (const Triangle& stored : mesh.triangles) {
+    Triangle face{};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      face[corner] = representative[static_cast<std::size_t>(stored[corner])];
+    }
+    if (uses_vertex_twice(face)) continue;
+    for (const std::int32_t vertex : face) new_index[static_cast<std::size_t>(vertex)] = kUsed;
+    merged.triangles.push_back(face);
+  }
+  for (std::size_t v = 0; v < new_index.size(); ++v) {
+    if (new_index[v] == kUsed) new_index[v] = merged.add_vertex(mesh.vertex(static_cast<std::int32_t>(v)));
+  }
+  for (Triangle& face : merged.triangles) {
+    for (std::int32_t& vertex : face) vertex = new_index[static_cast<std::size_t>(vertex)];
+  }
+  return merged;
+}
 
 WeldedMesh weld(const TriangleMesh& mesh) {
   WeldedMesh welded;
   welded.vertices_stored = static_cast<std::int64_t>(mesh.vertex_count());
   welded.mesh = merge_vertices(mesh, first_at_same_position(mesh));
   welded.faces_dropped = static_cast<std::int64_t>(mesh.triangles.size() - welded.mesh.triangles.size());
-  close_cracks(welded);
   return welded;
+}
+
+void weld_within_tolerance(TriangleMesh& mesh, double tolerance, RepairReport& report) {
+  const MeshTopology topology = mesh_topology(mesh);
+  if (topology.counts.all_matched()) return;
+  std::optional<DisjointSets> clusters =
+      unite_close_vertices(mesh, vertices_of_unmatched_edges(topology), tolerance);
+  if (!clusters) {
+    report.skipped.push_back({RepairKind::kWeld, RepairObstacle::kTooMany, topology.counts.unmatched()});
+    return;
+  }
+  const std::vector<std::int32_t> representative = representatives(mesh, *clusters, tolerance);
+  RepairStep step;
+  step.kind = RepairKind::kWeld;
+  std::vector<double> moves(mesh.vertex_count(), 0.0);
+  for (std::size_t v = 0; v < representative.size(); ++v) {
+    const auto vertex = static_cast<std::int32_t>(v);
+    if (representative[v] == vertex) continue;
+    ++step.count;
+    moves[v] = (mesh.vertex(vertex) - mesh.vertex(representative[v])).norm();
+    step.max_move = std::max(step.max_move, moves[v]);
+  }
+  if (step.count == 0) return;
+
+  TriangleMesh merged = merge_vertices(mesh, representative);
+  if (merged.triangles.empty() || mesh_topology(merged).counts.unmatched() >= topology.counts.unmatched())
+    return;
+  for (const Triangle& face : mesh.triangles) {
+    double move = 0.0;
+    for (const std::int32_t v : face) move = std::max(move, moves[static_cast<std::size_t>(v)]);
+    if (move == 0.0) continue;
+    step.area += area_of_face(mesh, face);
+    report.volume_bound += swept_volume_bound(mesh, face, move);
+  }
+  mesh = std::move(merged);
+  report.steps.push_back(step);
 }
 
 }  // namespace buoyancy

@@ -246,6 +246,32 @@ Json to_json(const ComponentReport& component) {
           {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.flipped}};
 }
 
+Json to_json(const std::optional<EnclosedSolid>& solid) {
+  if (!solid) return nullptr;
+  return {{"volume", solid->volume}, {"centroid", to_json(solid->centroid_B)}};
+}
+
+Json to_json(const RepairReport& repair) {
+  Json steps = Json::array();
+  for (const RepairStep& step : repair.steps) {
+    steps.push_back({{"step", to_string(step.kind)},
+                     {"count", step.count},
+                     {"area", step.area},
+                     {"largest_move", step.max_move},
+                     {"before", to_json(step.before)},
+                     {"after", to_json(step.after)}});
+  }
+  Json skipped = Json::array();
+  for (const SkippedRepair& one : repair.skipped) {
+    skipped.push_back(
+        {{"step", to_string(one.kind)}, {"because", to_string(one.obstacle)}, {"faces", one.faces}});
+  }
+  return {{"steps", std::move(steps)},
+          {"skipped", std::move(skipped)},
+          {"volume_bound", repair.volume_bound},
+          {"cap_bulge", repair.cap_bulge}};
+}
+
 Json to_json(const MeshReport& report) {
   Json components = Json::array();
   for (const ComponentReport& component : report.components) components.push_back(to_json(component));
@@ -260,6 +286,7 @@ Json to_json(const MeshReport& report) {
           {"vertices_welded", report.vertices_welded},
           {"weld", report.weld == WeldKind::kExact ? "exact" : "tolerance"},
           {"weld_largest_move", report.weld_largest_move},
+          {"repair", to_json(report.repair)},
           {"box", to_json(report.box)},
           {"diagonal", report.diagonal},
           {"area", report.area},

@@ -13,7 +13,6 @@ namespace {
 TEST(Welding, MergesEqualVerticesInOrderOfOccurrence) {
   const TriangleMesh cube = cube_mesh();
   const WeldedMesh welded = weld(unwelded(cube));
-  EXPECT_EQ(welded.kind, WeldKind::kExact);
   EXPECT_EQ(welded.vertices_stored, 36);
   ASSERT_EQ(welded.mesh.vertex_count(), 8U);
   ASSERT_EQ(welded.mesh.triangles.size(), 12U);
@@ -76,23 +75,39 @@ TriangleMesh cracked_sphere(double jitter) {
   return soup;
 }
 
-TEST(Welding, ClosesCracksBelowTolerance) {
-  const TriangleMesh soup = cracked_sphere(1e-6);  // the diagonal is 2 sqrt(3)
-  const WeldedMesh welded = weld(soup);
-  EXPECT_EQ(welded.kind, WeldKind::kTolerance);
-  EXPECT_TRUE(mesh_topology(welded.mesh).counts.all_matched());
-  EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count());
-  EXPECT_EQ(welded.mesh.triangles.size(), soup.triangles.size());
-  EXPECT_GT(welded.max_move, 0.0);
-  EXPECT_LE(welded.max_move, 1e-6 * (1.0 + 1e-9));
+// Welds exactly, then within the tolerance; returns the report on the second.
+RepairReport weld_cracks(TriangleMesh& mesh) {
+  mesh = weld(mesh).mesh;
+  RepairReport report;
+  weld_within_tolerance(mesh, 1e-6 * bounding_box(mesh).diagonal(), report);
+  return report;
 }
 
-TEST(Welding, KeepsExactWeldIfToleranceDoesNotCloseMesh) {
-  const TriangleMesh soup = cracked_sphere(1e-6);
-  const WeldedMesh welded = weld(without_face(soup, 17));
-  EXPECT_EQ(welded.kind, WeldKind::kExact);
-  EXPECT_EQ(welded.max_move, 0.0);
-  EXPECT_EQ(weld(cracked_sphere(1e-4)).kind, WeldKind::kExact);
+TEST(Welding, ClosesCracksBelowTolerance) {
+  TriangleMesh sphere = cracked_sphere(1e-6);  // the diagonal is 2 sqrt(3)
+  const std::size_t faces = sphere.triangles.size();
+  const RepairReport report = weld_cracks(sphere);
+  EXPECT_TRUE(mesh_topology(sphere).counts.all_matched());
+  EXPECT_EQ(sphere.vertex_count(), sphere_mesh(10).vertex_count());
+  EXPECT_EQ(sphere.triangles.size(), faces);
+  ASSERT_EQ(report.steps.size(), 1U);
+  EXPECT_EQ(report.steps[0].kind, RepairKind::kWeld);
+  EXPECT_GT(report.steps[0].count, 0);
+  EXPECT_GT(report.steps[0].max_move, 0.0);
+  EXPECT_LE(report.steps[0].max_move, 1e-6 * (1.0 + 1e-9));
+  EXPECT_GT(report.volume_bound, 0.0);
+  EXPECT_LE(report.volume_bound, 4 * 3.15 * 1.01e-6);
+}
+
+TEST(Welding, KeepsToleranceWeldThatLeavesAHole) {
+  TriangleMesh sphere = without_face(cracked_sphere(1e-6), 17);
+  EXPECT_EQ(weld_cracks(sphere).steps.size(), 1U);
+  EXPECT_EQ(mesh_topology(sphere).counts.unmatched(), 3);
+}
+
+TEST(Welding, LeavesWiderCracks) {
+  TriangleMesh sphere = cracked_sphere(1e-4);
+  EXPECT_TRUE(weld_cracks(sphere).empty());
 }
 
 TEST(Welding, MovesOnlyVerticesOfUnmatchedEdges) {
@@ -101,9 +116,9 @@ TEST(Welding, MovesOnlyVerticesOfUnmatchedEdges) {
   for (auto* coordinates : {&tiny.x, &tiny.y, &tiny.z}) {
     for (double& coordinate : *coordinates) coordinate *= 1e-8;
   }
-  const WeldedMesh welded = weld(joined(cracked_sphere(1e-6), tiny));
-  EXPECT_EQ(welded.kind, WeldKind::kTolerance);
-  EXPECT_EQ(welded.mesh.vertex_count(), sphere_mesh(10).vertex_count() + 4);
+  TriangleMesh both = joined(cracked_sphere(1e-6), tiny);
+  EXPECT_EQ(weld_cracks(both).steps.size(), 1U);
+  EXPECT_EQ(both.vertex_count(), sphere_mesh(10).vertex_count() + 4);
 }
 
 TEST(Welding, KeepsChainsOfCloseVertices) {
@@ -118,9 +133,9 @@ TEST(Welding, KeepsChainsOfCloseVertices) {
   }
   for (std::int32_t i = 0; i < kVertices; ++i)
     ring.triangles.push_back({apex, 1 + i, 1 + (i + 1) % kVertices});
-  const WeldedMesh welded = weld(joined(ring, cube_mesh(0.5, Vec3(0, 0, 2))));
-  EXPECT_EQ(welded.kind, WeldKind::kExact);
-  EXPECT_EQ(welded.mesh.vertex_count(), 2001U + 8U);
+  TriangleMesh both = joined(ring, cube_mesh(0.5, Vec3(0, 0, 2)));
+  EXPECT_TRUE(weld_cracks(both).empty());
+  EXPECT_EQ(both.vertex_count(), 2001U + 8U);
 }
 
 }  // namespace

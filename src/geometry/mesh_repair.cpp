@@ -1,0 +1,78 @@
+#include "geometry/mesh_repair.h"
+
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "geometry/edge_insertion.h"
+#include "geometry/mass_properties.h"
+#include "geometry/mesh_orientation.h"
+#include "geometry/welding.h"
+
+namespace buoyancy {
+namespace {
+
+// The exact predicates, and squares and cubes of lengths, are far from overflow and underflow between these.
+constexpr double kSmallestDiagonal = 1e-50;  // [m]
+constexpr double kLargestDiagonal = 1e50;    // [m]
+
+// What the mesh encloses after it is oriented as validation does; nullopt if an edge is not matched.
+std::optional<EnclosedSolid> enclosed_solid(TriangleMesh mesh) {
+  const MeshTopology topology = mesh_topology(mesh);
+  if (!topology.counts.all_matched()) return std::nullopt;
+  std::vector<ComponentReport> components = describe_components(mesh, topology);
+  if (!orient_closed(mesh, topology, components)) return std::nullopt;
+  const MassProperties properties = mass_properties(mesh);
+  return EnclosedSolid{properties.volume, properties.centroid_B};
+}
+
+// Runs steps one after the other and adds to their reports what the mesh encloses.
+class Ladder {
+ public:
+  explicit Ladder(TriangleMesh& mesh) : mesh_(&mesh), solid_(enclosed_solid(mesh)) {}
+
+  template <typename Step>
+  void run(const Step& step) {
+    const std::size_t steps = report_.steps.size();
+    step(*mesh_, report_);
+    if (report_.steps.size() == steps) return;
+    report_.steps[steps].before = solid_;
+    solid_ = enclosed_solid(*mesh_);
+    report_.steps.back().after = solid_;
+  }
+
+  RepairReport& report() { return report_; }
+
+ private:
+  TriangleMesh* mesh_;
+  RepairReport report_;
+  std::optional<EnclosedSolid> solid_;
+};
+
+void remove_unused_vertices(TriangleMesh& mesh) {
+  std::vector<std::int32_t> itself(mesh.vertex_count());
+  std::iota(itself.begin(), itself.end(), 0);
+  mesh = merge_vertices(mesh, itself);
+}
+
+}  // namespace
+
+bool needs_repair(const MeshTopology& topology) {
+  return !topology.counts.all_matched() || topology.duplicate_faces > 0;
+}
+
+RepairReport repair_mesh(TriangleMesh& mesh) {
+  const double diagonal = mesh.triangles.empty() ? 0.0 : bounding_box(mesh).diagonal();
+  if (!(diagonal >= kSmallestDiagonal && diagonal <= kLargestDiagonal)) return {};
+  const double tolerance = kRepairTolerance * diagonal;
+  Ladder ladder(mesh);
+  ladder.run(
+      [tolerance](TriangleMesh& m, RepairReport& report) { weld_within_tolerance(m, tolerance, report); });
+  ladder.run(
+      [tolerance](TriangleMesh& m, RepairReport& report) { insert_vertices_on_edges(m, tolerance, report); });
+  if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
+  return std::move(ladder.report());
+}
+
+}  // namespace buoyancy

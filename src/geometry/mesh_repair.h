@@ -1,0 +1,29 @@
+// Repairs the faults of a mesh that leave its surface where it is, to 1e-6 L (L: bounding-box diagonal).
+//
+// The steps, in this order, each in a file of its own:
+//   welding.h            merges vertices of unmatched edges within 1e-6 L of each other
+//   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
+// A mesh whose edges are all matched and whose faces all differ is left as it is. A step whose result is not
+// certain is left out, which the report says. A repaired mesh that is not closed or balanced is refused by
+// validation like any other: no step makes a mesh acceptable by relaxing a check.
+//
+// Every step is deterministic. Complexity: O(n log n) for n faces; steps that would take longer are cut off.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/mesh_topology.h"
+#include "geometry/repair_report.h"
+#include "geometry/triangle_mesh.h"
+
+namespace buoyancy {
+
+inline constexpr double kRepairTolerance = 1e-6;  // relative to the bounding-box diagonal
+
+// Whether the automatic repair may improve a mesh with this topology.
+bool needs_repair(const MeshTopology& topology);
+
+// Repairs the mesh. Requires an exactly welded, finite mesh.
+RepairReport repair_mesh(TriangleMesh& mesh);
+
+}  // namespace buoyancy
