@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/duplicate_faces.h"
 #include "geometry/edge_insertion.h"
+#include "geometry/face_winding.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_orientation.h"
 #include "geometry/welding.h"
@@ -59,7 +61,7 @@ void remove_unused_vertices(TriangleMesh& mesh) {
 }  // namespace
 
 bool needs_repair(const MeshTopology& topology) {
-  return !topology.counts.all_matched() || topology.duplicate_faces > 0;
+  return !topology.counts.all_matched() || topology.counts.balanced > 0 || topology.duplicate_faces > 0;
 }
 
 RepairReport repair_mesh(TriangleMesh& mesh) {
@@ -71,6 +73,9 @@ RepairReport repair_mesh(TriangleMesh& mesh) {
       [tolerance](TriangleMesh& m, RepairReport& report) { weld_within_tolerance(m, tolerance, report); });
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { insert_vertices_on_edges(m, tolerance, report); });
+  ladder.run(
+      [tolerance](TriangleMesh& m, RepairReport& report) { remove_duplicate_faces(m, tolerance, report); });
+  ladder.run(make_winding_consistent);
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());
 }

@@ -3,7 +3,9 @@
 // The steps, in this order, each in a file of its own:
 //   welding.h            merges vertices of unmatched edges within 1e-6 L of each other
 //   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
-// A mesh whose edges are all matched and whose faces all differ is left as it is. A step whose result is not
+//   duplicate_faces.h    removes faces that are stored twice, or for both sides
+//   face_winding.h       gives neighbouring faces a consistent winding
+// A mesh in which each edge has one face on either side is left as it is. A step whose result is not
 // certain is left out, which the report says. A repaired mesh that is not closed or balanced is refused by
 // validation like any other: no step makes a mesh acceptable by relaxing a check.
 //

@@ -1,6 +1,7 @@
 #include "geometry/mesh_report.h"
 
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -10,9 +11,9 @@
 namespace buoyancy {
 namespace {
 
-std::string text_of(const TriangleMesh& mesh) {
+std::string text_of(const TriangleMesh& mesh, RepairPolicy repair = RepairPolicy::kAutomatic) {
   const MeshSource source{"STL", "not stated", "", 1, 2};
-  return to_text(validate_mesh({mesh, source}, "hull.stl", {OpenPolicy::kRefuse, true}).report);
+  return to_text(validate_mesh({mesh, source}, "hull.stl", {OpenPolicy::kRefuse, true, repair}).report);
 }
 
 void expect_line(const std::string& text, const std::string& line) {
@@ -40,13 +41,25 @@ TEST(MeshReport, ListsFaultsOfRefusedMesh) {
   TriangleMesh mesh = without_face(cube_mesh(), 0);
   mesh.triangles.push_back(mesh.triangles.back());
   mesh.triangles.push_back({1, 1, 2});
-  const std::string text = text_of(mesh);
+  const std::string text = text_of(mesh, RepairPolicy::kNone);
   expect_line(text, "  surface       open or inconsistent");
   expect_line(text, "  edges         3 boundary, 3 non-manifold");
   expect_line(text, "  faces         1 dropped for using a vertex twice, 1 duplicate of an earlier face");
   expect_line(text, "  holes         1");
   expect_line(text, "                3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5");
   expect_line(text, "  intersecting  1 pair of faces: overlapping volumes count twice");
+}
+
+TEST(MeshReport, ListsRepairs) {
+  TriangleMesh mesh = cube_mesh();
+  mesh.triangles.push_back(mesh.triangles.back());
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  const std::string text = text_of(mesh);
+  expect_line(text, "  repair        1 copy of a face removed, 0.5 m^2");
+  expect_line(
+      text,
+      "                1 face turned to the winding of their neighbours, 0.5 m^2; volume not closed -> "
+      "1 m^3");
 }
 
 TEST(MeshReport, ClassifiesEveryComponent) {

@@ -126,11 +126,13 @@ TEST(MeshValidation, OrientsOpenMeshByVolumeWithClosedHoles) {
 TEST(MeshValidation, RefusesMisorientedAndNonManifoldWithEitherPolicy) {
   TriangleMesh misoriented = cube_mesh();
   std::swap(misoriented.triangles[5][0], misoriented.triangles[5][1]);
+  // The fin crosses the cube.
   TriangleMesh finned = cube_mesh();
   const std::int32_t fin = finned.add_vertex({5, 5, 5});
   finned.triangles.push_back({0, 1, fin});
   for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
-    expect_refused(validate(misoriented, policy), "3 misoriented edges (one from");
+    expect_refused(validate_mesh({misoriented, {}}, "hull.stl", {policy, false, RepairPolicy::kNone}),
+                   "3 misoriented edges (one from");
     expect_refused(validate(finned, policy), "1 non-manifold edge (one from");
     expect_refused(validate(finned, policy), "2 boundary edges");
   }
@@ -215,7 +217,9 @@ TEST(MeshValidation, DropsDegenerateAndReportsDuplicateFaces) {
 
   TriangleMesh doubled = cube_mesh();
   doubled.triangles.push_back(doubled.triangles[0]);
-  expect_refused(validate(doubled), "1 duplicate face");
+  expect_refused(validate_mesh({doubled, {}}, "hull.stl", {.repair = RepairPolicy::kNone}),
+                 "1 duplicate face");
+  EXPECT_TRUE(validate(doubled).mesh);
 }
 
 TEST(MeshValidation, StaysAccurateFarFromOrigin) {
