@@ -7,9 +7,9 @@
 
 #include "geometry/duplicate_faces.h"
 #include "geometry/edge_insertion.h"
+#include "geometry/enclosed_solid.h"
 #include "geometry/face_winding.h"
-#include "geometry/mass_properties.h"
-#include "geometry/mesh_orientation.h"
+#include "geometry/hole_caps.h"
 #include "geometry/welding.h"
 
 namespace buoyancy {
@@ -18,16 +18,6 @@ namespace {
 // The exact predicates, and squares and cubes of lengths, are far from overflow and underflow between these.
 constexpr double kSmallestDiagonal = 1e-50;  // [m]
 constexpr double kLargestDiagonal = 1e50;    // [m]
-
-// What the mesh encloses after it is oriented as validation does; nullopt if an edge is not matched.
-std::optional<EnclosedSolid> enclosed_solid(TriangleMesh mesh) {
-  const MeshTopology topology = mesh_topology(mesh);
-  if (!topology.counts.all_matched()) return std::nullopt;
-  std::vector<ComponentReport> components = describe_components(mesh, topology);
-  if (!orient_closed(mesh, topology, components)) return std::nullopt;
-  const MassProperties properties = mass_properties(mesh);
-  return EnclosedSolid{properties.volume, properties.centroid_B};
-}
 
 // Runs steps one after the other and adds to their reports what the mesh encloses.
 class Ladder {
@@ -76,6 +66,7 @@ RepairReport repair_mesh(TriangleMesh& mesh) {
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { remove_duplicate_faces(m, tolerance, report); });
   ladder.run(make_winding_consistent);
+  ladder.run(cap_negligible_holes);
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());
 }

@@ -5,6 +5,7 @@
 //   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
 //   duplicate_faces.h    removes faces that are stored twice, or for both sides
 //   face_winding.h       gives neighbouring faces a consistent winding
+//   hole_caps.h          closes holes whose size is negligible
 // A mesh in which each edge has one face on either side is left as it is. A step whose result is not
 // certain is left out, which the report says. A repaired mesh that is not closed or balanced is refused by
 // validation like any other: no step makes a mesh acceptable by relaxing a check.

@@ -99,7 +99,9 @@ std::string component_text(const ComponentReport& component) {
 
 std::string hole_text(const HoleReport& hole) {
   return pluralize(hole.edges, "edge", "edges") + ", from " + format_vector(hole.box.min_B) + " to " +
-         format_vector(hole.box.max_B);
+         format_vector(hole.box.max_B) + "; " + format_number(hole.perimeter, 4) + " m around, " +
+         format_number(hole.area, 4) + " m^2, " + format_number(hole.bulge, 3) +
+         " m^3 in a hemisphere over it" + (hole.slit ? "; a slit" : "");
 }
 
 std::int64_t count_components(const MeshReport& report, bool ComponentReport::*flag) {

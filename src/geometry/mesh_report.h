@@ -27,6 +27,10 @@ struct ComponentReport {
 struct HoleReport {
   std::int64_t edges = 0;
   BoundingBox box{Vec3::Zero(), Vec3::Zero()};
+  double perimeter = 0.0;  // [m]
+  double area = 0.0;       // of a cap over it [m^2]
+  double bulge = 0.0;      // of a hemisphere over it: an estimate of what a cap may leave out or add [m^3]
+  bool slit = false;       // narrower than 1e-6 of the mesh's size on average
 };
 
 // Describes the mesh after its repair, also if it is refused.

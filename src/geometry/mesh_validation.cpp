@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/exact_predicates.h"
+#include "geometry/hole_caps.h"
 #include "geometry/mesh_checks.h"
 #include "geometry/mesh_orientation.h"
 #include "geometry/mesh_repair.h"
@@ -67,14 +68,20 @@ void report_surface(const TriangleMesh& mesh, MeshReport& report) {
   report.degenerate_faces = total.degenerate_faces;
 }
 
-void report_topology(const MeshTopology& topology, const std::vector<Hole>& holes, MeshReport& report) {
+// report: its diagonal is set.
+void report_topology(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Hole>& holes,
+                     MeshReport& report) {
   report.boundary_edges = topology.counts.boundary;
   report.non_manifold_edges = topology.counts.non_manifold;
   report.balanced_edges = topology.counts.balanced;
   report.misoriented_edges = topology.counts.misoriented;
   report.duplicate_faces = topology.duplicate_faces;
+  std::int64_t work_left = kCapWork;
   for (const Hole& hole : holes) {
-    report.holes.push_back({static_cast<std::int64_t>(hole.edges.size()), hole.box});
+    const HoleSize size = measure_hole(mesh, hole, work_left);
+    const bool slit = 2.0 * size.area <= kRepairTolerance * report.diagonal * size.perimeter;
+    report.holes.push_back({static_cast<std::int64_t>(hole.edges.size()), hole.box, size.perimeter, size.area,
+                            size.bulge, slit});
   }
 }
 
@@ -119,7 +126,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report_weld(welded, report);
   report_surface(mesh, report);
   const std::vector<Hole> holes = find_holes(mesh, topology.boundary);
-  report_topology(topology, holes, report);
+  report_topology(mesh, topology, holes, report);
   std::vector<ComponentReport> components = describe_components(mesh, topology);
 
   validation.refusal = check_size(report);

@@ -277,7 +277,12 @@ Json to_json(const MeshReport& report) {
   for (const ComponentReport& component : report.components) components.push_back(to_json(component));
   Json holes = Json::array();
   for (const HoleReport& hole : report.holes) {
-    holes.push_back({{"edges", hole.edges}, {"box", to_json(hole.box)}});
+    holes.push_back({{"edges", hole.edges},
+                     {"box", to_json(hole.box)},
+                     {"perimeter", hole.perimeter},
+                     {"area", hole.area},
+                     {"bulge", hole.bulge},
+                     {"slit", hole.slit}});
   }
   return {{"name", report.name},
           {"source", to_json(report.source)},

@@ -24,7 +24,8 @@ TriangleMesh box_from(const Vec3& corner, const Vec3& size) {
 }
 
 MeshValidation validate(const TriangleMesh& mesh, bool count_intersecting_pairs = false) {
-  return validate_mesh({mesh, {}}, "mesh", {OpenPolicy::kRefuse, count_intersecting_pairs});
+  return validate_mesh({mesh, {}}, "mesh",
+                       {OpenPolicy::kRefuse, count_intersecting_pairs, RepairPolicy::kNone});
 }
 
 void check_at_random_poses(StressCase& stress, const StressedBody& body, int poses) {
