@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/aabb_tree.h"
-#include "geometry/exact_predicates.h"
+#include "geometry/winding_number.h"
 
 namespace buoyancy {
 namespace {
@@ -82,80 +82,16 @@ ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& top
   return samples;
 }
 
-// Returns the side of the directed line uv on which the point lies in the projection along x. The point is
-// perturbed by (e, e^2) for a vanishing e > 0, so that it lies on no line and a ray meets faces, never edges.
-// The result is 0 only if the projections of u and v coincide.
-int perturbed_side(const Vec3& u, const Vec3& v, const Vec3& point) {
-  const int side =
-      orient_2d(project_along_axis(0, u), project_along_axis(0, v), project_along_axis(0, point));
-  if (side != 0) return side;
-  if (u.z() != v.z()) return v.z() < u.z() ? 1 : -1;
-  if (u.y() != v.y()) return v.y() > u.y() ? 1 : -1;
-  return 0;
-}
-
-struct Crossing {
-  int direction = 0;     // of the ray from the point along +x: 1 outward, -1 inward, 0 no crossing
-  bool touches = false;  // the point lies on the face
-};
-
-Crossing cross(const TriangleMesh& mesh, const Triangle& face, const Vec3& point) {
-  const Vec3 a = mesh.vertex(face[0]);
-  const Vec3 b = mesh.vertex(face[1]);
-  const Vec3 c = mesh.vertex(face[2]);
-  const int side = perturbed_side(a, b, point);
-  if (side == 0 || perturbed_side(b, c, point) != side || perturbed_side(c, a, point) != side) return {};
-  const int in_front = orient_3d(a, b, c, point);
-  if (in_front == 0) return {0, true};
-  return {in_front == side ? 0 : side, false};
-}
-
-// The faces of one component, against which rays along +x are cast.
-class Surface {
- public:
-  Surface(const TriangleMesh& mesh, std::vector<Triangle> faces)
-      : mesh_(&mesh), faces_(std::move(faces)), tree_(boxes_of(mesh, faces_)) {}
-
-  struct Position {
-    int winding = 0;
-    bool touched = false;  // the point lies on a face
-  };
-  Position position_of(const Vec3& point) const {
-    Position position;
-    const auto meets_ray = [&point](const BoundingBox& box) {
-      return box.max_B.x() >= point.x() && box.min_B.y() <= point.y() && point.y() <= box.max_B.y() &&
-             box.min_B.z() <= point.z() && point.z() <= box.max_B.z();
-    };
-    tree_.for_each(meets_ray, [&](std::int32_t item) {
-      const Crossing crossing = cross(*mesh_, faces_[static_cast<std::size_t>(item)], point);
-      position.winding += crossing.direction;
-      if (crossing.touches) position.touched = true;
-    });
-    return position;
-  }
-
- private:
-  static std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh, const std::vector<Triangle>& faces) {
-    std::vector<BoundingBox> boxes;
-    boxes.reserve(faces.size());
-    for (const Triangle& face : faces) boxes.push_back(box_of_face(mesh, face));
-    return boxes;
-  }
-
-  const TriangleMesh* mesh_;
-  std::vector<Triangle> faces_;
-  AabbTree tree_;
-};
-
 // Returns, by component, the surfaces of those that are candidates.
-std::vector<std::optional<Surface>> candidate_surfaces(const TriangleMesh& mesh, const MeshTopology& topology,
-                                                       const std::vector<bool>& is_candidate) {
+std::vector<std::optional<WindingNumber>> candidate_surfaces(const TriangleMesh& mesh,
+                                                             const MeshTopology& topology,
+                                                             const std::vector<bool>& is_candidate) {
   std::vector<std::vector<Triangle>> faces(is_candidate.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const auto component = static_cast<std::size_t>(topology.component_of_face[f]);
     if (is_candidate[component]) faces[component].push_back(mesh.triangles[f]);
   }
-  std::vector<std::optional<Surface>> surfaces(is_candidate.size());
+  std::vector<std::optional<WindingNumber>> surfaces(is_candidate.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (is_candidate[i]) surfaces[i].emplace(mesh, std::move(faces[i]));
   }
@@ -174,14 +110,14 @@ std::optional<std::vector<std::vector<std::int32_t>>> enclosing_components(const
   }
   if (std::find(is_candidate.begin(), is_candidate.end(), true) == is_candidate.end()) return enclosing;
 
-  const std::vector<std::optional<Surface>> surfaces = candidate_surfaces(mesh, topology, is_candidate);
+  const std::vector<std::optional<WindingNumber>> surfaces = candidate_surfaces(mesh, topology, is_candidate);
   const ComponentLists samples = sample_vertices(mesh, topology);
   for (std::size_t inner = 0; inner < enclosing->size(); ++inner) {
     const auto is_outside = [&](std::int32_t outer) {
       bool inside = false;
       for (const std::int32_t v : samples[inner]) {
-        const auto [winding, touched] =
-            surfaces[static_cast<std::size_t>(outer)]->position_of(mesh.vertex(v));
+        const auto [winding, touched, faces_met] =
+            surfaces[static_cast<std::size_t>(outer)]->about(mesh.vertex(v));
         if (touched) continue;
         if (winding == 0) return true;
         inside = true;

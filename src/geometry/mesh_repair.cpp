@@ -3,13 +3,16 @@
 #include <cstddef>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/duplicate_faces.h"
 #include "geometry/edge_insertion.h"
 #include "geometry/enclosed_solid.h"
 #include "geometry/face_winding.h"
+#include "geometry/flat_sheets.h"
 #include "geometry/hole_caps.h"
+#include "geometry/inner_faces.h"
 #include "geometry/welding.h"
 
 namespace buoyancy {
@@ -18,6 +21,9 @@ namespace {
 // The exact predicates, and squares and cubes of lengths, are far from overflow and underflow between these.
 constexpr double kSmallestDiagonal = 1e-50;  // [m]
 constexpr double kLargestDiagonal = 1e50;    // [m]
+
+// Removing a sheet or closing a hole can make it possible to tell inner faces from the surface.
+constexpr int kMaxRounds = 3;
 
 // Runs steps one after the other and adds to their reports what the mesh encloses.
 class Ladder {
@@ -35,6 +41,7 @@ class Ladder {
   }
 
   RepairReport& report() { return report_; }
+  bool is_closed() const { return mesh_topology(*mesh_).counts.all_matched(); }
 
  private:
   TriangleMesh* mesh_;
@@ -54,7 +61,7 @@ bool needs_repair(const MeshTopology& topology) {
   return !topology.counts.all_matched() || topology.counts.balanced > 0 || topology.duplicate_faces > 0;
 }
 
-RepairReport repair_mesh(TriangleMesh& mesh) {
+RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   const double diagonal = mesh.triangles.empty() ? 0.0 : bounding_box(mesh).diagonal();
   if (!(diagonal >= kSmallestDiagonal && diagonal <= kLargestDiagonal)) return {};
   const double tolerance = kRepairTolerance * diagonal;
@@ -66,7 +73,29 @@ RepairReport repair_mesh(TriangleMesh& mesh) {
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { remove_duplicate_faces(m, tolerance, report); });
   ladder.run(make_winding_consistent);
-  ladder.run(cap_negligible_holes);
+
+  // From here on the volume is known to be that of the given surface only if that is closed in the end.
+  std::optional<TriangleMesh> open_mesh;
+  std::optional<RepairReport> open_report;
+  if (may_stay_open) {
+    open_mesh = mesh;
+    open_report = ladder.report();
+  }
+  bool closed = ladder.is_closed();
+  for (int round = 0; round < kMaxRounds && !closed; ++round) {
+    const std::size_t steps = ladder.report().steps.size();
+    ladder.run(
+        [tolerance](TriangleMesh& m, RepairReport& report) { remove_inner_faces(m, tolerance, report); });
+    ladder.run(
+        [tolerance](TriangleMesh& m, RepairReport& report) { remove_flat_sheets(m, tolerance, report); });
+    ladder.run(cap_negligible_holes);
+    closed = ladder.is_closed();
+    if (ladder.report().steps.size() == steps) break;
+  }
+  if (may_stay_open && !closed) {
+    mesh = *std::move(open_mesh);
+    ladder.report() = *std::move(open_report);
+  }
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());
 }

@@ -5,6 +5,8 @@
 //   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
 //   duplicate_faces.h    removes faces that are stored twice, or for both sides
 //   face_winding.h       gives neighbouring faces a consistent winding
+//   inner_faces.h        removes decks and bulkheads inside the surface, and fins of zero thickness
+//   flat_sheets.h        removes plates of zero thickness
 //   hole_caps.h          closes holes whose size is negligible
 // A mesh in which each edge has one face on either side is left as it is. A step whose result is not
 // certain is left out, which the report says. A repaired mesh that is not closed or balanced is refused by
@@ -26,7 +28,8 @@ inline constexpr double kRepairTolerance = 1e-6;  // relative to the bounding-bo
 // Whether the automatic repair may improve a mesh with this topology.
 bool needs_repair(const MeshTopology& topology);
 
-// Repairs the mesh. Requires an exactly welded, finite mesh.
-RepairReport repair_mesh(TriangleMesh& mesh);
+// Repairs the mesh. may_stay_open: if the mesh is not closed or balanced in the end, its inner faces, sheets
+// and holes stay. Requires an exactly welded, finite mesh.
+RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open);
 
 }  // namespace buoyancy

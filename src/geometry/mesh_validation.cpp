@@ -120,7 +120,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   TriangleMesh& mesh = welded.mesh;
   MeshTopology topology = mesh_topology(mesh);
   if (options.repair == RepairPolicy::kAutomatic && needs_repair(topology)) {
-    report_repair(repair_mesh(mesh), report);
+    report_repair(repair_mesh(mesh, options.open == OpenPolicy::kDryBoundary), report);
     topology = mesh_topology(mesh);
   }
   report_weld(welded, report);
