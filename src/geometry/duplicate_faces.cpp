@@ -121,18 +121,19 @@ void remove_copies(TriangleMesh& mesh, RepairReport& report) {
       patches.unite(copy_at_edge[edge], static_cast<std::int32_t>(i));
     }
   }
-  // By patch: how many uses more are unmatched without the copies.
-  std::vector<std::int64_t> unmatched(copies.size(), 0);
+  // A patch of copies is needed if its rim is matched with it.
+  std::vector<bool> has_rim(copies.size(), false);
+  std::vector<bool> has_unmatched_rim(copies.size(), false);
   for (std::size_t edge = 0; edge < table.size(); ++edge) {
-    if (copy_at_edge[edge] < 0) continue;
-    const std::int64_t net = net_uses(table.uses(static_cast<std::int32_t>(edge)));
-    unmatched[static_cast<std::size_t>(patches.representative(copy_at_edge[edge]))] +=
-        std::abs(net - net_of_copies[edge]) - std::abs(net);
+    if (copy_at_edge[edge] < 0 || net_of_copies[edge] == 0) continue;
+    const auto patch = static_cast<std::size_t>(patches.representative(copy_at_edge[edge]));
+    has_rim[patch] = true;
+    if (net_uses(table.uses(static_cast<std::int32_t>(edge))) != 0) has_unmatched_rim[patch] = true;
   }
   std::vector<bool> removed(mesh.triangles.size(), false);
   for (std::size_t i = 0; i < copies.size(); ++i) {
     const auto patch = static_cast<std::size_t>(patches.representative(static_cast<std::int32_t>(i)));
-    removed[static_cast<std::size_t>(copies[i])] = unmatched[patch] <= 0;
+    removed[static_cast<std::size_t>(copies[i])] = !has_rim[patch] || has_unmatched_rim[patch];
   }
   remove_faces(mesh, removed, RepairKind::kRemoveDuplicates, report);
 }
@@ -142,8 +143,7 @@ void remove_copies(TriangleMesh& mesh, RepairReport& report) {
 class Opposites {
  public:
   Opposites(const TriangleMesh& mesh, const std::vector<FaceGroup>& pairs, double tolerance)
-      : mesh_(&mesh),
-        pairs_(&pairs),
+      : pairs_(&pairs),
         table_(mesh),
         pair_of_face_(mesh.triangles.size(), -1),
         patches_(pairs.size()),
@@ -151,16 +151,17 @@ class Opposites {
         patch_votes_(pairs.size()),
         cluster_votes_(pairs.size()),
         has_neighbours_(pairs.size(), false),
-        is_sheet_(pairs.size(), false) {
+        is_sheet_(pairs.size(), false),
+        is_flat_(pairs.size(), false) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       pair_of_face_[static_cast<std::size_t>(pairs[i].even.front())] = static_cast<std::int32_t>(i);
       pair_of_face_[static_cast<std::size_t>(pairs[i].odd.front())] = static_cast<std::int32_t>(i);
     }
-    for_each_edge([this](std::int32_t, const std::vector<std::int32_t>& here, std::size_t others) {
+    for_each_edge([this](const std::vector<std::int32_t>& here, std::size_t others) {
       for (const std::int32_t pair : here) clusters_.unite(here.front(), pair);
       if (here.size() == 2 && others == 0) patches_.unite(here[0], here[1]);
     });
-    for_each_edge([this](std::int32_t e, const std::vector<std::int32_t>& here, std::size_t others) {
+    for_each_edge([this](const std::vector<std::int32_t>& here, std::size_t others) {
       const auto cluster = static_cast<std::size_t>(clusters_.representative(here.front()));
       if (others == 0) {
         if (here.size() == 1) is_sheet_[cluster] = true;
@@ -168,20 +169,24 @@ class Opposites {
       }
       has_neighbours_[cluster] = true;
       if (here.size() != 1) return;
-      const Edge& edge = table_.edge(e);
-      const double length = (mesh_->vertex(edge[1]) - mesh_->vertex(edge[0])).norm();
       const auto patch = static_cast<std::size_t>(patches_.representative(here.front()));
       for (Votes* votes : {&patch_votes_[patch], &cluster_votes_[cluster]}) {
-        (others % 2 == 1 ? votes->one : votes->none) += length;
+        (others % 2 == 1 ? votes->one : votes->none) = true;
       }
     });
-    std::vector<std::vector<std::int32_t>> faces(pairs.size());  // of clusters that may be sheets
+    std::vector<std::vector<std::int32_t>> of_patch(pairs.size());
+    std::vector<std::vector<std::int32_t>> of_cluster(pairs.size());  // of those that may be sheets
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const auto cluster = static_cast<std::size_t>(clusters_.representative(static_cast<std::int32_t>(i)));
-      if (is_sheet_[cluster] && !has_neighbours_[cluster]) faces[cluster].push_back(pairs[i].even.front());
+      const auto pair = static_cast<std::int32_t>(i);
+      const auto cluster = static_cast<std::size_t>(clusters_.representative(pair));
+      of_patch[static_cast<std::size_t>(patches_.representative(pair))].push_back(pairs[i].even.front());
+      if (is_sheet_[cluster] && !has_neighbours_[cluster])
+        of_cluster[cluster].push_back(pairs[i].even.front());
     }
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      is_sheet_[i] = !faces[i].empty() && distance_from_plane(mesh, faces[i]) <= tolerance;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      is_flat_[i] = !of_patch[i].empty() && distance_from_plane(mesh, of_patch[i]) <= tolerance;
+      is_sheet_[i] = !of_cluster[i].empty() && distance_from_plane(mesh, of_cluster[i]) <= tolerance;
+    }
   }
 
   // A flat sheet with an open rim, not connected to other faces.
@@ -193,19 +198,21 @@ class Opposites {
     const auto i = static_cast<std::int32_t>(pair);
     const auto cluster = static_cast<std::size_t>(clusters_.representative(i));
     if (!has_neighbours_[cluster]) return !is_sheet_[cluster];
-    Votes votes = patch_votes_[static_cast<std::size_t>(patches_.representative(i))];
-    if (votes.one == 0.0 && votes.none == 0.0) votes = cluster_votes_[cluster];
-    return votes.one > votes.none;
+    const auto patch = static_cast<std::size_t>(patches_.representative(i));
+    if (!is_flat_[patch]) return true;
+    Votes votes = patch_votes_[patch];
+    if (!votes.one && !votes.none) votes = cluster_votes_[cluster];
+    return votes.one;
   }
 
  private:
-  // Length of the rim at which one or none of two opposites is needed [m].
+  // Whether one or none of two opposites is needed somewhere at the rim.
   struct Votes {
-    double one = 0.0;
-    double none = 0.0;
+    bool one = false;
+    bool none = false;
   };
 
-  // Calls visit(edge, pairs at it, number of other faces at it).
+  // Calls visit(pairs, number of other faces) for each edge with pairs.
   template <typename Visit>
   void for_each_edge(const Visit& visit) {
     std::vector<std::int32_t> here;
@@ -217,18 +224,34 @@ class Opposites {
         if (pair >= 0 && (*pairs_)[static_cast<std::size_t>(pair)].even.front() == use.face)
           here.push_back(pair);
       }
-      if (!here.empty()) visit(static_cast<std::int32_t>(e), here, uses.size() - 2 * here.size());
+      if (!here.empty()) visit(here, uses.size() - 2 * here.size());
     }
   }
 
-  const TriangleMesh* mesh_;
   const std::vector<FaceGroup>* pairs_;
   EdgeTable table_;
   std::vector<std::int32_t> pair_of_face_;  // -1: none
   DisjointSets patches_, clusters_;
   std::vector<Votes> patch_votes_, cluster_votes_;  // by representative
   std::vector<bool> has_neighbours_, is_sheet_;     // by representative of a cluster
+  std::vector<bool> is_flat_;                       // by representative of a patch
 };
+
+// Of faces with both copies and opposites, removes opposites in pairs, which changes no edge's net uses,
+// until no copies or one pair is left.
+void cancel_mixed_copies(TriangleMesh& mesh, RepairReport& report) {
+  std::vector<bool> removed(mesh.triangles.size(), false);
+  for (const FaceGroup& group : group_faces(mesh)) {
+    if (!group.has_copies() || !group.has_opposites()) continue;
+    std::size_t pairs = std::min(group.even.size(), group.odd.size());
+    if (group.even.size() == group.odd.size()) --pairs;
+    for (std::size_t i = 0; i < pairs; ++i) {
+      removed[static_cast<std::size_t>(group.even[group.even.size() - 1 - i])] = true;
+      removed[static_cast<std::size_t>(group.odd[group.odd.size() - 1 - i])] = true;
+    }
+  }
+  remove_faces(mesh, removed, RepairKind::kRemoveOpposites, report);
+}
 
 void remove_opposites(TriangleMesh& mesh, double tolerance, RepairReport& report) {
   std::vector<FaceGroup> pairs = group_faces(mesh);
@@ -264,6 +287,8 @@ void remove_duplicate_faces(TriangleMesh& mesh, double tolerance, RepairReport& 
   TriangleMesh unified = mesh;
   const double volume_bound = unify_coincident_patches(unified, tolerance);
   const std::size_t steps = report.steps.size();
+  remove_copies(unified, report);
+  cancel_mixed_copies(unified, report);
   remove_copies(unified, report);
   remove_opposites(unified, tolerance, report);
   if (report.steps.size() == steps) return;

@@ -8,14 +8,15 @@ namespace buoyancy {
 
 // Faces with the same three vertices are copies of the same winding, or opposites.
 //
-// Copies are removed, patch by patch (connected through edges), unless more edges would then be unmatched: a
-// part that is stored twice becomes one, and of a box that stands flush inside another nothing is removed.
+// Copies are removed, patch by patch (connected through edges), unless all edges at the patch's rim are
+// matched with it: a part that is stored twice becomes one, and of a box that stands flush inside another
+// nothing is removed.
 //
-// Of opposites either one stays, the earlier, or none. That is decided patch by patch by the parity of the
-// rim: where the faces of the rest meet it in odd number, they need one to be matched, and where in even
-// number, none, as at a wall between two solids. Where the patch is not connected to faces of the rest, one
-// stays, since it is a surface stored for both its sides; but none if it is a flat sheet (within the
-// tolerance), unless the mesh consists of such sheets.
+// Of opposites either one stays, the earlier, or none. None stays of a flat patch (within the tolerance)
+// whose rim meets other faces in even numbers only, as that of a wall between two solids or of a fin, and
+// none of a flat sheet that is connected to nothing, unless the mesh consists of such sheets. Otherwise one
+// stays, since the patch may be a surface that is stored for both sides; should it lie inside another,
+// inner_faces.h removes it.
 //
 // Flat polygons that are stored twice count as duplicates also if they are divided into other triangles.
 // tolerance: [m]. mesh: welded. Complexity: O(n log n).

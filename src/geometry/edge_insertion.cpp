@@ -125,12 +125,15 @@ bool split_face(const Triangle& face, std::span<const EdgeInsertion> insertions,
 }
 
 std::vector<Edge> unmatched_edges(const MeshTopology& topology) {
-  std::vector<Edge> edges;
-  for (const auto* list : {&topology.boundary, &topology.misoriented, &topology.non_manifold}) {
-    for (const Edge& edge : *list) edges.push_back({std::min(edge[0], edge[1]), std::max(edge[0], edge[1])});
-  }
-  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> edges = topology.boundary;
+  edges.insert(edges.end(), topology.misoriented.begin(), topology.misoriented.end());
+  edges.insert(edges.end(), topology.non_manifold.begin(), topology.non_manifold.end());
   return edges;
+}
+
+// An edge that finds a partner counts as an improvement, also if it then has three faces.
+std::int64_t count_faults(const MeshTopology& topology) {
+  return topology.counts.unmatched() + topology.counts.boundary;
 }
 
 // The vertices of some edges, for searches along lines.
@@ -197,18 +200,21 @@ class VertexTree {
   AabbTree tree_;
 };
 
-// Returns the insertions in ascending order; nullopt if there are too many.
+// Returns the vertices of unmatched edges that lie on any edges, in ascending order; nullopt if there are too
+// many.
 std::optional<std::vector<EdgeInsertion>> find_insertions(const TriangleMesh& mesh,
-                                                          const std::vector<Edge>& edges, double tolerance) {
-  const auto count = static_cast<std::int64_t>(edges.size());
-  std::int64_t visits_left = 50'000'000 + 200 * count;
-  const auto most = static_cast<std::size_t>(1'000'000 + 10 * count);
-  const VertexTree tree(mesh, edges);
+                                                          const std::vector<Edge>& unmatched,
+                                                          double tolerance) {
+  const auto faces = static_cast<std::int64_t>(mesh.triangles.size());
+  std::int64_t visits_left = 50'000'000 + 300 * faces;
+  const auto most = static_cast<std::size_t>(1'000'000 + 10 * faces);
+  const VertexTree tree(mesh, unmatched);
   std::vector<EdgeInsertion> insertions;
-  for (const Edge& edge : edges) {
-    tree.find_on(edge, tolerance, visits_left, insertions);
-    if (visits_left <= 0 || insertions.size() > most) return std::nullopt;
-  }
+  collect_edge_uses(mesh).for_each_edge([&](std::int32_t low, std::span<const EdgeUse> uses) {
+    if (visits_left > 0 && insertions.size() <= most)
+      tree.find_on({low, uses.front().high}, tolerance, visits_left, insertions);
+  });
+  if (visits_left <= 0 || insertions.size() > most) return std::nullopt;
   std::sort(insertions.begin(), insertions.end());
   return insertions;
 }
@@ -305,7 +311,7 @@ void insert_vertices_on_edges(TriangleMesh& mesh, double tolerance, RepairReport
     if (useful.empty()) break;
     if (useful.size() < insertions->size()) split = split_edges(mesh, useful);
     MeshTopology after = mesh_topology(split.mesh);
-    if (after.counts.unmatched() >= topology.counts.unmatched()) break;
+    if (count_faults(after) >= count_faults(topology)) break;
     topology = std::move(after);
     mesh = std::move(split.mesh);
     step.count += static_cast<std::int64_t>(useful.size());

@@ -33,8 +33,8 @@ struct SplitMesh {
 // Complexity: O(n log n).
 SplitMesh split_edges(const TriangleMesh& mesh, std::span<const EdgeInsertion> insertions);
 
-// Inserts vertices of unmatched edges into unmatched edges within the tolerance [m] of them. Insertions that
-// match nothing are undone.
+// Inserts vertices of unmatched edges into edges within the tolerance [m] of them. Insertions beside which no
+// edge gains a face are undone.
 void insert_vertices_on_edges(TriangleMesh& mesh, double tolerance, RepairReport& report);
 
 }  // namespace buoyancy

@@ -1,9 +1,12 @@
 #include "geometry/hole_caps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <queue>
 #include <span>
@@ -152,6 +155,37 @@ std::vector<Triangle> cap_loop(const TriangleMesh& mesh, const Loop& loop, std::
   return cap;
 }
 
+// Turns edges so that they follow each other along trails, as long as these go; ascending. Where faces around
+// a hole have no consistent winding, its edges do not follow each other.
+std::vector<Edge> directed_along_trails(const std::vector<Edge>& edges) {
+  std::vector<std::array<std::int32_t, 3>> ends;  // vertex, other vertex, edge; ascending
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    ends.push_back({edges[e][0], edges[e][1], static_cast<std::int32_t>(e)});
+    ends.push_back({edges[e][1], edges[e][0], static_cast<std::int32_t>(e)});
+  }
+  std::sort(ends.begin(), ends.end());
+  std::vector<bool> used(edges.size(), false);
+  std::vector<std::size_t> next(ends.size());  // by the first end at a vertex: the next one to look at
+  std::iota(next.begin(), next.end(), std::size_t{0});
+  const auto first_end = [&ends](std::int32_t v) {
+    return static_cast<std::size_t>(
+        std::lower_bound(ends.begin(), ends.end(), std::array<std::int32_t, 3>{v, -1, -1}) - ends.begin());
+  };
+  std::vector<Edge> directed;
+  for (const Edge& edge : edges) {
+    for (std::int32_t v = edge[0];;) {
+      std::size_t& i = next[first_end(v)];
+      while (i < ends.size() && ends[i][0] == v && used[static_cast<std::size_t>(ends[i][2])]) ++i;
+      if (i == ends.size() || ends[i][0] != v) break;
+      used[static_cast<std::size_t>(ends[i][2])] = true;
+      directed.push_back({v, ends[i][1]});
+      v = ends[i][1];
+    }
+  }
+  std::sort(directed.begin(), directed.end());
+  return directed;
+}
+
 double area_of(const TriangleMesh& mesh, const std::vector<Triangle>& faces) {
   double area = 0.0;
   for (const Triangle& face : faces) area += area_of_face(mesh, face);
@@ -191,6 +225,27 @@ HoleSize measure_hole(const TriangleMesh& mesh, const Hole& hole, std::int64_t& 
     size.bulge += bulge_of(area);
   }
   return size;
+}
+
+void cap_small_holes(TriangleMesh& mesh, RepairReport& report) {
+  const std::vector<Edge> boundary = directed_along_trails(mesh_topology(mesh).boundary);
+  if (boundary.empty()) return;
+  const BoundingBox box = bounding_box(mesh);
+  const double most = kNegligibleBulge * (box.max_B - box.min_B).prod();
+  RepairStep step;
+  step.kind = RepairKind::kCapHoles;
+  std::int64_t work_left = kCapWork;
+  for (const Loop& loop : find_loops(boundary)) {
+    if (!std::binary_search(boundary.begin(), boundary.end(), Edge{loop.back(), loop.front()})) continue;
+    const std::vector<Triangle> cap = cap_loop(mesh, loop, work_left);
+    const double area = area_of(mesh, cap);
+    if (!(bulge_of(area) <= most)) continue;
+    mesh.triangles.insert(mesh.triangles.end(), cap.begin(), cap.end());
+    ++step.count;
+    step.area += area;
+    report.cap_bulge += bulge_of(area);
+  }
+  if (step.count > 0) report.steps.push_back(step);
 }
 
 void cap_negligible_holes(TriangleMesh& mesh, RepairReport& report) {

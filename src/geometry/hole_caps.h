@@ -35,4 +35,9 @@ inline constexpr std::int64_t kCapWork = 200'000'000;
 // Complexity: O(n log n).
 void cap_negligible_holes(TriangleMesh& mesh, RepairReport& report);
 
+// Closes those holes that consist of boundary edges alone and of which each bulge is at most kNegligibleBulge
+// of the bounding box's volume, whatever the winding of the faces around them. That they are negligible
+// together is left to check, when the volume is known.
+void cap_small_holes(TriangleMesh& mesh, RepairReport& report);
+
 }  // namespace buoyancy

@@ -29,6 +29,9 @@ constexpr int kMaxRounds = 3;
 class Ladder {
  public:
   explicit Ladder(TriangleMesh& mesh) : mesh_(&mesh), solid_(enclosed_solid(mesh)) {}
+  // Goes on from where another is, with a copy of its mesh.
+  Ladder(TriangleMesh& mesh, const Ladder& other)
+      : mesh_(&mesh), report_(other.report_), solid_(other.solid_) {}
 
   template <typename Step>
   void run(const Step& step) {
@@ -40,7 +43,14 @@ class Ladder {
     report_.steps.back().after = solid_;
   }
 
+  // Takes over the report of one that went on from here; its mesh is now this one's.
+  void take(Ladder& other) {
+    report_ = std::move(other.report_);
+    solid_ = other.solid_;
+  }
+
   RepairReport& report() { return report_; }
+  const std::optional<EnclosedSolid>& solid() const { return solid_; }
   bool is_closed() const { return mesh_topology(*mesh_).counts.all_matched(); }
 
  private:
@@ -48,6 +58,22 @@ class Ladder {
   RepairReport report_;
   std::optional<EnclosedSolid> solid_;
 };
+
+// Removes what does not bound the body and closes negligible holes, until the mesh is closed or nothing
+// helps.
+void close(Ladder& ladder, double tolerance) {
+  for (int round = 0; round < kMaxRounds && !ladder.is_closed(); ++round) {
+    const std::size_t steps = ladder.report().steps.size();
+    ladder.run([tolerance](TriangleMesh& mesh, RepairReport& report) {
+      remove_inner_faces(mesh, tolerance, report);
+    });
+    ladder.run([tolerance](TriangleMesh& mesh, RepairReport& report) {
+      remove_flat_sheets(mesh, tolerance, report);
+    });
+    ladder.run(cap_negligible_holes);
+    if (ladder.report().steps.size() == steps) break;
+  }
+}
 
 void remove_unused_vertices(TriangleMesh& mesh) {
   std::vector<std::int32_t> itself(mesh.vertex_count());
@@ -68,10 +94,16 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   Ladder ladder(mesh);
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { weld_within_tolerance(m, tolerance, report); });
+  const auto remove_duplicates = [tolerance](TriangleMesh& m, RepairReport& report) {
+    remove_duplicate_faces(m, tolerance, report);
+  };
+  // First, since T-junctions cannot be told from edges of faces that are stored twice; and again, since their
+  // repair gives faces the same corners.
+  ladder.run(remove_duplicates);
+  const std::size_t steps = ladder.report().steps.size();
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { insert_vertices_on_edges(m, tolerance, report); });
-  ladder.run(
-      [tolerance](TriangleMesh& m, RepairReport& report) { remove_duplicate_faces(m, tolerance, report); });
+  if (ladder.report().steps.size() > steps) ladder.run(remove_duplicates);
   ladder.run(make_winding_consistent);
 
   // From here on the volume is known to be that of the given surface only if that is closed in the end.
@@ -81,18 +113,20 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
     open_mesh = mesh;
     open_report = ladder.report();
   }
-  bool closed = ladder.is_closed();
-  for (int round = 0; round < kMaxRounds && !closed; ++round) {
-    const std::size_t steps = ladder.report().steps.size();
-    ladder.run(
-        [tolerance](TriangleMesh& m, RepairReport& report) { remove_inner_faces(m, tolerance, report); });
-    ladder.run(
-        [tolerance](TriangleMesh& m, RepairReport& report) { remove_flat_sheets(m, tolerance, report); });
-    ladder.run(cap_negligible_holes);
-    closed = ladder.is_closed();
-    if (ladder.report().steps.size() == steps) break;
+  close(ladder, tolerance);
+  if (!ladder.is_closed()) {
+    // The outside may reach decks and bulkheads through small holes: close these first, on trial.
+    TriangleMesh trial_mesh = mesh;
+    Ladder trial(trial_mesh, ladder);
+    trial.report().skipped.clear();
+    trial.run(cap_small_holes);
+    if (trial.report().cap_bulge > ladder.report().cap_bulge) close(trial, tolerance);
+    if (trial.solid() && trial.report().cap_bulge <= kNegligibleBulge * trial.solid()->volume) {
+      mesh = std::move(trial_mesh);
+      ladder.take(trial);
+    }
   }
-  if (may_stay_open && !closed) {
+  if (may_stay_open && !ladder.is_closed()) {
     mesh = *std::move(open_mesh);
     ladder.report() = *std::move(open_report);
   }

@@ -2,8 +2,8 @@
 //
 // The steps, in this order, each in a file of its own:
 //   welding.h            merges vertices of unmatched edges within 1e-6 L of each other
-//   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
 //   duplicate_faces.h    removes faces that are stored twice, or for both sides
+//   edge_insertion.h     inserts vertices into edges on which they lie (T-junctions)
 //   face_winding.h       gives neighbouring faces a consistent winding
 //   inner_faces.h        removes decks and bulkheads inside the surface, and fins of zero thickness
 //   flat_sheets.h        removes plates of zero thickness

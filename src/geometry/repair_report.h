@@ -11,7 +11,7 @@
 
 namespace buoyancy {
 
-// In the order in which they are tried. What a step counts is in brackets.
+// What a step counts is in brackets.
 enum class RepairKind {
   kWeld,              // merged vertices within 1e-6 L of each other [vertices]
   kInsertVertices,    // inserted vertices into edges of other faces on which they lie [vertices]
