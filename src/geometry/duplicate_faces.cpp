@@ -12,7 +12,6 @@
 #include "geometry/coincident_patches.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/edge_uses.h"
-#include "geometry/flatness.h"
 #include "geometry/swept_volume.h"
 
 namespace buoyancy {
@@ -138,105 +137,6 @@ void remove_copies(TriangleMesh& mesh, RepairReport& report) {
   remove_faces(mesh, removed, RepairKind::kRemoveDuplicates, report);
 }
 
-// Decides which opposites are needed. A cluster is connected through any edges, a patch through edges at
-// which no other faces meet it.
-class Opposites {
- public:
-  Opposites(const TriangleMesh& mesh, const std::vector<FaceGroup>& pairs, double tolerance)
-      : pairs_(&pairs),
-        table_(mesh),
-        pair_of_face_(mesh.triangles.size(), -1),
-        patches_(pairs.size()),
-        clusters_(pairs.size()),
-        patch_votes_(pairs.size()),
-        cluster_votes_(pairs.size()),
-        has_neighbours_(pairs.size(), false),
-        is_sheet_(pairs.size(), false),
-        is_flat_(pairs.size(), false) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      pair_of_face_[static_cast<std::size_t>(pairs[i].even.front())] = static_cast<std::int32_t>(i);
-      pair_of_face_[static_cast<std::size_t>(pairs[i].odd.front())] = static_cast<std::int32_t>(i);
-    }
-    for_each_edge([this](const std::vector<std::int32_t>& here, std::size_t others) {
-      for (const std::int32_t pair : here) clusters_.unite(here.front(), pair);
-      if (here.size() == 2 && others == 0) patches_.unite(here[0], here[1]);
-    });
-    for_each_edge([this](const std::vector<std::int32_t>& here, std::size_t others) {
-      const auto cluster = static_cast<std::size_t>(clusters_.representative(here.front()));
-      if (others == 0) {
-        if (here.size() == 1) is_sheet_[cluster] = true;
-        return;
-      }
-      has_neighbours_[cluster] = true;
-      if (here.size() != 1) return;
-      const auto patch = static_cast<std::size_t>(patches_.representative(here.front()));
-      for (Votes* votes : {&patch_votes_[patch], &cluster_votes_[cluster]}) {
-        (others % 2 == 1 ? votes->one : votes->none) = true;
-      }
-    });
-    std::vector<std::vector<std::int32_t>> of_patch(pairs.size());
-    std::vector<std::vector<std::int32_t>> of_cluster(pairs.size());  // of those that may be sheets
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const auto pair = static_cast<std::int32_t>(i);
-      const auto cluster = static_cast<std::size_t>(clusters_.representative(pair));
-      of_patch[static_cast<std::size_t>(patches_.representative(pair))].push_back(pairs[i].even.front());
-      if (is_sheet_[cluster] && !has_neighbours_[cluster])
-        of_cluster[cluster].push_back(pairs[i].even.front());
-    }
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      is_flat_[i] = !of_patch[i].empty() && distance_from_plane(mesh, of_patch[i]) <= tolerance;
-      is_sheet_[i] = !of_cluster[i].empty() && distance_from_plane(mesh, of_cluster[i]) <= tolerance;
-    }
-  }
-
-  // A flat sheet with an open rim, not connected to other faces.
-  bool is_sheet(std::size_t pair) {
-    return is_sheet_[static_cast<std::size_t>(clusters_.representative(static_cast<std::int32_t>(pair)))];
-  }
-
-  bool one_stays(std::size_t pair) {
-    const auto i = static_cast<std::int32_t>(pair);
-    const auto cluster = static_cast<std::size_t>(clusters_.representative(i));
-    if (!has_neighbours_[cluster]) return !is_sheet_[cluster];
-    const auto patch = static_cast<std::size_t>(patches_.representative(i));
-    if (!is_flat_[patch]) return true;
-    Votes votes = patch_votes_[patch];
-    if (!votes.one && !votes.none) votes = cluster_votes_[cluster];
-    return votes.one;
-  }
-
- private:
-  // Whether one or none of two opposites is needed somewhere at the rim.
-  struct Votes {
-    bool one = false;
-    bool none = false;
-  };
-
-  // Calls visit(pairs, number of other faces) for each edge with pairs.
-  template <typename Visit>
-  void for_each_edge(const Visit& visit) {
-    std::vector<std::int32_t> here;
-    for (std::size_t e = 0; e < table_.size(); ++e) {
-      here.clear();
-      const auto uses = table_.uses(static_cast<std::int32_t>(e));
-      for (const EdgeUse& use : uses) {
-        const std::int32_t pair = pair_of_face_[static_cast<std::size_t>(use.face)];
-        if (pair >= 0 && (*pairs_)[static_cast<std::size_t>(pair)].even.front() == use.face)
-          here.push_back(pair);
-      }
-      if (!here.empty()) visit(here, uses.size() - 2 * here.size());
-    }
-  }
-
-  const std::vector<FaceGroup>* pairs_;
-  EdgeTable table_;
-  std::vector<std::int32_t> pair_of_face_;  // -1: none
-  DisjointSets patches_, clusters_;
-  std::vector<Votes> patch_votes_, cluster_votes_;  // by representative
-  std::vector<bool> has_neighbours_, is_sheet_;     // by representative of a cluster
-  std::vector<bool> is_flat_;                       // by representative of a patch
-};
-
 // Of faces with both copies and opposites, removes opposites in pairs, which changes no edge's net uses,
 // until no copies or one pair is left.
 void cancel_mixed_copies(TriangleMesh& mesh, RepairReport& report) {
@@ -253,32 +153,13 @@ void cancel_mixed_copies(TriangleMesh& mesh, RepairReport& report) {
   remove_faces(mesh, removed, RepairKind::kRemoveOpposites, report);
 }
 
-void remove_opposites(TriangleMesh& mesh, double tolerance, RepairReport& report) {
-  std::vector<FaceGroup> pairs = group_faces(mesh);
-  std::erase_if(pairs, [](const FaceGroup& group) { return !group.has_opposites() || group.has_copies(); });
-  if (pairs.empty()) return;
-  Opposites opposites(mesh, pairs, tolerance);
-  std::size_t sheets = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) sheets += opposites.is_sheet(i) ? 1 : 0;
-  if (2 * sheets == mesh.triangles.size()) return;
-  std::vector<bool> backs(mesh.triangles.size(), false);
-  std::vector<bool> both(mesh.triangles.size(), false);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto even = static_cast<std::size_t>(pairs[i].even.front());
-    const auto odd = static_cast<std::size_t>(pairs[i].odd.front());
-    if (opposites.one_stays(i)) {
-      backs[std::max(even, odd)] = true;
-    } else {
-      both[even] = true;
-      both[odd] = true;
-    }
+void remove_back_faces(TriangleMesh& mesh, RepairReport& report) {
+  std::vector<bool> removed(mesh.triangles.size(), false);
+  for (const FaceGroup& group : group_faces(mesh)) {
+    if (!group.has_opposites() || group.has_copies()) continue;
+    removed[static_cast<std::size_t>(std::max(group.even.front(), group.odd.front()))] = true;
   }
-  std::vector<bool> backs_of_rest;  // `backs` without the faces that `both` removes
-  for (std::size_t f = 0; f < both.size(); ++f) {
-    if (!both[f]) backs_of_rest.push_back(backs[f]);
-  }
-  remove_faces(mesh, both, RepairKind::kRemoveOpposites, report);
-  remove_faces(mesh, backs_of_rest, RepairKind::kRemoveBackFaces, report);
+  remove_faces(mesh, removed, RepairKind::kRemoveBackFaces, report);
 }
 
 }  // namespace
@@ -290,7 +171,7 @@ void remove_duplicate_faces(TriangleMesh& mesh, double tolerance, RepairReport& 
   remove_copies(unified, report);
   cancel_mixed_copies(unified, report);
   remove_copies(unified, report);
-  remove_opposites(unified, tolerance, report);
+  remove_back_faces(unified, report);
   if (report.steps.size() == steps) return;
   mesh = std::move(unified);
   report.volume_bound += volume_bound;

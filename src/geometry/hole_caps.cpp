@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/enclosed_solid.h"
 #include "geometry/swept_volume.h"
 
@@ -227,16 +228,43 @@ HoleSize measure_hole(const TriangleMesh& mesh, const Hole& hole, std::int64_t& 
   return size;
 }
 
+bool has_closed_loop(const std::vector<Edge>& edges) {
+  std::vector<std::int32_t> vertices;
+  for (const Edge& edge : edges) vertices.insert(vertices.end(), edge.begin(), edge.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  DisjointSets connected(vertices.size());
+  for (const Edge& edge : edges) {
+    const auto end = [&](std::int32_t v) {
+      const auto found = std::lower_bound(vertices.begin(), vertices.end(), v);
+      return connected.representative(static_cast<std::int32_t>(found - vertices.begin()));
+    };
+    if (end(edge[0]) == end(edge[1])) return true;
+    connected.unite(end(edge[0]), end(edge[1]));
+  }
+  return false;
+}
+
 void cap_small_holes(TriangleMesh& mesh, RepairReport& report) {
-  const std::vector<Edge> boundary = directed_along_trails(mesh_topology(mesh).boundary);
+  const std::vector<Edge> boundary = mesh_topology(mesh).boundary;
   if (boundary.empty()) return;
+  const std::vector<Edge> trails = directed_along_trails(boundary);
+  std::vector<Edge> wanted;
+  for (const auto& [from, to] : boundary) wanted.push_back({to, from});
+  std::sort(wanted.begin(), wanted.end());
   const BoundingBox box = bounding_box(mesh);
   const double most = kNegligibleBulge * (box.max_B - box.min_B).prod();
   RepairStep step;
   step.kind = RepairKind::kCapHoles;
   std::int64_t work_left = kCapWork;
-  for (const Loop& loop : find_loops(boundary)) {
-    if (!std::binary_search(boundary.begin(), boundary.end(), Edge{loop.back(), loop.front()})) continue;
+  for (Loop& loop : find_loops(trails)) {
+    if (!std::binary_search(trails.begin(), trails.end(), Edge{loop.back(), loop.front()})) continue;
+    std::size_t matching = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Edge edge{loop[i], loop[(i + 1) % loop.size()]};
+      if (std::binary_search(wanted.begin(), wanted.end(), edge)) ++matching;
+    }
+    if (2 * matching < loop.size()) std::reverse(loop.begin(), loop.end());
     const std::vector<Triangle> cap = cap_loop(mesh, loop, work_left);
     const double area = area_of(mesh, cap);
     if (!(bulge_of(area) <= most)) continue;

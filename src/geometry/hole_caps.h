@@ -23,6 +23,9 @@ struct HoleSize {
 // work_left: see cap_negligible_holes().
 HoleSize measure_hole(const TriangleMesh& mesh, const Hole& hole, std::int64_t& work_left);
 
+// Whether some of the edges, whatever their directions, form a closed loop.
+bool has_closed_loop(const std::vector<Edge>& edges);
+
 // The work that measuring the holes of a mesh, or capping them, may take; each 10 ns or less.
 inline constexpr std::int64_t kCapWork = 200'000'000;
 

@@ -18,6 +18,7 @@
 #include "geometry/edge_uses.h"
 #include "geometry/exact_predicates.h"
 #include "geometry/flat_sheets.h"
+#include "geometry/hole_caps.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/self_intersection.h"
@@ -206,6 +207,25 @@ std::vector<FaceList> connected_faces(const TriangleMesh& mesh, const std::vecto
   return lists;
 }
 
+// Whether a sheet is a fin rather than a wall with a hole, through which the outside reaches its back. The
+// free edges of a fin run around most of it, from where it is attached; those of a hole close, or cut off a
+// corner.
+bool is_fin(const TriangleMesh& mesh, const FaceList& sheet, const std::vector<Edge>& boundary) {
+  std::vector<Edge> free;
+  double area = 0.0;
+  for (const std::int32_t f : sheet) {
+    const Triangle& face = mesh.triangles[static_cast<std::size_t>(f)];
+    area += area_of_face(mesh, face);
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Edge edge{face[side], face[(side + 1) % 3]};
+      if (std::binary_search(boundary.begin(), boundary.end(), edge)) free.push_back(edge);
+    }
+  }
+  if (has_closed_loop(free)) return false;
+  std::int64_t work_left = kCapWork;
+  return measure_hole(mesh, {free, {}}, work_left).area >= 0.5 * area;
+}
+
 // Returns what keeps the removed faces from being removed: they must lie inside the skin, or outside it if
 // they are sheets.
 std::optional<RepairObstacle> misplaced_face(const TriangleMesh& mesh, const std::vector<Fate>& fates,
@@ -262,8 +282,11 @@ Verdict judge(const TriangleMesh& mesh, double tolerance) {
   const std::vector<FaceList> sheets = connected_faces(mesh, fates, Fate::kSheet);
   const std::vector<bool> left_out =
       sheets_to_leave_out(mesh, sheets, tolerance, std::abs(mass_properties(skin).volume));
-  if (std::find(left_out.begin(), left_out.end(), false) != left_out.end())
-    return {{}, RepairObstacle::kLeak};
+  std::vector<Edge> boundary = mesh_topology(mesh).boundary;
+  std::sort(boundary.begin(), boundary.end());
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    if (!left_out[i] || !is_fin(mesh, sheets[i], boundary)) return {{}, RepairObstacle::kLeak};
+  }
   if (const auto obstacle = misplaced_face(mesh, fates, skin.triangles)) return {{}, *obstacle};
   return verdict;
 }

@@ -1,5 +1,6 @@
 #include "geometry/mesh_repair.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <optional>
@@ -75,6 +76,18 @@ void close(Ladder& ladder, double tolerance) {
   }
 }
 
+// Whether a mesh is not closed only because walls inside it could not be told from the surface. If it was
+// given with both sides of these walls, which cancel, it can stay as it was.
+bool only_walls_are_in_the_way(const TriangleMesh& mesh, const RepairReport& report) {
+  const MeshTopology topology = mesh_topology(mesh);
+  return topology.boundary.empty() && !topology.counts.all_matched() &&
+         std::all_of(report.skipped.begin(), report.skipped.end(), [](const SkippedRepair& skipped) {
+           return skipped.kind == RepairKind::kRemoveInnerFaces &&
+                  (skipped.obstacle == RepairObstacle::kSelfIntersection ||
+                   skipped.obstacle == RepairObstacle::kTooMany);
+         });
+}
+
 void remove_unused_vertices(TriangleMesh& mesh) {
   std::vector<std::int32_t> itself(mesh.vertex_count());
   std::iota(itself.begin(), itself.end(), 0);
@@ -92,10 +105,15 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   if (!(diagonal >= kSmallestDiagonal && diagonal <= kLargestDiagonal)) return {};
   const double tolerance = kRepairTolerance * diagonal;
   Ladder ladder(mesh);
+  const bool was_matched = ladder.is_closed();
+  const TriangleMesh given = mesh;
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { weld_within_tolerance(m, tolerance, report); });
   const auto remove_duplicates = [tolerance](TriangleMesh& m, RepairReport& report) {
     remove_duplicate_faces(m, tolerance, report);
+  };
+  const auto remove_sheets = [tolerance](TriangleMesh& m, RepairReport& report) {
+    remove_flat_sheets(m, tolerance, report);
   };
   // First, since T-junctions cannot be told from edges of faces that are stored twice; and again, since their
   // repair gives faces the same corners.
@@ -113,22 +131,28 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
     open_mesh = mesh;
     open_report = ladder.report();
   }
-  close(ladder, tolerance);
   if (!ladder.is_closed()) {
-    // The outside may reach decks and bulkheads through small holes: close these first, on trial.
+    // The outside may reach decks and bulkheads through small holes: these are closed first, on trial.
     TriangleMesh trial_mesh = mesh;
     Ladder trial(trial_mesh, ladder);
-    trial.report().skipped.clear();
+    trial.run(remove_sheets);
     trial.run(cap_small_holes);
-    if (trial.report().cap_bulge > ladder.report().cap_bulge) close(trial, tolerance);
+    close(trial, tolerance);
     if (trial.solid() && trial.report().cap_bulge <= kNegligibleBulge * trial.solid()->volume) {
       mesh = std::move(trial_mesh);
       ladder.take(trial);
+    } else {
+      close(ladder, tolerance);
     }
   }
   if (may_stay_open && !ladder.is_closed()) {
     mesh = *std::move(open_mesh);
     ladder.report() = *std::move(open_report);
+  }
+  if (ladder.is_closed()) ladder.report().skipped.clear();
+  if (was_matched && only_walls_are_in_the_way(mesh, ladder.report())) {
+    mesh = given;
+    ladder.report() = {{}, std::move(ladder.report().skipped), 0.0, 0.0};
   }
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());

@@ -120,13 +120,28 @@ TEST(DuplicateFaces, RemovesTheWallBetweenTwoSolids) {
       joined(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)), box_mesh(Vec3(1, 0, 0), Vec3(3, 1, 1)));
   const MeshValidation validation = validate(boxes);
   ASSERT_TRUE(validation.mesh);
-  const RepairStep* const step = step_of(validation, RepairKind::kRemoveOpposites);
-  ASSERT_NE(step, nullptr);
-  EXPECT_EQ(step->count, 4);
+  EXPECT_EQ(step_of(validation, RepairKind::kRemoveBackFaces)->count, 2);
+  EXPECT_EQ(step_of(validation, RepairKind::kRemoveInnerFaces)->count, 2);
   EXPECT_EQ(validation.report.balanced_edges, 0);
   EXPECT_EQ(validation.report.components.size(), 1U);
   EXPECT_DOUBLE_EQ(validation.report.volume, 3.0);
-  EXPECT_DOUBLE_EQ(step->before.value().volume, 3.0);
+  EXPECT_DOUBLE_EQ(validation.report.repair.steps.front().before.value().volume, 3.0);
+}
+
+// Where a part crosses the surface, walls cannot be told from it; but both their sides cancel.
+TEST(DuplicateFaces, KeepsBothSidesOfAWallInASurfaceThatIntersectsItself) {
+  TriangleMesh boxes = joined(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1)), box_mesh(Vec3(1, 0, 0), Vec3(3, 1, 1)));
+  // A tetrahedron on an edge of the first box that crosses its side.
+  TriangleMesh crossing = tetrahedron_mesh();
+  crossing.x = {0, 0, 0.3, -0.3};
+  crossing.y = {0, 1, 0.4, 0.4};
+  crossing.z = {1, 1, 0.8, 1.2};
+  boxes = joined(boxes, crossing);
+  const MeshValidation validation = validate(boxes);
+  ASSERT_TRUE(validation.mesh) << validation.refusal->message();
+  EXPECT_TRUE(validation.report.repair.steps.empty());
+  ASSERT_EQ(validation.report.repair.skipped.size(), 1U);
+  EXPECT_EQ(validation.report.repair.skipped[0].obstacle, RepairObstacle::kSelfIntersection);
 }
 
 TEST(DuplicateFaces, RemovesBothSidesOfAFinOnAClosedHull) {
@@ -136,7 +151,8 @@ TEST(DuplicateFaces, RemovesBothSidesOfAFinOnAClosedHull) {
   hull.triangles.push_back({1, 0, tip});
   const MeshValidation validation = validate(hull);
   ASSERT_TRUE(validation.mesh);
-  EXPECT_EQ(step_of(validation, RepairKind::kRemoveOpposites)->count, 2);
+  EXPECT_EQ(step_of(validation, RepairKind::kRemoveBackFaces)->count, 1);
+  EXPECT_EQ(step_of(validation, RepairKind::kRemoveSheets)->count, 1);
   EXPECT_EQ(validation.mesh->mesh.triangles, cube_mesh().triangles);
   EXPECT_EQ(validation.mesh->mesh.vertex_count(), 8U);
 }
@@ -146,7 +162,7 @@ TEST(DuplicateFaces, RemovesBothSidesOfAFlatSheetBesideAHull) {
   sheet.triangles = {{0, 2, 1}, {1, 2, 3}, {0, 1, 2}, {1, 3, 2}};
   const MeshValidation validation = validate(joined(cube_mesh(), sheet));
   ASSERT_TRUE(validation.mesh);
-  EXPECT_EQ(step_of(validation, RepairKind::kRemoveOpposites)->count, 4);
+  EXPECT_EQ(step_of(validation, RepairKind::kRemoveSheets)->count, 2);
   EXPECT_EQ(validation.report.triangles, 12);
   EXPECT_FALSE(validate(sheet).mesh);
 }

@@ -109,6 +109,34 @@ TEST(InnerFaces, RefusesAHullWhoseUpperStoreyIsOpen) {
   EXPECT_EQ(validation.report.repair.skipped[0].obstacle, RepairObstacle::kLeak);
 }
 
+// The deck closes the lower storey; but the roof above it, that has a window, is no fin.
+TEST(InnerFaces, RefusesAFlatWallWithAHole) {
+  for (const bool at_corner : {false, true}) {
+    TriangleMesh hull = cube_mesh();
+    const std::int32_t tip = hull.add_vertex({0, 0, 0.2});
+    const std::vector<std::int32_t> rim{4, 5, 7, 6};  // the top: faces 2 and 3, 4 5 6 and 5 7 6
+    for (std::size_t i = 0; i < 4; ++i) hull.triangles.push_back({rim[i], rim[(i + 1) % 4], tip});
+    if (at_corner) {
+      const std::int32_t a = hull.add_vertex({-0.4, -0.5, 0.5});
+      const std::int32_t b = hull.add_vertex({-0.5, -0.4, 0.5});
+      hull.triangles[2] = {a, 5, 6};
+      hull.triangles.push_back({a, 6, b});
+    } else {
+      std::vector<std::int32_t> window;
+      for (const Vec3& corner : {Vec3(-0.3, -0.3, 0.5), Vec3(-0.1, -0.3, 0.5), Vec3(-0.3, -0.1, 0.5)})
+        window.push_back(hull.add_vertex(corner));
+      hull.triangles[2] = {4, 5, window[0]};
+      for (const Triangle& piece : {Triangle{5, window[1], window[0]},
+                                    {5, 6, window[1]},
+                                    {6, window[2], window[1]},
+                                    {6, 4, window[2]},
+                                    {4, window[0], window[2]}})
+        hull.triangles.push_back(piece);
+    }
+    EXPECT_FALSE(validate(hull).mesh) << to_text(validate(hull).report);
+  }
+}
+
 TEST(InnerFaces, LeavesFacesWhereTheSurfaceIntersectsItself) {
   TriangleMesh hull = two_storeys();
   add_quad(hull, {0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1});

@@ -157,7 +157,7 @@ TEST(MeshValidation, RefusesMeshesWithoutTriangles) {
 TEST(MeshValidation, RefusesMeshesWithoutVolume) {
   TriangleMesh sheet = tetrahedron_mesh();
   sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
-  expect_refused(validate(sheet), "not above the rounding error");
+  expect_refused(validate(sheet), "3 boundary edges in 1 hole");  // stored for both sides
   expect_refused(validate(box_mesh(Vec3(0, 0, 0), Vec3(1, 1, 1e-17))), "not above the rounding error");
   expect_refused(validate(cube_mesh(0.0)), "has no triangles");
 }
@@ -171,7 +171,9 @@ TEST(MeshValidation, RefusesSheetsOfThinFaces) {
     sheet.add_vertex({0.4 + 0.3 * thin, -0.2 + 0.5 * thin, 0.6 - 0.7 * thin});
     sheet.add_vertex({-0.2, 0.6, 0.0});
     sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 0, 2}, {2, 0, 3}, {1, 3, 0}};
-    expect_refused(validate(sheet), "not above the rounding error");
+    expect_refused(validate_mesh({sheet, {}}, "hull.stl", {.repair = RepairPolicy::kNone}),
+                   "not above the rounding error");
+    EXPECT_FALSE(validate(sheet).mesh);
   }
 }
 
