@@ -22,12 +22,20 @@ void append(const HydrostaticMesh& mesh, TriangleMesh& all) {
   }
 }
 
+void append(const RepairReport& repair, RepairReport& all) {
+  all.steps.insert(all.steps.end(), repair.steps.begin(), repair.steps.end());
+  all.skipped.insert(all.skipped.end(), repair.skipped.begin(), repair.skipped.end());
+  all.volume_bound += repair.volume_bound;
+  all.cap_bulge += repair.cap_bulge;
+}
+
 void append(const MeshReport& report, MeshReport& all) {
   all.triangles += report.triangles;
   all.vertices_stored += report.vertices_stored;
   all.vertices_welded += report.vertices_welded;
   if (report.weld != WeldKind::kExact) all.weld = report.weld;
   all.weld_largest_move = std::max(all.weld_largest_move, report.weld_largest_move);
+  append(report.repair, all.repair);
   all.box = {all.box.min_B.cwiseMin(report.box.min_B), all.box.max_B.cwiseMax(report.box.max_B)};
   all.diagonal = all.box.diagonal();
   all.area += report.area;
