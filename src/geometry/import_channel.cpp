@@ -28,6 +28,8 @@ struct Header {
   std::int64_t ignored_primitives = 0;
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
+  std::uint64_t polygons = 0;  // if this is above 0, there are no triangles
+  std::uint64_t corners = 0;   // of all polygons
 };
 static_assert(std::is_trivially_copyable_v<Header>);
 
@@ -164,12 +166,33 @@ class Reader {
   bool timed_out_ = false;
 };
 
-bool indices_in_range(const TriangleMesh& mesh) {
-  const auto vertices = static_cast<std::int64_t>(mesh.vertex_count());
-  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [vertices](const Triangle& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(),
-                       [vertices](std::int32_t i) { return i >= 0 && i < vertices; });
-  });
+// A polygon of n corners becomes n - 2 triangles or more.
+bool counts_in_range(const Header& header, const ImportLimits& limits) {
+  const bool are_triangles =
+      header.polygons == 0 && header.corners == 0 && header.triangles > 0 && header.triangles <= limits.faces;
+  const bool are_polygons = header.polygons > 0 && header.triangles == 0 &&
+                            header.polygons <= header.corners / 3 &&
+                            header.corners - 2 * header.polygons <= limits.faces;
+  return header.vertices <= limits.vertices && (are_triangles || are_polygons) && header.nodes >= 0 &&
+         header.ignored_primitives >= 0;
+}
+
+bool are_valid_ends(const Polygons& polygons) {
+  std::int64_t previous = 0;
+  for (const std::int64_t end : polygons.ends) {
+    if (end < previous || end - previous < 3) return false;
+    previous = end;
+  }
+  return previous == static_cast<std::int64_t>(polygons.corners.size());
+}
+
+bool is_valid(const StoredMesh& stored) {
+  const auto vertices = static_cast<std::int64_t>(stored.mesh.vertex_count());
+  const auto in_range = [vertices](std::int32_t i) { return i >= 0 && i < vertices; };
+  return std::ranges::all_of(
+             stored.mesh.triangles,
+             [&](const Triangle& triangle) { return std::ranges::all_of(triangle, in_range); }) &&
+         std::ranges::all_of(stored.polygons.corners, in_range) && are_valid_ends(stored.polygons);
 }
 
 }  // namespace
@@ -209,7 +232,7 @@ UniqueFd request_file(int socket, std::string_view name) {
   return UniqueFd(descriptor);
 }
 
-bool send_import(int socket, const Expected<ImportedMesh>& result) {
+bool send_import(int socket, const Expected<StoredMesh>& result) {
   std::array<std::string, 4> texts;
   Header header;
   if (result) {
@@ -219,6 +242,8 @@ bool send_import(int socket, const Expected<ImportedMesh>& result) {
     header.ignored_primitives = result->source.ignored_primitives;
     header.vertices = result->mesh.vertex_count();
     header.triangles = result->mesh.triangles.size();
+    header.polygons = result->polygons.size();
+    header.corners = result->polygons.corners.size();
   } else {
     texts = {result.error().actual, result.error().expected, result.error().cause, result.error().hint};
   }
@@ -233,7 +258,8 @@ bool send_import(int socket, const Expected<ImportedMesh>& result) {
   if (!result) return true;
   const TriangleMesh& mesh = result->mesh;
   return send_array(socket, mesh.x) && send_array(socket, mesh.y) && send_array(socket, mesh.z) &&
-         send_array(socket, mesh.triangles);
+         send_array(socket, mesh.triangles) && send_array(socket, result->polygons.corners) &&
+         send_array(socket, result->polygons.ends);
 }
 
 bool send_request(int socket, const ImportRequest& request) {
@@ -242,9 +268,9 @@ bool send_request(int socket, const ImportRequest& request) {
          send_bytes(socket, request.name.data(), request.name.size());
 }
 
-std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int socket, const ImportLimits& limits,
-                                                                   ImportDeadline deadline,
-                                                                   const OpenFile& open) {
+std::variant<ImportFailure, Expected<StoredMesh>> receive_import(int socket, const ImportLimits& limits,
+                                                                 ImportDeadline deadline,
+                                                                 const OpenFile& open) {
   Reader reader(socket, deadline);
   Header header;
   std::array<std::string, 4> texts;
@@ -259,19 +285,18 @@ std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int socket, c
   for (std::string& text : texts)
     text = printable_ascii(std::move(text));  // importers quote bytes of the file
   if (header.kind != Kind::kMesh) return make_error({"", texts[0], texts[1], texts[2], texts[3]});
-  if (header.vertices > limits.vertices || header.triangles > limits.faces || header.triangles == 0 ||
-      header.nodes < 0 || header.ignored_primitives < 0) {
-    return ImportFailure::kBroken;
-  }
-  ImportedMesh imported;
-  imported.source = {texts[0], texts[1], texts[2], header.nodes, header.ignored_primitives};
-  TriangleMesh& mesh = imported.mesh;
+  if (!counts_in_range(header, limits)) return ImportFailure::kBroken;
+  StoredMesh stored;
+  stored.source = {texts[0], texts[1], texts[2], header.nodes, header.ignored_primitives};
+  TriangleMesh& mesh = stored.mesh;
   if (!reader.read_array(mesh.x, header.vertices) || !reader.read_array(mesh.y, header.vertices) ||
-      !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles)) {
+      !reader.read_array(mesh.z, header.vertices) || !reader.read_array(mesh.triangles, header.triangles) ||
+      !reader.read_array(stored.polygons.corners, header.corners) ||
+      !reader.read_array(stored.polygons.ends, header.polygons)) {
     return reader.failure();
   }
-  return indices_in_range(mesh) ? std::variant<ImportFailure, Expected<ImportedMesh>>(std::move(imported))
-                                : ImportFailure::kBroken;
+  return is_valid(stored) ? std::variant<ImportFailure, Expected<StoredMesh>>(std::move(stored))
+                          : ImportFailure::kBroken;
 }
 
 }  // namespace buoyancy

@@ -4,7 +4,8 @@
 //
 // The file being read may corrupt the importer, so this side trusts nothing: it checks counts against the
 // limits before it reserves memory, bounds texts and makes them printable, touches memory only for bytes that
-// have arrived, and checks that vertex indices are in range. The caller checks the coordinates.
+// have arrived, and checks that vertex indices are in range and that polygons have three corners or more. The
+// caller checks the coordinates.
 #pragma once
 
 #include <chrono>
@@ -25,7 +26,7 @@ using ImportDeadline = std::chrono::steady_clock::time_point;
 
 // Both sides are of the same architecture but perhaps of different releases: the importer ends with
 // kOtherProtocolExit if its first argument is not this number, which every change of the format raises.
-inline constexpr const char* kImportProtocol = "1";
+inline constexpr const char* kImportProtocol = "2";
 
 // The importer's descriptor of its socket.
 inline constexpr int kImporterSocket = 3;
@@ -38,6 +39,14 @@ inline constexpr int kOtherProtocolExit = 72;
 // read. Two descriptors of one file may share their offset.
 using OpenFile = std::function<UniqueFd(const std::string&)>;
 
+// A mesh as its file stores it. If all its faces are triangles, they are those of `mesh`; otherwise `mesh`
+// has vertices only, and all faces are polygons.
+struct StoredMesh {
+  TriangleMesh mesh;
+  Polygons polygons;
+  MeshSource source;
+};
+
 struct ImportRequest {
   std::string name;  // the mesh's, in its folder
   MeshFormat format = MeshFormat::kObj;
@@ -48,7 +57,7 @@ struct ImportRequest {
 // request_file() returns no descriptor for a file that may not be read, too.
 std::optional<ImportRequest> receive_request(int socket);
 UniqueFd request_file(int socket, std::string_view name);
-bool send_import(int socket, const Expected<ImportedMesh>& result);
+bool send_import(int socket, const Expected<StoredMesh>& result);
 
 enum class ImportFailure {
   kTimedOut,  // the deadline passed
@@ -62,8 +71,8 @@ std::string printable_ascii(std::string text);
 bool send_request(int socket, const ImportRequest& request);
 // Opens files for the importer and waits for the complete result until the deadline. Throws std::bad_alloc
 // when this process is out of memory.
-std::variant<ImportFailure, Expected<ImportedMesh>> receive_import(int socket, const ImportLimits& limits,
-                                                                   ImportDeadline deadline,
-                                                                   const OpenFile& open);
+std::variant<ImportFailure, Expected<StoredMesh>> receive_import(int socket, const ImportLimits& limits,
+                                                                 ImportDeadline deadline,
+                                                                 const OpenFile& open);
 
 }  // namespace buoyancy

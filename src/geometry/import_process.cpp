@@ -170,8 +170,8 @@ Error named_outside(Error error, const std::string& name) {
 
 }  // namespace
 
-Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
-                                               const ImportLimits& limits) {
+Expected<StoredMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
+                                             const ImportLimits& limits) {
   assert(limits.import_seconds > 0.0);
   constexpr double kMaxSeconds = 1e8;  // three years, within the range of the clock's ticks
   const std::chrono::duration<double> timeout(std::min(limits.import_seconds, kMaxSeconds));
@@ -196,7 +196,7 @@ Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path
   send_request(socket.value(), {path.filename().string(), format, limits});
   auto outcome = receive_import(socket.value(), limits, deadline,
                                 [&folder](const std::string& name) { return folder.open(name); });
-  if (auto* result = std::get_if<Expected<ImportedMesh>>(&outcome)) {
+  if (auto* result = std::get_if<Expected<StoredMesh>>(&outcome)) {
     if (!*result && !folder.outside().empty()) {
       return make_error(named_outside(std::move(result->error()), folder.outside()));
     }

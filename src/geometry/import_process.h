@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "geometry/import_channel.h"
 #include "geometry/mesh_format.h"
 #include "geometry/mesh_import.h"
 
@@ -16,7 +17,7 @@ namespace buoyancy {
 // Returns after at most about limits.import_seconds, when the child has ended. The caller sets
 // Error::subject. The memory limit does not apply in builds with AddressSanitizer or ThreadSanitizer, whose
 // shadow memory counts as address space.
-Expected<ImportedMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
-                                               const ImportLimits& limits);
+Expected<StoredMesh> import_in_child_process(const std::filesystem::path& path, MeshFormat format,
+                                             const ImportLimits& limits);
 
 }  // namespace buoyancy

@@ -8,8 +8,10 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "base/format.h"
+#include "geometry/import_channel.h"
 #include "geometry/import_process.h"
 #include "geometry/mesh_format.h"
 #include "geometry/ply_header.h"
@@ -173,14 +175,31 @@ std::optional<Error> check_coordinates(const TriangleMesh& mesh) {
   return std::nullopt;
 }
 
+// Non-planar polygons give more triangles than the importer has counted.
+std::optional<Error> check_triangles(const TriangleMesh& mesh, const ImportLimits& limits) {
+  if (mesh.triangles.size() <= limits.faces) return std::nullopt;
+  return Error{"", std::to_string(mesh.triangles.size()) + " triangles after splitting polygons",
+               "at most " + std::to_string(limits.faces) + " (limit 'faces')",
+               "the mesh is finer than this service is configured for",
+               "Simplify the mesh, or raise 'faces' under [limits]"};
+}
+
+Expected<ImportedMesh> split_polygons(StoredMesh stored, const ImportLimits& limits) {
+  if (std::optional<Error> error = check_coordinates(stored.mesh)) return make_error(*std::move(error));
+  if (stored.polygons.size() > 0) {
+    stored.source.polygons = triangulate(stored.polygons, stored.mesh);
+    if (std::optional<Error> error = check_triangles(stored.mesh, limits))
+      return make_error(*std::move(error));
+  }
+  return ImportedMesh{std::move(stored.mesh), std::move(stored.source)};
+}
+
 Expected<ImportedMesh> import_without_subject(const fs::path& path, const ImportLimits& limits) {
   const Expected<AcceptedFile> file = check_file(path, limits);
   if (!file) return make_error(file.error());
-  Expected<ImportedMesh> imported = import_in_child_process(path, file->format, limits);
-  if (imported) {
-    if (std::optional<Error> error = check_coordinates(imported->mesh))
-      imported = make_error(*std::move(error));
-  }
+  Expected<StoredMesh> stored = import_in_child_process(path, file->format, limits);
+  Expected<ImportedMesh> imported = stored ? split_polygons(*std::move(stored), limits)
+                                           : Expected<ImportedMesh>(make_error(std::move(stored.error())));
   if (!imported) return make_error(explained_by_content(imported.error(), *file, lowercase_extension(path)));
   return imported;
 }

@@ -2,11 +2,12 @@
 //
 // assimp runs in a program of its own, with limits on memory and time and without rights: a file on which it
 // crashes, hangs or exhausts memory gives an Error that names the file, and a file may refer only to files in
-// its own folder and below. The geometry is not edited: polygons are split into
-// triangles, node transforms are applied in double, and the winding of mirrored nodes is reversed so that
-// normals keep pointing outward; points and lines are left out and counted. Vertices are returned as stored:
-// unwelded, in assimp's single precision. Formats, by extension: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX,
-// 3DS. If a file's content does not match its extension, the error names both.
+// its own folder and below. The geometry is not edited: polygons are read whole and split into triangles that
+// keep every corner (triangulation.h), node transforms are applied in double, and the winding of mirrored
+// nodes is reversed so that normals keep pointing outward; points and lines are left out and counted.
+// Vertices are returned as stored: unwelded, in assimp's single precision. Formats, by extension: OBJ, STL,
+// PLY, OFF, DAE, glTF and GLB, FBX, 3DS. If a file's content does not match its extension, the error names
+// both.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include "base/error.h"
 #include "geometry/triangle_mesh.h"
+#include "geometry/triangulation.h"
 
 namespace buoyancy {
 
@@ -33,6 +35,7 @@ struct MeshSource {
   std::string note;                     // how the importer changed axes and units; may be empty
   std::int64_t nodes = 0;               // nodes with triangles, including instances
   std::int64_t ignored_primitives = 0;  // points and lines
+  PolygonSplit polygons{};              // how polygons were split; in the file's unit until prepare_mesh()
 };
 
 struct ImportedMesh {

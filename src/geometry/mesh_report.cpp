@@ -51,6 +51,14 @@ std::string source_text(const MeshSource& source) {
   return listing.text("");
 }
 
+std::string polygons_text(const PolygonSplit& split) {
+  std::string text = std::to_string(split.polygons) + " of four or more corners, split into triangles";
+  if (split.non_planar == 0) return text;
+  return text + "; " + std::to_string(split.non_planar) + " not planar, up to " +
+         format_number(split.largest_distance, 4) + " m from a plane, between whose extreme splits lie " +
+         format_number(split.split_volume, 4) + " m^3";
+}
+
 std::string vertices_text(const MeshReport& report) {
   std::string text = std::to_string(report.vertices_stored) + " stored, " +
                      std::to_string(report.vertices_welded) + " after welding";
@@ -155,6 +163,7 @@ std::string to_text(const MeshReport& report) {
   if (!source.empty()) lines.add("source", source);
   lines.add("surface", state_text(report));
   lines.add("triangles", std::to_string(report.triangles));
+  if (report.source.polygons.polygons > 0) lines.add("polygons", polygons_text(report.source.polygons));
   lines.add("vertices", vertices_text(report));
   const std::string faces = faces_text(report);
   if (!faces.empty()) lines.add("faces", faces);

@@ -112,7 +112,8 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   MeshReport& report = validation.report;
   report.name = name;
   report.source = imported.source;
-  report.vertices_stored = static_cast<std::int64_t>(imported.mesh.vertex_count());
+  report.vertices_stored =
+      static_cast<std::int64_t>(imported.mesh.vertex_count()) - imported.source.polygons.centers;
   validation.refusal = check_finite(imported.mesh, name);
   if (validation.refusal) return validation;
 

@@ -8,8 +8,10 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,11 +22,13 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <unistd.h>
 
 #include "base/format.h"
+#include "importer/reader_errors.h"
 
 namespace buoyancy {
 namespace {
@@ -152,6 +156,15 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
   }
 }
 
+// The transform of the root without the turn of assimp's 3DS importer, which takes x, y, z to x, z, -y.
+Transform root_transform(const aiScene& scene, MeshFormat format) {
+  Transform root = to_transform(scene.mRootNode->mTransformation);
+  if (format != MeshFormat::k3ds) return root;
+  root.row(1).swap(root.row(2));
+  root.row(1) *= -1.0;
+  return root;
+}
+
 struct PlacedNode {
   const aiNode* node;
   Transform x_BN;  // from the node's frame N to the file's frame
@@ -159,9 +172,9 @@ struct PlacedNode {
 
 // Returns every node with its transform, in the file's order. It does not recurse, since a file may nest
 // nodes to any depth.
-std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
+std::vector<PlacedNode> placed_nodes(const aiScene& scene, const Transform& root) {
   std::vector<PlacedNode> done;
-  std::vector<PlacedNode> open{{scene.mRootNode, to_transform(scene.mRootNode->mTransformation)}};
+  std::vector<PlacedNode> open{{scene.mRootNode, root}};
   while (!open.empty()) {
     const PlacedNode placed = open.back();
     open.pop_back();
@@ -175,20 +188,27 @@ std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
 }
 
 struct FaceCounts {
-  std::uint64_t triangles = 0;
+  std::uint64_t faces = 0;
+  std::uint64_t triangles = 0;  // at least, after splitting
   std::uint64_t points_and_lines = 0;
 };
 
 FaceCounts count_faces(const aiMesh& mesh) {
   FaceCounts counts;
   for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
-    if (mesh.mFaces[f].mNumIndices == 3) ++counts.triangles;
-    if (mesh.mFaces[f].mNumIndices == 1 || mesh.mFaces[f].mNumIndices == 2) ++counts.points_and_lines;
+    const unsigned int corners = mesh.mFaces[f].mNumIndices;
+    if (corners >= 3) {
+      ++counts.faces;
+      counts.triangles += corners - 2;
+    }
+    if (corners == 1 || corners == 2) ++counts.points_and_lines;
   }
   return counts;
 }
 
-void append_instance(const aiMesh& part, const Transform& x_BN, TriangleMesh& mesh) {
+// Appends the faces as triangles, if all of the scene are triangles, or as polygons.
+void append_instance(const aiMesh& part, const Transform& x_BN, bool as_triangles, StoredMesh& stored) {
+  TriangleMesh& mesh = stored.mesh;
   const auto first = static_cast<std::int32_t>(mesh.vertex_count());
   for (unsigned int v = 0; v < part.mNumVertices; ++v) {
     const aiVector3D& vertex = part.mVertices[v];
@@ -196,61 +216,65 @@ void append_instance(const aiMesh& part, const Transform& x_BN, TriangleMesh& me
     mesh.add_vertex(x_BN.leftCols<3>() * vertex_N + x_BN.col(3));
   }
   const bool mirrored = x_BN.leftCols<3>().determinant() < 0.0;
+  std::vector<std::int32_t> corners;
   for (unsigned int f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
-    if (face.mNumIndices != 3) continue;
-    Triangle triangle{};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      triangle[corner] = first + static_cast<std::int32_t>(face.mIndices[corner]);
+    if (face.mNumIndices < 3) continue;
+    corners.clear();
+    for (unsigned int corner = 0; corner < face.mNumIndices; ++corner) {
+      corners.push_back(first + static_cast<std::int32_t>(face.mIndices[corner]));
     }
-    if (mirrored) std::swap(triangle[1], triangle[2]);
-    mesh.triangles.push_back(triangle);
+    if (mirrored) std::reverse(corners.begin() + 1, corners.end());
+    if (as_triangles) {
+      mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+    } else {
+      stored.polygons.add(corners);
+    }
   }
 }
 
-Error over_limit(std::uint64_t actual, const char* what, std::uint64_t limit, const char* key) {
-  return {"", std::to_string(actual) + " " + what,
-          "at most " + std::to_string(limit) + " (limit '" + key + "')",
-          "the mesh is finer than this service is configured for, or one part is instanced very often",
-          std::string("Simplify the mesh, or raise '") + key + "' under [limits]"};
-}
-
 // Meshes that no node refers to are not part of the scene and are left out.
-Expected<ImportedMesh> flatten(const aiScene& scene, const ImportLimits& limits) {
+Expected<StoredMesh> flatten(const aiScene& scene, const ImportRequest& request) {
   std::vector<FaceCounts> counts;
   for (unsigned int m = 0; m < scene.mNumMeshes; ++m) counts.push_back(count_faces(*scene.mMeshes[m]));
 
-  ImportedMesh imported;
-  const std::vector<PlacedNode> nodes = placed_nodes(scene);
+  StoredMesh stored;
+  const std::vector<PlacedNode> nodes = placed_nodes(scene, root_transform(scene, request.format));
   std::uint64_t vertices = 0;
+  std::uint64_t faces = 0;
   std::uint64_t triangles = 0;
   for (const PlacedNode& placed : nodes) {
     std::uint64_t triangles_here = 0;
     for (unsigned int i = 0; i < placed.node->mNumMeshes; ++i) {
       const unsigned int m = placed.node->mMeshes[i];
+      faces += counts[m].faces;
       triangles_here += counts[m].triangles;
       vertices += counts[m].triangles > 0 ? scene.mMeshes[m]->mNumVertices : 0;
-      imported.source.ignored_primitives += static_cast<std::int64_t>(counts[m].points_and_lines);
+      stored.source.ignored_primitives += static_cast<std::int64_t>(counts[m].points_and_lines);
     }
     triangles += triangles_here;
-    if (triangles_here > 0) ++imported.source.nodes;
+    if (triangles_here > 0) ++stored.source.nodes;
   }
-  constexpr std::uint64_t kMaxVertexCount = 2'147'483'647;  // vertex indices have 32 bits
-  const std::uint64_t max_vertices = std::min(limits.vertices, kMaxVertexCount);
-  if (vertices > max_vertices) return make_error(over_limit(vertices, "vertices", max_vertices, "vertices"));
-  if (triangles > limits.faces) return make_error(over_limit(triangles, "triangles", limits.faces, "faces"));
+  if (std::optional<Error> error = check_limits(vertices, triangles, request.limits))
+    return make_error(*std::move(error));
 
-  imported.mesh.x.reserve(vertices);
-  imported.mesh.y.reserve(vertices);
-  imported.mesh.z.reserve(vertices);
-  imported.mesh.triangles.reserve(triangles);
+  stored.mesh.x.reserve(vertices);
+  stored.mesh.y.reserve(vertices);
+  stored.mesh.z.reserve(vertices);
+  const bool as_triangles = faces == triangles;
+  if (as_triangles) {
+    stored.mesh.triangles.reserve(triangles);
+  } else {
+    stored.polygons.corners.reserve(triangles + 2 * faces);
+    stored.polygons.ends.reserve(faces);
+  }
   for (const PlacedNode& placed : nodes) {
     for (unsigned int i = 0; i < placed.node->mNumMeshes; ++i) {
       const unsigned int m = placed.node->mMeshes[i];
-      if (counts[m].triangles > 0) append_instance(*scene.mMeshes[m], placed.x_BN, imported.mesh);
+      if (counts[m].triangles > 0) append_instance(*scene.mMeshes[m], placed.x_BN, as_triangles, stored);
     }
   }
-  return imported;
+  return stored;
 }
 
 // Values of single precision have six significant digits: 0.01, not 0.009999999776.
@@ -263,24 +287,23 @@ void add_note(MeshSource& source, const std::string& text) {
   source.note += text;
 }
 
-// assimp stores the unit and the up axis of a Collada or 3DS file in the root node's transform.
+// assimp stores the unit of a Collada or 3DS file in the root node's transform.
 double root_scale(const aiScene& scene) {
   return to_transform(scene.mRootNode->mTransformation).col(0).norm();
 }
 
-bool states_up_axis(UniqueFd file) {
+// Returns "z", "x", "y" or "" (not stated).
+std::string collada_up_axis(UniqueFd file) {
   std::string head(65'536, '\0');  // <asset> is a Collada file's first element
   OpenedFile(std::move(file)).Read(head.data(), 1, head.size());
-  return head.find("up_axis>") != std::string::npos;
-}
-
-// Returns "z", "x", "y" or "" (not stated). The root's transform shows how the importer rotated the axes.
-std::string collada_up_axis(const aiScene& scene, UniqueFd file) {
-  const Transform root = to_transform(scene.mRootNode->mTransformation);
-  const double scale = root_scale(scene);
-  if (root(1, 2) > 0.5 * scale) return "z";
-  if (root(1, 0) > 0.5 * scale) return "x";
-  return states_up_axis(std::move(file)) ? "y" : "";
+  constexpr std::string_view kTag = "up_axis>";
+  const std::size_t tag = head.find(kTag);
+  if (tag == std::string::npos) return "";
+  const std::size_t value = head.find_first_not_of(" \t\r\n", tag + kTag.size());
+  if (value == std::string::npos) return "";
+  if (head.compare(value, 4, "X_UP") == 0) return "x";
+  if (head.compare(value, 4, "Y_UP") == 0) return "y";
+  return head.compare(value, 4, "Z_UP") == 0 ? "z" : "";
 }
 
 std::string fbx_up_axis(const aiScene& scene) {
@@ -295,21 +318,17 @@ std::string up_axis_of(const aiScene& scene, const ImportRequest& request, const
   const MeshFormat format = request.format;
   std::string axis;
   if (format == MeshFormat::kGltf) return "y";  // by its specification
-  if (format == MeshFormat::kCollada) axis = collada_up_axis(scene, open(request.name));
+  if (format == MeshFormat::kCollada) axis = collada_up_axis(open(request.name));
   if (format == MeshFormat::kFbx) axis = fbx_up_axis(scene);
   return axis.empty() ? "not stated" : axis;
 }
 
 void note_collada(const aiScene& scene, MeshSource& source) {
-  if (source.up_axis == "z" || source.up_axis == "x") {
-    add_note(source, "turned from " + source.up_axis + "-up to y-up by the importer");
-  }
   const double scale = root_scale(scene);
   if (scale != 1.0) add_note(source, "scaled by " + six_digits(scale) + " to metres by the importer");
 }
 
 void note_3ds(const aiScene& scene, MeshSource& source) {
-  add_note(source, "turned from z-up, the format's custom, to y-up by the importer");
   const double scale = root_scale(scene);
   if (std::abs(scale - 1.0) > 1e-6) {
     add_note(source, "scaled by " + six_digits(scale) + ", the file's master scale, by the importer");
@@ -320,9 +339,8 @@ void note_fbx(const aiScene& scene, MeshSource& source) {
   float centimetres = 0.0F;
   if (scene.mMetaData == nullptr || !scene.mMetaData->Get("UnitScaleFactor", centimetres)) return;
   if (!(centimetres > 0.0F) || centimetres == 100.0F) return;
-  add_note(source, "neither scaled nor turned by the importer; by the file one unit is " +
-                       six_digits(centimetres) + " cm, so that scale = " + six_digits(centimetres / 100.0) +
-                       " makes metres of it");
+  add_note(source, "not scaled by the importer; by the file one unit is " + six_digits(centimetres) +
+                       " cm, so that scale = " + six_digits(centimetres / 100.0) + " makes metres of it");
 }
 
 void describe(const aiScene& scene, const ImportRequest& request, const OpenFile& open,
@@ -337,22 +355,6 @@ void describe(const aiScene& scene, const ImportRequest& request, const OpenFile
     add_note(source, "the importer reported " + std::to_string(logged.count) +
                          (logged.count == 1 ? " error: " : " errors, the first: ") + logged.first);
   }
-}
-
-Error unreadable(MeshFormat format, const std::string& message) {
-  const std::string name(to_string(format));
-  return {"", "not readable as " + name + (message.empty() ? "" : " (" + message + ")"),
-          "a complete " + name + " file", "the file is cut short, damaged or of another format",
-          "Open it in a mesh editor and export it again"};
-}
-
-Error no_triangles(std::int64_t points_and_lines) {
-  return {"",
-          points_and_lines == 0
-              ? std::string("no triangles")
-              : "no triangles, but " + std::to_string(points_and_lines) + " points and lines",
-          "a mesh of triangles or polygons", "a point cloud, curves, or an export without its faces",
-          "Export the surface as polygons"};
 }
 
 // Whether assimp's message means that there is no mesh, rather than that the file is unreadable.
@@ -373,15 +375,16 @@ Error no_mesh(MeshFormat format, const std::string& message) {
 
 }  // namespace
 
-Expected<ImportedMesh> read_with_assimp(const ImportRequest& request, const OpenFile& open) {
+Expected<StoredMesh> read_with_assimp(const ImportRequest& request, const OpenFile& open) {
   const MeshFormat format = request.format;
   const ErrorLogging logging;
   Assimp::Importer importer;
   importer.SetIOHandler(new OpenedFiles(open));  // the importer owns it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   keep_only(importer, lowercase_extension(request.name).substr(1));
-  // These steps do not edit geometry; assimp's other steps delete small triangles and move vertices.
-  const aiScene* scene =
-      importer.ReadFile(request.name, aiProcess_Triangulate | aiProcess_ValidateDataStructure);
+  // assimp's steps edit geometry: they delete small triangles, move vertices, and drop triangles of polygons
+  // with collinear corners. This one does not.
+  const aiScene* scene = importer.ReadFile(request.name, aiProcess_ValidateDataStructure);
   if (scene == nullptr) {
     if (const std::exception_ptr& exception = importer.GetException()) {
       try {
@@ -391,7 +394,8 @@ Expected<ImportedMesh> read_with_assimp(const ImportRequest& request, const Open
       } catch (...) {  // NOLINT(bugprone-empty-catch): GetErrorString() returns its text
       }
     }
-    const std::string message = importer.GetErrorString();
+    std::string message = importer.GetErrorString();
+    if (message.empty()) message = logging.errors().first;
     if (message.find("contains no faces") != std::string::npos) return make_error(no_triangles(0));
     return make_error(reports_empty_file(message) ? no_mesh(format, message) : unreadable(format, message));
   }
@@ -402,11 +406,10 @@ Expected<ImportedMesh> read_with_assimp(const ImportRequest& request, const Open
   }
   if (scene->mRootNode == nullptr) return make_error(unreadable(format, "no scene in it"));
 
-  Expected<ImportedMesh> imported = flatten(*scene, request.limits);
-  if (imported && imported->mesh.triangles.empty())
-    return make_error(no_triangles(imported->source.ignored_primitives));
-  if (imported) describe(*scene, request, open, logging.errors(), imported->source);
-  return imported;
+  Expected<StoredMesh> stored = flatten(*scene, request);
+  if (stored && stored->source.nodes == 0) return make_error(no_triangles(stored->source.ignored_primitives));
+  if (stored) describe(*scene, request, open, logging.errors(), stored->source);
+  return stored;
 }
 
 }  // namespace buoyancy

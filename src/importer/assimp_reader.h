@@ -10,9 +10,10 @@
 
 namespace buoyancy {
 
-// Positions have assimp's single precision; node transforms are applied in double. Only the importers of
-// the format are reachable, and only what `open` opens is read: the file itself and those that it refers to.
-// Throws std::bad_alloc when out of memory. The caller sets Error::subject.
-Expected<ImportedMesh> read_with_assimp(const ImportRequest& request, const OpenFile& open);
+// Positions have assimp's single precision; node transforms are applied in double, polygons stay whole, and
+// axes are the file's. Only the importers of the format are reachable, and only what `open` opens is read:
+// the file itself and those that it refers to. Throws std::bad_alloc when out of memory. The caller sets
+// Error::subject.
+Expected<StoredMesh> read_with_assimp(const ImportRequest& request, const OpenFile& open);
 
 }  // namespace buoyancy

@@ -2,13 +2,11 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <future>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,27 +37,22 @@ constexpr bool kShadowMemory = __has_feature(address_sanitizer) || __has_feature
 constexpr bool kShadowMemory = false;
 #endif
 
-// assimp splits a polygon of n corners in about n^2 steps, so that this file keeps it busy for minutes.
+// assimp compares the name of each object with those of all before it, so that this file keeps it busy for
+// minutes.
 std::string endless_obj() {
-  constexpr int kCorners = 32'000;
-  std::ostringstream text;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2.0 * M_PI * i / kCorners;
-    text << "v " << std::cos(angle) << " " << std::sin(angle) << " 0\n";
-  }
-  for (int face = 0; face < 100; ++face) {
-    text << "f";
-    for (int i = 1; i <= kCorners; ++i) text << " " << i;
-    text << "\n";
-  }
-  return text.str();
+  constexpr int kObjects = 500'000;
+  std::string text;
+  for (int i = 0; i < kObjects; ++i) text += "o object_number_" + std::to_string(i) + "\n";
+  return text + tetrahedron::obj();
 }
 
-// A property of an unknown type shifts all following data: assimp 5.2.5 calls abort() on a failed assertion.
-std::string crashing_ply() {
-  std::string content = tetrahedron::binary_ply();
-  content.replace(content.find("float y"), 7, "floa y");
-  return content;
+// assimp calls itself for every level of nodes, and runs out of stack.
+std::string crashing_dae() {
+  constexpr int kLevels = 300'000;
+  std::string nodes;
+  for (int i = 0; i < kLevels; ++i) nodes += "<node>";
+  for (int i = 0; i < kLevels; ++i) nodes += "</node>";
+  return tetrahedron::collada("", nodes);
 }
 
 // Limits for imports that are not timed: the timeout suffices on a busy machine.
@@ -78,7 +71,7 @@ TEST_F(ImportProcess, StopsHangingImporter) {
 }
 
 TEST_F(ImportProcess, SurvivesCrashOfImporter) {
-  EXPECT_TRUE(contains(import_error(directory_.write("crash.ply", crashing_ply()), long_timeout()),
+  EXPECT_TRUE(contains(import_error(directory_.write("crash.dae", crashing_dae()), long_timeout()),
                        kShadowMemory ? "the importer " : "the importer crashed (signal "));
 }
 
@@ -97,7 +90,7 @@ TEST_F(ImportProcess, StopsImporterAtMemoryLimit) {
 
 TEST_F(ImportProcess, SupportsConcurrentImports) {
   const fs::path good = directory_.write("good.off", tetrahedron::off());
-  const fs::path crash = directory_.write("crash.ply", crashing_ply());
+  const fs::path crash = directory_.write("crash.dae", crashing_dae());
   const fs::path endless = directory_.write("endless.obj", endless_obj());
   ImportLimits short_timeout;
   short_timeout.import_seconds = 1.0;
@@ -115,7 +108,7 @@ TEST_F(ImportProcess, WorksIfProgramIgnoresSigchld) {
   ignore.sa_handler = SIG_IGN;  // the kernel then reaps every child at once
   ASSERT_EQ(::sigaction(SIGCHLD, &ignore, &before), 0);
   EXPECT_TRUE(import_mesh(directory_.write("good.off", tetrahedron::off()), long_timeout()));
-  import_error(directory_.write("crash.ply", crashing_ply()), long_timeout());
+  import_error(directory_.write("crash.dae", crashing_dae()), long_timeout());
   ASSERT_EQ(::sigaction(SIGCHLD, &before, nullptr), 0);
 }
 

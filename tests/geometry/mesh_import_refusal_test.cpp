@@ -127,6 +127,19 @@ TEST_F(MeshImportErrors, EnforceVertexAndFaceLimits) {
   EXPECT_TRUE(import_mesh(file, limits));
 }
 
+TEST_F(MeshImportErrors, CountTrianglesOfPolygonsAgainstLimits) {
+  const auto quad = [&](const char* height) {
+    return directory_.write("quad.obj", std::string("v 0 0 0\nv 1 0 0\nv 1 1 ") + height +
+                                            "\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\nf 1 4 5\n");
+  };
+  ImportLimits limits;
+  limits.faces = 2;
+  EXPECT_TRUE(contains(import_error(quad("0"), limits), "3 triangles; expected at most 2 (limit 'faces')"));
+  limits.faces = 3;
+  EXPECT_TRUE(import_mesh(quad("0"), limits));
+  EXPECT_TRUE(contains(import_error(quad("0.5"), limits), "5 triangles after splitting polygons"));
+}
+
 TEST_F(MeshImportErrors, CountInstancesAgainstLimits) {
   directory_.write("tetrahedron.bin", tetrahedron::gltf_buffer());
   const fs::path file =

@@ -10,7 +10,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "geometry/mass_properties.h"
 #include "geometry/mesh_format.h"
+#include "geometry/mesh_validation.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/shared_mesh_files.h"
 
@@ -83,6 +85,66 @@ TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
                                 "f 5 4 3 2 1\nf 1 2 6\nf 2 3 6\nf 3 4 6\nf 4 5 6\nf 5 1 6\n"));
   EXPECT_EQ(found.mesh.triangles.size(), 8U);
   EXPECT_NEAR(volume(found.mesh), 2.5 / 3.0, 1e-12);  // base area 4 - 1.5, height 1
+  EXPECT_EQ(found.source.polygons.polygons, 1);
+  EXPECT_EQ(found.source.polygons.non_planar, 0);
+}
+
+// assimp's own triangulation drops corners of planar polygons that lie on a line.
+TEST_F(MeshImport, KeepsCornersOnEdgesOfPolygons) {
+  // A box of 3 m x 2 m x 1 m, one of whose edges has n corners between its ends.
+  for (int n = 0; n < 40; ++n) {
+    std::string text = "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 0 2 0\nv 0 0 1\nv 3 0 1\nv 3 2 1\nv 0 2 1\n";
+    std::string forward;
+    std::string backward;
+    for (int i = 0; i < n; ++i) {
+      text += "v " + std::to_string(0.07 + 2.9 * i / n) + " 2 0\n";
+      forward += " " + std::to_string(9 + i);
+      backward = " " + std::to_string(9 + i) + backward;
+    }
+    text +=
+        "f 1 4" + forward + " 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 4 1 5 8\nf 8 7 3" + backward + " 4\n";
+    const MeshValidation validation = validate_mesh(imported(directory_.write("box.obj", text)), "box");
+    ASSERT_FALSE(validation.refusal) << n << ": " << validation.refusal->message();
+    EXPECT_TRUE(validation.report.closed());
+    EXPECT_EQ(validation.report.degenerate_faces, 0);
+    EXPECT_EQ(validation.report.vertices_welded, 8 + n);
+    EXPECT_NEAR(validation.report.volume, 6.0, 1e-12);
+  }
+}
+
+TEST_F(MeshImport, SplitsMirroredPolygonsSymmetrically) {
+  // A punt that is symmetric about y = 0, with two non-planar quads that start at different corners.
+  const ImportedMesh found = imported(directory_.write(
+      "punt.obj",
+      "v 0 -1 0\nv 5 -1 0\nv 5 0 -0.3\nv 0 0 -0.7\nv 5 1 0\nv 0 1 0\n"
+      "v 0 -1 1\nv 5 -1 1\nv 5 1 1\nv 0 1 1\n"
+      "f 1 4 3 2\nf 3 4 6 5\nf 7 8 9 10\nf 1 2 8 7\nf 6 10 9 5\nf 2 3 5 9 8\nf 1 7 10 6 4\n"));
+  EXPECT_EQ(found.source.polygons.polygons, 7);
+  EXPECT_EQ(found.source.polygons.non_planar, 2);
+  EXPECT_EQ(found.source.polygons.centers, 2);
+  const MeshValidation validation = validate_mesh(found, "punt");
+  ASSERT_FALSE(validation.refusal);
+  EXPECT_EQ(validation.report.vertices_welded, 12);
+  EXPECT_EQ(mass_properties(validation.mesh->mesh).centroid_B.y(), 0.0);
+  // Between the splits of each quad lies a tetrahedron of 1/6 x 5 m x 1 m x 0.4 m.
+  EXPECT_NEAR(validation.report.source.polygons.split_volume, 2.0 / 3.0, 1e-6);
+  EXPECT_NEAR(validation.report.volume, 5.0 * 2.0 * 1.0 + 5.0 * 0.5, 1e-6);
+}
+
+TEST_F(MeshImport, ReadsPolygonsOfMirroredNodes) {
+  std::string collada = tetrahedron::collada(
+      "",
+      R"(<node><matrix>1 0 0 0 0 -1 0 0 0 0 1 0 0 0 0 1</matrix><instance_geometry url="#mesh"/></node>)");
+  const std::string triangles = "<triangles count=\"4\">";
+  collada.replace(collada.find(triangles), triangles.size(), "<polylist count=\"4\">");
+  collada.replace(collada.find("</triangles>"), 12, "</polylist>");
+  collada.replace(collada.find("<p>"), 3, "<vcount>4 3 3 3</vcount><p>2 ");
+  collada.replace(collada.find("<p>2 0 2 1"), 10, "<p>0 2 2 1");
+  const ImportedMesh found = imported(directory_.write("mirrored.dae", collada));
+  EXPECT_EQ(found.source.polygons.polygons, 1);
+  EXPECT_EQ(found.mesh.triangles.size(), 4U);
+  EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+  EXPECT_EQ(bounding_box(found.mesh).min_B.y(), -1.0);
 }
 
 TEST_F(MeshImport, CountsIgnoredPointsAndLines) {
@@ -140,7 +202,7 @@ TEST_F(MeshImport, IgnoresUnreferencedMeshes) {
   EXPECT_EQ(imported(directory_.write("two.gltf", two_meshes)).mesh.triangles.size(), 4U);
 }
 
-TEST_F(MeshImport, ReportsRotationAndScaleOfColladaFiles) {
+TEST_F(MeshImport, KeepsAxesAndAppliesUnitOfColladaFiles) {
   struct Case {
     const char* asset;
     const char* up_axis;
@@ -150,12 +212,12 @@ TEST_F(MeshImport, ReportsRotationAndScaleOfColladaFiles) {
   const std::vector<Case> cases{
       {"", "not stated", "", {0, 0, 1}},
       {"<up_axis>Y_UP</up_axis>", "y", "", {0, 0, 1}},
-      {"<up_axis>Z_UP</up_axis>", "z", "turned from z-up to y-up by the importer", {0, 1, 0}},
-      {"<up_axis>X_UP</up_axis>", "x", "turned from x-up to y-up by the importer", {0, 0, 1}},
-      {R"(<unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis>)",
+      {"<up_axis>Z_UP</up_axis>", "z", "", {0, 0, 1}},
+      {"<up_axis>X_UP</up_axis>", "x", "", {0, 0, 1}},
+      {R"(<unit name="centimeter" meter="0.01"/><up_axis> Z_UP </up_axis>)",
        "z",
-       "turned from z-up to y-up by the importer; scaled by 0.01 to metres by the importer",
-       {0, 0.01, 0}},
+       "scaled by 0.01 to metres by the importer",
+       {0, 0, 0.01}},
       {R"(<unit name="inch" meter="0.0254"/>)",
        "not stated",
        "scaled by 0.0254 to metres by the importer",
@@ -180,22 +242,22 @@ TEST_F(MeshImport, ReportsUnitOfUnscaledFbxFiles) {
       "inches.fbx", tetrahedron::fbx("\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\",2\n"
                                      "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",2.54\n")));
   EXPECT_EQ(inches.source.up_axis, "z");
-  EXPECT_EQ(
-      inches.source.note,
-      "neither scaled nor turned by the importer; by the file one unit is 2.54 cm, so that scale = 0.0254 "
-      "makes metres of it");
+  EXPECT_EQ(inches.source.note,
+            "not scaled by the importer; by the file one unit is 2.54 cm, so that scale = 0.0254 makes "
+            "metres of it");
   EXPECT_EQ(bounding_box(inches.mesh).max_B, Vec3(1, 1, 1));
   const ImportedMesh metres = imported(directory_.write(
       "metres.fbx", tetrahedron::fbx("\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",100\n")));
   EXPECT_EQ(metres.source.note, "");
 }
 
-TEST_F(MeshImport, ReportsRotationOf3dsFiles) {
+TEST_F(MeshImport, KeepsAxesOf3dsFiles) {
   const ImportedMesh found = imported(directory_.write("hull.3ds", tetrahedron::file_3ds()));
   EXPECT_EQ(found.source.up_axis, "not stated");
-  EXPECT_EQ(found.source.note, "turned from z-up, the format's custom, to y-up by the importer");
-  EXPECT_EQ(bounding_box(found.mesh).max_B.y(), 1.0);
-  EXPECT_EQ(bounding_box(found.mesh).min_B.z(), -1.0);
+  EXPECT_EQ(found.source.note, "");
+  EXPECT_EQ(bounding_box(found.mesh).min_B, Vec3(0, 0, 0));
+  EXPECT_EQ(bounding_box(found.mesh).max_B, Vec3(1, 1, 1));
+  EXPECT_GT(volume(found.mesh), 0.0);
 }
 
 TEST_F(MeshImport, ReportsNoAxesIfFormatHasNone) {
@@ -251,7 +313,10 @@ TEST(MeshImportRealFiles, ReadDuck) {
   if (!fs::exists(duck))
     GTEST_SKIP() << duck << " was not found; install the Debian package assimp-testmodels";
   const ImportedMesh found = imported(duck);
-  EXPECT_EQ(found.mesh.triangles.size(), 4'212U);
+  // 2,106 quads, of which few are planar.
+  EXPECT_EQ(found.source.polygons.polygons, 2'106);
+  EXPECT_EQ(found.mesh.triangles.size(),
+            4'212U + 2U * static_cast<std::size_t>(found.source.polygons.non_planar));
   EXPECT_EQ(found.source.format, "Collada");
   EXPECT_EQ(found.source.up_axis, "y");
   EXPECT_GT(volume(found.mesh), 0.0);
