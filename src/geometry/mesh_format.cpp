@@ -16,7 +16,8 @@ constexpr std::array kAccepted{
     AcceptedExtension{".ply", MeshFormat::kPly},     AcceptedExtension{".off", MeshFormat::kOff},
     AcceptedExtension{".dae", MeshFormat::kCollada}, AcceptedExtension{".gltf", MeshFormat::kGltf},
     AcceptedExtension{".glb", MeshFormat::kGltf},    AcceptedExtension{".fbx", MeshFormat::kFbx},
-    AcceptedExtension{".3ds", MeshFormat::k3ds},
+    AcceptedExtension{".3ds", MeshFormat::k3ds},     AcceptedExtension{".gdf", MeshFormat::kWamit},
+    AcceptedExtension{".dat", MeshFormat::kNemoh},
 };
 
 }  // namespace
@@ -39,6 +40,10 @@ std::string_view to_string(MeshFormat format) {
       return "FBX";
     case MeshFormat::k3ds:
       return "3DS";
+    case MeshFormat::kWamit:
+      return "WAMIT GDF";
+    case MeshFormat::kNemoh:
+      return "Nemoh";
   }
   return "";
 }
@@ -68,6 +73,31 @@ std::string accepted_extensions() {
   return list;
 }
 
+std::string export_hint(std::string_view extension) {
+  struct Hint {
+    std::string_view extension;
+    std::string_view text;
+  };
+  constexpr std::string_view kTessellate =
+      "It holds exact surfaces: tessellate it, in FreeCAD by Mesh > Create Mesh from Shape, or by "
+      "gmsh -2 -format stl";
+  constexpr std::string_view kFreeShip =
+      "It is a model of FREE!ship or DELFTship: tessellate it there, by exporting it as .obj or .stl";
+  constexpr std::string_view k3mf =
+      "The importer's reading of 3MF cannot be trusted: open it in the slicer or mesh editor that wrote it "
+      "and export it as .stl, whose unit is then millimetres (scale = 0.001)";
+  constexpr std::string_view kZae = "It is a zip archive around a .dae file: unzip it and give that file";
+  static constexpr std::array kHints{
+      Hint{".step", kTessellate}, Hint{".stp", kTessellate},  Hint{".iges", kTessellate},
+      Hint{".igs", kTessellate},  Hint{".brep", kTessellate}, Hint{".3dm", kTessellate},
+      Hint{".fbm", kFreeShip},    Hint{".3mf", k3mf},         Hint{".zae", kZae},
+  };
+  for (const Hint& hint : kHints) {
+    if (hint.extension == extension) return std::string(hint.text);
+  }
+  return "Export it as one of these, for instance binary .stl or .ply";
+}
+
 std::optional<SniffedFormat> sniff_format(std::string_view first_bytes) {
   struct Signature {
     std::string_view bytes;
@@ -91,7 +121,7 @@ std::optional<SniffedFormat> sniff_format(std::string_view first_bytes) {
       Signature{"xof ", {"DirectX X", ""}},
       Signature{"ISO-10303-21", {"STEP", ""}},
       Signature{"\x1f\x8b", {"gzip-compressed", ""}},
-      Signature{"version https://git-lfs", {"a Git LFS pointer, not the file itself", ""}},
+      Signature{"version https://git-lfs", {kGitLfsPointer, ""}},
       Signature{"<!DOCTYPE html", {"an HTML page", ""}},
       Signature{"<html", {"an HTML page", ""}},
   };

@@ -11,9 +11,9 @@
 
 namespace buoyancy {
 
-enum class MeshFormat { kObj, kStl, kPly, kOff, kCollada, kGltf, kFbx, k3ds };
+enum class MeshFormat { kObj, kStl, kPly, kOff, kCollada, kGltf, kFbx, k3ds, kWamit, kNemoh };
 
-// "Wavefront OBJ", "STL", "PLY", "OFF", "Collada", "glTF", "FBX", "3DS".
+// "Wavefront OBJ", "STL", "PLY", "OFF", "Collada", "glTF", "FBX", "3DS", "WAMIT GDF", "Nemoh".
 std::string_view to_string(MeshFormat format);
 
 // Returns the format of the path's last extension, ignoring case; nullopt if the extension is not accepted.
@@ -22,14 +22,20 @@ std::optional<MeshFormat> format_from_path(const std::filesystem::path& path);
 // Returns the path's last extension in lower case, with its dot.
 std::string lowercase_extension(const std::filesystem::path& path);
 
-// Returns ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds", for messages.
+// Returns ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds, .gdf, .dat", for messages.
 std::string accepted_extensions();
+
+// How to make an accepted file of one with this extension (in lower case), which is not accepted.
+std::string export_hint(std::string_view extension);
 
 // The format that a file's first bytes indicate.
 struct SniffedFormat {
   std::string_view name;       // "PLY", "a zip archive (3MF, ZAE and others)"
   std::string_view extension;  // ".ply"; empty if the format is not accepted
 };
+
+// The name of a text file that stands for one that has not been fetched.
+inline constexpr std::string_view kGitLfsPointer = "a Git LFS pointer, not the file itself";
 
 // Returns nullopt if the first bytes match no known format.
 std::optional<SniffedFormat> sniff_format(std::string_view first_bytes);

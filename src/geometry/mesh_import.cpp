@@ -109,7 +109,7 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
                        extension.empty() ? "a file name without an extension"
                                          : "format '" + extension + "' is not accepted",
                        "one of " + accepted_extensions(), "the mesh was saved in another format",
-                       "Export it as one of these, for instance binary .stl or .ply"});
+                       export_hint(lowercase_extension(path))});
   }
 
   const std::uintmax_t bytes = fs::file_size(path, error);
@@ -148,6 +148,11 @@ Expected<AcceptedFile> check_file(const fs::path& path, const ImportLimits& limi
 // Replaces cause and hint of the error if the content does not match the extension.
 Error explained_by_content(Error error, const AcceptedFile& file, const std::string& extension) {
   if (!file.content || file.content->extension == extension) return error;
+  if (file.content->name == kGitLfsPointer) {
+    error.cause = "the content is " + std::string(kGitLfsPointer);
+    error.hint = "Run git lfs pull in its repository";
+    return error;
+  }
   error.cause = "the content looks like " + std::string(file.content->name) + ", which does not match " +
                 "the extension " + extension;
   error.hint = file.content->extension.empty()

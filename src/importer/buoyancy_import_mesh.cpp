@@ -13,6 +13,7 @@
 #include "geometry/import_channel.h"
 #include "importer/assimp_reader.h"
 #include "importer/cage.h"
+#include "importer/panel_reader.h"
 
 namespace buoyancy {
 namespace {
@@ -31,7 +32,9 @@ int run() {
   const auto open = [](const std::string& name) { return request_file(kImporterSocket, name); };
   std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
   try {
-    return send_import(kImporterSocket, read_with_assimp(*request, open)) ? EXIT_SUCCESS : EXIT_FAILURE;
+    const Expected<StoredMesh> stored =
+        is_panel_format(request->format) ? read_panels(*request, open) : read_with_assimp(*request, open);
+    return send_import(kImporterSocket, stored) ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::bad_alloc&) {
     return kOutOfMemoryExit;
   } catch (...) {

@@ -203,6 +203,23 @@ Connections:  {
 )";
 }
 
+// A panel mesh for WAMIT: triangles are panels whose last two corners are the same.
+inline std::string gdf(std::string_view header = "1 9.80665 ULEN GRAV\n0 0 ISX ISY\n") {
+  std::string text = "a tetrahedron\n" + std::string(header) + "4\n";
+  for (const auto& face : kFaces) {
+    for (const std::size_t i : {0U, 1U, 2U, 2U}) {
+      for (const float coordinate : kCorners[face[i]]) text += coordinate == 0.0F ? " 0.0" : " 1.0";
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+inline std::string nemoh() {
+  return "2 0\n1 0. 0. 0.\n2 1. 0. 0.\n3 0. 1. 0.\n4 0. 0. 1.\n0 0. 0. 0.\n"
+         "1 3 2 2\n1 2 4 1\n1 4 3 3\n2 3 4 4\n0 0 0 0\n";
+}
+
 }  // namespace tetrahedron
 
 struct NamedContent {
@@ -216,7 +233,8 @@ inline std::vector<NamedContent> tetrahedron_files() {
   return {{"tetrahedron.obj", obj()},      {"ascii.ply", ascii_ply()},   {"binary.ply", binary_ply()},
           {"ascii.stl", ascii_stl()},      {"binary.stl", binary_stl()}, {"tetrahedron.off", off()},
           {"tetrahedron.dae", collada()},  {"tetrahedron.gltf", gltf()}, {"tetrahedron.glb", glb()},
-          {"tetrahedron.3ds", file_3ds()}, {"tetrahedron.fbx", fbx()}};
+          {"tetrahedron.3ds", file_3ds()}, {"tetrahedron.fbx", fbx()},   {"tetrahedron.gdf", gdf()},
+          {"tetrahedron.dat", nemoh()}};
 }
 
 }  // namespace buoyancy

@@ -59,10 +59,41 @@ TEST_F(MeshImportErrors, ListAcceptedExtensions) {
   for (const char* name :
        {"mesh.3mf", "mesh.blend", "mesh.x", "mesh.zae", "mesh.xml", "mesh.stl.gz", "mesh"}) {
     const std::string message = import_error(directory_.write(name, tetrahedron::obj()));
-    EXPECT_TRUE(contains(message, ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds"));
+    EXPECT_TRUE(contains(message, ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds, .gdf, .dat"));
   }
   EXPECT_TRUE(
       contains(import_error(directory_.write("m.3MF", "PK\x03\x04")), "format '.3MF' is not accepted"));
+}
+
+TEST_F(MeshImportErrors, SayHowToConvertFilesOfOtherKinds) {
+  const auto refusal_of = [&](const char* name, const std::string& content = "ISO-10303-21;") {
+    return import_error(directory_.write(name, content));
+  };
+  for (const char* name : {"hull.step", "hull.STP", "hull.igs", "hull.iges"}) {
+    EXPECT_TRUE(contains(refusal_of(name), "tessellate it, in FreeCAD")) << name;
+  }
+  EXPECT_TRUE(contains(refusal_of("hull.fbm"), "model of FREE!ship or DELFTship: tessellate it there"));
+  EXPECT_TRUE(contains(refusal_of("hull.3mf", "PK\x03\x04"), "3MF cannot be trusted: open it in the slicer"));
+  EXPECT_TRUE(contains(refusal_of("hull.zae", "PK\x03\x04"), "unzip it and give that file"));
+}
+
+TEST_F(MeshImportErrors, AdviseToFetchGitLfsPointers) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, '0') + "\nsize 123456\n";
+  for (const std::string extension :
+       {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds", ".gdf", ".dat"}) {
+    const std::string message = import_error(directory_.write("hull" + extension, pointer));
+    EXPECT_TRUE(contains(message, "the content is a Git LFS pointer, not the file itself"));
+    EXPECT_TRUE(contains(message, "Run git lfs pull"));
+    EXPECT_FALSE(contains(message, "xport"));
+  }
+}
+
+TEST_F(MeshImportErrors, QuoteTheImporter) {
+  EXPECT_TRUE(contains(import_error(directory_.write("cut.gltf", "{\"asset\":")),
+                       "not readable as glTF (No suitable reader"));
+  EXPECT_TRUE(contains(import_error(directory_.write("odd.dae", "<?xml version=\"1.0\"?><a></b>")),
+                       "not readable as Collada ("));
 }
 
 // Each format is stored under the extension of each other format.
@@ -71,11 +102,11 @@ TEST_F(MeshImportErrors, NameContentThatDoesNotMatchExtension) {
   for (const auto& [name, content] : tetrahedron_files()) {
     const std::string own = fs::path(name).extension();
     for (const std::string other :
-         {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds"}) {
+         {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds", ".gdf", ".dat"}) {
       if (other == own) continue;
       SCOPED_TRACE(std::string(name).append(" as ").append(other));
       const std::string message = import_error(directory_.write("disguised" + other, content));
-      if (name == "binary.stl") continue;  // its first bytes are free text
+      if (name == "binary.stl" || own == ".gdf" || own == ".dat") continue;  // no first bytes of their own
       EXPECT_TRUE(contains(message, "the content looks like"));
       EXPECT_TRUE(contains(message, "give it the extension " + own));
     }
@@ -85,7 +116,7 @@ TEST_F(MeshImportErrors, NameContentThatDoesNotMatchExtension) {
 TEST_F(MeshImportErrors, DoNotSelectImporterByContent) {
   const std::string x = "xof 0303txt 0032\nMesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; }\n";
   for (const char* name :
-       {"x.obj", "x.stl", "x.ply", "x.off", "x.dae", "x.gltf", "x.glb", "x.fbx", "x.3ds"}) {
+       {"x.obj", "x.stl", "x.ply", "x.off", "x.dae", "x.gltf", "x.glb", "x.fbx", "x.3ds", "x.gdf", "x.dat"}) {
     EXPECT_TRUE(contains(import_error(directory_.write(name, x)), "the content looks like DirectX X"))
         << name;
   }
@@ -193,7 +224,7 @@ TEST_F(MeshImportErrors, NameTriangleStripsInPlyFiles) {
 
 TEST_F(MeshImportErrors, DistinguishBlankFromDamagedFiles) {
   for (const std::string extension :
-       {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds"}) {
+       {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds", ".gdf", ".dat"}) {
     SCOPED_TRACE(extension);
     const auto refusal_of = [&](const std::string& content) {
       const std::string message = import_error(directory_.write("empty" + extension, content));
