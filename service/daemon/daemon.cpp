@@ -21,6 +21,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
+#include "scene/up_axis.h"
 #include "service/daemon/budgets.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
@@ -79,6 +80,10 @@ int poll_for(std::span<pollfd> descriptors, double seconds) {
   const timespec limit{static_cast<time_t>(whole),
                        std::min(std::lround(std::ceil(fraction * kNanosecondsPerSecond)), 999'999'999L)};
   return ::ppoll(descriptors.data(), descriptors.size(), &limit, nullptr);
+}
+
+void log_warnings(const Scene& scene) {
+  for (const Warning& warning : up_axis_warnings(scene)) spdlog::warn("{}", warning.message());
 }
 
 }  // namespace
@@ -191,6 +196,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   if (receives_conditions_) {
     spdlog::info("conditions of compartments and tanks on {}", channels_.condition);
   }
+  log_warnings(*scene_);
   publish_status();
   systemd_.ready();
 
@@ -479,7 +485,10 @@ void Daemon::end_reload() {
     loader_.release(std::exchange(scene_, std::move(**loaded)));
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
-    guard([this] { prepare_for_scene(); });
+    guard([this] {
+      log_warnings(*scene_);
+      prepare_for_scene();
+    });
   }
   if (!loader_.is_loading()) systemd_.ready();
 }

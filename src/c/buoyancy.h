@@ -232,8 +232,9 @@ BUOYANCY_API buoyancy_error buoyancy_default_mesh_options(buoyancy_mesh_options*
 // A mesh that is validated and prepared for queries.
 typedef struct buoyancy_mesh buoyancy_mesh;
 
-// Reads a file: OBJ, STL, PLY, OFF, DAE, glTF, GLB, FBX or 3DS. options: NULL for the defaults. Forks a
-// process that imports it, so that a damaged file cannot damage yours. Errors: FILE, MESH, INVALID_ARGUMENT.
+// Reads a file: OBJ, STL, PLY, OFF, DAE, glTF, GLB, FBX, 3DS, WAMIT .gdf or Nemoh .dat. Coordinates are those
+// of the file, whichever of its axes is up. options: NULL for the defaults. Starts a process that imports it,
+// so that a damaged file cannot damage yours. Errors: FILE, MESH, INVALID_ARGUMENT.
 // Complexity: O(m log m) for m triangles.
 BUOYANCY_API buoyancy_error buoyancy_mesh_load(const char* path, const buoyancy_mesh_options* options,
                                                buoyancy_mesh** mesh);

@@ -37,6 +37,7 @@ struct HoleReport {
 struct MeshReport {
   std::string name;  // file or shape
   MeshSource source;
+  std::optional<Vec3> up_B;  // the file's up axis in the body's frame, unit length; nullopt: not stated
 
   std::int64_t triangles = 0;  // kept; 0 also if a vertex is not finite, since validation then stops
   std::int64_t vertices_stored = 0;

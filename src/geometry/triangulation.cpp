@@ -6,6 +6,8 @@
 #include <limits>
 #include <queue>
 
+#include <Eigen/Geometry>
+
 #include "base/double_double.h"
 #include "geometry/exact_predicates.h"
 

@@ -21,6 +21,7 @@
 #include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy::python {
 namespace {
@@ -89,8 +90,13 @@ std::shared_ptr<const Scene> to_scene(const py::object& scene) {
   if (scene.is_none()) return nullptr;
   if (py::isinstance<SceneObject>(scene)) return instance_of<SceneObject>(scene).scene;
   const std::string path = to_path(scene);
-  const WithoutGil released;
-  return std::make_shared<const Scene>(value_or_throw(Scene::load(path)));
+  std::shared_ptr<const Scene> loaded;
+  {
+    const WithoutGil released;
+    loaded = std::make_shared<const Scene>(value_or_throw(Scene::load(path)));
+  }
+  for (const Warning& warning : up_axis_warnings(*loaded)) warn(warning);
+  return loaded;
 }
 
 std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, const py::object& scene,

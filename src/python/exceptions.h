@@ -33,6 +33,11 @@ class StatusException : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Issues a UserWarning. Needs Python's lock; throws where warnings are errors.
+inline void warn(const Warning& warning) {
+  if (PyErr_WarnEx(PyExc_UserWarning, warning.message().c_str(), 1) < 0) throw py::error_already_set();
+}
+
 template <typename Exception = InputException, typename T>
 T value_or_throw(Expected<T> expected) {
   if (!expected) throw Exception(expected.error());

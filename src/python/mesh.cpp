@@ -18,6 +18,7 @@
 #include "python/result_array.h"
 #include "python/wrenches.h"
 #include "query/query_mesh.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy::python {
 namespace {
@@ -50,6 +51,11 @@ Method to_method(PyObject* object) {
   throw py::value_error("method = \"" + name + "\"; expected one of " + names);
 }
 
+std::shared_ptr<const QueryMesh> load(const std::string& path, const QueryMeshOptions& options) {
+  const WithoutGil released;
+  return value_or_throw(QueryMesh::load(path, options));
+}
+
 std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object& faces, double scale,
                                       const std::string& open, bool count_intersections) {
   QueryMeshOptions options;
@@ -61,8 +67,12 @@ std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object
       throw py::type_error("Mesh() got a path and faces; expected a path, or vertices and faces");
     }
     const std::string path = to_path(source);
-    const WithoutGil released;
-    return std::make_unique<MeshObject>(MeshObject{value_or_throw(QueryMesh::load(path, options))});
+    auto mesh = std::make_unique<MeshObject>(MeshObject{load(path, options)});
+    if (std::optional<Warning> warning = up_axis_warning(mesh->mesh->report(), Vec3::UnitZ())) {
+      warning->subject = path;
+      warn(*warning);
+    }
+    return mesh;
   }
   if (faces.is_none()) {
     throw py::type_error(std::string("Mesh() got a ") + Py_TYPE(source.ptr())->tp_name +
@@ -173,7 +183,9 @@ PyMethodDef hydrostatics_method{"hydrostatics",
 
 constexpr const char* kMeshDoc =
     "A triangle mesh, validated and prepared for queries.\n\n"
-    "Mesh(path, *, scale=1.0, open='refuse') reads a file: OBJ, STL, PLY, OFF, DAE, glTF/GLB, FBX, 3DS.\n"
+    "Mesh(path, *, scale=1.0, open='refuse') reads a file: OBJ, STL, PLY, OFF, DAE, glTF/GLB, FBX, 3DS, "
+    "WAMIT .gdf, Nemoh .dat.\n"
+    "Coordinates are those of the file; if it states an up axis other than z, a UserWarning says so.\n"
     "Mesh(vertices, faces, *, scale=1.0, open='refuse') takes arrays: vertices (N, 3) in metres, and faces "
     "(M, 3), integers\n"
     "that count vertices from 0, anticlockwise seen from outside.\n\n"

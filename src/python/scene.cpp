@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
@@ -15,6 +16,7 @@
 #include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy::python {
 namespace {
@@ -25,22 +27,34 @@ struct BodyObject {
   const Body* body;
 };
 
-std::unique_ptr<SceneObject> prepare(const Expected<SceneDescription>& description) {
+std::shared_ptr<const Scene> prepare(const Expected<SceneDescription>& description) {
   if (!description) throw InputException(description.error());
-  return std::make_unique<SceneObject>(
-      SceneObject{std::make_shared<const Scene>(value_or_throw(Scene::prepare(*description)))});
+  return std::make_shared<const Scene>(value_or_throw(Scene::prepare(*description)));
+}
+
+std::unique_ptr<SceneObject> with_warnings(std::shared_ptr<const Scene> scene) {
+  for (const Warning& warning : up_axis_warnings(*scene)) warn(warning);
+  return std::make_unique<SceneObject>(SceneObject{std::move(scene)});
 }
 
 std::unique_ptr<SceneObject> load(const py::object& file) {
   const std::string path = to_path(file);
-  const WithoutGil released;
-  return prepare(read_scene_file(path));
+  std::shared_ptr<const Scene> scene;
+  {
+    const WithoutGil released;
+    scene = prepare(read_scene_file(path));
+  }
+  return with_warnings(std::move(scene));
 }
 
 std::unique_ptr<SceneObject> parse(const std::string& text, const py::object& directory) {
   const std::string folder = directory.is_none() ? std::string() : to_path(directory);
-  const WithoutGil released;
-  return prepare(parse_scene(text, "Scene.from_text()", folder));
+  std::shared_ptr<const Scene> scene;
+  {
+    const WithoutGil released;
+    scene = prepare(parse_scene(text, "Scene.from_text()", folder));
+  }
+  return with_warnings(std::move(scene));
 }
 
 PyObject* query(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/format.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -64,10 +65,16 @@ bool works_in_waves(Method method) {
 Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
                                     const MeshPlacement& placement, const ValidationOptions& options) {
   place(imported.mesh, placement);
+  imported.source.polygons.largest_distance *= placement.scale;
+  imported.source.polygons.split_volume *= placement.scale * placement.scale * placement.scale;
   MeshValidation validation = validate_mesh(imported, name, options);
   if (!validation.mesh) {
     assert(validation.refusal);
     return make_error(*std::move(validation.refusal));
+  }
+  if (const std::optional<Vec3> up = axis_from_name(validation.report.source.up_axis)) {
+    validation.report.up_B =
+        (placement.orientation_B.normalized() * up->cwiseProduct(placement.scale)).normalized();
   }
   return PreparedMesh{std::move(validation.report),
                       make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, placement.size_factor()),
@@ -84,6 +91,7 @@ PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes) {
                      return std::abs(a.volume) > std::abs(b.volume);
                    });
   report.source = {};
+  report.up_B.reset();
   report.source.format = std::to_string(meshes.size()) + " parts";
   std::string name;
   for (const PreparedMesh* mesh : meshes) name += (name.empty() ? "" : " + ") + mesh->report.name;

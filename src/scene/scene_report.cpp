@@ -20,6 +20,7 @@
 #include "scene/motion_report.h"
 #include "scene/subdivision_report.h"
 #include "scene/subdivision_warnings.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -234,11 +235,18 @@ Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
 }
 
 Json to_json(const MeshSource& source) {
-  return {{"format", source.format},
-          {"up_axis", source.up_axis},
-          {"note", source.note},
-          {"nodes", source.nodes},
-          {"left_out", source.ignored_primitives}};
+  Json json{{"format", source.format},
+            {"up_axis", source.up_axis},
+            {"note", source.note},
+            {"nodes", source.nodes},
+            {"left_out", source.ignored_primitives}};
+  if (const PolygonSplit& split = source.polygons; split.polygons > 0) {
+    json["polygons"] = {{"count", split.polygons},
+                        {"non_planar", split.non_planar},
+                        {"largest_distance", split.largest_distance},
+                        {"split_volume", split.split_volume}};
+  }
+  return json;
 }
 
 Json to_json(const ComponentReport& component) {
@@ -406,6 +414,7 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 std::vector<Warning> scene_warnings(const Scene& scene) {
   std::vector<Warning> warnings = coefficient_warnings(scene);
   std::ranges::move(subdivision_warnings(scene), std::back_inserter(warnings));
+  std::ranges::move(up_axis_warnings(scene), std::back_inserter(warnings));
   if (scene.sea() == nullptr) return warnings;
   std::vector<Warning> of_sea = sea_warnings(scene.name(), *scene.sea(), scene.wave_systems());
   std::ranges::move(warnings, std::back_inserter(of_sea));

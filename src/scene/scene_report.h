@@ -50,6 +50,9 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // `orientation`), "position" and "quaternion_wxyz" (at the place and heading of [body.client]), "draft",
 // "heel" and "trim" [degrees], "metacentric_heights", "energy" [J] and "family", see equilibrium.h.
 //
+// "polygons" of a mesh's "source", only where the file has faces of four or more corners: their "count",
+// "non_planar", "largest_distance" [m] and "split_volume" [m^3], see PolygonSplit.
+//
 // "parts", "compartments" and "tanks" of a body, and "sections" of a mesh, which lists those that use it,
 // exist only where the scene has them.
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
@@ -58,8 +61,8 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 // matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
 // or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the
 // mesh's diagonal; coefficients that are too large for the mesh; parts, compartments and tanks that overlap,
-// and compartments and tanks that stick out of their hull (subdivision_warnings.h). A warning about equal
-// bodies appears once.
+// and compartments and tanks that stick out of their hull (subdivision_warnings.h); meshes that lie on their
+// side (up_axis.h). A warning about equal bodies appears once.
 std::vector<Warning> scene_warnings(const Scene& scene);
 
 }  // namespace buoyancy

@@ -1,5 +1,8 @@
 """Scenes: their bodies, and queries in water that comes in messages."""
+import tempfile
 import unittest
+import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -41,6 +44,40 @@ class QueriesBodies(TestCase):
         self.assertTrue(np.isfinite(scene.hydrostatics(1, (0, 0, 0), (1, 0, 0, 0)).metacentric_heights).all())
         with self.assertRaisesRegex(buoyancy.InputError, 'Add "hydrostatics" to its outputs'):
             scene.hydrostatics(2, (0, 0, 0), (1, 0, 0, 0))
+
+
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>{}</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 2 0 0 0 1 0 0 0 1</float_array>
+<technique_common><accessor source="#a" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+
+class WarnsOfMeshesOnTheirSide(TestCase):
+    def test_of_files_whose_up_axis_is_not_up(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, axis in ("side", "Y_UP"), ("upright", "Z_UP"):
+                Path(folder, name + ".dae").write_text(COLLADA.format(axis))
+                Path(folder, name + ".toml").write_text('[[body]]\nid = 1\nmesh = "{}.dae"\n'.format(name))
+            expected = r"side.*has y up in its file.*orientation = \[0.707106781187, 0.707106781187, 0, 0\]"
+            with self.assertWarnsRegex(UserWarning, expected):
+                mesh = buoyancy.Mesh(Path(folder, "side.dae"))
+            np.testing.assert_array_equal(mesh.bounding_box, [(0, 0, 0), (2, 1, 1)])
+            with self.assertWarnsRegex(UserWarning, expected):
+                buoyancy.Scene(Path(folder, "side.toml"))
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                buoyancy.Mesh(Path(folder, "upright.dae"))
+                buoyancy.Scene(Path(folder, "upright.toml"))
+                with self.assertRaises(UserWarning):
+                    buoyancy.Mesh(Path(folder, "side.dae"))
 
 
 if __name__ == "__main__":

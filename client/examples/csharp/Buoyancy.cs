@@ -151,7 +151,7 @@ namespace Buoyancy
         private readonly MeshHandle handle;
         private readonly Native.MeshInfo info;
 
-        /// <summary>Reads a file: OBJ, STL, PLY, OFF, DAE, glTF, GLB, FBX or 3DS.</summary>
+        /// <summary>Reads a file: OBJ, STL, PLY, OFF, DAE, glTF, GLB, FBX, 3DS, WAMIT .gdf or Nemoh .dat.</summary>
         public BuoyancyMesh(string path, MeshOptions options = null)
         {
             Native.MeshOptions given = Native.Options(options);
