@@ -18,7 +18,7 @@
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
 #include "client/client.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 #include "simulation/run_csv_writer.h"
 #include "simulation/run_summary.h"
 #include "simulation/run_warnings.h"
@@ -193,7 +193,7 @@ int simulate(Arguments arguments) {
     std::fprintf(stderr, "buoyancy-client: warning: %s\n", warning->message().c_str());
     summary.warnings.push_back(std::move(*warning));
   };
-  for (Warning& warning : up_axis_warnings(*scene)) warn(std::move(warning));
+  for (Warning& warning : mesh_warnings(*scene)) warn(std::move(warning));
   warn(std::move(size_warning));
   warn(step_warning(*simulation));
   warn(latency_warning(*simulation, static_cast<double>(options.delay_steps) * options.step));

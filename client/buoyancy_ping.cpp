@@ -8,7 +8,7 @@
 #include "client/ping/ping.h"
 #include "client/ping/ping_options.h"
 #include "client/ping/ping_report.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 
 namespace buoyancy::ping {
 namespace {
@@ -27,7 +27,7 @@ int run(int argc, char** argv) {
   }
   const Expected<Scene> scene = Scene::load(options.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  for (const Warning& warning : up_axis_warnings(*scene)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(*scene)) print_warning(app, warning);
   Expected<ByteVector> sea = sea_to_publish(options, *scene);
   if (!sea) return fail(sea.error(), kUsageError);
 

@@ -10,7 +10,7 @@
 
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_output.h"
 #include "service/hydrostatics/hydrostatics_page.h"
@@ -123,7 +123,7 @@ int run(int argc, char** argv) {
   }
   const Expected<LoadedBody> loaded = load_body(options, *plan);
   if (!loaded) return fail(loaded.error(), kUsageError);
-  for (const Warning& warning : up_axis_warnings(loaded->scene)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(loaded->scene)) print_warning(app, warning);
 
   Expected<Output> output;
   switch (plan->command) {

@@ -9,8 +9,8 @@
 #include "cli/progress_bar.h"
 #include "cli/termination_signals.h"
 #include "recording/file_window.h"
+#include "scene/mesh_warnings.h"
 #include "scene/scene.h"
-#include "scene/up_axis.h"
 #include "service/replay/earlier_conditions.h"
 #include "service/replay/part_output.h"
 #include "service/replay/replay.h"
@@ -177,7 +177,7 @@ int run(int argc, char** argv) {
   const Expected<Scene> scene =
       plan->single_mesh ? Scene::prepare(*plan->single_mesh) : Scene::load(options.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  for (const Warning& warning : up_axis_warnings(*scene)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(*scene)) print_warning(app, warning);
   Expected<ReplayRoutes> routes = plan_routes(options, *scene);
   if (!routes) return fail(routes.error(), kUsageError);
   ReplayChannels& channels = routes->channels;

@@ -14,8 +14,8 @@
 #include "cli/progress_bar.h"
 #include "cli/termination_signals.h"
 #include "recording/record_writer.h"
+#include "scene/mesh_warnings.h"
 #include "scene/scene.h"
-#include "scene/up_axis.h"
 #include "view/common/scene_model.h"
 #include "view/page/page_assets.h"
 #include "view/report/body_list.h"
@@ -107,7 +107,7 @@ int report_main(int argc, char** argv) {
   if (!three) return fail(three.error(), kFailure);
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  for (const Warning& warning : up_axis_warnings(*scene)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(*scene)) print_warning(app, warning);
   Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene,
       {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.loads_channel,

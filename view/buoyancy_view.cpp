@@ -12,8 +12,8 @@
 #include "cli/command_line.h"
 #include "cli/pose_options.h"
 #include "cli/termination_signals.h"
+#include "scene/mesh_warnings.h"
 #include "scene/scene.h"
-#include "scene/up_axis.h"
 #include "transport/lcm_connection.h"
 #include "view/live/live_page.h"
 #include "view/live/live_view.h"
@@ -92,7 +92,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   }
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return report(app, scene.error(), kUsageError);
-  for (const Warning& warning : up_axis_warnings(*scene)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(*scene)) print_warning(app, warning);
   ObservedChannels channels = arguments.channels;
   Expected<PoseChannels> poses =
       resolve_pose_channels(arguments.poses, *scene,

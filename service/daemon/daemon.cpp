@@ -21,7 +21,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 #include "service/daemon/budgets.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
@@ -83,7 +83,7 @@ int poll_for(std::span<pollfd> descriptors, double seconds) {
 }
 
 void log_warnings(const Scene& scene) {
-  for (const Warning& warning : up_axis_warnings(scene)) spdlog::warn("{}", warning.message());
+  for (const Warning& warning : mesh_warnings(scene)) spdlog::warn("{}", warning.message());
 }
 
 }  // namespace

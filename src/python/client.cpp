@@ -21,7 +21,7 @@
 #include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 
 namespace buoyancy::python {
 namespace {
@@ -95,7 +95,7 @@ std::shared_ptr<const Scene> to_scene(const py::object& scene) {
     const WithoutGil released;
     loaded = std::make_shared<const Scene>(value_or_throw(Scene::load(path)));
   }
-  for (const Warning& warning : up_axis_warnings(*loaded)) warn(warning);
+  for (const Warning& warning : mesh_warnings(*loaded)) warn(warning);
   return loaded;
 }
 

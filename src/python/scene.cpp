@@ -16,7 +16,7 @@
 #include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
-#include "scene/up_axis.h"
+#include "scene/mesh_warnings.h"
 
 namespace buoyancy::python {
 namespace {
@@ -33,7 +33,7 @@ std::shared_ptr<const Scene> prepare(const Expected<SceneDescription>& descripti
 }
 
 std::unique_ptr<SceneObject> with_warnings(std::shared_ptr<const Scene> scene) {
-  for (const Warning& warning : up_axis_warnings(*scene)) warn(warning);
+  for (const Warning& warning : mesh_warnings(*scene)) warn(warning);
   return std::make_unique<SceneObject>(SceneObject{std::move(scene)});
 }
 

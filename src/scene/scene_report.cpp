@@ -17,10 +17,10 @@
 #include "scene/body_motions.h"
 #include "scene/coefficient_warnings.h"
 #include "scene/flotation_report.h"
+#include "scene/mesh_warnings.h"
 #include "scene/motion_report.h"
 #include "scene/subdivision_report.h"
 #include "scene/subdivision_warnings.h"
-#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -414,7 +414,7 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
 std::vector<Warning> scene_warnings(const Scene& scene) {
   std::vector<Warning> warnings = coefficient_warnings(scene);
   std::ranges::move(subdivision_warnings(scene), std::back_inserter(warnings));
-  std::ranges::move(up_axis_warnings(scene), std::back_inserter(warnings));
+  std::ranges::move(mesh_warnings(scene), std::back_inserter(warnings));
   if (scene.sea() == nullptr) return warnings;
   std::vector<Warning> of_sea = sea_warnings(scene.name(), *scene.sea(), scene.wave_systems());
   std::ranges::move(warnings, std::back_inserter(of_sea));

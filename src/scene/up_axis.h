@@ -19,8 +19,7 @@ std::optional<Vec3> axis_from_name(const std::string& name);
 std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& up_B);
 
 // Of all meshes of a scene, in the order of its bodies. Up is that of the water, at the orientation with
-// which a body starts ([body.client]). A warning about equal bodies appears once. Programs print these when
-// they load a scene; scene_warnings() has them too.
+// which a body starts ([body.client]). A warning about equal bodies appears once.
 std::vector<Warning> up_axis_warnings(const Scene& scene);
 
 }  // namespace buoyancy

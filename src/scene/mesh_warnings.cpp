@@ -1,0 +1,62 @@
+#include "scene/mesh_warnings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "base/format.h"
+#include "scene/body_warning_list.h"
+#include "scene/up_axis.h"
+
+namespace buoyancy {
+namespace {
+
+// [kg/m^3], of bodies: from foam and thin hulls to tungsten.
+constexpr double kLeastDensity = 20.0;
+constexpr double kGreatestDensity = 20'000.0;
+
+// Factors from the units that mesh files are in, and back.
+constexpr std::array<double, 8> kUnits{0.001,        0.01,         0.0254, 0.3048,
+                                       1.0 / 0.3048, 1.0 / 0.0254, 100.0,  1000.0};
+
+// The unit that makes this density [kg/m^3] most like that of a floating body; 0 if none does.
+double plausible_scale(double density) {
+  constexpr double kUsual = 700.0;
+  const auto of = [density](double scale) { return density / (scale * scale * scale); };
+  const auto distance = [&](double scale) { return std::abs(std::log(of(scale) / kUsual)); };
+  const double best = *std::ranges::min_element(kUnits, {}, distance);
+  return of(best) >= kLeastDensity && of(best) <= kGreatestDensity ? best : 0.0;
+}
+
+void warn_of_unit(const Body& body, BodyWarningList& list) {
+  const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
+  if (!body.dynamics.mass || mesh.is_open() || !(mesh.volume > 0.0)) return;
+  const double density = *body.dynamics.mass / mesh.volume;
+  if (density >= kLeastDensity && density <= kGreatestDensity) return;
+  const double scale = plausible_scale(density);
+  std::string hint = "Correct the mass, or the size of the mesh";
+  if (scale != 0.0) {
+    hint = "With its lengths times " + format_number(scale, 4) + " the density is " +
+           format_number(density / (scale * scale * scale), 3) + " kg/m^3";
+  }
+  list.add(body, {"",
+                  "mass over volume = " + format_number(*body.dynamics.mass, 4) + " kg / " +
+                      format_number(mesh.volume, 4) + " m^3 = " + format_number(density, 3) + " kg/m^3",
+                  format_number(kLeastDensity) + " to " + format_number(kGreatestDensity) + " kg/m^3",
+                  "a mesh in another unit than metres, such as millimetres", std::move(hint)});
+}
+
+}  // namespace
+
+std::vector<Warning> mesh_warnings(const Scene& scene) {
+  std::vector<Warning> warnings = up_axis_warnings(scene);
+  BodyWarningList units;
+  for (const Body& body : scene.bodies()) warn_of_unit(body, units);
+  std::ranges::move(units.with_subjects(scene.name()), std::back_inserter(warnings));
+  return warnings;
+}
+
+}  // namespace buoyancy

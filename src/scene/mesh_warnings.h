@@ -1,0 +1,16 @@
+// Warnings about meshes that a scene may have, but that are likely mistakes: they lie on their side, or are
+// in another unit than metres. Programs print these when they load a scene; scene_warnings() has them too.
+#pragma once
+
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace buoyancy {
+
+// Of up_axis_warnings(), then of bodies whose [body.client] gives a mass that over the volume of the mesh is
+// no density of anything that floats, with the scale that would make it one. A warning about equal bodies
+// appears once.
+std::vector<Warning> mesh_warnings(const Scene& scene);
+
+}  // namespace buoyancy
