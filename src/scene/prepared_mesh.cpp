@@ -65,8 +65,8 @@ bool works_in_waves(Method method) {
 Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
                                     const MeshPlacement& placement, const ValidationOptions& options) {
   place(imported.mesh, placement);
-  imported.source.polygons.largest_distance *= placement.scale;
-  imported.source.polygons.split_volume *= placement.scale * placement.scale * placement.scale;
+  imported.source.polygons.largest_distance *= placement.scale.cwiseAbs().maxCoeff();
+  imported.source.polygons.split_volume *= std::abs(placement.scale.prod());
   MeshValidation validation = validate_mesh(imported, name, options);
   if (!validation.mesh) {
     assert(validation.refusal);
