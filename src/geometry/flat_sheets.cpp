@@ -62,7 +62,7 @@ std::vector<bool> sheets_to_leave_out(const TriangleMesh& mesh, const std::vecto
     boxes.push_back(described.back().box);
   }
   DisjointSets close(sheets.size());
-  std::int64_t pairs_left = 1'000'000 + 100 * static_cast<std::int64_t>(sheets.size());
+  std::int64_t pairs_left = 1'000'000 + 10 * static_cast<std::int64_t>(sheets.size());
   const bool complete =
       AabbTree(std::move(boxes)).for_each_overlapping_pair([&](std::int32_t i, std::int32_t j) {
         close.unite(i, j);
@@ -136,6 +136,9 @@ void remove_flat_sheets(TriangleMesh& mesh, double tolerance, RepairReport& repo
       }
     }
   }
+  std::erase_if(report.skipped, [](const SkippedRepair& earlier) {
+    return earlier.kind == RepairKind::kRemoveSheets;  // of an earlier round
+  });
   if (skipped.faces > 0) report.skipped.push_back(skipped);
   if (step.count == 0) return;
   mesh = std::move(rest);

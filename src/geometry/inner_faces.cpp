@@ -370,6 +370,16 @@ TriangleMesh extract(const TriangleMesh& mesh, const FaceList& faces) {
   return part;
 }
 
+// Adds to the report's entry for this obstacle.
+void add_skipped(RepairObstacle obstacle, std::int64_t faces, RepairReport& report) {
+  for (SkippedRepair& skipped : report.skipped) {
+    if (skipped.kind != RepairKind::kRemoveInnerFaces || skipped.obstacle != obstacle) continue;
+    skipped.faces += faces;
+    return;
+  }
+  report.skipped.push_back({RepairKind::kRemoveInnerFaces, obstacle, faces});
+}
+
 }  // namespace
 
 void remove_inner_faces(TriangleMesh& mesh, double tolerance, RepairReport& report) {
@@ -380,19 +390,17 @@ void remove_inner_faces(TriangleMesh& mesh, double tolerance, RepairReport& repo
     components = faulty_faces(repaired);
 
   std::vector<Fate> fates(repaired.triangles.size(), Fate::kStays);
-  std::vector<SkippedRepair> skipped;
+  std::erase_if(report.skipped, [](const SkippedRepair& earlier) {
+    return earlier.kind == RepairKind::kRemoveInnerFaces;  // of an earlier round
+  });
   for (const FaceList& component : components) {
     const Verdict verdict = judge(extract(repaired, component), tolerance);
     if (verdict.fates.empty()) {
-      skipped.push_back(
-          {RepairKind::kRemoveInnerFaces, verdict.obstacle, static_cast<std::int64_t>(component.size())});
+      add_skipped(verdict.obstacle, static_cast<std::int64_t>(component.size()), report);
       continue;
     }
     for (std::size_t i = 0; i < component.size(); ++i)
       fates[static_cast<std::size_t>(component[i])] = verdict.fates[i];
-  }
-  for (const SkippedRepair& one : skipped) {
-    if (report.skipped.empty() || !(report.skipped.back() == one)) report.skipped.push_back(one);
   }
 
   RepairStep turned;

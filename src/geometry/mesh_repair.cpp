@@ -23,6 +23,9 @@ namespace {
 constexpr double kSmallestDiagonal = 1e-50;  // [m]
 constexpr double kLargestDiagonal = 1e50;    // [m]
 
+// A body of which moved vertices might have changed a larger share of the volume stays as it was given.
+constexpr double kLargestShareMoved = 1e-2;
+
 // Removing a sheet or closing a hole can make it possible to tell inner faces from the surface.
 constexpr int kMaxRounds = 3;
 
@@ -74,6 +77,11 @@ void close(Ladder& ladder, double tolerance) {
     ladder.run(cap_negligible_holes);
     if (ladder.report().steps.size() == steps) break;
   }
+}
+
+// Whether most faces have open edges, so that holes are no faults of a surface.
+bool is_soup(const TriangleMesh& mesh) {
+  return mesh_topology(mesh).boundary.size() > mesh.triangles.size() / 2;
 }
 
 // Whether a mesh is not closed only because walls inside it could not be told from the surface. If it was
@@ -131,7 +139,7 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
     open_mesh = mesh;
     open_report = ladder.report();
   }
-  if (!ladder.is_closed()) {
+  if (!ladder.is_closed() && !is_soup(mesh)) {
     // The outside may reach decks and bulkheads through small holes: these are closed first, on trial.
     TriangleMesh trial_mesh = mesh;
     Ladder trial(trial_mesh, ladder);
@@ -141,15 +149,21 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
     if (trial.solid() && trial.report().cap_bulge <= kNegligibleBulge * trial.solid()->volume) {
       mesh = std::move(trial_mesh);
       ladder.take(trial);
-    } else {
-      close(ladder, tolerance);
     }
   }
+  close(ladder, tolerance);
   if (may_stay_open && !ladder.is_closed()) {
     mesh = *std::move(open_mesh);
     ladder.report() = *std::move(open_report);
   }
-  if (ladder.is_closed()) ladder.report().skipped.clear();
+  if (ladder.is_closed()) {
+    ladder.report().skipped.clear();
+    if (ladder.solid() && !(ladder.report().volume_bound <= kLargestShareMoved * ladder.solid()->volume)) {
+      const auto faces = static_cast<std::int64_t>(given.triangles.size());
+      mesh = given;
+      ladder.report() = {{}, {{RepairKind::kWeld, RepairObstacle::kTooThin, faces}}, 0.0, 0.0};
+    }
+  }
   if (was_matched && only_walls_are_in_the_way(mesh, ladder.report())) {
     mesh = given;
     ladder.report() = {{}, std::move(ladder.report().skipped), 0.0, 0.0};

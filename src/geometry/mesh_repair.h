@@ -10,7 +10,8 @@
 //   hole_caps.h          closes holes whose size is negligible
 // A mesh in which each edge has one face on either side is left as it is. A step whose result is not
 // certain is left out, which the report says. A repaired mesh that is not closed or balanced is refused by
-// validation like any other: no step makes a mesh acceptable by relaxing a check.
+// validation like any other: no step makes a mesh acceptable by relaxing a check. If moved vertices might
+// have changed the volume by more than 1 %, the mesh stays as it was given.
 //
 // Every step is deterministic. Complexity: O(n log n) for n faces; steps that would take longer are cut off.
 #pragma once

@@ -91,6 +91,8 @@ std::string_view to_string(RepairObstacle obstacle) {
       return "the outside reaches the inside, as through a hole";
     case RepairObstacle::kAmbiguous:
       return "sheets that may be parts of a surface";
+    case RepairObstacle::kTooThin:
+      return "too thin: moved vertices might change the volume by more than 1 %";
   }
   return {};
 }

@@ -45,6 +45,7 @@ enum class RepairObstacle {
   kSelfIntersection,  // faces cross or touch each other, so that inside and outside cannot be told apart
   kLeak,              // the outside reaches the inside, as through a hole
   kAmbiguous,         // sheets that might be parts of a surface
+  kTooThin,           // moved vertices might have changed the volume by more than 1 %
 };
 std::string_view to_string(RepairObstacle obstacle);
 

@@ -184,6 +184,22 @@ TEST(MeshRepair, KeepsTrianglesOfACleanMesh) {
   EXPECT_EQ(validation.mesh->mesh.x, rock.x);
 }
 
+// All of it is within the tolerance of a line; what the steps would leave of it is no body.
+TEST(MeshRepair, RefusesAStripThinnerThanTheTolerance) {
+  TriangleMesh strip;
+  constexpr std::int32_t kLength = 1'000;
+  for (std::int32_t i = 0; i <= kLength; ++i) {
+    strip.add_vertex({0.1 * i, 0, 0});
+    strip.add_vertex({0.1 * i, 5e-7 * (i % 3), 1e-6});
+  }
+  for (std::int32_t i = 0; i < 2 * kLength; i += 2) {
+    strip.triangles.push_back({i, i + 2, i + 1});
+    strip.triangles.push_back({i + 1, i + 2, i + 3});
+  }
+  const MeshValidation validation = validate_mesh({strip, {}}, "strip");
+  EXPECT_FALSE(validation.mesh) << to_text(validation.report);
+}
+
 TEST(MeshRepair, IsSwitchedOff) {
   const TriangleMesh cube = with_t_junction(cube_mesh(), 0);
   EXPECT_TRUE(validate_mesh({cube, {}}, "cube").mesh);
