@@ -186,12 +186,14 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   RepairReport report;
   // What one pass leaves is in order, but for a few meshes of which a step leaves work for an earlier one.
   for (int pass = 0; pass < kMaxPasses && needs_repair(mesh_topology(mesh)); ++pass) {
+    const bool was_matched = mesh_topology(mesh).counts.all_matched();
     RepairReport more = repair_once(mesh, may_stay_open);
     report.steps.insert(report.steps.end(), more.steps.begin(), more.steps.end());
     report.volume_bound += more.volume_bound;
     report.cap_bulge += more.cap_bulge;
     report.skipped = std::move(more.skipped);
-    if (more.steps.empty() || !mesh_topology(mesh).counts.all_matched()) break;
+    const bool opened = was_matched && !mesh_topology(mesh).counts.all_matched();
+    if (more.steps.empty() || (opened && !may_stay_open)) break;
   }
   return report;
 }
