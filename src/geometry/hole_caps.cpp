@@ -21,7 +21,7 @@ namespace buoyancy {
 namespace {
 
 constexpr double kHemisphere = 0.376;  // volume of a hemisphere over a disc of area 1: 2 / (3 sqrt(pi))
-constexpr std::size_t kMostForLeastArea = 64;
+constexpr std::size_t kMaxForLeastArea = 64;
 
 using Loop = std::vector<std::int32_t>;  // vertices in the direction of the cap's edges
 
@@ -147,7 +147,7 @@ std::vector<Triangle> cap_loop(const TriangleMesh& mesh, const Loop& loop, std::
   std::vector<Triangle> cap;
   cap.reserve(loop.size() - 2);
   const auto n = static_cast<std::int64_t>(loop.size());
-  if (loop.size() <= kMostForLeastArea && n * n * n / 6 <= work_left) {
+  if (loop.size() <= kMaxForLeastArea && n * n * n / 6 <= work_left) {
     work_left -= n * n * n / 6;
     cap_with_least_area(mesh, loop, cap);
   } else {
