@@ -136,7 +136,7 @@ std::string MotionCase::text() const {
   std::ostringstream text;
   text.precision(6);
   text << (kind == MotionKind::kSubmerged ? "submerged " : "piercing ")
-       << type_name(std::get<Shape>(body.source)) << ", " << to_string(options.integrator) << ", step "
+       << type_name(std::get<Shape>(body.mesh.source)) << ", " << to_string(options.integrator) << ", step "
        << options.step << " s, " << steps << " steps, density " << *body.dynamics.density << " kg/m^3\n"
        << "velocity " << body.dynamics.linear_velocity.transpose() << ", angular velocity "
        << body.dynamics.angular_velocity.transpose() << "\nlinear drag\n"
@@ -161,7 +161,7 @@ MotionCase random_motion_case(std::uint64_t seed, std::int64_t number) {
   const auto [shape, size] = random_shape(random);
   body.id = 1;
   body.name = "body";
-  body.source = shape;
+  body.mesh.source = shape;
   body.reference_B = random_vector(random, size);
   DynamicsSpec& dynamics = body.dynamics;
   dynamics.given = true;
