@@ -14,11 +14,12 @@
 namespace buoyancy {
 namespace {
 
-MeshValidation validate_file(const std::filesystem::path& path, OpenPolicy open = OpenPolicy::kRefuse) {
+MeshValidation validate_file(const std::filesystem::path& path, OpenPolicy open = OpenPolicy::kRefuse,
+                             RepairPolicy repair = RepairPolicy::kAutomatic) {
   const Expected<ImportedMesh> imported = import_mesh(path);
   EXPECT_TRUE(imported) << imported.error().message();
   if (!imported) return {};
-  return validate_mesh(*imported, path.filename().string(), {open, true});
+  return validate_mesh(*imported, path.filename().string(), {open, true, repair});
 }
 
 struct Measured {
@@ -98,7 +99,7 @@ TEST(RealMeshes, RefuseCatamaranAndCountItsFaults) {
   const std::filesystem::path path = shared_mesh_file("wamv_dirty.dae");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << missing_shared_mesh(path);
   for (const OpenPolicy policy : {OpenPolicy::kRefuse, OpenPolicy::kDryBoundary}) {
-    const MeshValidation validation = validate_file(path, policy);
+    const MeshValidation validation = validate_file(path, policy, RepairPolicy::kNone);
     EXPECT_FALSE(validation.mesh);
     ASSERT_TRUE(validation.refusal);
     const MeshReport& report = validation.report;
@@ -118,6 +119,11 @@ TEST(RealMeshes, RefuseCatamaranAndCountItsFaults) {
       EXPECT_NE(validation.refusal->message().find(text), std::string::npos) << validation.refusal->message();
     }
   }
+  const MeshValidation repaired = validate_file(path);
+  ASSERT_TRUE(repaired.refusal);
+  EXPECT_NE(repaired.refusal->message().find("424 boundary edges in 57 holes"), std::string::npos)
+      << repaired.refusal->message();
+  EXPECT_EQ(repaired.report.misoriented_edges + repaired.report.non_manifold_edges, 0);
 }
 
 TEST(RealMeshes, FindFourIntersectingPairsInDuck) {

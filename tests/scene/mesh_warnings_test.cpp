@@ -23,7 +23,7 @@ TEST(MeshWarnings, NoteAMeshInAnotherUnit) {
   ASSERT_EQ(in_millimetres.size(), 1U);
   EXPECT_EQ(
       in_millimetres[0].message(),
-      "test scene: body 1: mass over volume = 13 kg / 31250000 m^3 = 4.16e-07 kg/m^3; expected 20 to 20000 "
+      "test scene: body 1: mass over volume = 13 kg / 3.125e+07 m^3 = 4.16e-07 kg/m^3; expected 20 to 20000 "
       "kg/m^3. Likely cause: a mesh in another unit than metres, such as millimetres. With its lengths times "
       "0.001 the density is 416 kg/m^3.");
   const std::vector<Warning> in_inches = warnings_of("[20, 10, 10]", "mass = 26");

@@ -48,8 +48,8 @@ TEST_F(UpAxis, IsNotedWhereItIsNotTheScenes) {
 }
 
 TEST_F(UpAxis, IsComparedWithUpOfTheWater) {
-  EXPECT_TRUE(warnings_of(body("y_up.dae"), "[water]\nup = [0, 1, 0]\n").empty());
-  const std::vector<Warning> down = warnings_of(body("z_up.dae"), "[water]\nup = [0, 0, -1]\n");
+  EXPECT_TRUE(warnings_of(body("y_up.dae"), "[world]\nup = [0, 1, 0]\n").empty());
+  const std::vector<Warning> down = warnings_of(body("z_up.dae"), "[world]\nup = [0, 0, -1]\n");
   ASSERT_EQ(down.size(), 1U);
   EXPECT_EQ(down[0].hint, "orientation = [0, 1, 0, 0] (w, x, y, z) of the mesh stands it up");
 }
@@ -58,7 +58,7 @@ TEST_F(UpAxis, IsComparedWithUpOfTheWater) {
 TEST_F(UpAxis, IsUpAgainWithTheStatedOrientation) {
   for (const std::string mesh : {"x_up.dae", "y_up.dae", "z_up.dae"}) {
     for (const std::string up : {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, -1]", "[0.6, 0, -0.8]"}) {
-      const std::string water = "[water]\nup = " + up + "\n";
+      const std::string water = "[world]\nup = " + up + "\n";
       const std::vector<Warning> warnings = warnings_of(body(mesh), water);
       if (warnings.empty()) continue;
       const std::string orientation = warnings[0].hint.substr(0, warnings[0].hint.find(']') + 1);
