@@ -15,8 +15,8 @@ namespace buoyancy {
 namespace {
 
 // [kg/m^3], of bodies: from foam and thin hulls to tungsten.
-constexpr double kLeastDensity = 20.0;
-constexpr double kGreatestDensity = 20'000.0;
+constexpr double kMinDensity = 20.0;
+constexpr double kMaxDensity = 20'000.0;
 
 // Factors from the units that mesh files are in, and back.
 constexpr std::array<double, 8> kUnits{0.001,        0.01,         0.0254, 0.3048,
@@ -28,14 +28,14 @@ double plausible_scale(double density) {
   const auto of = [density](double scale) { return density / (scale * scale * scale); };
   const auto distance = [&](double scale) { return std::abs(std::log(of(scale) / kUsual)); };
   const double best = *std::ranges::min_element(kUnits, {}, distance);
-  return of(best) >= kLeastDensity && of(best) <= kGreatestDensity ? best : 0.0;
+  return of(best) >= kMinDensity && of(best) <= kMaxDensity ? best : 0.0;
 }
 
 void warn_of_unit(const Body& body, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   if (!body.dynamics.mass || mesh.is_open() || !(mesh.volume > 0.0)) return;
   const double density = *body.dynamics.mass / mesh.volume;
-  if (density >= kLeastDensity && density <= kGreatestDensity) return;
+  if (density >= kMinDensity && density <= kMaxDensity) return;
   const double scale = plausible_scale(density);
   std::string hint = "Correct the mass, or the size of the mesh";
   if (scale != 0.0) {
@@ -45,7 +45,7 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
   list.add(body, {"",
                   "mass over volume = " + format_number(*body.dynamics.mass, 4) + " kg / " +
                       format_number(mesh.volume, 4) + " m^3 = " + format_number(density, 3) + " kg/m^3",
-                  format_number(kLeastDensity) + " to " + format_number(kGreatestDensity) + " kg/m^3",
+                  format_number(kMinDensity) + " to " + format_number(kMaxDensity) + " kg/m^3",
                   "a mesh in another unit than metres, such as millimetres", std::move(hint)});
 }
 

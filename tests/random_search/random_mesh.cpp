@@ -162,7 +162,7 @@ RandomMesh drawn(RandomPoses& random) {
                 single_precision ? ", in float32" : "");
   ImportedMesh imported;
   imported.mesh = std::move(mesh);
-  MeshValidation validation = validate_mesh(imported, kind);
+  MeshValidation validation = validate_mesh(imported, kind, {.repair = RepairPolicy::kNone});
   RandomMesh result;
   result.kind = kind + rest.data();
   if (validation.mesh) result.validated = std::move(*validation.mesh);

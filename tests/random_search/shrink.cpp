@@ -104,7 +104,7 @@ std::string numbers(const Vec3& v) {
 bool fails(const TriangleMesh& mesh, const SearchPose& requested, const EvaluateAll& evaluate) {
   ImportedMesh imported;
   imported.mesh = mesh;
-  const MeshValidation validation = validate_mesh(imported, "case");
+  const MeshValidation validation = validate_mesh(imported, "case", {.repair = RepairPolicy::kNone});
   if (!validation.mesh) return false;
   const HydrostaticMesh prepared = make_hydrostatic_mesh(*validation.mesh);
   return !check_results(validation.mesh->mesh, prepared, requested, evaluate(prepared, requested))

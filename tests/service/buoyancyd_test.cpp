@@ -172,7 +172,7 @@ TEST_P(LogLevel, LogsItsOwnAndMoreSevereLines) {
   EXPECT_EQ(child.wait(kWaitTimeout), 0);
   const std::string log = child.standard_error();
   EXPECT_EQ(levels_in(log), expected) << log;
-  EXPECT_EQ(log.find("session 7 starts with seq 3") != log.npos, expected.contains("debug")) << log;
+  EXPECT_EQ(log.find("session 7 with seq 3") != log.npos, expected.contains("debug")) << log;
   EXPECT_EQ(log.find("ready:") != log.npos, expected.contains("info")) << log;
   EXPECT_EQ(log.find("messages rejected") != log.npos, expected.contains("warning")) << log;
   EXPECT_EQ(log.find("reload failed") != log.npos, expected.contains("error")) << log;
