@@ -237,7 +237,8 @@ std::vector<EdgeInsertion> useful_insertions(const TriangleMesh& mesh, const Tri
   const EdgeUses after = collect_edge_uses(split);
   std::vector<EdgeInsertion> useful;
   for (std::size_t i = 0; i < insertions.size(); ++i) {
-    const auto& [edge, along, vertex, distance] = insertions[i];
+    const Edge& edge = insertions[i].edge;
+    const std::int32_t vertex = insertions[i].vertex;
     const bool first = i == 0 || insertions[i - 1].edge != edge;
     const bool last = i + 1 == insertions.size() || insertions[i + 1].edge != edge;
     const std::size_t uses = count_uses(before, edge[0], edge[1]);

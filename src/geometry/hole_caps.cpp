@@ -250,6 +250,7 @@ void cap_small_holes(TriangleMesh& mesh, RepairReport& report) {
   if (boundary.empty()) return;
   const std::vector<Edge> trails = directed_along_trails(boundary);
   std::vector<Edge> wanted;
+  wanted.reserve(boundary.size());
   for (const auto& [from, to] : boundary) wanted.push_back({to, from});
   std::sort(wanted.begin(), wanted.end());
   const BoundingBox box = bounding_box(mesh);
