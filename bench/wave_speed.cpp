@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/format.h"
 #include "benchmark_meshes.h"
 #include "cli/tool_command_line.h"
 #include "clock_cost.h"
@@ -184,9 +185,14 @@ class WaveReference {
     const BruteForceLoad load = brute_force_load(model_.mesh.surface, model_.mesh.center_B, poses[0].snapshot,
                                                  poses[0].pose, Vec3::Zero(), brute_force_cuts_);
     const double difference = (load.force - truth[0].load.force).norm();
-    if (difference > load.force_error + truth[0].force_error) {
+    // Both errors are differences of two resolutions, of which either may happen to be small where the
+    // waterline crosses a piece of the surface.
+    constexpr double kScatter = 10.0;
+    if (difference > kScatter * (load.force_error + truth[0].force_error)) {
       fail("the reference's force on the " + model_.name + " differs from that of brute force by " +
-           std::to_string(difference) + " m^3 (over rho g)");
+           format_number(difference, 3) +
+           " m^3 (over rho g); estimated errors: " + format_number(truth[0].force_error, 3) +
+           " m^3 of the reference, " + format_number(load.force_error, 3) + " m^3 of brute force");
     }
   }
 
