@@ -1,13 +1,11 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
-#include <cerrno>
-#include <cstdio>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/text_file.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
 #include "scene/mesh_warnings.h"
@@ -28,16 +26,6 @@ struct Output {
 
 std::string text_of(const nlohmann::ordered_json& json) {
   return json.dump(2) + "\n";
-}
-
-Expected<void> write_file(const std::filesystem::path& path, const std::string& text) {
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  bool written = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const int write_error = errno;
-  if (file != nullptr) written = std::fclose(file) == 0 && written;
-  if (written) return {};
-  return make_error({path.string(), std::generic_category().message(file == nullptr ? write_error : errno),
-                     "a file that can be written", "", ""});
 }
 
 PageSubject page_subject(const LoadedBody& loaded, const HydrostaticsPlan& plan) {

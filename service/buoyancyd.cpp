@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -11,6 +12,7 @@
 #include "cli/signal_fd.h"
 #include "cli/termination_signals.h"
 #include "scene/scene.h"
+#include "scene/scene_report.h"
 #include "service/daemon/daemon.h"
 #include "service/daemon/daemon_options.h"
 #include "service/daemon/message_sizes.h"
@@ -41,6 +43,18 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseCh
   return exit_code;
 }
 
+// A scene that cannot be used: each mesh that is refused gets its report.
+int report_failure(const CLI::App& app, const DaemonOptions& options, const Error& error,
+                   const std::vector<RefusedMesh>& refused) {
+  if (refused.empty()) {
+    print_error(app, error);
+    return kUsageError;
+  }
+  print_output(app, options.json ? refused_meshes_json(refused) : refused_meshes_text(refused));
+  for (const RefusedMesh& mesh : refused) print_error(app, mesh.error);
+  return kUsageError;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("", "buoyancyd");
   DaemonOptions options;
@@ -54,11 +68,10 @@ int run(int argc, char** argv) {
 
   std::optional<SignalFd> reload;
   if (!options.check) reload.emplace(std::initializer_list<int>{SIGHUP});  // kept pending during the load
-  Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check});
-  if (!scene) {
-    print_error(app, scene.error());
-    return kUsageError;
-  }
+  std::vector<RefusedMesh> refused;
+  Expected<Scene> scene = Scene::load(options.scene, {.count_intersecting_pairs = options.check,
+                                                      .refused = options.check ? &refused : nullptr});
+  if (!scene) return report_failure(app, options, scene.error(), refused);
   const ChannelNames& channels = options.channels;
   Expected<PoseChannels> poses =
       resolve_pose_channels(options.poses, *scene,

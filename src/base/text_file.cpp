@@ -1,5 +1,7 @@
 #include "base/text_file.h"
 
+#include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -33,6 +35,16 @@ Expected<std::string> read_text_file(const std::filesystem::path& path, const st
     return make_error({name, "cannot be read", what, "no permission to read it", {}});
   }
   return text.str();
+}
+
+Expected<void> write_file(const std::filesystem::path& path, const std::string& bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;
+  if (file != nullptr) written = std::fclose(file) == 0 && written;
+  if (written) return {};
+  return make_error({path.string(), std::generic_category().message(file == nullptr ? write_error : errno),
+                     "a file that can be written", "", ""});
 }
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// Reads small text files that a user names.
+// Reads and writes small files that a user names.
 #pragma once
 
 #include <cstdint>
@@ -13,5 +13,8 @@ namespace buoyancy {
 // Errors: no such file, not a regular file, more than max_bytes, not readable.
 Expected<std::string> read_text_file(const std::filesystem::path& path, const std::string& what,
                                      std::uintmax_t max_bytes);
+
+// Writes a file, or replaces it. Errors: it cannot be written, or the disk is full.
+Expected<void> write_file(const std::filesystem::path& path, const std::string& bytes);
 
 }  // namespace buoyancy

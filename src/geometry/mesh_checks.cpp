@@ -36,7 +36,15 @@ std::string holes_of(const MeshReport& report) {
          "between " + point(largest.box.min_B) + " and " + point(largest.box.max_B) + ")";
 }
 
+bool has_only_boundary(const MeshTopology& topology) {
+  return topology.non_manifold.empty() && topology.misoriented.empty();
+}
+
 }  // namespace
+
+bool edges_are_usable(const MeshTopology& topology, OpenPolicy open) {
+  return topology.counts.all_matched() || (has_only_boundary(topology) && open == OpenPolicy::kDryBoundary);
+}
 
 std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& name) {
   for (const Triangle& face : mesh.triangles) {
@@ -78,9 +86,9 @@ std::optional<Error> check_size(const MeshReport& report) {
 }
 
 std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
-                                 const MeshReport& report, OpenPolicy open) {
-  const bool only_open = topology.non_manifold.empty() && topology.misoriented.empty();
-  if (topology.counts.all_matched() || (only_open && open == OpenPolicy::kDryBoundary)) return std::nullopt;
+                                 const MeshReport& report, const ValidationOptions& options) {
+  if (edges_are_usable(topology, options.open)) return std::nullopt;
+  const bool only_open = has_only_boundary(topology);
 
   std::string actual = "has ";
   const auto add = [&actual](const std::string& fault) { actual += (actual == "has " ? "" : "; ") + fault; };
@@ -94,19 +102,24 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
   if (report.duplicate_faces > 0) add(pluralize(report.duplicate_faces, "duplicate face", "duplicate faces"));
 
   std::string cause;
-  std::string hint;
+  std::string hint = closing_advice(report);
   if (only_open) {
     cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
-    hint =
-        "Close the holes in a mesh editor; or, if they stay above the water, set open = \"dry_boundary\", in "
-        "a scene file for this body (with buoyancy-replay --mesh: --open dry_boundary)";
+    if (hint.empty()) hint = "Close the holes in a mesh editor";
+    if (options.may_be_open) {
+      hint +=
+          "; or, if they stay above the water, set open = \"dry_boundary\", in a scene file for this body (with "
+          "buoyancy-replay --mesh: --open dry_boundary)";
+    }
   } else {
     cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"
                                        : "inner walls, or faces of the wrong winding";
-    hint = "In a mesh editor remove duplicate and inner faces, make the winding consistent";
+    if (!hint.empty()) hint += ". Or: ";
+    hint += hint.empty() ? "In a mesh" : "in a mesh";
+    hint += " editor remove duplicate and inner faces, make the winding consistent";
     hint += topology.boundary.empty() ? "" : ", and close the holes";
     hint += "; or replace the mesh by a closed hull around it";
-    if (open == OpenPolicy::kDryBoundary) hint += ". dry_boundary accepts holes only";
+    if (options.open == OpenPolicy::kDryBoundary) hint += ". dry_boundary accepts holes only";
   }
   return Error{report.name, actual,
                "a closed surface: each edge used as often in one direction as in the other", cause, hint};

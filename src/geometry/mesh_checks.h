@@ -20,9 +20,12 @@ std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& n
 // Requires faces whose extent, area and volume are finite and whose extent and area do not underflow to 0.
 std::optional<Error> check_size(const MeshReport& report);
 
-// Requires a matching edge for every edge, except on a boundary that `open` accepts.
+// Whether every edge is matched, but for a boundary that `open` accepts.
+bool edges_are_usable(const MeshTopology& topology, OpenPolicy open);
+
+// Requires edges_are_usable().
 std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
-                                 const MeshReport& report, OpenPolicy open);
+                                 const MeshReport& report, const ValidationOptions& options);
 
 // For a mesh of which orient_closed() could not tell which components lie inside which others.
 Error too_many_overlaps(const MeshReport& report);

@@ -81,11 +81,6 @@ void close(Ladder& ladder, double tolerance) {
   }
 }
 
-// Whether most faces have open edges, so that holes are no faults of a surface.
-bool is_soup(const TriangleMesh& mesh) {
-  return mesh_topology(mesh).boundary.size() > mesh.triangles.size() / 2;
-}
-
 // Whether a mesh is not closed only because walls inside it could not be told from the surface. If it was
 // given with both sides of these walls, which cancel, it can stay as it was.
 bool only_walls_are_in_the_way(const TriangleMesh& mesh, const RepairReport& report) {
@@ -136,7 +131,7 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
     open_mesh = mesh;
     open_report = ladder.report();
   }
-  if (!ladder.is_closed() && !is_soup(mesh)) {
+  if (!ladder.is_closed() && !is_soup(mesh, mesh_topology(mesh))) {
     // The outside may reach decks and bulkheads through small holes: these are closed first, on trial.
     TriangleMesh trial_mesh = mesh;
     Ladder trial(trial_mesh, ladder);
@@ -178,6 +173,10 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
 
 }  // namespace
 
+bool is_soup(const TriangleMesh& mesh, const MeshTopology& topology) {
+  return topology.boundary.size() > mesh.triangles.size() / 2;
+}
+
 bool needs_repair(const MeshTopology& topology) {
   return !topology.counts.all_matched() || topology.counts.balanced > 0 || topology.duplicate_faces > 0;
 }
@@ -187,11 +186,9 @@ RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   // What one pass leaves is in order, but for a few meshes of which a step leaves work for an earlier one.
   for (int pass = 0; pass < kMaxPasses && needs_repair(mesh_topology(mesh)); ++pass) {
     const bool was_matched = mesh_topology(mesh).counts.all_matched();
-    RepairReport more = repair_once(mesh, may_stay_open);
-    report.steps.insert(report.steps.end(), more.steps.begin(), more.steps.end());
-    report.volume_bound += more.volume_bound;
-    report.cap_bulge += more.cap_bulge;
-    report.skipped = std::move(more.skipped);
+    const RepairReport more = repair_once(mesh, may_stay_open);
+    report.skipped.clear();
+    append(more, report);
     const bool opened = was_matched && !mesh_topology(mesh).counts.all_matched();
     if (more.steps.empty() || (opened && !may_stay_open)) break;
   }

@@ -29,6 +29,9 @@ inline constexpr double kRepairTolerance = 1e-6;  // relative to the bounding-bo
 // Whether the automatic repair may improve a mesh with this topology.
 bool needs_repair(const MeshTopology& topology);
 
+// Whether most faces have open edges, so that holes are no faults of a surface.
+bool is_soup(const TriangleMesh& mesh, const MeshTopology& topology);
+
 // Repairs the mesh. may_stay_open: if the mesh is not closed or balanced in the end, its inner faces, sheets
 // and holes stay. Requires an exactly welded, finite mesh.
 RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open);

@@ -1,6 +1,7 @@
 #include "geometry/mesh_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "base/format.h"
@@ -155,7 +156,55 @@ void add_holes(const MeshReport& report, AlignedLines& lines) {
   }
 }
 
+// Rounded up to two digits: what a limit has to be at least.
+std::string at_least(double share) {
+  const double unit = std::pow(10.0, std::floor(std::log10(share)) - 1.0);
+  return format_number(std::ceil(share / unit * (1.0 - 1e-9)) * unit, 3);
+}
+
+// The axis across which the mesh looks like half a body, because much of its largest rim lies in a coordinate
+// plane at which it ends; empty if there is none. Ships are symmetric in y more often than in x.
+std::string half_body_axis(const MeshReport& report) {
+  constexpr double kMinShare = 0.3;
+  const double tolerance = 1e-6 * report.diagonal;
+  const HoleReport& rim = report.holes.front();
+  std::string axis;
+  double longest = kMinShare * rim.perimeter;
+  for (const Eigen::Index i : {1, 0, 2}) {
+    const bool ends = report.box.min_B[i] >= -tolerance || report.box.max_B[i] <= tolerance;
+    if (!ends || rim.length_in_planes[i] <= longest * (1.0 + 1e-9)) continue;
+    longest = rim.length_in_planes[i];
+    axis = "xyz"[i];
+  }
+  return axis;
+}
+
 }  // namespace
+
+std::string closing_advice(const MeshReport& report) {
+  if (!report.closing || report.holes.empty()) return "";
+  const double bulge = report.closing->bulge / report.closing->volume;
+  const double disagreement = report.closing->disagreement / report.closing->volume;
+  const std::string repair = "buoyancy-mesh repair " + report.name + " OUTPUT.ply";
+  const std::string axis = disagreement > kDefaultMaxChange ? half_body_axis(report) : "";
+  std::string advice;
+  if (!axis.empty()) {
+    advice = "If this is half a body: " + repair + " --mirror " + axis + " --rims, or mirror = \"" + axis +
+             "\" in a scene file. ";
+  }
+  if (disagreement > kMaxCapDisagreement) {
+    return advice + "Closing all holes is ambiguous: caps over them differ by " +
+           format_number(100.0 * disagreement, 3) + " % of the volume; model the missing surface";
+  }
+  std::string flags = "--close";
+  if (bulge > kDefaultMaxChange) flags = "--rims";
+  if (disagreement > kDefaultMaxChange) flags += " --max-change " + at_least(disagreement);
+  return advice + "Close them: " + repair + " " + flags +
+         ", or close_holes = " + at_least(std::max({bulge, disagreement, kDefaultMaxChange})) +
+         " in a scene file; the volume is then " + format_number(report.closing->volume, 6) +
+         " m^3, hemispheres over the caps would hold " + format_number(100.0 * bulge, 3) +
+         " % of it, and different caps differ by " + format_number(100.0 * disagreement, 3) + " %";
+}
 
 std::string to_text(const MeshReport& report) {
   AlignedLines lines;
@@ -179,6 +228,7 @@ std::string to_text(const MeshReport& report) {
   lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
   add_components(report, lines);
   add_holes(report, lines);
+  if (const std::string advice = closing_advice(report); !advice.empty()) lines.add("", advice);
   if (report.intersecting_pairs) {
     lines.add("intersecting",
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/hole_closing.h"
 #include "geometry/mesh_import.h"
 #include "geometry/repair_report.h"
 #include "geometry/triangle_mesh.h"
@@ -30,7 +31,8 @@ struct HoleReport {
   double perimeter = 0.0;  // [m]
   double area = 0.0;       // of a cap over it [m^2]
   double bulge = 0.0;      // of a hemisphere over it: an estimate of what a cap may leave out or add [m^3]
-  bool slit = false;       // narrower than 1e-6 of the mesh's size on average
+  Vec3 length_in_planes = Vec3::Zero();  // of its edges in the planes x = 0, y = 0 and z = 0 [m]
+  bool slit = false;                     // narrower than 1e-6 of the mesh's size on average
 };
 
 // Describes the mesh after its repair, also if it is refused.
@@ -65,10 +67,16 @@ struct MeshReport {
 
   std::vector<ComponentReport> components;  // largest absolute volume first
   std::vector<HoleReport> holes;            // most edges first
-  bool flipped = false;                     // the whole mesh was inside out: all windings were reversed
+  // What closing all holes would do; set if the mesh is refused for its edges and could be closed.
+  std::optional<ClosingEstimate> closing;
+  bool flipped = false;  // the whole mesh was inside out: all windings were reversed
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0 && misoriented_edges == 0; }
 };
+
+// What a user can do about a mesh that is refused for its edges: commands and keys of a scene file, with what
+// they do to the volume. Empty if closing its holes does not help.
+std::string closing_advice(const MeshReport& report);
 
 // Formats the report as aligned lines for a terminal, without a final newline.
 std::string to_text(const MeshReport& report);

@@ -6,6 +6,7 @@
 
 #include "geometry/exact_predicates.h"
 #include "geometry/hole_caps.h"
+#include "geometry/hole_closing.h"
 #include "geometry/mesh_checks.h"
 #include "geometry/mesh_orientation.h"
 #include "geometry/mesh_repair.h"
@@ -68,6 +69,19 @@ void report_surface(const TriangleMesh& mesh, MeshReport& report) {
   report.degenerate_faces = total.degenerate_faces;
 }
 
+// [m], of the edges of a hole in the planes x = 0, y = 0 and z = 0.
+Vec3 length_in_planes(const TriangleMesh& mesh, const Hole& hole, double tolerance) {
+  Vec3 lengths = Vec3::Zero();
+  for (const auto& [from, to] : hole.edges) {
+    const Vec3 a = mesh.vertex(from);
+    const Vec3 b = mesh.vertex(to);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (std::abs(a[i]) <= tolerance && std::abs(b[i]) <= tolerance) lengths[i] += (b - a).norm();
+    }
+  }
+  return lengths;
+}
+
 // report: its diagonal is set.
 void report_topology(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Hole>& holes,
                      MeshReport& report) {
@@ -81,7 +95,8 @@ void report_topology(const TriangleMesh& mesh, const MeshTopology& topology, con
     const HoleSize size = measure_hole(mesh, hole, work_left);
     const bool slit = 2.0 * size.area <= kRepairTolerance * report.diagonal * size.perimeter;
     report.holes.push_back({static_cast<std::int64_t>(hole.edges.size()), hole.box, size.perimeter, size.area,
-                            size.bulge, slit});
+                            size.bulge, length_in_planes(mesh, hole, kRepairTolerance * report.diagonal),
+                            slit});
   }
 }
 
@@ -120,8 +135,13 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   WeldedMesh welded = weld(imported.mesh);
   TriangleMesh& mesh = welded.mesh;
   MeshTopology topology = mesh_topology(mesh);
-  if (options.repair == RepairPolicy::kAutomatic && needs_repair(topology)) {
-    report_repair(repair_mesh(mesh, options.open == OpenPolicy::kDryBoundary), report);
+  const bool automatic = options.repair == RepairPolicy::kAutomatic;
+  if ((automatic && needs_repair(topology)) || !options.closing.empty()) {
+    RepairReport repair;
+    const bool may_stay_open = options.open == OpenPolicy::kDryBoundary && options.closing.empty();
+    if (automatic) repair = repair_mesh(mesh, may_stay_open);
+    close_holes(mesh, options.closing, automatic, repair);
+    report_repair(std::move(repair), report);
     topology = mesh_topology(mesh);
   }
   report_weld(welded, report);
@@ -131,7 +151,9 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   std::vector<ComponentReport> components = describe_components(mesh, topology);
 
   validation.refusal = check_size(report);
-  if (!validation.refusal) validation.refusal = check_edges(mesh, topology, report, options.open);
+  if (!validation.refusal && !edges_are_usable(topology, options.open) && !is_soup(mesh, topology))
+    report.closing = estimate_closing(mesh);
+  if (!validation.refusal) validation.refusal = check_edges(mesh, topology, report, options);
   if (!validation.refusal) {
     double volume = 0.0;
     if (holes.empty()) {

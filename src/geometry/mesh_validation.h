@@ -1,7 +1,8 @@
 // Decides whether a mesh is usable for hydrostatic queries; if not, reports why.
 //
 // Faults that can be repaired without moving the surface are repaired first (mesh_repair.h), unless the
-// caller switches that off. A mesh without faults keeps its triangles, in their order.
+// caller switches that off; holes are closed if the caller asks for it (hole_closing.h). A mesh without
+// faults keeps its triangles, in their order.
 //
 // Rule: every volume and first-moment integral over the wetted part is exact if each directed edge is matched
 // by an opposite one. "Closed" meshes (each edge used once in each direction) and "balanced" meshes (each
@@ -27,6 +28,8 @@ struct ValidationOptions {
   OpenPolicy open = OpenPolicy::kRefuse;
   bool count_intersecting_pairs = false;  // O(n log n), several times the rest of the validation
   RepairPolicy repair = RepairPolicy::kAutomatic;
+  ClosingOptions closing{};  // after the automatic repair
+  bool may_be_open = true;   // for advice: the user may choose OpenPolicy::kDryBoundary
 };
 
 // A mesh that is usable for hydrostatic queries: welded, finite, oriented, and closed or balanced except for

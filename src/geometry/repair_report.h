@@ -1,4 +1,5 @@
-// What the automatic repair of a mesh did (mesh_repair.h).
+// What the repair of a mesh did: the automatic one (mesh_repair.h) and what a user asked for (mirroring.h,
+// hole_closing.h).
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,9 @@ enum class RepairKind {
   kRemoveInnerFaces,  // removed faces inside the surface that bounds the body [faces]
   kRemoveSheets,      // removed faces of zero thickness that bound nothing [faces]
   kCapHoles,          // closed holes that are negligibly small [holes]
+  kMirror,            // added the mirror image [faces]
+  kRaiseRims,         // added walls along rims [rims]
+  kCloseHoles,        // closed holes as asked for [holes]
 };
 std::string_view to_string(RepairKind kind);
 
@@ -46,6 +50,10 @@ enum class RepairObstacle {
   kLeak,              // the outside reaches the inside, as through a hole
   kAmbiguous,         // sheets that might be parts of a surface
   kTooThin,           // moved vertices might have changed the volume by more than 1 %
+  kBulge,             // the holes are larger than the user allows
+  kDisagreement,      // caps over the holes enclose volumes that differ by more than the user allows
+  kNoRim,             // no rim faces up
+  kStillOpen,         // what was asked for leaves holes
 };
 std::string_view to_string(RepairObstacle obstacle);
 
@@ -53,7 +61,8 @@ std::string_view to_string(RepairObstacle obstacle);
 struct SkippedRepair {
   RepairKind kind = RepairKind::kWeld;
   RepairObstacle obstacle = RepairObstacle::kTooMany;
-  std::int64_t faces = 0;  // concerned; of kWeld and kInsertVertices: unmatched edges
+  std::int64_t faces = 0;  // concerned; of kWeld and kInsertVertices unmatched edges, of kCloseHoles holes
+  double share = 0.0;      // of kBulge and kDisagreement: of the volume
 
   bool operator==(const SkippedRepair&) const = default;
 };
@@ -67,9 +76,15 @@ struct RepairReport {
   // Estimate, not a bound, of the volume that the true surface over the capped holes may add or remove: that
   // of a hemisphere over each [m^3].
   double cap_bulge = 0.0;
+  // Estimate likewise: how much the volumes under different caps of the holes that a user closes differ
+  // [m^3].
+  double cap_disagreement = 0.0;
 
   bool empty() const { return steps.empty() && skipped.empty(); }
 };
+
+// Adds what a later repair of the same body, or that of another part of it, did.
+void append(const RepairReport& more, RepairReport& report);
 
 // Two lines or more: what was done, then what it does to the volume. No line ends in a newline.
 std::vector<std::string> to_lines(const RepairReport& report);

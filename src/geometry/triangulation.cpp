@@ -325,7 +325,7 @@ class EarClipping {
 
 class Triangulation {
  public:
-  explicit Triangulation(TriangleMesh& mesh) : mesh_(mesh) {}
+  Triangulation(TriangleMesh& mesh, AddCenters centers) : mesh_(mesh), centers_(centers) {}
 
   void add(std::span<const std::int32_t> polygon) {
     if (polygon.size() == 3) {
@@ -373,7 +373,8 @@ class Triangulation {
       split_.largest_distance = std::max(split_.largest_distance, half_thickness_);
       split_.split_volume += volume_between_splits();
       constexpr std::size_t kMaxVertexCount = std::numeric_limits<std::int32_t>::max();
-      if ((!has_area_ || mean_sees_all_corners()) && mesh_.vertex_count() < kMaxVertexCount) {
+      if (centers_ == AddCenters::kYes && (!has_area_ || mean_sees_all_corners()) &&
+          mesh_.vertex_count() < kMaxVertexCount) {
         add_fan_around_mean();
         return;
       }
@@ -483,6 +484,7 @@ class Triangulation {
   }
 
   TriangleMesh& mesh_;
+  AddCenters centers_;
   PolygonSplit split_;
   EarClipping ears_;
   ExactVectorSum sum_;
@@ -500,8 +502,8 @@ class Triangulation {
 
 }  // namespace
 
-PolygonSplit triangulate(const Polygons& polygons, TriangleMesh& mesh) {
-  Triangulation triangulation(mesh);
+PolygonSplit triangulate(const Polygons& polygons, TriangleMesh& mesh, AddCenters centers) {
+  Triangulation triangulation(mesh, centers);
   for (std::size_t i = 0; i < polygons.size(); ++i) triangulation.add(polygons[i]);
   return triangulation.split();
 }

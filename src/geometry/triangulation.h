@@ -52,11 +52,15 @@ struct PolygonSplit {
   double split_volume = 0.0;
 };
 
+// Whether polygons that are not planar get a vertex at their mean. Without it they are split as planar ones
+// are.
+enum class AddCenters { kNo, kYes };
+
 // Appends the triangles of the polygons to mesh.triangles, in order, and the added vertices to its vertices.
 // Triangles stay as they are. Corners of a larger polygon that lie at the place of the one before count once.
 // Requires finite coordinates, valid indices and at least three corners per polygon. Complexity: for polygons
 // of n corners O(n log n) in most cases; at most O(n) after that, about 3 us per corner
 // and 10 ms per polygon: where the search for ears takes longer, the rest is split into a fan.
-PolygonSplit triangulate(const Polygons& polygons, TriangleMesh& mesh);
+PolygonSplit triangulate(const Polygons& polygons, TriangleMesh& mesh, AddCenters centers = AddCenters::kYes);
 
 }  // namespace buoyancy

@@ -23,13 +23,6 @@ void append(const HydrostaticMesh& mesh, TriangleMesh& all) {
   }
 }
 
-void append(const RepairReport& repair, RepairReport& all) {
-  all.steps.insert(all.steps.end(), repair.steps.begin(), repair.steps.end());
-  all.skipped.insert(all.skipped.end(), repair.skipped.begin(), repair.skipped.end());
-  all.volume_bound += repair.volume_bound;
-  all.cap_bulge += repair.cap_bulge;
-}
-
 void append(const MeshReport& report, MeshReport& all) {
   all.triangles += report.triangles;
   all.vertices_stored += report.vertices_stored;
@@ -62,23 +55,47 @@ bool works_in_waves(Method method) {
 
 }  // namespace
 
-Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
-                                    const MeshPlacement& placement, const ValidationOptions& options) {
+MeshValidation validate_mesh(ImportedMesh imported, const std::string& name,
+                             const MeshPreparation& preparation) {
+  std::optional<RepairStep> mirrored;
+  const MeshPlacement& placement = preparation.placement;
+  if (preparation.mirror) {
+    Expected<RepairStep> step = add_mirror_image(imported.mesh, *preparation.mirror, name);
+    if (!step) {
+      MeshValidation refused;
+      refused.report.name = name;
+      refused.report.source = imported.source;
+      refused.refusal = std::move(step.error());
+      return refused;
+    }
+    step->area *= std::pow(placement.size_factor(), 2.0);
+    step->max_move *= placement.scale.cwiseAbs().maxCoeff();
+    mirrored = *step;
+  }
   place(imported.mesh, placement);
   imported.source.polygons.largest_distance *= placement.scale.cwiseAbs().maxCoeff();
   imported.source.polygons.split_volume *= std::abs(placement.scale.prod());
-  MeshValidation validation = validate_mesh(imported, name, options);
+  MeshValidation validation = validate_mesh(imported, name, preparation.validation);
+  MeshReport& report = validation.report;
+  if (mirrored) report.repair.steps.insert(report.repair.steps.begin(), *mirrored);
+  if (const std::optional<Vec3> up = axis_from_name(report.source.up_axis)) {
+    report.up_B = (placement.orientation_B.normalized() * up->cwiseProduct(placement.scale)).normalized();
+  }
+  return validation;
+}
+
+Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
+                                    const MeshPreparation& preparation, MeshReport* refused) {
+  MeshValidation validation = validate_mesh(std::move(imported), name, preparation);
   if (!validation.mesh) {
     assert(validation.refusal);
+    if (refused != nullptr) *refused = std::move(validation.report);
     return make_error(*std::move(validation.refusal));
   }
-  if (const std::optional<Vec3> up = axis_from_name(validation.report.source.up_axis)) {
-    validation.report.up_B =
-        (placement.orientation_B.normalized() * up->cwiseProduct(placement.scale)).normalized();
-  }
-  return PreparedMesh{std::move(validation.report),
-                      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, placement.size_factor()),
-                      mass_properties(validation.mesh->mesh), std::nullopt};
+  return PreparedMesh{
+      std::move(validation.report),
+      make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, preparation.placement.size_factor()),
+      mass_properties(validation.mesh->mesh), std::nullopt};
 }
 
 PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes) {

@@ -9,6 +9,7 @@
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_report.h"
 #include "geometry/mesh_validation.h"
+#include "geometry/mirroring.h"
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/solver.h"
 #include "scene/mesh_placement.h"
@@ -18,7 +19,14 @@ namespace buoyancy {
 
 inline constexpr double kDefaultWaveTolerance = 1e-3;  // of `hierarchical` in waves, see docs/waves.md
 
-// One per source (file, shape or arrays), scale and open policy.
+// What is done to the coordinates of a source (file, shape or arrays).
+struct MeshPreparation {
+  std::optional<Axis> mirror;  // the mirror image is added first, in the source's own axes (mirroring.h)
+  MeshPlacement placement;
+  ValidationOptions validation;
+};
+
+// One per source and preparation.
 struct PreparedMesh {
   MeshReport report;
   HydrostaticMesh mesh;
@@ -26,10 +34,15 @@ struct PreparedMesh {
   std::optional<WaveMesh> wave_mesh;  // if queries in waves need it
 };
 
-// Scales the mesh in double, moves it and rounds once, validates and prepares it; without a moment tree.
-// name: identifies it in the report and in errors. Errors: those of validate_mesh(). Complexity: O(n log n).
+// Mirrors the mesh, scales it in double, moves it and rounds once, and validates it. name: identifies it in
+// the report and in errors. Complexity: O(n log n).
+MeshValidation validate_mesh(ImportedMesh imported, const std::string& name,
+                             const MeshPreparation& preparation);
+
+// Validates the mesh and prepares it; without a moment tree. Errors: those of validation. refused: set to the
+// report of a mesh that is refused, unless nullptr. Complexity: O(n log n).
 Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
-                                    const MeshPlacement& placement, const ValidationOptions& options);
+                                    const MeshPreparation& preparation, MeshReport* refused = nullptr);
 
 // All triangles of closed meshes as one mesh, as they are: where meshes overlap, their volume counts as often
 // as they do. Its report is the sum of theirs. Precondition: at least one mesh. Complexity: O(n log n).

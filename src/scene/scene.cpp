@@ -17,16 +17,17 @@ Error with_body(const BodyDescription& body, Error error) {
 }
 
 MeshUser user_of(const BodyDescription& body) {
-  return {body.source_location, "body " + std::to_string(body.id), ""};
+  return {body.source_location, "body " + std::to_string(body.id)};
 }
 
-MeshUser user_of(const BodyDescription& body, const std::string& section, const std::string& name,
+MeshUser user_of(const BodyDescription& body, std::string_view section, const std::string& name,
                  const std::string& source_location) {
+  if (section.empty()) return user_of(body);
   std::string user = "body " + std::to_string(body.id);
   user += ", ";
   user += section;
   user += " '" + name + "'";
-  return {source_location, std::move(user), "Close the holes in a mesh editor"};
+  return {source_location, std::move(user), false};
 }
 
 std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
@@ -247,6 +248,23 @@ Expected<Subdivision> prepare_subdivision(const BodyDescription& body, double to
   return subdivision;
 }
 
+// Prepares every mesh, and collects the reports of those that cannot be used.
+std::vector<RefusedMesh> find_refused_meshes(const std::vector<BodyDescription>& bodies,
+                                             SceneMeshes& meshes) {
+  std::vector<RefusedMesh> refused;
+  for (const BodyDescription& body : bodies) {
+    for_each_mesh(body, [&](const MeshDescription& mesh, std::string_view section, const std::string& name,
+                            const std::string& source_location) {
+      const OpenPolicy open = section.empty() ? body.open : OpenPolicy::kRefuse;
+      MeshReport report;
+      const Expected<PreparedMesh*> prepared =
+          meshes.find_or_prepare(mesh, open, user_of(body, section, name, source_location), &report);
+      if (!prepared) refused.push_back({prepared.error(), std::move(report)});
+    });
+  }
+  return refused;
+}
+
 }  // namespace
 
 Expected<Scene> Scene::prepare(const SceneDescription& description, const PrepareOptions& options) {
@@ -267,6 +285,10 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   }
   const double default_tolerance = has_waves ? kDefaultWaveTolerance : 0.0;
   SceneMeshes meshes(description.limits, {OpenPolicy::kRefuse, options.count_intersecting_pairs});
+  if (options.refused != nullptr) {
+    *options.refused = find_refused_meshes(description.bodies, meshes);
+    if (!options.refused->empty()) return make_error(options.refused->front().error);
+  }
   for (const BodyDescription& body : description.bodies) {
     Expected<BodyMesh> mesh = prepare_body_mesh(body, meshes);
     if (!mesh) return make_error(std::move(mesh.error()));

@@ -20,9 +20,17 @@
 
 namespace buoyancy {
 
+// A mesh that cannot be used.
+struct RefusedMesh {
+  Error error;
+  MeshReport report;  // without a name if the file could not be read
+};
+
 struct PrepareOptions {
   bool count_intersecting_pairs =
       false;  // for the report; takes several times as long as the rest of the validation
+  // Unless nullptr: preparation goes on after a mesh that cannot be used, and puts all of them here.
+  std::vector<RefusedMesh>* refused = nullptr;
 };
 
 struct Body {

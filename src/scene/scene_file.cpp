@@ -226,6 +226,11 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
   if (client != nullptr) {
     read_dynamics(TomlTable(*client, body_name + ", [body.client]", context), body_name, context, body);
   }
+  const Vec3 up_B = body.dynamics.orientation.conjugate() * water.up_W;
+  for_each_mesh(body, [&up_B](MeshDescription& mesh, auto&&...) {
+    // Bodies whose rims stay where they are share a mesh whatever their orientation.
+    if (mesh.repair.closing.freeboard > 0.0) mesh.repair.closing.up_B = up_B;
+  });
   return body;
 }
 

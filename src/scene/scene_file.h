@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
+#include "geometry/mirroring.h"
 #include "geometry/shapes.h"
 #include "hydrodynamics/coefficients.h"
 #include "hydrostatics/solver.h"
@@ -77,10 +78,20 @@ struct MeshFile {
   std::filesystem::path path;  // resolved against the scene file's directory
 };
 
+// Keys `repair`, `mirror`, `close_holes` and `freeboard`.
+struct MeshRepair {
+  RepairPolicy policy = RepairPolicy::kAutomatic;
+  std::optional<Axis> mirror;
+  ClosingOptions closing;  // its up_B is that of the body where it starts
+
+  bool operator==(const MeshRepair&) const = default;
+};
+
 // A mesh in the frame of a body.
 struct MeshDescription {
   std::variant<MeshFile, Shape> source;
   MeshPlacement placement;  // of a shape without a scale
+  MeshRepair repair;        // of a file
 };
 
 // Sections [[body.part]], [[body.compartment]] and [[body.tank]]: meshes that make up a body, or lie in it.
@@ -125,6 +136,19 @@ struct BodyDescription {
   DynamicsSpec dynamics;        // section [body.client]
   std::string source_location;  // "scene.toml:12", for errors; empty without a scene file
 };
+
+// Calls visit(mesh, section, name, source_location) for every mesh of a body, or in it. section: "part",
+// "compartment" or "tank"; empty for the body's own mesh.
+template <typename AnyBodyDescription, typename Visit>
+void for_each_mesh(AnyBodyDescription& body, const Visit& visit) {
+  if (!body.is_parts_only) visit(body.mesh, std::string_view(), body.name, body.source_location);
+  const auto visit_all = [&visit](auto& sections, std::string_view section) {
+    for (auto& one : sections) visit(one.mesh, section, one.name, one.source_location);
+  };
+  visit_all(body.parts, "part");
+  visit_all(body.compartments, "compartment");
+  visit_all(body.tanks, "tank");
+}
 
 // The names in the scene file's `open` and buoyancy-replay's --open.
 inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPolicyNames{

@@ -22,8 +22,6 @@ Expected<ImportedMesh> read_source(const MeshDescription& mesh, const ImportLimi
 }  // namespace
 
 Error MeshUser::error(Error error) const {
-  if (!hint_if_open.empty() && error.hint.find("dry_boundary") != std::string::npos)
-    error.hint = hint_if_open;
   if (source_location.empty()) return error;
   error.subject.insert(0, source_location + ": " + name + ", ");
   return error;
@@ -34,6 +32,7 @@ SceneMeshes::Key SceneMeshes::key_of(const MeshDescription& mesh, OpenPolicy ope
           .scale = mesh.placement.scale,
           .position_B = mesh.placement.position_B,
           .orientation_B = mesh.placement.orientation_B.coeffs(),
+          .repair = mesh.repair,
           .open = open,
           .merged = {}};
   if (const auto* file = std::get_if<MeshFile>(&mesh.source)) {
@@ -58,15 +57,18 @@ PreparedMesh* SceneMeshes::add(Key key, PreparedMesh mesh) {
 }
 
 Expected<PreparedMesh*> SceneMeshes::find_or_prepare(const MeshDescription& mesh, OpenPolicy open,
-                                                     const MeshUser& user) {
+                                                     const MeshUser& user, MeshReport* refused) {
   Key key = key_of(mesh, open);
   if (PreparedMesh* known = find(key)) return known;
   Expected<ImportedMesh> imported = read_source(mesh, limits_);
   if (!imported) return make_error(user.error(std::move(imported.error())));
-  ValidationOptions options = options_;
-  options.open = open;
+  MeshPreparation preparation{mesh.repair.mirror, mesh.placement, options_};
+  preparation.validation.open = open;
+  preparation.validation.may_be_open = user.may_be_open;
+  preparation.validation.repair = mesh.repair.policy;
+  preparation.validation.closing = mesh.repair.closing;
   Expected<PreparedMesh> prepared =
-      prepare_mesh(*std::move(imported), source_name(mesh), mesh.placement, options);
+      prepare_mesh(*std::move(imported), source_name(mesh), preparation, refused);
   if (!prepared) return make_error(user.error(std::move(prepared.error())));
   return add(std::move(key), *std::move(prepared));
 }

@@ -15,7 +15,7 @@ namespace buoyancy {
 struct MeshUser {
   std::string source_location;  // "scene.toml:12"; empty without a scene file
   std::string name;             // "body 3", "body 3, tank 'ballast 1'"
-  std::string hint_if_open;     // instead of advice to accept an open mesh; empty: the user may accept one
+  bool may_be_open = true;      // the user may accept an open mesh
 
   // The error with the user before its subject.
   Error error(Error error) const;
@@ -26,8 +26,9 @@ class SceneMeshes {
   SceneMeshes(const ImportLimits& limits, const ValidationOptions& options)
       : limits_(limits), options_(options) {}
 
-  // Errors: those of import_mesh() and prepare_mesh().
-  Expected<PreparedMesh*> find_or_prepare(const MeshDescription& mesh, OpenPolicy open, const MeshUser& user);
+  // Errors: those of import_mesh() and prepare_mesh(). refused: see prepare_mesh().
+  Expected<PreparedMesh*> find_or_prepare(const MeshDescription& mesh, OpenPolicy open, const MeshUser& user,
+                                          MeshReport* refused = nullptr);
 
   // All of these meshes as one; meshes that overlap count twice where they do. Precondition: they are from
   // this object and closed.
@@ -42,6 +43,7 @@ class SceneMeshes {
     Vec3 scale = Vec3::Ones();
     Vec3 position_B = Vec3::Zero();
     Eigen::Vector4d orientation_B = Eigen::Vector4d::Zero();
+    MeshRepair repair;
     OpenPolicy open = OpenPolicy::kRefuse;
     std::vector<const PreparedMesh*> merged;  // then nothing else is set
 

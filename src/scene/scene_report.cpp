@@ -17,6 +17,7 @@
 #include "scene/body_motions.h"
 #include "scene/coefficient_warnings.h"
 #include "scene/flotation_report.h"
+#include "scene/mesh_report_json.h"
 #include "scene/mesh_warnings.h"
 #include "scene/motion_report.h"
 #include "scene/subdivision_report.h"
@@ -175,10 +176,6 @@ Json to_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json to_json(const BoundingBox& box) {
-  return {{"min", to_json(box.min_B)}, {"max", to_json(box.max_B)}};
-}
-
 template <typename T>
 Json to_json(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -232,93 +229,6 @@ Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
           {"systems", std::move(systems)},
           {"together", to_json(report_components(sea), std::ranges::max(repeats))},
           {"components", std::move(components)}};
-}
-
-Json to_json(const MeshSource& source) {
-  Json json{{"format", source.format},
-            {"up_axis", source.up_axis},
-            {"note", source.note},
-            {"nodes", source.nodes},
-            {"left_out", source.ignored_primitives}};
-  if (const PolygonSplit& split = source.polygons; split.polygons > 0) {
-    json["polygons"] = {{"count", split.polygons},
-                        {"non_planar", split.non_planar},
-                        {"largest_distance", split.largest_distance},
-                        {"split_volume", split.split_volume}};
-  }
-  return json;
-}
-
-Json to_json(const ComponentReport& component) {
-  return {{"triangles", component.triangles}, {"volume", component.volume}, {"closed", component.closed},
-          {"cavity", component.cavity},       {"nested", component.nested}, {"turned", component.flipped}};
-}
-
-Json to_json(const std::optional<EnclosedSolid>& solid) {
-  if (!solid) return nullptr;
-  return {{"volume", solid->volume}, {"centroid", to_json(solid->centroid_B)}};
-}
-
-Json to_json(const RepairReport& repair) {
-  Json steps = Json::array();
-  for (const RepairStep& step : repair.steps) {
-    steps.push_back({{"step", to_string(step.kind)},
-                     {"count", step.count},
-                     {"area", step.area},
-                     {"largest_move", step.max_move},
-                     {"before", to_json(step.before)},
-                     {"after", to_json(step.after)}});
-  }
-  Json skipped = Json::array();
-  for (const SkippedRepair& one : repair.skipped) {
-    skipped.push_back(
-        {{"step", to_string(one.kind)}, {"because", to_string(one.obstacle)}, {"faces", one.faces}});
-  }
-  return {{"steps", std::move(steps)},
-          {"skipped", std::move(skipped)},
-          {"volume_bound", repair.volume_bound},
-          {"cap_bulge", repair.cap_bulge}};
-}
-
-Json to_json(const MeshReport& report) {
-  Json components = Json::array();
-  for (const ComponentReport& component : report.components) components.push_back(to_json(component));
-  Json holes = Json::array();
-  for (const HoleReport& hole : report.holes) {
-    holes.push_back({{"edges", hole.edges},
-                     {"box", to_json(hole.box)},
-                     {"perimeter", hole.perimeter},
-                     {"area", hole.area},
-                     {"bulge", hole.bulge},
-                     {"slit", hole.slit}});
-  }
-  return {{"name", report.name},
-          {"source", to_json(report.source)},
-          {"triangles", report.triangles},
-          {"vertices_stored", report.vertices_stored},
-          {"vertices_welded", report.vertices_welded},
-          {"weld", report.weld == WeldKind::kExact ? "exact" : "tolerance"},
-          {"weld_largest_move", report.weld_largest_move},
-          {"repair", to_json(report.repair)},
-          {"box", to_json(report.box)},
-          {"diagonal", report.diagonal},
-          {"area", report.area},
-          {"volume", report.volume},
-          {"volume_by_axis", to_json(report.volume_by_axis)},
-          {"area_vector", to_json(report.area_vector)},
-          {"closed", report.closed()},
-          {"boundary_edges", report.boundary_edges},
-          {"non_manifold_edges", report.non_manifold_edges},
-          {"balanced_edges", report.balanced_edges},
-          {"misoriented_edges", report.misoriented_edges},
-          {"degenerate_faces", report.degenerate_faces},
-          {"dropped_faces", report.dropped_faces},
-          {"duplicate_faces", report.duplicate_faces},
-          {"intersecting_pairs", to_json(report.intersecting_pairs)},
-          {"intersections_cut_off", report.intersections_cut_off},
-          {"components", std::move(components)},
-          {"holes", std::move(holes)},
-          {"turned", report.flipped}};
 }
 
 Json to_json(const Body& body, const Scene& scene) {
@@ -395,7 +305,7 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
   }
   Json meshes = Json::array();
   for (const auto& mesh : scene.meshes()) {
-    Json report = to_json(mesh->report);
+    Json report = mesh_report_json(mesh->report);
     report["bodies"] = Json::array();
     for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
     for (const SectionUser& user : section_users_of(*mesh, scene))
@@ -409,6 +319,24 @@ std::string scene_report_json(const Scene& scene, const SceneReportOptions& opti
                     {"bodies", std::move(bodies)}, {"meshes", std::move(meshes)}};
   // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes) {
+  std::string text;
+  for (const RefusedMesh& mesh : meshes) {
+    if (!mesh.report.name.empty()) text += "mesh " + to_text(mesh.report) + "\n";
+  }
+  return text;
+}
+
+std::string refused_meshes_json(const std::vector<RefusedMesh>& meshes) {
+  Json refused = Json::array();
+  for (const RefusedMesh& mesh : meshes) {
+    Json one = mesh.report.name.empty() ? Json::object() : mesh_report_json(mesh.report);
+    one["error"] = mesh.error.message();
+    refused.push_back(std::move(one));
+  }
+  return Json{{"refused", std::move(refused)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {

@@ -57,6 +57,11 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // exist only where the scene has them.
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
+// The reports of meshes that are refused, as lines and as one JSON object, with a final newline: "refused",
+// an array of mesh_report_json() with "error", a text. Of a file that could not be read, only "error".
+std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes);
+std::string refused_meshes_json(const std::vector<RefusedMesh>& meshes);
+
 // Warnings about a scene that can be used: those of sea_warnings(); a full quadratic drag
 // matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
 // or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the

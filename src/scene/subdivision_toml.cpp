@@ -71,6 +71,24 @@ void parse_scale(TomlTable& table, Vec3& scale) {
   }
 }
 
+// Reads `repair`, `mirror`, `close_holes` and `freeboard`.
+void parse_repair(TomlTable& table, MeshRepair& repair) {
+  constexpr std::array<std::string_view, 2> kPolicies{"automatic", "none"};
+  if (const auto chosen = table.choice("repair", kPolicies)) {
+    repair.policy = *chosen == 1 ? RepairPolicy::kNone : RepairPolicy::kAutomatic;
+  }
+  if (const auto chosen = table.choice("mirror", kAxisNames)) repair.mirror = static_cast<Axis>(*chosen);
+  std::optional<double> share;
+  table.read("close_holes", share, NumberRange::above_zero("of the volume"));
+  if (share) {
+    repair.closing.holes = true;
+    repair.closing.max_change = *share;
+  }
+  std::optional<double> freeboard;
+  table.read("freeboard", freeboard, NumberRange::above_zero("m"));
+  repair.closing.freeboard = freeboard.value_or(0.0);
+}
+
 void read_tank(TankDescription& tank, const Water& water, TomlTable& table) {
   tank.density = water.density;
   table.read("density", tank.density, NumberRange::from_zero("kg/m^3"));
@@ -110,6 +128,7 @@ bool parse_mesh(TomlTable& table, const std::string& name, const std::filesystem
   const bool has_shape = table.has("shape");
   std::string file;
   parse_scale(table, mesh.placement.scale);
+  parse_repair(table, mesh.repair);
   const toml::node* const given = table.node("mesh");
   if (given != nullptr && given->is_table()) {
     TomlTable placed(*given->as_table(), name + ", mesh", context);
@@ -130,6 +149,10 @@ bool parse_mesh(TomlTable& table, const std::string& name, const std::filesystem
   } else if (has_shape && has_scale) {
     table.fail("both 'scale' and 'shape'", "a scale only with a mesh file", {},
                "Give the shape its sizes in metres");
+  } else if (has_shape && mesh.repair != MeshRepair{}) {
+    table.fail("a repair and 'shape'",
+               "'repair', 'mirror', 'close_holes' and 'freeboard' only with a mesh file", "shapes are closed",
+               "Remove it");
   }
   if (has_mesh) mesh.source = MeshFile{(directory / file).lexically_normal()};
   if (const toml::table* shape = table.table("shape")) {
