@@ -1,10 +1,12 @@
-// Fields of CSV files: numbers, and quotations for messages.
+// Fields of CSV files and of arguments: numbers, and quotations for messages.
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace buoyancy {
 
@@ -12,6 +14,9 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some
 
 // Removes spaces, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
+
+// The parts between separators, trimmed: at least one.
+std::vector<std::string_view> split(std::string_view text, char separator);
 
 // Quotes a text for a message, shortened and without control characters.
 std::string quote(std::string_view text);
@@ -23,6 +28,10 @@ bool parse_number(std::string_view text, Number& number) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc{} && end == text.data() + text.size();
+}
+
+inline bool parse_finite(std::string_view text, double& value) {
+  return parse_number(text, value) && std::isfinite(value);
 }
 
 }  // namespace buoyancy

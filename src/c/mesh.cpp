@@ -22,7 +22,7 @@ constexpr buoyancy_mesh_options kDefaultMeshOptions{sizeof(buoyancy_mesh_options
 QueryMeshOptions check_options(ArgumentChecks& checks, const buoyancy_mesh_options* given) {
   QueryMeshOptions options;
   if (given == nullptr || checks.given("options", given) == nullptr) return options;
-  options.scale = given->scale;
+  options.placement.scale.setConstant(given->scale);
   checks.number("options->scale", given->scale, std::isfinite(given->scale) && given->scale > 0.0,
                 "a finite number above 0");
   if (given->open != BUOYANCY_OPEN_REFUSE && given->open != BUOYANCY_OPEN_DRY_BOUNDARY) {

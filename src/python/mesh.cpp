@@ -1,5 +1,6 @@
 // buoyancy.Mesh: a mesh, and queries of it.
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -56,10 +57,42 @@ std::shared_ptr<const QueryMesh> load(const std::string& path, const QueryMeshOp
   return value_or_throw(QueryMesh::load(path, options));
 }
 
-std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object& faces, double scale,
-                                      const std::string& open, bool count_intersections) {
+// scale: a number above 0, or factors of x, y and z. up: None, or the name of an axis.
+MeshPlacement to_placement(const py::object& scale, const py::object& up) {
+  const NumberArray<double> factors(scale.ptr(), "scale");
+  MeshPlacement placement;
+  if (factors.dimensions() == 0) {
+    const double factor = factors.values()[0];
+    if (!(std::isfinite(factor) && factor > 0.0)) {
+      throw InputException({"Mesh()", "scale = " + format_shortest(factor), "a finite number above 0", "",
+                            factor < 0.0 ? "Mirror with a factor for each axis, such as scale=(-1, 1, 1)"
+                                         : "For millimetres pass 0.001, for metres leave the scale out"});
+    }
+    placement.scale.setConstant(factor);
+  } else if (factors.has_shape({3})) {
+    placement.scale = {factors.values()[0], factors.values()[1], factors.values()[2]};
+  } else {
+    throw py::value_error("scale has shape " + shape_text(factors.shape()) + "; expected a number or (3,)");
+  }
+  if (up.is_none()) return placement;
+  if (!py::isinstance<py::str>(up)) {
+    throw py::type_error(std::string("up is a ") + Py_TYPE(up.ptr())->tp_name +
+                         "; expected text, such as \"y\" or \"-x\"");
+  }
+  const auto name = up.cast<std::string>();
+  const std::optional<Vec3> axis = axis_from_name(name);
+  if (!axis) {
+    throw py::value_error("up = \"" + name + "\"; expected one of x, y, z, -x, -y, -z, an axis of the mesh");
+  }
+  placement.orientation_B = orientation_with_up(*axis, placement.scale);
+  return placement;
+}
+
+std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object& faces,
+                                      const py::object& scale, const std::string& open,
+                                      bool count_intersections, const py::object& up) {
   QueryMeshOptions options;
-  options.scale = scale;
+  options.placement = to_placement(scale, up);
   options.open = to_open_policy(open);
   options.count_intersecting_pairs = count_intersections;
   if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__")) {
@@ -68,7 +101,8 @@ std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object
     }
     const std::string path = to_path(source);
     auto mesh = std::make_unique<MeshObject>(MeshObject{load(path, options)});
-    if (std::optional<Warning> warning = up_axis_warning(mesh->mesh->report(), Vec3::UnitZ())) {
+    if (std::optional<Warning> warning = up_axis_warning(mesh->mesh->report(), options.placement.scale,
+                                                         Vec3::UnitZ(), UpRemedy::kArgument)) {
       warning->subject = path;
       warn(*warning);
     }
@@ -183,13 +217,20 @@ PyMethodDef hydrostatics_method{"hydrostatics",
 
 constexpr const char* kMeshDoc =
     "A triangle mesh, validated and prepared for queries.\n\n"
-    "Mesh(path, *, scale=1.0, open='refuse') reads a file: OBJ, STL, PLY, OFF, DAE, glTF/GLB, FBX, 3DS, "
+    "Mesh(path, *, scale=1.0, open='refuse', up=None) reads a file: OBJ, STL, PLY, OFF, DAE, glTF/GLB, FBX, "
+    "3DS, "
     "WAMIT .gdf, Nemoh .dat.\n"
-    "Coordinates are those of the file; if it states an up axis other than z, a UserWarning says so.\n"
-    "Mesh(vertices, faces, *, scale=1.0, open='refuse') takes arrays: vertices (N, 3) in metres, and faces "
+    "Coordinates are those of the file, as scale and up place them; if the file's up axis is then not z, a "
+    "UserWarning says so.\n"
+    "Mesh(vertices, faces, *, scale=1.0, open='refuse', up=None) takes arrays: vertices (N, 3) in metres, "
+    "and faces "
     "(M, 3), integers\n"
     "that count vertices from 0, anticlockwise seen from outside.\n\n"
-    "scale: factor on the coordinates, above 0. open: 'dry_boundary' accepts an open mesh; poses that put "
+    "scale: factor on the coordinates, above 0, or three for x, y and z, of which negative ones mirror. up: "
+    "'x', 'y', 'z',\n"
+    "'-x', '-y' or '-z' turns the mesh so that this axis of the file or the arrays becomes z, whatever the "
+    "scale; the\n"
+    "mesh's frame is then the turned one. open: 'dry_boundary' accepts an open mesh; poses that put "
     "its boundary\n"
     "under water get the status OPEN_EDGE_WET. count_intersections: see intersecting_pairs; takes time.\n\n"
     "The attributes are the report of the validation; report is its text. One mesh may be queried by "
@@ -226,7 +267,8 @@ py::object vector(const Vec3& value) {
 void define_mesh(py::module_& module) {
   py::class_<MeshObject> type(module, "Mesh", kMeshDoc);
   type.def(py::init(&make_mesh), py::arg("source"), py::arg("faces") = py::none(), py::kw_only(),
-           py::arg("scale") = 1.0, py::arg("open") = "refuse", py::arg("count_intersections") = false);
+           py::arg("scale") = 1.0, py::arg("open") = "refuse", py::arg("count_intersections") = false,
+           py::arg("up") = py::none());
   add_method(type, query_method);
   add_method(type, hydrostatics_method);
   add_report(type, "name", &MeshReport::name, "str: the file, or 'Mesh(vertices, faces)'.");

@@ -14,9 +14,18 @@ namespace {
 constexpr std::size_t kMaxBodies = 32;  // that a mesh keeps
 
 std::optional<Error> error_of(const QueryMeshOptions& options, const std::string& name) {
-  if (std::isfinite(options.scale) && options.scale > 0.0) return std::nullopt;
-  return Error{name, "scale = " + format_shortest(options.scale), "a finite number above 0", "",
-               "For millimetres pass 0.001, for metres leave the scale out"};
+  const auto& [scale, position_B, orientation_B] = options.placement;
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) {
+    return Error{name, "scale = " + format_vector(scale), "finite factors of x, y and z, none of them 0", "",
+                 "For millimetres pass 0.001, for metres leave the scale out"};
+  }
+  if (!position_B.allFinite()) {
+    return Error{name, "position = " + format_vector(position_B), "three finite numbers (m)", "", ""};
+  }
+  const double norm = orientation_B.norm();
+  if (std::isfinite(norm) && norm > 0.0) return std::nullopt;
+  return Error{name, "an orientation whose quaternion has the norm " + format_number(norm),
+               "a quaternion (w, x, y, z) that is finite and not 0", "", ""};
 }
 
 Expected<TriangleMesh> to_mesh(std::span<const double> vertices, std::span<const std::int64_t> faces,
@@ -67,9 +76,8 @@ Expected<std::shared_ptr<const QueryMesh>> QueryMesh::load(const std::filesystem
   if (std::optional<Error> error = error_of(options, path.string())) return make_error(*std::move(error));
   Expected<ImportedMesh> imported = import_mesh(path, options.limits);
   if (!imported) return make_error(std::move(imported.error()));
-  Expected<PreparedMesh> prepared =
-      prepare_mesh(*std::move(imported), path.string(), {.scale = Vec3::Constant(options.scale)},
-                   {options.open, options.count_intersecting_pairs});
+  Expected<PreparedMesh> prepared = prepare_mesh(*std::move(imported), path.string(), options.placement,
+                                                 {options.open, options.count_intersecting_pairs});
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
 }
@@ -84,9 +92,8 @@ Expected<std::shared_ptr<const QueryMesh>> QueryMesh::make(std::span<const doubl
   ImportedMesh imported;
   imported.mesh = *std::move(mesh);
   imported.source.format = "arrays";
-  Expected<PreparedMesh> prepared =
-      prepare_mesh(std::move(imported), name, {.scale = Vec3::Constant(options.scale)},
-                   {options.open, options.count_intersecting_pairs});
+  Expected<PreparedMesh> prepared = prepare_mesh(std::move(imported), name, options.placement,
+                                                 {options.open, options.count_intersecting_pairs});
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
 }

@@ -16,7 +16,9 @@
 namespace buoyancy {
 
 struct QueryMeshOptions {
-  double scale = 1.0;  // by which coordinates are multiplied, > 0
+  // Of the coordinates in the frame of the queries' poses, see orientation_with_up() for files whose up axis
+  // is another one. Not finite, a factor of 0 and a quaternion of norm 0 are errors.
+  MeshPlacement placement{};
   OpenPolicy open = OpenPolicy::kRefuse;
   bool count_intersecting_pairs = false;  // for the report; takes several times as long as the rest
   ImportLimits limits{};                  // of a file
@@ -25,13 +27,13 @@ struct QueryMeshOptions {
 // Its members may be called by several threads at once.
 class QueryMesh {
  public:
-  // Reads a mesh file. Errors: those of import_mesh() and prepare_mesh(), a scale that is not above 0.
+  // Reads a mesh file. Errors: those of import_mesh() and prepare_mesh(), a placement out of range.
   static Expected<std::shared_ptr<const QueryMesh>> load(const std::filesystem::path& path,
                                                          const QueryMeshOptions& options = {});
   // vertices: [m], B frame, 3 per vertex. faces: 3 vertex indices per triangle, counter-clockwise seen from
   // outside. name: identifies the mesh in errors. Errors: no face; sizes that are no multiples of 3; an index
-  // out of range; those of prepare_mesh(), such as an open mesh or a vertex that is not finite; a scale that
-  // is not above 0.
+  // out of range; those of prepare_mesh(), such as an open mesh or a vertex that is not finite; a
+  // placement out of range.
   static Expected<std::shared_ptr<const QueryMesh>> make(std::span<const double> vertices,
                                                          std::span<const std::int64_t> faces,
                                                          const std::string& name,

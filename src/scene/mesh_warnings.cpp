@@ -9,7 +9,6 @@
 
 #include "base/format.h"
 #include "scene/body_warning_list.h"
-#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -51,8 +50,8 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
 
 }  // namespace
 
-std::vector<Warning> mesh_warnings(const Scene& scene) {
-  std::vector<Warning> warnings = up_axis_warnings(scene);
+std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up) {
+  std::vector<Warning> warnings = up_axis_warnings(scene, up);
   BodyWarningList units;
   for (const Body& body : scene.bodies()) warn_of_unit(body, units);
   std::ranges::move(units.with_subjects(scene.name()), std::back_inserter(warnings));

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 
-// Of up_axis_warnings(), then of bodies whose [body.client] gives a mass that over the volume of the mesh is
-// no density of anything that floats, with the scale that would make it one. A warning about equal bodies
-// appears once.
-std::vector<Warning> mesh_warnings(const Scene& scene);
+// Of up_axis_warnings() with this check, then of bodies whose [body.client] gives a mass that over the volume
+// of the mesh is no density of anything that floats, with the scale that would make it one. A warning about
+// equal bodies appears once.
+std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up = {});
 
 }  // namespace buoyancy

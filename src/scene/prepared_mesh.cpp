@@ -95,7 +95,7 @@ Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& na
   return PreparedMesh{
       std::move(validation.report),
       make_hydrostatic_mesh(*validation.mesh, WithTree::kNo, preparation.placement.size_factor()),
-      mass_properties(validation.mesh->mesh), std::nullopt};
+      mass_properties(validation.mesh->mesh), std::nullopt, preparation.placement.scale};
 }
 
 PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes) {
@@ -114,7 +114,7 @@ PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes) {
   for (const PreparedMesh* mesh : meshes) name += (name.empty() ? "" : " + ") + mesh->report.name;
   report.name = std::move(name);
   return PreparedMesh{std::move(report), make_hydrostatic_mesh(all, WithTree::kNo), mass_properties(all.mesh),
-                      std::nullopt};
+                      std::nullopt, Vec3::Ones()};
 }
 
 std::optional<Error> method_error_in_waves(const std::string& subject, Method method, double tolerance) {

@@ -32,6 +32,7 @@ struct PreparedMesh {
   HydrostaticMesh mesh;
   MassProperties mass_properties;     // density 1 kg/m^3; for an open mesh, the integrals over its faces
   std::optional<WaveMesh> wave_mesh;  // if queries in waves need it
+  Vec3 scale = Vec3::Ones();          // of the file's coordinates; without meaning for several meshes
 };
 
 // Mirrors the mesh, scales it in double, moves it and rounds once, and validates it. name: identifies it in

@@ -319,11 +319,11 @@ Expected<SceneDescription> read_scene_file(const std::filesystem::path& path) {
 }
 
 SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,
-                                   OpenPolicy open) {
+                                   OpenPolicy open, const MeshPlacement& placement) {
   BodyDescription body;
   body.id = 1;
   body.name = mesh.filename().string();
-  body.mesh.source = MeshFile{mesh};
+  body.mesh = {MeshFile{mesh}, placement};
   body.method = method;
   body.tolerance = tolerance;
   body.open = open;

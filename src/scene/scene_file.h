@@ -179,9 +179,9 @@ Expected<SceneDescription> parse_scene(std::string_view text, const std::string&
 Expected<SceneDescription> parse_water(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 
-// Returns the scene of `buoyancy-replay --mesh`: one body with id 1, scale 1 and the mesh's origin as
-// reference point; level 0 m, up +z, density 1025 kg/m^3, gravity 9.80665 m/s^2.
+// Returns the scene of programs with --mesh: one body with id 1 and its origin as reference point; level 0 m,
+// up +z, density 1025 kg/m^3, gravity 9.80665 m/s^2.
 SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method method, double tolerance,
-                                   OpenPolicy open);
+                                   OpenPolicy open, const MeshPlacement& placement = {});
 
 }  // namespace buoyancy

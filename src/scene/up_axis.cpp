@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "base/format.h"
 #include "geometry/rotation_between.h"
@@ -28,12 +29,6 @@ std::string direction_text(const Vec3& direction) {
   return text += "]";
 }
 
-// Half a turn is one about x, where that serves: a hull keeps its bow.
-Eigen::Quaterniond standing_up(const Vec3& from, const Vec3& to) {
-  if (from.isApprox(-to) && from.x() == 0.0) return {0.0, 1.0, 0.0, 0.0};
-  return rotation_between(from, to);
-}
-
 std::string quaternion_text(const Eigen::Quaterniond& q) {
   std::string text = "[";
   for (const double value : {q.w(), q.x(), q.y(), q.z()}) {
@@ -43,45 +38,73 @@ std::string quaternion_text(const Eigen::Quaterniond& q) {
   return text += "]";
 }
 
+// What to pass to a program. report: of a mesh whose file states its up axis.
+std::string remedy_text(const MeshReport& report, UpRemedy remedy) {
+  const std::string axis =
+      remedy == UpRemedy::kShipAxis ? direction_text(*report.up_B) : report.source.up_axis;
+  if (remedy == UpRemedy::kArgument) return "Pass up=\"" + axis + "\"";
+  return (axis.starts_with('-') ? "Pass --up=" : "Pass --up ") + axis;
+}
+
 }  // namespace
 
-std::optional<Vec3> axis_from_name(const std::string& name) {
+std::optional<Vec3> axis_from_name(std::string_view name) {
+  if (name.starts_with('+')) name.remove_prefix(1);
   const auto found = std::ranges::find(kAxes, name);
   if (found == kAxes.end()) return std::nullopt;
   return axis(static_cast<std::size_t>(found - kAxes.begin()));
 }
 
-std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& up_B) {
+Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B) {
+  const Vec3 from = axis.cwiseProduct(scale).normalized();
+  // Half a turn is one about x, where that serves: a hull keeps its bow.
+  if (from.isApprox(-up_B) && from.x() == 0.0) return {0.0, 1.0, 0.0, 0.0};
+  // With two equal components a quarter turn exchanges coordinates without rounding them.
+  if (const Vec3 about = from.cross(up_B); from.dot(up_B) == 0.0) {
+    return Eigen::Quaterniond(1.0, about.x(), about.y(), about.z()).normalized();
+  }
+  return rotation_between(from, up_B);
+}
+
+std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& scale, const Vec3& up_B,
+                                       UpRemedy remedy) {
   constexpr double kHalfRightAngle = 0.70710678;  // its cosine
   const std::optional<Vec3> up_of_file = axis_from_name(report.source.up_axis);
   if (!up_of_file || !report.up_B || report.up_B->dot(up_B) > kHalfRightAngle) return std::nullopt;
+  // The ship's axis may be any; a scene file with the same water has z up.
+  const bool is_of_ship = remedy == UpRemedy::kShipAxis;
+  const Eigen::Quaterniond upright =
+      orientation_with_up(*up_of_file, scale, is_of_ship ? Vec3(Vec3::UnitZ()) : up_B);
+  std::string hint = "orientation = " + quaternion_text(upright) + " (w, x, y, z) of the mesh stands it up";
+  if (remedy != UpRemedy::kNone) hint.insert(0, remedy_text(report, remedy) + "; in a scene file, ");
+  const bool is_turned = !report.up_B->isApprox(up_of_file->cwiseProduct(scale).normalized());
   return Warning{"",
                  "mesh '" + report.name + "' has " + report.source.up_axis + " up in its file, which is " +
                      direction_text(*report.up_B) + " of the body",
-                 direction_text(up_B) + " of the body, which is up in the water",
-                 "coordinates are used as the file has them and are not turned",
-                 "orientation = " + quaternion_text(standing_up(*up_of_file, up_B)) +
-                     " (w, x, y, z) of the mesh stands it up"};
+                 direction_text(up_B) + " of the body, which is " +
+                     (is_of_ship ? "the ship's upward axis" : "up in the water"),
+                 is_turned ? "" : "coordinates are used as the file has them and are not turned",
+                 std::move(hint)};
 }
 
-std::vector<Warning> up_axis_warnings(const Scene& scene) {
+std::vector<Warning> up_axis_warnings(const Scene& scene, const UpAxisCheck& check) {
   BodyWarningList list;
   for (const Body& body : scene.bodies()) {
     const Eigen::Quaterniond q_WB =
         body.dynamics.given ? body.dynamics.orientation : Eigen::Quaterniond::Identity();
-    const Vec3 up_B = q_WB.conjugate() * scene.water().up_W;
-    const auto check = [&](const PreparedMesh& mesh) {
-      if (std::optional<Warning> warning = up_axis_warning(mesh.report, up_B))
+    const Vec3 up_B = check.up_B.value_or(q_WB.conjugate() * scene.water().up_W);
+    const auto check_mesh = [&](const PreparedMesh& mesh) {
+      if (std::optional<Warning> warning = up_axis_warning(mesh.report, mesh.scale, up_B, check.remedy))
         list.add(body, *std::move(warning));
     };
-    check(*body.prepared_mesh);
+    check_mesh(*body.prepared_mesh);
     if (body.parts != nullptr) {
-      for (const BodyPart& part : *body.parts) check(*part.prepared_mesh);
+      for (const BodyPart& part : *body.parts) check_mesh(*part.prepared_mesh);
     }
     if (body.subdivision == nullptr) continue;
     for (const BodyCompartment& compartment : body.subdivision->compartments)
-      check(*compartment.prepared_mesh);
-    for (const BodyTank& tank : body.subdivision->tanks) check(*tank.prepared_mesh);
+      check_mesh(*compartment.prepared_mesh);
+    for (const BodyTank& tank : body.subdivision->tanks) check_mesh(*tank.prepared_mesh);
   }
   return list.with_subjects(scene.name());
 }

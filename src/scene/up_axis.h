@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -11,15 +12,35 @@
 
 namespace buoyancy {
 
-// The unit vector of "x", "-y" and so on; nullopt for other names, such as "not stated".
-std::optional<Vec3> axis_from_name(const std::string& name);
+// The unit vector of "x", "+x", "-y" and so on; nullopt for other names, such as "not stated".
+std::optional<Vec3> axis_from_name(std::string_view name);
+
+// The orientation of a mesh that makes an axis of its file up. axis: of the file; up_B: in the frame of the
+// body; both unit length. scale: of the mesh's placement, whose negative factors turn axes round.
+Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B = Vec3::UnitZ());
+
+// What a warning advises beside the `orientation` of a mesh in a scene file.
+enum class UpRemedy {
+  kNone,
+  kOption,    // --up, which turns the mesh by orientation_with_up()
+  kShipAxis,  // --up, which turns nothing and states the ship's upward axis in the frame of the body
+  kArgument,  // up of Python's Mesh, which turns as kOption does
+};
+
+// How a program checks which direction is up.
+struct UpAxisCheck {
+  std::optional<Vec3> up_B;  // unit length; nullopt: up of the water, at the orientation with which a body
+                             // starts ([body.client])
+  UpRemedy remedy = UpRemedy::kNone;
+};
 
 // A warning without a subject if the file states an up axis that lies more than 45 degrees from up, with the
-// `orientation` that stands the mesh up. up_B: in the frame of the body, unit length.
-std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& up_B);
+// `orientation` that stands the mesh up. scale: of its placement; up_B: in the frame of the body, unit
+// length.
+std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& scale, const Vec3& up_B,
+                                       UpRemedy remedy);
 
-// Of all meshes of a scene, in the order of its bodies. Up is that of the water, at the orientation with
-// which a body starts ([body.client]). A warning about equal bodies appears once.
-std::vector<Warning> up_axis_warnings(const Scene& scene);
+// Of all meshes of a scene, in the order of its bodies. A warning about equal bodies appears once.
+std::vector<Warning> up_axis_warnings(const Scene& scene, const UpAxisCheck& check = {});
 
 }  // namespace buoyancy

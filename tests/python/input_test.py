@@ -104,6 +104,15 @@ class RefusesBadInput(TestCase):
         self.refused(buoyancy.InputError, "no such file", buoyancy.Mesh, "/nowhere/hull.stl")
         self.refused(ValueError, "null byte", buoyancy.Mesh, "hull\0.stl")
         self.refused(buoyancy.InputError, "scale = 0", buoyancy.Mesh, v, f, scale=0)
+        self.refused(buoyancy.InputError, r"scale = -1; .* such as scale=\(-1, 1, 1\)", buoyancy.Mesh, v, f, scale=-1)
+        self.refused(buoyancy.InputError, "scale = nan", buoyancy.Mesh, v, f, scale=np.nan)
+        self.refused(buoyancy.InputError, "scale = 1, 0, 1; expected finite factors", buoyancy.Mesh, v, f,
+                     scale=(1, 0, 1), up="y")
+        self.refused(buoyancy.InputError, "scale = 1, inf, 1", buoyancy.Mesh, v, f, scale=(1, np.inf, 1))
+        self.refused(ValueError, r"scale has shape \(2,\)", buoyancy.Mesh, v, f, scale=(1, 1))
+        self.refused(TypeError, "scale is a str", buoyancy.Mesh, v, f, scale="1")
+        self.refused(ValueError, 'up = "w"; expected one of x, y, z, -x, -y, -z', buoyancy.Mesh, v, f, up="w")
+        self.refused(TypeError, "up is a tuple; expected text", buoyancy.Mesh, v, f, up=(0, 1, 0))
         self.refused(ValueError, 'open = "yes"', buoyancy.Mesh, v, f, open="yes")
         self.refused(buoyancy.Error, "no such file", buoyancy.Scene, "/nowhere/scene.toml")
 

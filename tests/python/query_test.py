@@ -206,6 +206,36 @@ class ReusesResults(TestCase):
         self.assertEqual((one.immersion, one.added_mass.shape), (0.5, (6, 6)))
 
 
+class PlacesMeshes(TestCase):
+    def setUp(self):
+        self.vertices, self.faces = box(1.0)
+        self.vertices = self.vertices * (4, 1, 2) + (1, 2, 3)
+
+    def wrench(self, mesh):
+        result = mesh.query((0, 0, -2), (0.8, 0.6, 0, 0))
+        return [*result.force, *result.torque, result.volume]
+
+    def test_by_factors_and_mirrors(self):
+        for scale in (2.0, 1, (1, 1, 1.5), (-1, 1, 1), (-1, -2, -1), np.array([1, -1, -1])):
+            placed = buoyancy.Mesh(self.vertices, self.faces, scale=scale)
+            factors = np.broadcast_to(scale, 3)
+            faces = self.faces[:, [0, 2, 1]] if np.prod(factors) < 0 else self.faces
+            drawn = buoyancy.Mesh(self.vertices * factors, faces)
+            self.assertFalse(placed.flipped)
+            self.assertEqual(self.wrench(placed), self.wrench(drawn))
+
+    def test_with_an_axis_up(self):
+        x, y, z = self.vertices.T
+        for up, turned in (("y", (x, -z, y)), ("-y", (x, z, -y)), ("-z", (x, -y, -z)), ("x", (-z, y, x)),
+                           ("-x", (z, y, -x)), ("z", (x, y, z)), (None, (x, y, z))):
+            placed = buoyancy.Mesh(self.vertices, self.faces, up=up)
+            drawn = buoyancy.Mesh(np.stack(turned, axis=1), self.faces)
+            self.assertEqual(self.wrench(placed), self.wrench(drawn))
+        placed = buoyancy.Mesh(self.vertices, self.faces, up="y", scale=(1, -2, 1))
+        drawn = buoyancy.Mesh(np.stack((x, z, 2 * y), axis=1), self.faces[:, [0, 2, 1]])
+        self.assertEqual(self.wrench(placed), self.wrench(drawn))
+
+
 class ReportsMeshes(TestCase):
     def test_attributes(self):
         mesh = buoyancy.Mesh(*box(2.0), scale=0.5)

@@ -67,7 +67,7 @@ class WarnsOfMeshesOnTheirSide(TestCase):
                 Path(folder, name + ".dae").write_text(COLLADA.format(axis))
                 Path(folder, name + ".toml").write_text('[[body]]\nid = 1\nmesh = "{}.dae"\n'.format(name))
             expected = r"side.*has y up in its file.*orientation = \[0.707106781187, 0.707106781187, 0, 0\]"
-            with self.assertWarnsRegex(UserWarning, expected):
+            with self.assertWarnsRegex(UserWarning, 'Pass up="y"; in a scene file, orientation = '):
                 mesh = buoyancy.Mesh(Path(folder, "side.dae"))
             np.testing.assert_array_equal(mesh.bounding_box, [(0, 0, 0), (2, 1, 1)])
             with self.assertWarnsRegex(UserWarning, expected):
@@ -78,6 +78,11 @@ class WarnsOfMeshesOnTheirSide(TestCase):
                 buoyancy.Scene(Path(folder, "upright.toml"))
                 with self.assertRaises(UserWarning):
                     buoyancy.Mesh(Path(folder, "side.dae"))
+                for scale in (1, 1, 1), (1, -1, 1):
+                    mesh = buoyancy.Mesh(Path(folder, "side.dae"), up="y", scale=scale)
+                    self.assertEqual((mesh.bounding_box[0][2], mesh.bounding_box[1][2]), (0, 1))
+                with self.assertRaises(UserWarning):
+                    buoyancy.Mesh(Path(folder, "side.dae"), up="x")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "query/pose_evaluation.h"
+#include "scene/up_axis.h"
 #include "tests/query/pose_table.h"
 #include "tests/support/scene_of.h"
 
@@ -24,12 +25,25 @@ std::string error_of(const std::vector<double>& vertices, const std::vector<std:
 }
 
 TEST(QueryMesh, IsMadeOfArrays) {
-  const auto mesh = QueryMesh::make(kTetrahedron, kFaces, "tetrahedron", {.scale = 2.0});
+  const auto mesh =
+      QueryMesh::make(kTetrahedron, kFaces, "tetrahedron", {.placement = {.scale = Vec3::Constant(2.0)}});
   ASSERT_TRUE(mesh) << mesh.error().message();
   EXPECT_EQ((*mesh)->report().name, "tetrahedron");
   EXPECT_EQ((*mesh)->report().triangles, 4);
   EXPECT_NEAR((*mesh)->report().volume, 8.0 / 6.0, 1e-15);
   EXPECT_NEAR((*mesh)->mass_properties().centroid_B.x(), 0.5, 1e-15);
+}
+
+TEST(QueryMesh, IsPlacedAsAMeshOfASceneIs) {
+  const Eigen::Quaterniond up_y = orientation_with_up(Vec3::UnitY(), {2.0, 3.0, -1.0});
+  const auto mesh = QueryMesh::make(
+      kTetrahedron, kFaces, "tetrahedron",
+      {.placement = {.scale = {2.0, 3.0, -1.0}, .position_B = {0.0, 0.0, 5.0}, .orientation_B = up_y}});
+  ASSERT_TRUE(mesh) << mesh.error().message();
+  EXPECT_NEAR((*mesh)->report().volume, 1.0, 1e-15);
+  EXPECT_FALSE((*mesh)->report().flipped);
+  EXPECT_EQ((*mesh)->report().box.min_B, Vec3(0.0, 0.0, 5.0));
+  EXPECT_EQ((*mesh)->report().box.max_B, Vec3(2.0, 1.0, 8.0));
 }
 
 TEST(QueryMesh, SaysWhatIsWrongWithArrays) {
@@ -50,9 +64,14 @@ TEST(QueryMesh, SaysWhatIsWrongWithArrays) {
   std::vector<double> vertices = kTetrahedron;
   vertices[7] = kInfinity;
   EXPECT_NE(error_of(vertices, kFaces).find("finite"), std::string::npos);
-  for (const double scale : {0.0, -1.0, kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_NE(error_of(kTetrahedron, kFaces, {.scale = scale}).find("scale"), std::string::npos);
+  const auto error_with = [](const MeshPlacement& placement) {
+    return error_of(kTetrahedron, kFaces, {.placement = placement});
+  };
+  for (const double bad : {0.0, kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_NE(error_with({.scale = {1.0, bad, 1.0}}).find("arrays: scale = 1, "), std::string::npos);
+    EXPECT_NE(error_with({.orientation_B = {bad, 0.0, 0.0, 0.0}}).find("orientation"), std::string::npos);
   }
+  EXPECT_NE(error_with({.position_B = {0.0, kInfinity, 0.0}}).find("position"), std::string::npos);
 }
 
 TEST(QueryMesh, SaysWhichFileIsMissing) {

@@ -346,14 +346,15 @@ TEST(SceneFile, NamesUnreadableFiles) {
 }
 
 TEST(SingleMeshScene, HasOneBodyInDefaultWater) {
-  const SceneDescription scene =
-      single_mesh_scene("models/duck.dae", Method::kExactSurface, 0.25, OpenPolicy::kDryBoundary);
+  const SceneDescription scene = single_mesh_scene("models/duck.dae", Method::kExactSurface, 0.25,
+                                                   OpenPolicy::kDryBoundary, {.scale = {1.0, 2.0, -3.0}});
   EXPECT_EQ(scene.water.level, 0.0);
   EXPECT_EQ(scene.water.density, 1025.0);
   ASSERT_EQ(scene.bodies.size(), 1U);
   EXPECT_EQ(scene.bodies[0].id, 1);
   EXPECT_EQ(scene.bodies[0].name, "duck.dae");
   EXPECT_EQ(std::get<MeshFile>(scene.bodies[0].mesh.source).path, std::filesystem::path("models/duck.dae"));
+  EXPECT_EQ(scene.bodies[0].mesh.placement.scale, Vec3(1.0, 2.0, -3.0));
   EXPECT_EQ(scene.bodies[0].method, Method::kExactSurface);
   EXPECT_EQ(scene.bodies[0].tolerance, 0.25);
   EXPECT_EQ(scene.bodies[0].open, OpenPolicy::kDryBoundary);

@@ -1,5 +1,7 @@
 #include "scene/up_axis.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -21,10 +23,11 @@ class UpAxis : public testing::Test {
     directory_.write("plain.obj", tetrahedron::obj());
   }
 
-  std::vector<Warning> warnings_of(const std::string& bodies, const std::string& water = "") {
+  std::vector<Warning> warnings_of(const std::string& bodies, const std::string& water = "",
+                                   const UpAxisCheck& check = {}) {
     const auto scene = Scene::load(directory_.write("pool.toml", water + bodies));
     EXPECT_TRUE(scene) << scene.error().message();
-    return scene ? up_axis_warnings(*scene) : std::vector<Warning>{};
+    return scene ? up_axis_warnings(*scene, check) : std::vector<Warning>{};
   }
 
   static std::string body(const std::string& mesh, int id = 1) {
@@ -66,6 +69,67 @@ TEST_F(UpAxis, IsUpAgainWithTheStatedOrientation) {
       EXPECT_TRUE(warnings_of(part + orientation + "\n", water).empty()) << mesh << up << orientation;
       EXPECT_EQ(warnings_of(part, water).size(), 1U);
     }
+  }
+}
+
+// A factor of -1 turns the axis round, and the winding with it.
+TEST_F(UpAxis, IsUpAgainAlsoInAMirroredMesh) {
+  const std::string file = "mesh = { file = \"y_up.dae\", scale = [1, -1, 1]";
+  const std::string head = "[[body]]\nid = 1\n" + file;
+  const std::vector<Warning> warnings = warnings_of(head + " }\n");
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].actual.ends_with(" has y up in its file, which is -y of the body"));
+  EXPECT_TRUE(warnings[0].hint.starts_with("orientation = [0.707106781187, -0.707106781187, 0, 0]"))
+      << warnings[0].hint;
+  const std::string orientation = warnings[0].hint.substr(0, warnings[0].hint.find(']') + 1);
+  EXPECT_TRUE(warnings_of(head + ", " + orientation + " }\n").empty());
+}
+
+TEST_F(UpAxis, IsNotedWithTheOptionOfTheProgram) {
+  const std::string y_up = body("y_up.dae");
+  const std::string mirrored = "[[body]]\nid = 1\nmesh = { file = \"y_up.dae\", scale = [1, -1, 1] }\n";
+  const std::string in_scene = "; in a scene file, orientation = [0.707106781187, ";
+  const auto hint_of = [&](const std::string& bodies, const UpAxisCheck& check) {
+    const std::vector<Warning> warnings = warnings_of(bodies, "", check);
+    return warnings.size() == 1 ? warnings[0].hint : "";
+  };
+  const auto starts = [](const std::string& text, const std::string& start) {
+    return text.starts_with(start);
+  };
+  EXPECT_PRED2(starts, hint_of(y_up, {.remedy = UpRemedy::kOption}), "Pass --up y" + in_scene);
+  EXPECT_PRED2(starts, hint_of(y_up, {.remedy = UpRemedy::kArgument}), "Pass up=\"y\"" + in_scene);
+  EXPECT_PRED2(starts, hint_of(y_up, {.remedy = UpRemedy::kShipAxis}), "Pass --up y" + in_scene);
+  // One is an axis of the file, the other of the mesh as it is placed.
+  EXPECT_PRED2(starts, hint_of(mirrored, {.remedy = UpRemedy::kOption}), "Pass --up y" + in_scene);
+  EXPECT_PRED2(starts, hint_of(mirrored, {.remedy = UpRemedy::kShipAxis}), "Pass --up=-y" + in_scene);
+
+  EXPECT_EQ(hint_of(y_up, {Vec3::UnitY(), UpRemedy::kShipAxis}), "");
+  const std::vector<Warning> of_ship =
+      warnings_of(body("z_up.dae"), "", {Vec3::UnitY(), UpRemedy::kShipAxis});
+  ASSERT_EQ(of_ship.size(), 1U);
+  EXPECT_EQ(of_ship[0].expected, "y of the body, which is the ship's upward axis");
+  EXPECT_EQ(of_ship[0].hint,
+            "Pass --up z; in a scene file, orientation = [1, 0, 0, 0] (w, x, y, z) of the mesh stands it up");
+}
+
+TEST(OrientationWithUp, TurnsEachAxisUpWithoutRounding) {
+  TriangleMesh mesh;
+  mesh.add_vertex({0.1, 0.7, 1.0 / 3.0});
+  for (const std::string name : {"x", "y", "z", "-x", "-y", "-z"}) {
+    const Vec3 axis = axis_from_name(name).value();
+    for (const double sign : {1.0, -1.0}) {
+      TriangleMesh placed = mesh;
+      const Vec3 scale(sign, 1.0, sign);
+      place(placed, {.scale = scale, .orientation_B = orientation_with_up(axis, scale)});
+      EXPECT_EQ(placed.z[0], axis.dot(Vec3(mesh.x[0], mesh.y[0], mesh.z[0]))) << name;
+      std::vector<double> sizes{std::abs(placed.x[0]), std::abs(placed.y[0]), std::abs(placed.z[0])};
+      std::sort(sizes.begin(), sizes.end());
+      EXPECT_EQ(sizes, (std::vector<double>{0.1, 1.0 / 3.0, 0.7})) << name;
+    }
+  }
+  // A hull keeps its bow where it can.
+  for (const std::string name : {"y", "-y", "z", "-z"}) {
+    EXPECT_EQ(orientation_with_up(axis_from_name(name).value(), Vec3::Ones()) * Vec3::UnitX(), Vec3::UnitX());
   }
 }
 

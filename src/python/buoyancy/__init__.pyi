@@ -157,9 +157,10 @@ class Mesh:
         source: Union[Path, ArrayLike],
         faces: Optional[ArrayLike] = None,
         *,
-        scale: float = 1.0,
+        scale: ArrayLike = 1.0,  # a number, or factors of x, y and z
         open: Literal["refuse", "dry_boundary"] = "refuse",
         count_intersections: bool = False,
+        up: Optional[Literal["x", "y", "z", "-x", "-y", "-z"]] = None,
     ) -> None: ...
     def query(
         self,
