@@ -111,7 +111,9 @@ int run(int argc, char** argv) {
   }
   const Expected<LoadedBody> loaded = load_body(options, *plan);
   if (!loaded) return fail(loaded.error(), kUsageError);
-  for (const Warning& warning : mesh_warnings(loaded->scene)) print_warning(app, warning);
+  UpAxisCheck up;
+  if (!options.mesh.empty()) up = {.up_B = plan->table.axes.up_B, .remedy = UpRemedy::kShipAxis};
+  for (const Warning& warning : mesh_warnings(loaded->scene, up)) print_warning(app, warning);
 
   Expected<Output> output;
   switch (plan->command) {

@@ -177,7 +177,8 @@ int run(int argc, char** argv) {
   const Expected<Scene> scene =
       plan->single_mesh ? Scene::prepare(*plan->single_mesh) : Scene::load(options.scene);
   if (!scene) return fail(scene.error(), kUsageError);
-  for (const Warning& warning : mesh_warnings(*scene)) print_warning(app, warning);
+  const UpAxisCheck up{.remedy = plan->single_mesh ? UpRemedy::kOption : UpRemedy::kNone};
+  for (const Warning& warning : mesh_warnings(*scene, up)) print_warning(app, warning);
   Expected<ReplayRoutes> routes = plan_routes(options, *scene);
   if (!routes) return fail(routes.error(), kUsageError);
   ReplayChannels& channels = routes->channels;

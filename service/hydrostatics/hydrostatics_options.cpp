@@ -14,6 +14,7 @@
 #include "base/format.h"
 #include "cli/channel_options.h"
 #include "cli/command_line.h"
+#include "cli/mesh_options.h"
 
 namespace buoyancy::service {
 namespace {
@@ -24,39 +25,9 @@ constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 3> kCommands{
      {"table", HydrostaticsCommand::kTable},
      {"gz", HydrostaticsCommand::kRightingArms}}};
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const std::size_t end = text.find(separator);
-    parts.push_back(trim(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
-bool parse_finite(std::string_view text, double& value) {
-  return parse_number(text, value) && std::isfinite(value);
-}
-
 Expected<Vec3> parse_point(const std::string& subject, const std::string& text) {
-  const std::vector<std::string_view> parts = split(text, ',');
-  Vec3 point = Vec3::Zero();
-  bool valid = parts.size() == 3;
-  for (std::size_t i = 0; valid && i < 3; ++i) valid = parse_finite(parts[i], point[static_cast<int>(i)]);
-  if (valid) return point;
+  if (const std::optional<Vec3> point = parse_vector(text)) return *point;
   return make_error({subject, quote(text), "three finite numbers, X,Y,Z in metres", "", ""});
-}
-
-Expected<Vec3> parse_direction(const std::string& subject, const std::string& text) {
-  constexpr std::string_view kAxes = "xyz";
-  if (text.size() == 2 && (text[0] == '+' || text[0] == '-')) {
-    const std::size_t axis = kAxes.find(text[1]);
-    if (axis != std::string_view::npos) {
-      return Vec3((text[0] == '-' ? -1.0 : 1.0) * Vec3::Unit(static_cast<int>(axis)));
-    }
-  }
-  return make_error({subject, quote(text), "one of +x -x +y -y +z -z, axes of the body's mesh", "",
-                     "Write a negative axis with an equals sign: " + subject + "=-x"});
 }
 
 std::vector<double> in_radians(std::vector<double> degrees) {
@@ -105,9 +76,9 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
 }
 
 Expected<void> plan_axes(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
-  const Expected<Vec3> forward_B = parse_direction("--forward", options.forward);
+  const Expected<Vec3> forward_B = parse_axis("--forward", options.forward);
   if (!forward_B) return tl::unexpected(forward_B.error());
-  const Expected<Vec3> up_B = parse_direction("--up", options.up);
+  const Expected<Vec3> up_B = parse_axis("--up", options.up);
   if (!up_B) return tl::unexpected(up_B.error());
   const Expected<ShipAxes> axes = make_ship_axes(*forward_B, *up_B);
   if (!axes) return tl::unexpected(axes.error());
@@ -193,10 +164,7 @@ std::string with_default(std::string type, double value) {
 // What a scene says otherwise.
 void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& options) {
   constexpr double kMax = 1e9;
-  app.add_option("--scale", options.scale, "With --mesh: factor on its coordinates")
-      ->needs(mesh)
-      ->check(number_in(0.0, kMax, ""))
-      ->option_text(with_default("FACTOR", options.scale));
+  add_scale_option(app, options.scale, mesh);
   app.add_option("--density", options.density, "With --mesh: density of the water, kg/m^3")
       ->needs(mesh)
       ->check(number_in(0.0, kMax, "kg/m^3"))
@@ -241,9 +209,10 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                             ->option_text("X,Y,Z");
   mesh->needs(mass)->needs(center);
   add_mesh_options(app, mesh, options);
-  app.add_option("--forward", options.forward, "The ship's forward axis: +x, --forward=-x, +y ...")
-      ->option_text("AXIS [+x]");
-  app.add_option("--up", options.up, "The ship's upward axis")->option_text("AXIS [+z]");
+  app.add_option("--forward", options.forward,
+                 "The ship's forward axis in the frame of the mesh: x, --forward=-x, y ...")
+      ->option_text("AXIS [x]");
+  app.add_option("--up", options.up, "The ship's upward axis, likewise")->option_text("AXIS [z]");
   app.add_option("--keel", options.keel,
                  "Height of the keel K in the frame of the mesh, m (default: its lowest point)")
       ->option_text("Z");
@@ -298,6 +267,9 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
     const Expected<Vec3> center = parse_point("--center-of-mass", options.center_of_mass);
     if (!center) return tl::unexpected(center.error());
     plan.center_of_mass_B = *center;
+    const Expected<Vec3> scale = parse_scale(options.scale);
+    if (!scale) return tl::unexpected(scale.error());
+    plan.placement.scale = *scale;
   }
   if (const Expected<void> axes = plan_axes(options, plan); !axes) return tl::unexpected(axes.error());
   if (const Expected<void> ranges = plan_ranges(options, plan); !ranges) {

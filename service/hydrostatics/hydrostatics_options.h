@@ -23,14 +23,14 @@ struct HydrostaticsOptions {
   std::filesystem::path scene;
   std::optional<std::int32_t> body;
   std::filesystem::path mesh;
-  std::optional<double> mass;  // [kg]
-  std::string center_of_mass;  // X,Y,Z
-  double scale = 1.0;
+  std::optional<double> mass;         // [kg]
+  std::string center_of_mass;         // X,Y,Z
+  std::string scale = "1";            // FACTOR or X,Y,Z
   double density = kSeawaterDensity;  // [kg/m^3], of the water
   double gravity = kStandardGravity;  // [m/s^2]
   OpenPolicy open = OpenPolicy::kRefuse;
-  std::string forward = "+x";
-  std::string up = "+z";
+  std::string forward = "x";
+  std::string up = "z";
   std::optional<double> keel;                   // [m]
   std::optional<double> aft_perpendicular;      // [m]
   std::optional<double> forward_perpendicular;  // [m]
@@ -55,6 +55,7 @@ enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms };
 struct HydrostaticsPlan {
   HydrostaticsCommand command = HydrostaticsCommand::kEquilibrium;
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], with --mesh
+  MeshPlacement placement;               // likewise
   HydrostaticTableOptions table;
   RightingArmOptions arms;
   ImmersionPoints points;
@@ -63,7 +64,7 @@ struct HydrostaticsPlan {
   std::vector<double> heels;   // [rad]
 };
 
-// Errors: options that do not belong together, and texts that are no range, direction or point.
+// Errors: options that do not belong together, and texts that are no range, axis, scale or point.
 Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const HydrostaticsOptions& options);
 
 // FROM:TO:STEP or one number: ascending, TO included where a step meets it. Errors: anything else, and more

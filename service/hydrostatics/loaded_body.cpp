@@ -24,9 +24,9 @@ Expected<const Body*> body_of(const Scene& scene, std::optional<std::int32_t> id
                      "--body with one of them: " + ids, "", ""});
 }
 
-SceneDescription mesh_scene(const HydrostaticsOptions& options) {
-  SceneDescription scene = single_mesh_scene(options.mesh, Method::kHierarchical, 0.0, options.open);
-  scene.bodies.front().mesh.placement.scale = Vec3::Constant(options.scale);
+SceneDescription mesh_scene(const HydrostaticsOptions& options, const MeshPlacement& placement) {
+  SceneDescription scene =
+      single_mesh_scene(options.mesh, Method::kHierarchical, 0.0, options.open, placement);
   scene.water.density = options.density;
   scene.water.gravity = options.gravity;
   return scene;
@@ -36,7 +36,7 @@ SceneDescription mesh_scene(const HydrostaticsOptions& options) {
 
 Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const HydrostaticsPlan& plan) {
   Expected<Scene> scene =
-      options.mesh.empty() ? Scene::load(options.scene) : Scene::prepare(mesh_scene(options));
+      options.mesh.empty() ? Scene::load(options.scene) : Scene::prepare(mesh_scene(options, plan.placement));
   if (!scene) return tl::unexpected(scene.error());
   const Expected<const Body*> body = body_of(*scene, options.body);
   if (!body) return tl::unexpected(body.error());

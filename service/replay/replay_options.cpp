@@ -9,6 +9,7 @@
 
 #include "cli/channel_options.h"
 #include "cli/command_line.h"
+#include "cli/mesh_options.h"
 #include "hydrostatics/solver.h"
 #include "transport/lcm_connection.h"
 
@@ -155,6 +156,8 @@ void add_options(CLI::App& app, ReplayOptions& options) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, OpenPolicy>(kOpenPolicyNames.begin(), kOpenPolicyNames.end())))
       ->option_text("refuse|dry_boundary [refuse]");
+  add_scale_option(app, options.scale, mesh);
+  add_up_option(app, options.up, mesh);
   add_states_channel_option(app, options.states_channel);
   add_wrenches_channel_option(app, options.wrenches_channel);
   add_hydrostatics_channel_option(app, options.hydrostatics_channel);
@@ -236,7 +239,9 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
     if (!method) {
       return make_error({"--method", "'" + options.method + "'", "one of: " + method_names(), "", ""});
     }
-    plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance, options.open);
+    const Expected<MeshPlacement> placement = placement_of(options.scale, options.up);
+    if (!placement) return tl::unexpected(placement.error());
+    plan.single_mesh = single_mesh_scene(options.mesh, *method, options.tolerance, options.open, *placement);
   }
   return plan;
 }

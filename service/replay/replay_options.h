@@ -21,10 +21,12 @@ namespace buoyancy::service {
 
 struct ReplayOptions {
   std::filesystem::path scene;  // either scene
-  std::filesystem::path mesh;   // or mesh with the next three options
+  std::filesystem::path mesh;   // or mesh with the next five options
   std::string method;           // empty: the default of a scene's body
   double tolerance = 0.0;
   OpenPolicy open = OpenPolicy::kRefuse;
+  std::string scale = "1";        // FACTOR or X,Y,Z
+  std::optional<std::string> up;  // AXIS
   std::filesystem::path input;
   std::filesystem::path output;
   std::string states_channel{kStatesChannel};
@@ -55,8 +57,9 @@ struct ReplayPlan {
 };
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
-// carry, one channel for two types, an unknown method, options for logs with a CSV file, a part of what is no
-// regular file, a file of loads that is another file of the replay or beside a part.
+// carry, one channel for two types, an unknown method, a scale or an axis that is none, options for logs with
+// a CSV file, a part of what is no regular file, a file of loads that is another file of the replay or beside
+// a part.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
 
 // Checks the options of --join, which app has parsed. Errors: an option that belongs to a replay, an

@@ -77,13 +77,12 @@ std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& sca
       orientation_with_up(*up_of_file, scale, is_of_ship ? Vec3(Vec3::UnitZ()) : up_B);
   std::string hint = "orientation = " + quaternion_text(upright) + " (w, x, y, z) of the mesh stands it up";
   if (remedy != UpRemedy::kNone) hint.insert(0, remedy_text(report, remedy) + "; in a scene file, ");
-  const bool is_turned = !report.up_B->isApprox(up_of_file->cwiseProduct(scale).normalized());
   return Warning{"",
                  "mesh '" + report.name + "' has " + report.source.up_axis + " up in its file, which is " +
                      direction_text(*report.up_B) + " of the body",
                  direction_text(up_B) + " of the body, which is " +
                      (is_of_ship ? "the ship's upward axis" : "up in the water"),
-                 is_turned ? "" : "coordinates are used as the file has them and are not turned",
+                 "coordinates are those of the file, turned by nothing but the mesh's orientation",
                  std::move(hint)};
 }
 

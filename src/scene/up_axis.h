@@ -29,8 +29,8 @@ enum class UpRemedy {
 
 // How a program checks which direction is up.
 struct UpAxisCheck {
-  std::optional<Vec3> up_B;  // unit length; nullopt: up of the water, at the orientation with which a body
-                             // starts ([body.client])
+  // Unit length; nullopt: up of the water, at the orientation with which a body starts ([body.client]).
+  std::optional<Vec3> up_B{};
   UpRemedy remedy = UpRemedy::kNone;
 };
 

@@ -16,6 +16,7 @@
 #include "geometry/shapes.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_page.h"
+#include "tests/geometry/mesh_files.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_dir.h"
@@ -295,6 +296,55 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   EXPECT_NE(capsized.error.find("takes in water"), std::string::npos) << capsized.error;
 }
 
+// A box of 4 x 1 x 2 after its scale: its waterplane is 4 x 2 with y up, and 4 x 1 with z up.
+TEST_F(HydrostaticsProgram, TakesTheAxisThatIsUpInTheMesh) {
+  const std::string mesh = dir_.write("box.obj",
+                                      "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
+                                      "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n"
+                                      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const auto table = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{
+        "table",   "--mesh", mesh,     "--mass",    "1000", "--center-of-mass", "2,0,0",
+        "--draft", "0.25",   "--json", "--density", "1000", "--scale",          "2,1,2"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    return result.output;
+  };
+  const auto volume = [](const std::string& output) {
+    return nlohmann::json::parse(output).at("rows").at(0).at("displacement_volume").get<double>();
+  };
+  const std::string y_up = table({"--up", "y"});
+  EXPECT_NEAR(volume(y_up), 0.25 * 4.0 * 2.0, 1e-12);
+  EXPECT_EQ(table({"--up", "+y"}), y_up);
+  EXPECT_NEAR(volume(table({})), 0.25 * 4.0 * 1.0, 1e-12);
+}
+
+TEST_F(HydrostaticsProgram, WarnsOfAMeshWhoseUpAxisIsNotTheShips) {
+  const std::string mesh = dir_.write("side.dae", tetrahedron::collada("<up_axis>Y_UP</up_axis>"));
+  const auto error_with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"equilibrium", "--mesh",           mesh,         "--mass",
+                                       "80",          "--center-of-mass", "0.2,0.2,0.2"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result.error;
+  };
+  const std::string warning = error_with({});
+  EXPECT_NE(warning.find(": warning: "), std::string::npos) << warning;
+  EXPECT_NE(warning.find("expected z of the body, which is the ship's upward axis"), std::string::npos)
+      << warning;
+  EXPECT_NE(warning.find("Pass --up y; in a scene file, orientation = [0.70710678"), std::string::npos)
+      << warning;
+  EXPECT_EQ(error_with({"--up", "y"}), "");
+  EXPECT_EQ(error_with({"--up=+y"}), "");
+  EXPECT_NE(error_with({"--up=-y"}).find("expected -y of the body"), std::string::npos);
+  // The axis is that of the mesh as it is scaled.
+  EXPECT_NE(error_with({"--scale=1,-1,1"}).find("Pass --up=-y;"), std::string::npos);
+  EXPECT_EQ(error_with({"--scale=1,-1,1", "--up=-y"}), "");
+}
+
 TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   const std::string heavy = scene("density = 1100\n");
   const ProgramRun result = run({"equilibrium", "--scene", heavy, "--json"});
@@ -363,6 +413,10 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
       {"table", "--scene", good, "--draft", "1", "--deck-edge", "1,2,3"},
       {"equilibrium", "--scene", good, "--downflooding", "1,2,3"},
       {"gz", "--scene", good, "--density", "1000"},
+      {"gz", "--scene", good, "--scale", "2"},
+      {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--scale", "0"},
+      {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--scale", "1,0,1"},
+      {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--up", "w"},
       {"gz", "--scene", good, "--open", "dry_boundary"},
       {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--gravity", "0"},
       {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--open", "maybe"},

@@ -1,5 +1,6 @@
 // Runs buoyancy-replay as a program on generated files.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -17,6 +18,7 @@
 #include "base/unique_fd.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
+#include "tests/geometry/mesh_files.h"
 #include "tests/service/replay_fixture.h"
 #include "tests/support/json.h"
 #include "tests/support/timeouts.h"
@@ -286,6 +288,121 @@ TEST_F(Replay, AcceptsOneMeshInsteadOfScene) {
   EXPECT_NE(read_file(path("fast.csv")), read_file(path("out.csv")));
 }
 
+// A wedge with its corners at (x, y, z): the same mesh, written as it is placed.
+TEST_F(Replay, PlacesTheMeshAsScaleAndUpSay) {
+  const auto wedge = [](std::function<std::array<double, 3>(double, double, double)> place, bool mirror) {
+    std::ostringstream obj;
+    for (const auto& [x, y, z] :
+         {std::array{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.5, 0.25, 3.0}}) {
+      const auto [a, b, c] = place(x, y, z);
+      obj << "v " << a << ' ' << b << ' ' << c << '\n';
+    }
+    obj << (mirror ? "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n" : "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    return obj.str();
+  };
+  const auto responses = [this](const std::string& obj, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"--mesh", write("wedge.obj", obj), path("in.csv"), path("out.csv")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const FinishedProcess finished = run(arguments);
+    EXPECT_EQ(finished.exit_code, 0) << finished.standard_error;
+    EXPECT_EQ(finished.standard_error, "");
+    return read_file(path("out.csv"));
+  };
+  write("in.csv", kPoseHeader + pose_row(0, -0.25) + "1,1,0,0,-0.5,0.8,0.6,0,0\n");
+  const std::string as_drawn = wedge([](double x, double y, double z) { return std::array{x, y, z}; }, false);
+  const auto expect = [&](const std::vector<std::string>& options, const auto& place, bool mirror) {
+    EXPECT_EQ(responses(as_drawn, options), responses(wedge(place, mirror), {})) << options.front();
+  };
+  EXPECT_EQ(responses(as_drawn, {"--scale", "1", "--up", "z"}), responses(as_drawn, {}));
+  expect(
+      {"--scale", "0.5"},
+      [](double x, double y, double z) {
+        return std::array{x / 2, y / 2, z / 2};
+      },
+      false);
+  expect(
+      {"--scale", "1,1,1.5"},
+      [](double x, double y, double z) {
+        return std::array{x, y, 1.5 * z};
+      },
+      false);
+  expect(
+      {"--scale=-1,1,1"},
+      [](double x, double y, double z) {
+        return std::array{-x, y, z};
+      },
+      true);
+  expect(
+      {"--up", "y"},
+      [](double x, double y, double z) {
+        return std::array{x, -z, y};
+      },
+      false);
+  expect(
+      {"--up=-y"},
+      [](double x, double y, double z) {
+        return std::array{x, z, -y};
+      },
+      false);
+  expect(
+      {"--up=-z"},
+      [](double x, double y, double z) {
+        return std::array{x, -y, -z};
+      },
+      false);
+  expect(
+      {"--up", "x"},
+      [](double x, double y, double z) {
+        return std::array{-z, y, x};
+      },
+      false);
+  // The axis of the file becomes up, whatever the factors.
+  expect(
+      {"--up", "y", "--scale", "1,-2,1"},
+      [](double x, double y, double z) {
+        return std::array{x, z, 2 * y};
+      },
+      true);
+}
+
+TEST_F(Replay, WarnsOfAMeshOnItsSideUnlessUpStandsItUp) {
+  const std::string mesh = write("side.dae", tetrahedron::collada("<up_axis>Y_UP</up_axis>"));
+  write("in.csv", kPoseHeader + pose_row(0, 0.25));
+  const std::vector<std::string> plain{"--mesh", mesh, path("in.csv"), path("out.csv")};
+  const auto with = [&](const std::string& up) {
+    std::vector<std::string> arguments = plain;
+    arguments.push_back(up);
+    return run(arguments).standard_error;
+  };
+  const std::string warning = run(plain).standard_error;
+  EXPECT_NE(warning.find(": warning: "), std::string::npos) << warning;
+  EXPECT_NE(warning.find("Pass --up y; in a scene file, orientation = [0.70710678"), std::string::npos)
+      << warning;
+  EXPECT_EQ(with("--up=y"), "");
+  EXPECT_NE(with("--up=x").find("Pass --up y;"), std::string::npos);
+}
+
+TEST_F(Replay, SaysWhichScaleAndAxisAreExpected) {
+  const auto error_with = [this](const std::string& option) {
+    return run({"--mesh", "a.obj", option, path("in.csv"), path("out.csv")}).standard_error;
+  };
+  EXPECT_EQ(
+      error_with("--scale=1,0,1"),
+      "buoyancy-replay: --scale: '1,0,1'; expected a number above 0, or factors X,Y,Z of the three axes of "
+      "which none is 0. Likely cause: a mesh without an extent. For millimetres write --scale 0.001.\n");
+  EXPECT_NE(error_with("--scale=-1").find("such as --scale=-1,1,1"), std::string::npos);
+  for (const std::string scale : {"0", "nan", "inf", "1,1", "1,1,1,1", "1,1,inf", "1,1,", "large"}) {
+    EXPECT_NE(error_with("--scale=" + scale).find("'" + scale + "'; expected a number above 0, or factors"),
+              std::string::npos)
+        << scale;
+  }
+  for (const std::string axis : {"w", "xy", "-", "--x", "Y"}) {
+    EXPECT_EQ(error_with("--up=" + axis), "buoyancy-replay: --up: '" + axis +
+                                              "'; expected one of x y z -x -y -z, an axis of the mesh. "
+                                              "Write a negative axis with an equals sign: --up=-x.\n");
+  }
+}
+
 TEST_F(Replay, RejectsInvalidArgumentsWithOneLineAndUsageError) {
   const std::string in = write("in.csv", kPoseHeader + pose_row(0, 0.0));
   const std::string out = path("out.csv");
@@ -302,6 +419,10 @@ TEST_F(Replay, RejectsInvalidArgumentsWithOneLineAndUsageError) {
       {"--mesh", cube, "--method", "slow", in, out},
       {"--mesh", cube, "--tolerance", "2", in, out},
       {"--mesh", cube, "--open", "wet", in, out},
+      {"--mesh", cube, "--scale", "0", in, out},
+      {"--mesh", cube, "--up", "w", in, out},
+      {"--scene", scene_, "--scale", "2", in, out},
+      {"--scene", scene_, "--up", "y", in, out},
       {"--scene", scene_, "--open", "dry_boundary", in, out},
       {"--mesh", path("gone.obj"), in, out},
       {"--mesh", in, in, out},

@@ -1,0 +1,34 @@
+// The options that place the mesh of --mesh, shared by the programs that have it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <CLI/App.hpp>
+
+#include "base/error.h"
+#include "scene/mesh_placement.h"
+
+namespace buoyancy {
+
+// Declare --scale FACTOR|X,Y,Z and --up AXIS on app; parsing fills the text, which must live as long, for
+// parse_scale() and placement_of(). scale: the default. mesh: the option --mesh, which they need.
+void add_scale_option(CLI::App& app, std::string& scale, CLI::Option* mesh);
+void add_up_option(CLI::App& app, std::optional<std::string>& up, CLI::Option* mesh);
+
+// Of --scale. Errors: neither a finite number above 0 nor three finite factors X,Y,Z of
+// which none is 0.
+Expected<Vec3> parse_scale(const std::string& text);
+
+// The unit vector of x, +x, -x and so on. subject: the option, for errors. Errors: any other text.
+Expected<Vec3> parse_axis(const std::string& subject, const std::string& text);
+
+// Three finite numbers X,Y,Z.
+std::optional<Vec3> parse_vector(std::string_view text);
+
+// Of --scale and --up: the axis of --up, one of the file, becomes +z; nullopt turns nothing. Errors: those of
+// parse_scale() and parse_axis().
+Expected<MeshPlacement> placement_of(const std::string& scale, const std::optional<std::string>& up);
+
+}  // namespace buoyancy
