@@ -1,0 +1,29 @@
+// How far the surface of one mesh is from another's.
+#pragma once
+
+#include "geometry/aabb_tree.h"
+#include "geometry/triangle_mesh.h"
+
+namespace buoyancy {
+
+// Distances from points to a mesh, with its triangles in a tree.
+class SurfaceDistance {
+ public:
+  // mesh: at least one triangle; must outlive this object. O(n log n).
+  explicit SurfaceDistance(const TriangleMesh& mesh);
+
+  // [m], from the point to the nearest of the surface. O(log n) for points near it.
+  double to(const Vec3& point);
+
+ private:
+  const TriangleMesh& mesh_;
+  AabbTree tree_;
+  std::int32_t last_ = 0;  // the nearest triangle of the last call, where the next is likely too
+};
+
+// [m]: the largest distance from a vertex or a triangle's centroid of `from` to the surface of `to`; that of
+// a point between them may be larger by less than the size of its triangle. O(n log m) for meshes that are
+// near each other.
+double largest_distance(const TriangleMesh& from, const TriangleMesh& to);
+
+}  // namespace buoyancy
