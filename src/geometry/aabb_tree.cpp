@@ -64,4 +64,11 @@ BoundingBox box_of_face(const TriangleMesh& mesh, const Triangle& face) {
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
+std::vector<BoundingBox> boxes_of_faces(const TriangleMesh& mesh, const std::vector<Triangle>& faces) {
+  std::vector<BoundingBox> boxes;
+  boxes.reserve(faces.size());
+  for (const Triangle& face : faces) boxes.push_back(box_of_face(mesh, face));
+  return boxes;
+}
+
 }  // namespace buoyancy

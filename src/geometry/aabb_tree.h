@@ -111,4 +111,7 @@ class AabbTree {
 
 BoundingBox box_of_face(const TriangleMesh& mesh, const Triangle& face);
 
+// Those of `faces`, in their order.
+std::vector<BoundingBox> boxes_of_faces(const TriangleMesh& mesh, const std::vector<Triangle>& faces);
+
 }  // namespace buoyancy

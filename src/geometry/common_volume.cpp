@@ -6,15 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace buoyancy {
 namespace {
 
-constexpr int kColumns = 256;  // per direction
-// Off the middle of a column, so that its axis meets no edge of a mesh with round coordinates.
-constexpr std::array<double, 2> kAxisAt{0.4939, 0.5047};
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 BoundingBox box_of(const OffsetMesh& mesh) {
   BoundingBox box = bounding_box(*mesh.mesh);
@@ -34,12 +33,12 @@ struct Crossing {
   std::int8_t first = 0, second = 0;  // by which the winding number of either mesh changes there
 };
 
-// The places across the columns, in one direction: kColumns of equal width, divided at the vertices of the
+// The places across the columns, in one direction: `count` of equal width, divided at the vertices of the
 // meshes where these have few different coordinates, so that faces along the axes lie between columns.
-std::vector<double> places_between(double low, double high, std::span<const OffsetMesh> meshes,
+std::vector<double> places_between(double low, double high, int count, std::span<const OffsetMesh> meshes,
                                    Eigen::Index axis) {
   std::vector<double> places;
-  for (int i = 0; i <= kColumns; ++i) places.push_back(low + (high - low) * i / kColumns);
+  for (int i = 0; i <= count; ++i) places.push_back(low + (high - low) * i / count);
   std::vector<double> coordinates;
   for (const OffsetMesh& mesh : meshes) {
     for (std::size_t i = 0; i < mesh.mesh->vertex_count(); ++i) {
@@ -47,7 +46,7 @@ std::vector<double> places_between(double low, double high, std::span<const Offs
     }
     std::sort(coordinates.begin(), coordinates.end());
     coordinates.erase(std::unique(coordinates.begin(), coordinates.end()), coordinates.end());
-    if (coordinates.size() > kColumns) return places;
+    if (coordinates.size() > static_cast<std::size_t>(count)) return places;
   }
   std::copy_if(coordinates.begin(), coordinates.end(), std::back_inserter(places),
                [&](double place) { return place > low && place < high; });
@@ -55,16 +54,21 @@ std::vector<double> places_between(double low, double high, std::span<const Offs
   return places;
 }
 
-// Columns over a box, along its longest side.
+// Columns over a box.
 class Columns {
  public:
-  Columns(const BoundingBox& box, std::span<const OffsetMesh> meshes) {
-    (box.max_B - box.min_B).maxCoeff(&along_);
-    across_ = {(along_ + 1) % 3, (along_ + 2) % 3};
+  Columns(const BoundingBox& box, std::span<const OffsetMesh> meshes, const ColumnLayout& layout)
+      : along_(layout.along),
+        across_{(along_ + 1) % 3, (along_ + 2) % 3},
+        bottom_(box.min_B[along_]),
+        top_(box.max_B[along_]),
+        reach_(std::max(box.min_B.cwiseAbs().maxCoeff(), box.max_B.cwiseAbs().maxCoeff())) {
     for (std::size_t i = 0; i < 2; ++i) {
-      places_[i] = places_between(box.min_B[across_[i]], box.max_B[across_[i]], meshes, across_[i]);
+      places_[i] =
+          places_between(box.min_B[across_[i]], box.max_B[across_[i]], layout.count, meshes, across_[i]);
       for (std::size_t column = 0; column + 1 < places_[i].size(); ++column) {
-        axes_[i].push_back(places_[i][column] + kAxisAt[i] * (places_[i][column + 1] - places_[i][column]));
+        axes_[i].push_back(places_[i][column] +
+                           layout.axis_at[i] * (places_[i][column + 1] - places_[i][column]));
       }
     }
   }
@@ -85,6 +89,7 @@ class Columns {
   }
 
   std::vector<Crossing>& crossings() { return crossings_; }
+  double rounding() const { return rounding_; }  // [m^3], what that of all crossings may add up to
 
  private:
   using Point2 = Eigen::Vector2d;
@@ -117,6 +122,8 @@ class Columns {
         range(1, std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}));
     const std::array<std::size_t, 2> columns =
         range(0, std::min({a.x(), b.x(), c.x()}), std::max({a.x(), b.x(), c.x()}));
+    if (rows[0] == rows[1] || columns[0] == columns[1]) return;
+    const double rounding = rounding_of_heights(corners, {a, b, c}, twice_area);
     for (std::size_t row = rows[0]; row < rows[1]; ++row) {
       for (std::size_t column = columns[0]; column < columns[1]; ++column) {
         const Point2 point(axes_[0][column], axes_[1][row]);
@@ -124,11 +131,31 @@ class Columns {
         if (is_left(b, c, point) != left || is_left(c, a, point) != left) continue;
         // From below, the surface leads in where its normal points down, which is where it turns clockwise.
         const auto change = static_cast<std::int8_t>(left ? -1 : 1);
-        crossings_.push_back({static_cast<std::uint32_t>(row * axes_[0].size() + column),
-                              height_at(corners, {a, b, c}, twice_area, point),
+        const auto index = static_cast<std::uint32_t>(row * axes_[0].size() + column);
+        crossings_.push_back({index,
+                              std::clamp(height_at(corners, {a, b, c}, twice_area, point), bottom_, top_),
                               is_first ? change : std::int8_t{0}, is_first ? std::int8_t{0} : change});
+        rounding_ += rounding * area_of(index);
       }
     }
+  }
+
+  // [m], bound on the error of height_at(): that of the weights, which are products of differences of
+  // coordinates, times the differences of height, and that of the result.
+  double rounding_of_heights(const std::array<Vec3, 3>& corners, const std::array<Point2, 3>& at,
+                             double twice_area) const {
+    double size = 0.0;
+    double rise = 0.0;
+    double reach = reach_;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t next = (i + 1) % 3;
+      size = std::max(size, (at[next] - at[i]).cwiseAbs().maxCoeff());
+      rise = std::max(rise, std::abs(corners[next][along_] - corners[i][along_]));
+      reach = std::max(reach, corners[i].cwiseAbs().maxCoeff());
+    }
+    const double of_weights = 32.0 * kEpsilon * reach * size;
+    const double share = of_weights < std::abs(twice_area) ? of_weights / std::abs(twice_area) : 1.0;
+    return share * rise + 8.0 * kEpsilon * reach;
   }
 
   double height_at(const std::array<Vec3, 3>& corners, const std::array<Point2, 3>& at, double twice_area,
@@ -146,8 +173,11 @@ class Columns {
     return std::clamp(height, bottom, top);
   }
 
-  Eigen::Index along_ = 2;
-  std::array<Eigen::Index, 2> across_{0, 1};
+  Eigen::Index along_;
+  std::array<Eigen::Index, 2> across_;
+  double bottom_, top_;                        // [m], of the box, along the columns
+  double reach_;                               // [m], the largest coordinate of the box
+  double rounding_ = 0.0;                      // [m^3]
   std::array<std::vector<double>, 2> places_;  // [m], the sides of the columns
   std::array<std::vector<double>, 2> axes_;    // [m]
   std::vector<Crossing> crossings_;
@@ -155,11 +185,11 @@ class Columns {
 
 // The volume of the box where `counts` holds for the winding numbers of the two meshes.
 template <typename Counts>
-double volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
-                    const Counts& counts) {
-  if (!((box.max_B - box.min_B).minCoeff() > 0.0)) return 0.0;
+ColumnSum volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
+                       const ColumnLayout& layout, const Counts& counts) {
+  if (!((box.max_B - box.min_B).minCoeff() > 0.0)) return {};
   const std::array<OffsetMesh, 2> meshes{first, second};
-  Columns columns(box, meshes);
+  Columns columns(box, meshes, layout);
   columns.add(first, true);
   columns.add(second, false);
   std::vector<Crossing>& crossings = columns.crossings();
@@ -180,19 +210,34 @@ double volume_where(const BoundingBox& box, const OffsetMesh& first, const Offse
     if (!counts(first_winding, second_winding)) continue;
     volume += columns.area_of(crossings[i].column) * (crossings[i + 1].height - crossings[i].height);
   }
-  return volume;
+  return {volume, columns.rounding()};
+}
+
+ColumnLayout along_longest_side(const BoundingBox& box) {
+  ColumnLayout layout;
+  (box.max_B - box.min_B).maxCoeff(&layout.along);
+  return layout;
 }
 
 }  // namespace
 
 double common_volume(const OffsetMesh& a, const OffsetMesh& b) {
-  return volume_where(common_box(box_of(a), box_of(b)), a, b,
-                      [](int in_a, int in_b) { return in_a > 0 && in_b > 0; });
+  const BoundingBox box = common_box(box_of(a), box_of(b));
+  return volume_where(box, a, b, along_longest_side(box),
+                      [](int in_a, int in_b) { return in_a > 0 && in_b > 0; })
+      .volume;
 }
 
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer) {
-  return volume_where(box_of(inner), inner, outer,
-                      [](int in_inner, int in_outer) { return in_inner > 0 && in_outer <= 0; });
+  const BoundingBox box = box_of(inner);
+  return volume_where(box, inner, outer, along_longest_side(box),
+                      [](int in_inner, int in_outer) { return in_inner > 0 && in_outer <= 0; })
+      .volume;
+}
+
+ColumnSum volume_inside_one(const OffsetMesh& a, const OffsetMesh& b, const BoundingBox& box,
+                            const ColumnLayout& layout) {
+  return volume_where(box, a, b, layout, [](int in_a, int in_b) { return (in_a > 0) != (in_b > 0); });
 }
 
 }  // namespace buoyancy

@@ -8,6 +8,8 @@
 // otherwise within some 1e-3 of the mesh's volume.
 #pragma once
 
+#include <array>
+
 #include "geometry/triangle_mesh.h"
 
 namespace buoyancy {
@@ -24,5 +26,24 @@ double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 
 // [m^3], inside `inner` and outside `outer`. Complexity: as common_volume().
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
+
+// How a box is cut into columns.
+struct ColumnLayout {
+  Eigen::Index along = 2;  // the axis of B that the columns are along
+  int count = 256;         // per direction, at least 1
+  // Where the axis of a column is, as shares of its widths. By default just off its middle, so that it meets
+  // no edge of a mesh with round coordinates.
+  std::array<double, 2> axis_at{0.4939, 0.5047};
+};
+
+struct ColumnSum {
+  double volume = 0.0;    // [m^3]
+  double rounding = 0.0;  // [m^3], bound on the rounding error of the sum
+};
+
+// Inside one of the two and outside the other, in the box. Complexity: as common_volume(), in proportion to
+// the number of columns.
+ColumnSum volume_inside_one(const OffsetMesh& a, const OffsetMesh& b, const BoundingBox& box,
+                            const ColumnLayout& layout);
 
 }  // namespace buoyancy

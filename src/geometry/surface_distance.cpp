@@ -2,17 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace buoyancy {
 namespace {
-
-std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh) {
-  std::vector<BoundingBox> boxes;
-  boxes.reserve(mesh.triangles.size());
-  for (const Triangle& face : mesh.triangles) boxes.push_back(box_of_face(mesh, face));
-  return boxes;
-}
 
 double squared_distance(const Vec3& point, const BoundingBox& box) {
   return (point - point.cwiseMax(box.min_B).cwiseMin(box.max_B)).squaredNorm();
@@ -41,7 +33,8 @@ double squared_distance_to_triangle(const Vec3& point, const Vec3& a, const Vec3
 
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(const TriangleMesh& mesh) : mesh_(mesh), tree_(boxes_of(mesh)) {}
+SurfaceDistance::SurfaceDistance(const TriangleMesh& mesh)
+    : mesh_(mesh), tree_(boxes_of_faces(mesh, mesh.triangles)) {}
 
 double SurfaceDistance::to(const Vec3& point) {
   const auto distance_to = [&](std::int32_t i) {

@@ -37,17 +37,10 @@ Crossing cross(const TriangleMesh& mesh, const Triangle& face, const Vec3& point
   return {in_front == side ? 0 : side, false};
 }
 
-std::vector<BoundingBox> boxes_of(const TriangleMesh& mesh, const std::vector<Triangle>& faces) {
-  std::vector<BoundingBox> boxes;
-  boxes.reserve(faces.size());
-  for (const Triangle& face : faces) boxes.push_back(box_of_face(mesh, face));
-  return boxes;
-}
-
 }  // namespace
 
 WindingNumber::WindingNumber(const TriangleMesh& mesh, std::vector<Triangle> faces)
-    : mesh_(&mesh), faces_(std::move(faces)), tree_(boxes_of(mesh, faces_)) {}
+    : mesh_(&mesh), faces_(std::move(faces)), tree_(boxes_of_faces(mesh, faces_)) {}
 
 WindingNumber::Position WindingNumber::about(const Vec3& point) const {
   Position position;
