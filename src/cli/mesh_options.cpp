@@ -12,19 +12,22 @@
 namespace buoyancy {
 
 void add_scale_option(CLI::App& app, std::string& scale, CLI::Option* mesh) {
-  app.add_option("--scale", scale,
-                 "With --mesh: factor on its coordinates, or one for each; negative ones mirror")
-      ->needs(mesh)
-      ->option_text("FACTOR|X,Y,Z [" + scale + "]");
+  CLI::Option* const option = app.add_option("--scale", scale,
+                                             std::string(mesh == nullptr ? "Factor" : "With --mesh: factor") +
+                                                 " on its coordinates, or one for each; negative ones mirror")
+                                  ->option_text("FACTOR|X,Y,Z [1]");
+  if (mesh != nullptr) option->needs(mesh);
 }
 
 void add_up_option(CLI::App& app, std::optional<std::string>& up, CLI::Option* mesh) {
-  app.add_option(
-         "--up", up,
-         "With --mesh: axis of the file that becomes up: x, y, z, --up=-x ... (default: the mesh is not "
-         "turned)")
-      ->needs(mesh)
-      ->option_text("AXIS");
+  CLI::Option* const option =
+      app.add_option(
+             "--up", up,
+             std::string(mesh == nullptr ? "Turn the mesh" : "With --mesh: turn it") +
+                 " so that this axis of the file is up: x, y, z, --up=-x ... (default: coordinates as "
+                 "the file has them)")
+          ->option_text("AXIS");
+  if (mesh != nullptr) option->needs(mesh);
 }
 
 Expected<Vec3> parse_scale(const std::string& text) {

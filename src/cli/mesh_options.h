@@ -13,7 +13,8 @@
 namespace buoyancy {
 
 // Declare --scale FACTOR|X,Y,Z and --up AXIS on app; parsing fills the text, which must live as long, for
-// parse_scale() and placement_of(). scale: the default. mesh: the option --mesh, which they need.
+// parse_scale() and placement_of(). scale: the default. mesh: the option --mesh, which they need;
+// nullptr: a program without one.
 void add_scale_option(CLI::App& app, std::string& scale, CLI::Option* mesh);
 void add_up_option(CLI::App& app, std::optional<std::string>& up, CLI::Option* mesh);
 

@@ -108,7 +108,8 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
     if (hint.empty()) hint = "Close the holes in a mesh editor";
     if (options.may_be_open) {
       hint +=
-          "; or, if they stay above the water, set open = \"dry_boundary\", in a scene file for this body (with "
+          "; or, if they stay above the water, set open = \"dry_boundary\", in a scene file for this body "
+          "(with "
           "buoyancy-replay --mesh: --open dry_boundary)";
     }
   } else {

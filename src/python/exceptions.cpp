@@ -13,26 +13,43 @@ PyObject* input_error_type = nullptr;
 PyObject* service_error_type = nullptr;
 PyObject* status_error_type = nullptr;
 
-PyObject* define(py::module_& module, const char* name, const char* doc, const py::tuple& bases) {
+PyObject* define(py::module_& module, const char* name, const char* doc, const py::tuple& bases,
+                 const py::object& attributes = py::none()) {
   const std::string full_name = std::string("buoyancy.") + name;
-  PyObject* const type = PyErr_NewExceptionWithDoc(full_name.c_str(), doc, bases.ptr(), nullptr);
+  PyObject* const type = PyErr_NewExceptionWithDoc(full_name.c_str(), doc, bases.ptr(),
+                                                   attributes.is_none() ? nullptr : attributes.ptr());
   if (type == nullptr) throw py::error_already_set();
   module.attr(name) = py::handle(type);
   return type;
 }
 
-// Sets Python's error. The text may name a file whose name is not UTF-8.
-void set_error(PyObject* type, const char* text) {
-  const py::object decoded = py::reinterpret_steal<py::object>(
+// The text may name a file whose name is not UTF-8.
+py::object decoded(const char* text) {
+  return py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(text, static_cast<Py_ssize_t>(std::strlen(text)), "backslashreplace"));
-  if (decoded) PyErr_SetObject(type, decoded.ptr());
+}
+
+// Sets Python's error.
+void set_error(PyObject* type, const char* text) {
+  if (const py::object message = decoded(text)) PyErr_SetObject(type, message.ptr());
+}
+
+void set_error(const InputException& exception) {
+  if (exception.report().empty()) return set_error(input_error_type, exception.what());
+  const py::object message = decoded(exception.what());
+  if (!message) return;
+  const py::object error =
+      py::reinterpret_steal<py::object>(PyObject_CallOneArg(input_error_type, message.ptr()));
+  const py::object report = decoded(exception.report().c_str());
+  if (!error || !report || PyObject_SetAttrString(error.ptr(), "report", report.ptr()) < 0) return;
+  PyErr_SetObject(input_error_type, error.ptr());
 }
 
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(std::move(pointer));
   } catch (const InputException& exception) {
-    set_error(input_error_type, exception.what());
+    set_error(exception);
   } catch (const ServiceException& exception) {
     set_error(service_error_type, exception.what());
   } catch (const StatusException& exception) {
@@ -48,11 +65,14 @@ void define_exceptions(py::module_& module) {
   };
   error_type = define(module, "Error", "Base class of the exceptions of this module.",
                       py::make_tuple(py::handle(PyExc_Exception)));
+  py::dict attributes;
+  attributes["report"] = py::none();
   input_error_type =
       define(module, "InputError",
              "A mesh, a scene, a sea, a file or a number that cannot be used. The text says what "
-             "was found, what is expected, the likely cause and what to do.",
-             with_base(PyExc_ValueError));
+             "was found, what is expected, the likely cause and what to do.\n\n"
+             "report: str, the whole report of a mesh that is refused; None for other errors.",
+             with_base(PyExc_ValueError), attributes);
   service_error_type = define(module, "ServiceError",
                               "No response from buoyancyd, a failure of the network, or a closed client.",
                               with_base(PyExc_RuntimeError));
@@ -80,7 +100,7 @@ void set_python_error() noexcept {
   } catch (const py::builtin_exception& exception) {
     exception.set_error();
   } catch (const InputException& exception) {
-    set_error(input_error_type, exception.what());
+    set_error(exception);
   } catch (const ServiceException& exception) {
     set_error(service_error_type, exception.what());
   } catch (const std::bad_alloc&) {

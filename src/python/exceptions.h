@@ -18,7 +18,14 @@ namespace py = pybind11;
 // Thrown by bindings; becomes buoyancy.InputError, which is a ValueError too.
 class InputException : public std::runtime_error {
  public:
-  explicit InputException(const Error& error) : std::runtime_error(error.message()) {}
+  // report: of the mesh that is refused, which becomes the attribute of that name; empty for other errors.
+  explicit InputException(const Error& error, std::string report = "")
+      : std::runtime_error(error.message()), report_(std::move(report)) {}
+
+  const std::string& report() const { return report_; }
+
+ private:
+  std::string report_;
 };
 
 // Becomes buoyancy.ServiceError, which is a RuntimeError too.

@@ -1,10 +1,12 @@
 // buoyancy.Mesh: a mesh, and queries of it.
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -52,9 +54,48 @@ Method to_method(PyObject* object) {
   throw py::value_error("method = \"" + name + "\"; expected one of " + names);
 }
 
+// A mesh that is refused has a report.
+std::shared_ptr<const QueryMesh> mesh_or_throw(Expected<std::shared_ptr<const QueryMesh>> mesh,
+                                               const MeshReport& refused) {
+  if (!mesh) throw InputException(mesh.error(), refused.name.empty() ? "" : to_text(refused));
+  return *std::move(mesh);
+}
+
 std::shared_ptr<const QueryMesh> load(const std::string& path, const QueryMeshOptions& options) {
   const WithoutGil released;
-  return value_or_throw(QueryMesh::load(path, options));
+  MeshReport refused;
+  return mesh_or_throw(QueryMesh::load(path, options, &refused), refused);
+}
+
+// The index of a word among those that an argument may have.
+template <std::size_t kCount>
+std::size_t to_choice(const std::string& word, const std::array<std::string_view, kCount>& words,
+                      const char* argument) {
+  std::string expected;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (word == words[i]) return i;
+    expected += (i == 0 ? "\"" : "\", \"") + std::string(words[i]);
+  }
+  throw py::value_error(std::string(argument) + " = \"" + word + "\"; expected one of " + expected + "\"");
+}
+
+double to_positive(double number, const char* argument) {
+  if (std::isfinite(number) && number > 0.0) return number;
+  throw InputException({"Mesh()", argument + (" = " + format_shortest(number)), "a finite number above 0", "",
+                        "Leave it out if nothing is to be done"});
+}
+
+MeshRepair to_repair(const std::string& repair, const std::optional<double>& close_holes,
+                     const std::optional<std::string>& mirror, const std::optional<double>& freeboard) {
+  MeshRepair result;
+  if (to_choice(repair, kRepairPolicyNames, "repair") == 1) result.policy = RepairPolicy::kNone;
+  if (mirror) result.mirror = static_cast<Axis>(to_choice(*mirror, kAxisNames, "mirror"));
+  if (close_holes) {
+    result.closing.holes = true;
+    result.closing.max_change = to_positive(*close_holes, "close_holes");
+  }
+  if (freeboard) result.closing.freeboard = to_positive(*freeboard, "freeboard");
+  return result;
 }
 
 // scale: a number above 0, or factors of x, y and z. up: None, or the name of an axis.
@@ -90,8 +131,12 @@ MeshPlacement to_placement(const py::object& scale, const py::object& up) {
 
 std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object& faces,
                                       const py::object& scale, const std::string& open,
-                                      bool count_intersections, const py::object& up) {
+                                      bool count_intersections, const py::object& up,
+                                      const std::string& repair, const std::optional<double>& close_holes,
+                                      const std::optional<std::string>& mirror,
+                                      const std::optional<double>& freeboard) {
   QueryMeshOptions options;
+  options.repair = to_repair(repair, close_holes, mirror, freeboard);
   options.placement = to_placement(scale, up);
   options.open = to_open_policy(open);
   options.count_intersecting_pairs = count_intersections;
@@ -125,8 +170,9 @@ std::unique_ptr<MeshObject> make_mesh(const py::object& source, const py::object
   const std::vector<double> vertex_copy(vertices.values().begin(), vertices.values().end());
   const std::vector<std::int64_t> face_copy(triangles.values().begin(), triangles.values().end());
   const WithoutGil released;
-  return std::make_unique<MeshObject>(
-      MeshObject{value_or_throw(QueryMesh::make(vertex_copy, face_copy, "Mesh(vertices, faces)", options))});
+  MeshReport refused;
+  return std::make_unique<MeshObject>(MeshObject{mesh_or_throw(
+      QueryMesh::make(vertex_copy, face_copy, "Mesh(vertices, faces)", options, &refused), refused)});
 }
 
 std::shared_ptr<const Body> body_of(const QueryMesh& mesh, Method method, double tolerance, bool in_waves) {
@@ -233,12 +279,18 @@ constexpr const char* kMeshDoc =
     "mesh's frame is then the turned one. open: 'dry_boundary' accepts an open mesh; poses that put "
     "its boundary\n"
     "under water get the status OPEN_EDGE_WET. count_intersections: see intersecting_pairs; takes time.\n\n"
+    "repair: 'none' leaves out the automatic repair. close_holes: above 0; closes all holes if hemispheres "
+    "over them hold\n"
+    "at most this share of the volume. mirror: 'x', 'y' or 'z' first adds the mirror image in this plane of "
+    "the file or\n"
+    "the arrays, for half a body. freeboard: m, above 0; raises rims that face up (z) by this height and "
+    "closes them.\n\n"
     "The attributes are the report of the validation; report is its text. One mesh may be queried by "
     "several\n"
     "threads at once.\n\n"
-    "Raises InputError if the file or the mesh cannot be used, for example an open one, TypeError and "
-    "ValueError for\n"
-    "arguments of other types or shapes.";
+    "Raises InputError if the file or the mesh cannot be used, for example an open one; its report is then "
+    "the\n"
+    "exception's attribute of that name. TypeError and ValueError for arguments of other types or shapes.";
 
 const MeshReport& report_of(py::handle self) {
   return instance_of<MeshObject>(self).mesh->report();
@@ -268,7 +320,8 @@ void define_mesh(py::module_& module) {
   py::class_<MeshObject> type(module, "Mesh", kMeshDoc);
   type.def(py::init(&make_mesh), py::arg("source"), py::arg("faces") = py::none(), py::kw_only(),
            py::arg("scale") = 1.0, py::arg("open") = "refuse", py::arg("count_intersections") = false,
-           py::arg("up") = py::none());
+           py::arg("up") = py::none(), py::arg("repair") = "automatic", py::arg("close_holes") = py::none(),
+           py::arg("mirror") = py::none(), py::arg("freeboard") = py::none());
   add_method(type, query_method);
   add_method(type, hydrostatics_method);
   add_report(type, "name", &MeshReport::name, "str: the file, or 'Mesh(vertices, faces)'.");

@@ -65,6 +65,14 @@ Expected<TriangleMesh> to_mesh(std::span<const double> vertices, std::span<const
   return mesh;
 }
 
+MeshPreparation preparation_of(const QueryMeshOptions& options) {
+  MeshPreparation preparation{
+      options.repair.mirror, options.placement, {options.open, options.count_intersecting_pairs}};
+  preparation.validation.repair = options.repair.policy;
+  preparation.validation.closing = options.repair.closing;
+  return preparation;
+}
+
 }  // namespace
 
 QueryMesh::QueryMesh(PreparedMesh prepared) : prepared_(std::move(prepared)) {
@@ -72,12 +80,13 @@ QueryMesh::QueryMesh(PreparedMesh prepared) : prepared_(std::move(prepared)) {
 }
 
 Expected<std::shared_ptr<const QueryMesh>> QueryMesh::load(const std::filesystem::path& path,
-                                                           const QueryMeshOptions& options) {
+                                                           const QueryMeshOptions& options,
+                                                           MeshReport* refused) {
   if (std::optional<Error> error = error_of(options, path.string())) return make_error(*std::move(error));
   Expected<ImportedMesh> imported = import_mesh(path, options.limits);
   if (!imported) return make_error(std::move(imported.error()));
-  Expected<PreparedMesh> prepared = prepare_mesh(*std::move(imported), path.string(), options.placement,
-                                                 {options.open, options.count_intersecting_pairs});
+  Expected<PreparedMesh> prepared =
+      prepare_mesh(*std::move(imported), path.string(), preparation_of(options), refused);
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
 }
@@ -85,15 +94,15 @@ Expected<std::shared_ptr<const QueryMesh>> QueryMesh::load(const std::filesystem
 Expected<std::shared_ptr<const QueryMesh>> QueryMesh::make(std::span<const double> vertices,
                                                            std::span<const std::int64_t> faces,
                                                            const std::string& name,
-                                                           const QueryMeshOptions& options) {
+                                                           const QueryMeshOptions& options,
+                                                           MeshReport* refused) {
   if (std::optional<Error> error = error_of(options, name)) return make_error(*std::move(error));
   Expected<TriangleMesh> mesh = to_mesh(vertices, faces, name);
   if (!mesh) return make_error(std::move(mesh.error()));
   ImportedMesh imported;
   imported.mesh = *std::move(mesh);
   imported.source.format = "arrays";
-  Expected<PreparedMesh> prepared = prepare_mesh(std::move(imported), name, options.placement,
-                                                 {options.open, options.count_intersecting_pairs});
+  Expected<PreparedMesh> prepared = prepare_mesh(std::move(imported), name, preparation_of(options), refused);
   if (!prepared) return make_error(std::move(prepared.error()));
   return std::shared_ptr<const QueryMesh>(new QueryMesh(*std::move(prepared)));
 }

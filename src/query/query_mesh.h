@@ -19,6 +19,7 @@ struct QueryMeshOptions {
   // Of the coordinates in the frame of the queries' poses, see orientation_with_up() for files whose up axis
   // is another one. Not finite, a factor of 0 and a quaternion of norm 0 are errors.
   MeshPlacement placement{};
+  MeshRepair repair{};  // rims that are raised face z of the file as it is placed
   OpenPolicy open = OpenPolicy::kRefuse;
   bool count_intersecting_pairs = false;  // for the report; takes several times as long as the rest
   ImportLimits limits{};                  // of a file
@@ -27,9 +28,11 @@ struct QueryMeshOptions {
 // Its members may be called by several threads at once.
 class QueryMesh {
  public:
-  // Reads a mesh file. Errors: those of import_mesh() and prepare_mesh(), a placement out of range.
+  // Reads a mesh file. Errors: those of import_mesh() and prepare_mesh(), a placement out of range. refused:
+  // see prepare_mesh().
   static Expected<std::shared_ptr<const QueryMesh>> load(const std::filesystem::path& path,
-                                                         const QueryMeshOptions& options = {});
+                                                         const QueryMeshOptions& options = {},
+                                                         MeshReport* refused = nullptr);
   // vertices: [m], B frame, 3 per vertex. faces: 3 vertex indices per triangle, counter-clockwise seen from
   // outside. name: identifies the mesh in errors. Errors: no face; sizes that are no multiples of 3; an index
   // out of range; those of prepare_mesh(), such as an open mesh or a vertex that is not finite; a
@@ -37,7 +40,8 @@ class QueryMesh {
   static Expected<std::shared_ptr<const QueryMesh>> make(std::span<const double> vertices,
                                                          std::span<const std::int64_t> faces,
                                                          const std::string& name,
-                                                         const QueryMeshOptions& options = {});
+                                                         const QueryMeshOptions& options = {},
+                                                         MeshReport* refused = nullptr);
 
   QueryMesh(const QueryMesh&) = delete;
   QueryMesh& operator=(const QueryMesh&) = delete;

@@ -323,7 +323,7 @@ SceneDescription single_mesh_scene(const std::filesystem::path& mesh, Method met
   BodyDescription body;
   body.id = 1;
   body.name = mesh.filename().string();
-  body.mesh = {MeshFile{mesh}, placement};
+  body.mesh = {MeshFile{mesh}, placement, {}};
   body.method = method;
   body.tolerance = tolerance;
   body.open = open;

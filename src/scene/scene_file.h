@@ -78,6 +78,8 @@ struct MeshFile {
   std::filesystem::path path;  // resolved against the scene file's directory
 };
 
+inline constexpr std::array<std::string_view, 2> kRepairPolicyNames{"automatic", "none"};
+
 // Keys `repair`, `mirror`, `close_holes` and `freeboard`.
 struct MeshRepair {
   RepairPolicy policy = RepairPolicy::kAutomatic;

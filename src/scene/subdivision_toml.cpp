@@ -73,8 +73,7 @@ void parse_scale(TomlTable& table, Vec3& scale) {
 
 // Reads `repair`, `mirror`, `close_holes` and `freeboard`.
 void parse_repair(TomlTable& table, MeshRepair& repair) {
-  constexpr std::array<std::string_view, 2> kPolicies{"automatic", "none"};
-  if (const auto chosen = table.choice("repair", kPolicies)) {
+  if (const auto chosen = table.choice("repair", kRepairPolicyNames)) {
     repair.policy = *chosen == 1 ? RepairPolicy::kNone : RepairPolicy::kAutomatic;
   }
   if (const auto chosen = table.choice("mirror", kAxisNames)) repair.mirror = static_cast<Axis>(*chosen);

@@ -18,7 +18,8 @@ Path = Union[str, "PathLike[str]"]
 Method = Literal["hierarchical", "exact", "exact_surface", "fast", "fast_surface", "improved"]
 
 class Error(Exception): ...
-class InputError(Error, ValueError): ...
+class InputError(Error, ValueError):
+    report: Optional[str]  # of a mesh that is refused
 class ServiceError(Error, RuntimeError): ...
 class StatusError(Error, ValueError): ...
 
@@ -161,6 +162,10 @@ class Mesh:
         open: Literal["refuse", "dry_boundary"] = "refuse",
         count_intersections: bool = False,
         up: Optional[Literal["x", "y", "z", "-x", "-y", "-z"]] = None,
+        repair: Literal["automatic", "none"] = "automatic",
+        close_holes: Optional[float] = None,  # above 0: a share of the volume
+        mirror: Optional[Literal["x", "y", "z"]] = None,
+        freeboard: Optional[float] = None,  # above 0: m
     ) -> None: ...
     def query(
         self,

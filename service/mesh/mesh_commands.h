@@ -1,0 +1,41 @@
+// What the commands of buoyancy-mesh do; they print nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/mesh_validation.h"
+#include "service/mesh/mesh_options.h"
+
+namespace buoyancy::service {
+
+// A mesh, checked; without a report if the file could not be read.
+struct CheckedMesh {
+  std::string name;
+  std::optional<MeshReport> report;
+  std::optional<TriangleMesh> mesh;  // if it is usable
+  std::optional<Error> error;        // if not
+};
+CheckedMesh check_mesh(const std::filesystem::path& path, const MeshPreparation& preparation);
+
+// One mesh: its report; several: a line for each, and a summary.
+std::string report_text(const std::vector<CheckedMesh>& meshes);
+// {"meshes": [...], "usable": N}; a mesh has the fields of mesh_report_json(), "usable", and "error", a text
+// or null.
+std::string report_json(const std::vector<CheckedMesh>& meshes);
+
+// Checks that the mesh is usable as the importer will read it back, which has single precision. Errors: the
+// rounding makes faults.
+Expected<void> check_as_written(const TriangleMesh& mesh, const std::string& output);
+
+// The report of the repaired mesh and where it was written.
+std::string repair_text(const CheckedMesh& repaired, const std::string& output);
+std::string repair_json(const CheckedMesh& repaired, const std::string& output);
+
+// What lies between two meshes, as text or as JSON with the same numbers. Errors: those of the meshes; one
+// that is too large or too small for queries.
+Expected<std::string> compare_meshes(const MeshPlan& plan, const MeshOptions& options);
+
+}  // namespace buoyancy::service
