@@ -149,7 +149,7 @@ void add_holes(const MeshReport& report, AlignedLines& lines) {
   if (report.holes.empty()) return;
   lines.add("holes", std::to_string(report.holes.size()));
   for (std::size_t i = 0; i < report.holes.size() && i < kMaxListed; ++i) {
-    lines.add("", hole_text(report.holes[i]));
+    lines.add("", std::to_string(i + 1) + ": " + hole_text(report.holes[i]));
   }
   if (report.holes.size() > kMaxListed) {
     lines.add("", "and " + std::to_string(report.holes.size() - kMaxListed) + " smaller ones");
@@ -228,7 +228,6 @@ std::string to_text(const MeshReport& report) {
   lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
   add_components(report, lines);
   add_holes(report, lines);
-  if (const std::string advice = closing_advice(report); !advice.empty()) lines.add("", advice);
   if (report.intersecting_pairs) {
     lines.add("intersecting",
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +

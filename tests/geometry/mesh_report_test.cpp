@@ -48,7 +48,7 @@ TEST(MeshReport, ListsFaultsOfRefusedMesh) {
   expect_line(text, "  holes         1");
   expect_line(
       text,
-      "                3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5; 3.414 m around, 0.5 m^2, 0.133 "
+      "                1: 3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5; 3.414 m around, 0.5 m^2, 0.133 "
       "m^3 in a hemisphere over it");
   expect_line(text, "  intersecting  1 pair of faces: overlapping volumes count twice");
 }

@@ -114,7 +114,24 @@ class RefusesBadInput(TestCase):
         self.refused(ValueError, 'up = "w"; expected one of x, y, z, -x, -y, -z', buoyancy.Mesh, v, f, up="w")
         self.refused(TypeError, "up is a tuple; expected text", buoyancy.Mesh, v, f, up=(0, 1, 0))
         self.refused(ValueError, 'open = "yes"', buoyancy.Mesh, v, f, open="yes")
+        self.refused(ValueError, 'repair = "no"; expected one of "automatic", "none"', buoyancy.Mesh, v, f, repair="no")
+        self.refused(ValueError, 'mirror = "w"; expected one of "x", "y", "z"', buoyancy.Mesh, v, f, mirror="w")
+        self.refused(TypeError, "", buoyancy.Mesh, v, f, mirror=1)
+        self.refused(buoyancy.InputError, "close_holes = 0; expected a finite number above 0", buoyancy.Mesh, v, f,
+                     close_holes=0)
+        self.refused(buoyancy.InputError, "freeboard = nan", buoyancy.Mesh, v, f, freeboard=np.nan)
+        self.refused(buoyancy.InputError, "x from -0.5 to 0.5", buoyancy.Mesh, v, f, mirror="x")
         self.refused(buoyancy.Error, "no such file", buoyancy.Scene, "/nowhere/scene.toml")
+
+    def test_a_refused_mesh_has_a_report(self):
+        v, f = self.vertices, self.faces
+        with self.assertRaises(buoyancy.InputError) as refused:
+            buoyancy.Mesh(v, f[:-1])
+        self.assertIn("1: 3 edges", refused.exception.report)
+        self.assertIn("boundary edges", str(refused.exception))
+        with self.assertRaises(buoyancy.InputError) as unread:
+            buoyancy.Mesh("/nowhere/hull.stl")
+        self.assertIsNone(unread.exception.report)
 
     def test_bodies_of_a_scene(self):
         query, p, q = self.scene.query, self.position, self.quaternion

@@ -236,6 +236,40 @@ class PlacesMeshes(TestCase):
         self.assertEqual(self.wrench(placed), self.wrench(drawn))
 
 
+class RepairsMeshesAsAsked(TestCase):
+    def setUp(self):
+        self.vertices, self.faces = box(2.0)
+
+    def without(self, axis, value):
+        in_plane = self.vertices[self.faces][:, :, axis] == value
+        return self.faces[~in_plane.all(axis=1)]
+
+    def test_holes_are_closed_up_to_a_share_of_the_volume(self):
+        open_top = self.without(2, 1.0)
+        mesh = buoyancy.Mesh(self.vertices, open_top, close_holes=0.4)
+        self.assertAlmostEqual(mesh.volume, 8.0, places=12)
+        self.assertIn("1 hole closed", mesh.report)
+        with self.assertRaises(buoyancy.InputError) as refused:
+            buoyancy.Mesh(self.vertices, open_top, close_holes=0.3)
+        self.assertIn("37.6 %", refused.exception.report)
+
+    def test_half_a_body_is_mirrored(self):
+        vertices = self.vertices + [1.0, 0.0, 0.0]
+        mesh = buoyancy.Mesh(vertices, self.without(0, -1.0), mirror="x")
+        self.assertAlmostEqual(mesh.volume, 16.0, places=12)
+
+    def test_rims_that_face_up_are_raised(self):
+        mesh = buoyancy.Mesh(self.vertices, self.without(2, 1.0), freeboard=0.5)
+        self.assertAlmostEqual(mesh.volume, 10.0, places=12)
+        turned = buoyancy.Mesh(self.vertices, self.without(1, 1.0), freeboard=0.5, up="y")
+        self.assertAlmostEqual(turned.volume, 10.0, places=12)
+
+    def test_without_repair_a_doubled_box_counts_twice(self):
+        doubled = np.concatenate((self.faces, self.faces))
+        self.assertAlmostEqual(buoyancy.Mesh(self.vertices, doubled).volume, 8.0)
+        self.assertAlmostEqual(buoyancy.Mesh(self.vertices, doubled, repair="none").volume, 16.0)
+
+
 class ReportsMeshes(TestCase):
     def test_attributes(self):
         mesh = buoyancy.Mesh(*box(2.0), scale=0.5)

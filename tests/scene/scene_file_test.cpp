@@ -14,6 +14,39 @@
 namespace buoyancy {
 namespace {
 
+TEST(SceneFile, ReadsRepairsOfEveryMesh) {
+  const Expected<SceneDescription> scene = parse(R"(
+[world]
+up = [0, 0, -1]
+[[body]]
+id = 1
+mesh = "hull.obj"
+repair = "none"
+mirror = "y"
+close_holes = 0.25
+freeboard = 1.5
+[[body.tank]]
+mesh = "tank.obj"
+close_holes = 0.125
+fill = 0
+[body.client]
+orientation = [0, 1, 0, 0]
+)");
+  ASSERT_TRUE(scene) << scene.error().message();
+  const MeshRepair& repair = scene->bodies[0].mesh.repair;
+  EXPECT_EQ(repair.policy, RepairPolicy::kNone);
+  EXPECT_EQ(repair.mirror, Axis::kY);
+  EXPECT_TRUE(repair.closing.holes);
+  EXPECT_EQ(repair.closing.max_change, 0.25);
+  EXPECT_EQ(repair.closing.freeboard, 1.5);
+  // Half a turn about x: what is up in the water is z of the body.
+  EXPECT_TRUE(repair.closing.up_B.isApprox(Vec3::UnitZ()));
+  const MeshRepair& of_tank = scene->bodies[0].tanks[0].mesh.repair;
+  EXPECT_EQ(of_tank.policy, RepairPolicy::kAutomatic);
+  EXPECT_EQ(of_tank.closing.max_change, 0.125);
+  EXPECT_EQ(parse("[[body]]\nid = 1\nmesh = \"a.obj\"\n")->bodies[0].mesh.repair, MeshRepair{});
+}
+
 TEST(SceneFile, UsesDefaultsForMissingKeys) {
   const Expected<SceneDescription> scene = parse(scene_with_crate());
   ASSERT_TRUE(scene) << scene.error().message();
@@ -210,6 +243,11 @@ TEST(SceneFile, RejectsWrongTypesAndRanges) {
       {scene_with_crate("open = \"refsue\"\n"),
        "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
       {scene_with_crate("open = true\n"), "open = true"},
+      {scene_with_crate("close_holes = 0.1\n"), "a repair and 'shape'"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nclose_holes = 0\n", "close_holes = 0; expected a number above 0"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nfreeboard = -1\n", "freeboard = -1; expected a number above 0"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nmirror = \"w\"\n", "mirror = \"w\"; expected one of x, y, z"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nrepair = \"no\"\n", "expected one of automatic, none"},
       {scene_with_crate("outputs = [\"hydrostatics\"]\n"),
        "pool.toml:4: body 7: outputs = [\"hydrostatics\"]; expected [\"wrench\"], with \"hydrostatics\" and "
        "\"loads\" in it as needed. Likely cause: every response holds wrenches. Add \"wrench\" to the list."},
