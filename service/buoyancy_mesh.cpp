@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "service/mesh/mesh_commands.h"
 #include "service/mesh/mesh_options.h"
+#include "service/mesh/mesh_page.h"
 
 namespace buoyancy::service {
 namespace {
@@ -30,7 +31,18 @@ int repair(const CLI::App& app, const MeshPlan& plan, const MeshOptions& options
     print_error(app, error);
     return kFailure;
   };
-  const CheckedMesh repaired = check_mesh(plan.inputs.front(), plan.preparation);
+  CheckedMesh repaired = check_mesh(plan.inputs.front(), plan.preparation);
+  if (options.wrap > 0.0) {
+    Expected<CheckedMesh> wrap = wrapped(repaired, plan, options.wrap);
+    if (!wrap) return fail(wrap.error());
+    repaired = *std::move(wrap);
+  }
+  if (!options.html.empty() && repaired.report) {
+    const Expected<std::string> page = mesh_page(plan, repaired);
+    if (!page) return fail(page.error());
+    if (const Expected<void> written = write_file(options.html, *page); !written)
+      return fail(written.error());
+  }
   if (!repaired.mesh) {
     if (repaired.report || options.json) {
       print_output(app, options.json ? report_json({repaired}) : to_text(*repaired.report) + "\n");

@@ -166,13 +166,8 @@ Json page_data(const PageSubject& subject, const char* command, const PageRows& 
 }
 
 std::string page_of(const Json& data, std::string_view three) {
-  constexpr std::string_view kData = "<!-- data -->";
   std::string page = view::self_contained_page("hydrostatics.html", three);
-  const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string script = R"(<script type="application/json" id="data">)";
-  script += view::escaped_for_script(text);
-  script += "</script>";
-  page.replace(page.find(kData), kData.size(), script);
+  view::insert_data(page, data.dump(-1, ' ', false, Json::error_handler_t::replace));
   return page;
 }
 

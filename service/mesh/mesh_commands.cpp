@@ -8,8 +8,10 @@
 #include "geometry/mesh_import.h"
 #include "geometry/surface_distance.h"
 #include "geometry/volume_difference.h"
+#include "geometry/welding.h"
 #include "hydrostatics/load_difference.h"
 #include "scene/mesh_report_json.h"
+#include "service/mesh/mesh_wrap.h"
 
 namespace buoyancy::service {
 namespace {
@@ -131,6 +133,30 @@ CheckedMesh check_mesh(const std::filesystem::path& path, const MeshPreparation&
   return checked;
 }
 
+Expected<CheckedMesh> wrapped(const CheckedMesh& mesh, const MeshPlan& plan, double gap) {
+  TriangleMesh given;
+  if (mesh.mesh) {
+    given = *mesh.mesh;
+  } else {
+    Expected<ImportedMesh> imported = import_mesh(plan.inputs.front());
+    if (!imported) return make_error(std::move(imported.error()));
+    place(imported->mesh, plan.preparation.placement);
+    given = weld(imported->mesh).mesh;
+  }
+  Expected<TriangleMesh> wrap = wrap_mesh(given, gap);
+  if (!wrap) return make_error(std::move(wrap.error()));
+  MeshValidation validation = validate_mesh({*std::move(wrap), {}}, mesh.name, plan.preparation.validation);
+  CheckedMesh result;
+  result.name = mesh.name;
+  if (mesh.report) validation.report.source = mesh.report->source;
+  result.report = std::move(validation.report);
+  result.error = std::move(validation.refusal);
+  if (!validation.mesh) return result;
+  result.mesh = std::move(validation.mesh->mesh);
+  result.wrap = WrapReport{gap, largest_distance(given, *result.mesh), largest_distance(*result.mesh, given)};
+  return result;
+}
+
 std::string report_text(const std::vector<CheckedMesh>& meshes) {
   if (meshes.size() == 1) return single_report_text(meshes.front());
   std::string text;
@@ -156,13 +182,25 @@ Expected<void> check_as_written(const TriangleMesh& mesh, const std::string& out
 }
 
 std::string repair_text(const CheckedMesh& repaired, const std::string& output) {
-  return to_text(*repaired.report) + "\nwritten to " + output + ": " +
+  std::string text = to_text(*repaired.report) + "\n";
+  if (repaired.wrap) {
+    text += "  wrap          gaps up to " + format_number(repaired.wrap->gap, 6) + " m; up to " +
+            format_number(repaired.wrap->from_mesh, 4) + " m from the mesh to the wrap, " +
+            format_number(repaired.wrap->from_wrap, 4) + " m back\n";
+  }
+  return text + "written to " + output + ": " +
          pluralize(repaired.report->triangles, "triangle", "triangles") + "\n";
 }
 
 std::string repair_json(const CheckedMesh& repaired, const std::string& output) {
   Json json = json_of(repaired);
   json["output"] = output;
+  json["wrap"] = nullptr;
+  if (repaired.wrap) {
+    json["wrap"] = {{"gap", repaired.wrap->gap},
+                    {"distance_from_mesh", repaired.wrap->from_mesh},
+                    {"distance_from_wrap", repaired.wrap->from_wrap}};
+  }
   return text_of(json);
 }
 

@@ -11,14 +11,26 @@
 
 namespace buoyancy::service {
 
+// How far a wrap is from the mesh that it replaces [m], see largest_distance().
+struct WrapReport {
+  double gap = 0.0;
+  double from_mesh = 0.0;  // of the mesh's surface from the wrap
+  double from_wrap = 0.0;  // and the other way
+};
+
 // A mesh, checked; without a report if the file could not be read.
 struct CheckedMesh {
   std::string name;
   std::optional<MeshReport> report;
   std::optional<TriangleMesh> mesh;  // if it is usable
   std::optional<Error> error;        // if not
+  std::optional<WrapReport> wrap;    // if it is a wrap of what the file has
 };
 CheckedMesh check_mesh(const std::filesystem::path& path, const MeshPreparation& preparation);
+
+// Replaces the mesh by a wrap around it, or around the file's faces if it could not be used (mesh_wrap.h).
+// Errors: those of import_mesh() and wrap_mesh().
+Expected<CheckedMesh> wrapped(const CheckedMesh& mesh, const MeshPlan& plan, double gap);
 
 // One mesh: its report; several: a line for each, and a summary.
 std::string report_text(const std::vector<CheckedMesh>& meshes);

@@ -20,7 +20,8 @@ constexpr std::array<std::pair<const char*, MeshCommand>, 3> kCommands{
     {{"report", MeshCommand::kReport}, {"repair", MeshCommand::kRepair}, {"compare", MeshCommand::kCompare}}};
 
 Expected<void> check_command_options(const CLI::App& app, MeshCommand command) {
-  constexpr std::array kOfRepair{"--mirror", "--close", "--rims", "--rim", "--max-change", "--freeboard"};
+  constexpr std::array kOfRepair{"--mirror",     "--close",     "--rims", "--rim",
+                                 "--max-change", "--freeboard", "--wrap", "--html"};
   constexpr std::array kOfCompare{"--poses", "--density", "--gravity"};
   const auto check = [&](const auto& options, MeshCommand needed) -> Expected<void> {
     for (const char* option : options) {
@@ -58,6 +59,11 @@ Expected<void> plan_repair(const MeshOptions& options, MeshPlan& plan) {
     const auto* const axis = std::find(kAxisNames.begin(), kAxisNames.end(), options.mirror);
     plan.preparation.mirror = static_cast<Axis>(axis - kAxisNames.begin());
   }
+  if (!options.html.empty() && options.html.lexically_normal() == plan.output.lexically_normal()) {
+    return make_error({"--html", options.html.string(), "another file than that of the mesh", "", ""});
+  }
+  if (Expected<void> checked = check_output_not_input(options.html, {plan.inputs.front()}); !checked)
+    return checked;
   return check_output_not_input(plan.output, {plan.inputs.front()});
 }
 
@@ -118,6 +124,15 @@ void add_options(CLI::App& app, MeshOptions& options) {
   app.add_option("--gravity", options.gravity, "compare: gravity, m/s^2")
       ->check(number_in(0.0, kMax, "m/s^2"))
       ->option_text("G [" + format_shortest(options.gravity) + "]");
+  app.add_option(
+         "--wrap", options.wrap,
+         "repair: replace the mesh by a closed surface around it, which closes gaps up to this width, m; "
+         "holes first, if they can be closed")
+      ->check(number_in(0.0, kMax, "m"))
+      ->option_text("GAP");
+  app.add_option("--html", options.html,
+                 "repair: write a page that shows the mesh before and after, with its open edges")
+      ->option_text("FILE");
   app.add_flag("--json", options.json, "Print JSON");
 }
 
@@ -132,6 +147,7 @@ Expected<MeshPlan> plan_mesh_command(const CLI::App& app, const MeshOptions& opt
   Expected<MeshPlacement> placement = placement_of(options.scale, options.up);
   if (!placement) return tl::unexpected(placement.error());
   plan.preparation.placement = *placement;
+  plan.preparation.validation.count_intersecting_pairs = plan.command != MeshCommand::kCompare;
   if (plan.command == MeshCommand::kRepair) {
     if (const Expected<void> planned = plan_repair(options, plan); !planned)
       return tl::unexpected(planned.error());

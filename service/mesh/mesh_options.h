@@ -30,6 +30,8 @@ struct MeshOptions {
   std::int32_t poses = 1'000;
   double density = kSeawaterDensity;  // [kg/m^3], of the water
   double gravity = kStandardGravity;  // [m/s^2]
+  double wrap = 0.0;                  // [m]
+  std::filesystem::path html;
   bool json = false;
 };
 

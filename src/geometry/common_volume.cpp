@@ -183,7 +183,7 @@ class Columns {
   std::vector<Crossing> crossings_;
 };
 
-// The volume of the box where `counts` holds for the winding numbers of the two meshes.
+// The volume of the box, as often as `counts` says for the winding numbers of the two meshes.
 template <typename Counts>
 ColumnSum volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
                        const ColumnLayout& layout, const Counts& counts) {
@@ -207,8 +207,9 @@ ColumnSum volume_where(const BoundingBox& box, const OffsetMesh& first, const Of
       second_winding = 0;
       continue;
     }
-    if (!counts(first_winding, second_winding)) continue;
-    volume += columns.area_of(crossings[i].column) * (crossings[i + 1].height - crossings[i].height);
+    const int times = counts(first_winding, second_winding);
+    if (times == 0) continue;
+    volume += times * columns.area_of(crossings[i].column) * (crossings[i + 1].height - crossings[i].height);
   }
   return {volume, columns.rounding()};
 }
@@ -232,6 +233,15 @@ double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer) {
   const BoundingBox box = box_of(inner);
   return volume_where(box, inner, outer, along_longest_side(box),
                       [](int in_inner, int in_outer) { return in_inner > 0 && in_outer <= 0; })
+      .volume;
+}
+
+double overlap_volume(const TriangleMesh& mesh) {
+  const TriangleMesh none;
+  const OffsetMesh only{&mesh, Vec3::Zero()};
+  const BoundingBox box = box_of(only);
+  return volume_where(box, only, {&none, Vec3::Zero()}, along_longest_side(box),
+                      [](int winding, int) { return std::max(winding - 1, 0); })
       .volume;
 }
 

@@ -27,6 +27,10 @@ double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 // [m^3], inside `inner` and outside `outer`. Complexity: as common_volume().
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
 
+// [m^3], what the volume integrals of a closed mesh count more often than once, because its parts overlap or
+// lie in each other. Complexity: as common_volume().
+double overlap_volume(const TriangleMesh& mesh);
+
 // How a box is cut into columns.
 struct ColumnLayout {
   Eigen::Index along = 2;  // the axis of B that the columns are along

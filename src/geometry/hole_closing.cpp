@@ -206,7 +206,13 @@ class Attempt {
 }  // namespace
 
 void close_holes(TriangleMesh& mesh, const ClosingOptions& options, bool automatic, RepairReport& report) {
-  if (options.empty() || mesh_topology(mesh).counts.all_matched()) return;
+  const MeshTopology topology = mesh_topology(mesh);
+  if (options.empty() || topology.counts.all_matched()) return;
+  if (is_soup(mesh, topology)) {
+    const auto edges = static_cast<std::int64_t>(topology.boundary.size());
+    report.skipped.push_back({RepairKind::kCloseHoles, RepairObstacle::kTooMany, edges});
+    return;
+  }
   Attempt attempt(mesh, options);
   attempt.run(automatic);
   if (const std::optional<SkippedRepair> obstacle = attempt.obstacle()) {

@@ -10,6 +10,7 @@ namespace buoyancy {
 namespace {
 
 constexpr std::size_t kMaxListed = 8;  // components; holes
+constexpr double kMinOverlap = 1e-6;   // of the volume
 
 // Builds the text "a, b, c", or `otherwise` if the list is empty.
 class Listing {
@@ -233,6 +234,11 @@ std::string to_text(const MeshReport& report) {
               pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
                   (report.intersections_cut_off ? " at least, too many to count" : "") +
                   (*report.intersecting_pairs == 0 ? "" : ": overlapping volumes count twice"));
+  }
+  if (report.overlap_volume.value_or(0.0) > kMinOverlap * report.volume) {
+    lines.add("overlap", format_number(*report.overlap_volume, 4) + " m^3 count more than once, " +
+                             format_number(100.0 * *report.overlap_volume / report.volume, 3) +
+                             " % of the volume (within some 0.1 %)");
   }
   if (report.flipped) lines.add("flipped", "was inside out: the winding of all faces was reversed");
   return report.name + "\n" + lines.text();

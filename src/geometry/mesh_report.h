@@ -63,7 +63,9 @@ struct MeshReport {
   std::int64_t dropped_faces = 0;       // use a vertex twice
   std::int64_t duplicate_faces = 0;     // same three vertices as an earlier face
   std::optional<std::int64_t> intersecting_pairs;  // pairs of intersecting faces, if counted
-  bool intersections_cut_off = false;              // there are more than counted: too many to count them all
+  // What the volume counts more often than once [m^3]; set of a closed mesh if the pairs are counted.
+  std::optional<double> overlap_volume;
+  bool intersections_cut_off = false;  // there are more than counted: too many to count them all
 
   std::vector<ComponentReport> components;  // largest absolute volume first
   std::vector<HoleReport> holes;            // most edges first

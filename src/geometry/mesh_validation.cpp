@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/common_volume.h"
 #include "geometry/exact_predicates.h"
 #include "geometry/hole_caps.h"
 #include "geometry/hole_closing.h"
@@ -169,6 +170,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report_components(std::move(components), report);
   if (options.count_intersecting_pairs) {
     report.intersecting_pairs = count_intersecting_pairs(mesh, &report.intersections_cut_off);
+    if (report.closed() && !validation.refusal) report.overlap_volume = overlap_volume(mesh);
   }
   if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
   return validation;

@@ -84,7 +84,7 @@ std::string skipped_text(const SkippedRepair& skipped) {
   const bool of_holes = skipped.kind == RepairKind::kCloseHoles;
   std::string text = of_holes ? "not done: " : "not tried further: ";
   text += to_string(skipped.kind);
-  text += " (" + std::to_string(skipped.faces) + (of_holes ? " holes): " : " faces or edges): ");
+  text += " (" + std::to_string(skipped.faces) + (of_holes ? " holes or edges): " : " faces or edges): ");
   text += to_string(skipped.obstacle);
   if (skipped.share > 0.0) text += ", " + format_number(100.0 * skipped.share, 3) + " %";
   return text;

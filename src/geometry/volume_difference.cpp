@@ -147,7 +147,7 @@ constexpr double kUnseenWidth = 0.1;
 constexpr std::size_t kPlaces = kPlacesOfAxis.size();
 
 // By how much the axis whose sums agree best counts more than one whose sums are far apart.
-constexpr double kLargestWeight = 900.0;
+constexpr double kMaxWeight = 900.0;
 
 // Splits boxes into some 64 in all, so that each part of a curved layer is seen along the axis that suits it.
 std::vector<BoundingBox> split(const std::vector<BoundingBox>& boxes) {
@@ -233,7 +233,7 @@ BoxSum difference_in(const BoundingBox& box, const IndexedMesh& a, const Indexed
   if (largest > 0.0) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double share = sums[axis].spread / largest;
-      weights[axis] = 1.0 / std::max(share * share, 1.0 / kLargestWeight);
+      weights[axis] = 1.0 / std::max(share * share, 1.0 / kMaxWeight);
     }
   }
   const double total_weight = weights[0] + weights[1] + weights[2];

@@ -85,6 +85,7 @@ Json mesh_report_json(const MeshReport& report) {
                      {"bulge", hole.bulge},
                      {"slit", hole.slit}});
   }
+  const std::optional<double>& overlap = report.overlap_volume;
   const std::optional<std::int64_t>& pairs = report.intersecting_pairs;
   return {{"name", report.name},
           {"source", to_json(report.source)},
@@ -110,6 +111,7 @@ Json mesh_report_json(const MeshReport& report) {
           {"duplicate_faces", report.duplicate_faces},
           {"intersecting_pairs", pairs ? Json(*pairs) : Json(nullptr)},
           {"intersections_cut_off", report.intersections_cut_off},
+          {"overlap_volume", overlap ? Json(*overlap) : Json(nullptr)},
           {"components", std::move(components)},
           {"holes", std::move(holes)},
           {"closing", to_json(report.closing)},

@@ -43,6 +43,7 @@ void append(const MeshReport& report, MeshReport& all) {
   // Faces of two parts that intersect are not counted: their common volume is reported instead.
   if (all.intersecting_pairs && report.intersecting_pairs) {
     *all.intersecting_pairs += *report.intersecting_pairs;
+    if (all.overlap_volume && report.overlap_volume) *all.overlap_volume += *report.overlap_volume;
     all.intersections_cut_off = all.intersections_cut_off || report.intersections_cut_off;
   }
   all.components.insert(all.components.end(), report.components.begin(), report.components.end());

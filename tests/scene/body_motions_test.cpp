@@ -52,7 +52,8 @@ TEST(BodyMotions, PeriodOfSphereHasItsClosedForm) {
       motions_of(kWorld + "[[body]]\nid = 1\nshape = { type = \"sphere\", radius = 0.5, segments = 63 }\n" +
                  "[body.client]\ndensity = 500\n");
   const double volume =
-      make_hydrostatic_mesh(validate_mesh({make_shape(SphereShape{0.5, 63}), {}}, "sphere", {}).mesh.value())
+      make_hydrostatic_mesh(
+          validate_mesh({make_shape(SphereShape{0.5, 63}), {}}, "sphere", ValidationOptions{}).mesh.value())
           .volume;
   const double mass = 500.0 * volume;
   const double polygon = 0.5 * 63.0 * std::sin(2.0 * kPi / 63.0) * 0.25;

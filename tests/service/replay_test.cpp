@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <fstream>
 #include <functional>
 #include <initializer_list>
 #include <sstream>
@@ -540,6 +542,20 @@ bool wait_until_open(ChildProcess& child, const std::string& file) {
   return false;
 }
 
+// Waits until the child takes SIGTERM when it suits it, which it does not before it has opened its files, and
+// returns whether it still runs then.
+bool wait_until_it_handles_sigterm(ChildProcess& child) {
+  while (!child.wait(0.002)) {
+    std::ifstream status("/proc/" + std::to_string(child.pid()) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.rfind("SigBlk:", 0) != 0) continue;
+      const std::uint64_t blocked = std::stoull(line.substr(7), nullptr, 16);
+      if ((blocked >> (SIGTERM - 1) & 1U) != 0) return true;
+    }
+  }
+  return false;
+}
+
 TEST_F(Replay, EndsAtEventIfLogIsTruncatedMeanwhile) {
   constexpr int kRequests = 20'000;
   const std::string log = log_of_requests(kRequests);
@@ -574,7 +590,7 @@ TEST_F(Replay, EndsWithinDamageAfterSignal) {
   const std::string input = write("in.lcmlog", "");
   std::filesystem::resize_file(input, 1'000'000'000'000);  // of zeros, and no byte on the disk
   ChildProcess child(command({"--scene", scene_, input, path("out.lcmlog")}));
-  ASSERT_TRUE(wait_until_open(child, path("out.lcmlog"))) << child.standard_error();
+  ASSERT_TRUE(wait_until_it_handles_sigterm(child)) << child.standard_error();
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
   EXPECT_NE(child.standard_error().find("terminated by SIGTERM"), std::string::npos)

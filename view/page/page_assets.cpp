@@ -97,4 +97,10 @@ std::string escaped_for_script(std::string_view json) {
   return escaped;
 }
 
+void insert_data(std::string& page, std::string_view json) {
+  constexpr std::string_view kData = "<!-- data -->";
+  page.replace(page.find(kData), kData.size(),
+               R"(<script type="application/json" id="data">)" + escaped_for_script(json) + "</script>");
+}
+
 }  // namespace buoyancy::view

@@ -26,6 +26,9 @@ Expected<std::string> three_js(const std::filesystem::path& path = kThreeJs);
 // subdivision: as for page_text().
 std::string self_contained_page(std::string_view file_name, std::string_view three, bool subdivision = false);
 
+// Puts JSON in the place of "<!-- data -->" of a page, as the script element "data".
+void insert_data(std::string& page, std::string_view json);
+
 // Escapes '<' in JSON, so that "</script>" and "<!--" have no effect inside a script element.
 std::string escaped_for_script(std::string_view json);
 

@@ -208,8 +208,7 @@ std::string report_page(const std::string& data, std::string_view three, const P
     page.replace(page.find(placeholder), placeholder.size(), text);
   };
   fill_in("<!-- loads -->\n", parts.loads ? "<script>\n" + page_text("loads.js") + "\n</script>\n" : "");
-  fill_in("<!-- data -->",
-          "<script type=\"application/json\" id=\"data\">" + escaped_for_script(data) + "</script>");
+  insert_data(page, data);
   return page;
 }
 
