@@ -33,7 +33,8 @@ Expected<TriangleMesh> wrap_mesh(const TriangleMesh&, double gap) {
 
 namespace {
 
-constexpr double kCellsPerGap = 4.0;
+constexpr double kCellsPerGap = 3.0;
+constexpr double kAdaptivity = 0.1;  // of the result: larger faces where it is flat
 constexpr double kMaxCells = 1'500.0;
 
 struct Polyhedron {
@@ -51,10 +52,10 @@ Polyhedron to_polyhedron(const TriangleMesh& mesh) {
   return polyhedron;
 }
 
-// The surface at a distance. OpenVDB's polygons are clockwise seen from outside.
-TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue) {
+// The surface at a distance. Which way its faces turn depends on the kind of grid.
+TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue, double adaptivity) {
   Polyhedron found;
-  openvdb::tools::volumeToMesh(distance, found.points, found.triangles, found.quads, isovalue);
+  openvdb::tools::volumeToMesh(distance, found.points, found.triangles, found.quads, isovalue, adaptivity);
   TriangleMesh mesh;
   for (const openvdb::Vec3s& point : found.points) {
     mesh.add_vertex(
@@ -62,7 +63,7 @@ TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue) {
   }
   const auto add = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     mesh.triangles.push_back(
-        {static_cast<std::int32_t>(a), static_cast<std::int32_t>(c), static_cast<std::int32_t>(b)});
+        {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
   };
   for (const openvdb::Vec3I& t : found.triangles) add(t[0], t[1], t[2]);
   for (const openvdb::Vec4I& q : found.quads) {
@@ -72,10 +73,17 @@ TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue) {
   return mesh;
 }
 
-// Leaves out cavities, and what lies in them.
-TriangleMesh outer_surfaces(const TriangleMesh& mesh) {
+// Leaves out cavities, and what lies in them. Faces turn so that the largest component is a solid.
+TriangleMesh outer_surfaces(TriangleMesh mesh) {
   const MeshTopology topology = mesh_topology(mesh);
-  const std::vector<ComponentReport> components = describe_components(mesh, topology);
+  std::vector<ComponentReport> components = describe_components(mesh, topology);
+  const auto largest =
+      std::max_element(components.begin(), components.end(),
+                       [](const auto& a, const auto& b) { return std::abs(a.volume) < std::abs(b.volume); });
+  if (largest != components.end() && largest->volume < 0.0) {
+    for (Triangle& face : mesh.triangles) std::swap(face[1], face[2]);
+    for (ComponentReport& component : components) component.volume *= -1.0;
+  }
   std::vector<std::vector<Triangle>> faces(components.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     faces[static_cast<std::size_t>(topology.component_of_face[i])].push_back(mesh.triangles[i]);
@@ -113,12 +121,12 @@ Expected<TriangleMesh> wrap_mesh(const TriangleMesh& mesh, double gap) {
   const Polyhedron given = to_polyhedron(mesh);
   const auto unsigned_distance = openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
       *transform, given.points, given.triangles, given.quads, band);
-  const TriangleMesh shell = outer_surfaces(surface_at(*unsigned_distance, offset));
+  const TriangleMesh shell = outer_surfaces(surface_at(*unsigned_distance, offset, 0.0));
   if (!shell.triangles.empty()) {
     const Polyhedron outside = to_polyhedron(shell);
     const auto distance = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
         *transform, outside.points, outside.triangles, outside.quads, band);
-    TriangleMesh wrapped = outer_surfaces(surface_at(*distance, -offset));
+    TriangleMesh wrapped = outer_surfaces(surface_at(*distance, -offset, kAdaptivity));
     if (!wrapped.triangles.empty()) return wrapped;
   }
   return make_error({"--wrap", "nothing is left of the mesh", "a mesh that encloses something, but for gaps",

@@ -69,10 +69,10 @@ std::vector<BoundingBox> merged(const std::vector<BoundingBox>& boxes, DisjointS
 
 // Boxes without a common point outside which the winding numbers of both meshes are the same. The difference
 // of these is the winding number of the faces in which the meshes differ, those of one mesh turned. Such
-// faces form closed surfaces, one for each set that hangs together by its corners.
+// faces form closed surfaces, one for each set that hangs together by its corners. The boxes of such sets are
+// merged first, since their faces may overlap each other in all pairs.
 std::vector<BoundingBox> boxes_of_difference(const TriangleMesh& a, const TriangleMesh& b) {
   std::vector<BoundingBox> boxes;
-  std::vector<std::array<std::size_t, 3>> corners;
   std::map<Corner, std::int32_t> first_face_at;
   const std::vector<Face> faces = different_faces(a, b);
   DisjointSets connected(faces.size());

@@ -28,7 +28,7 @@ class MeshPage : public PageTest {
         built_program("buoyancy-mesh"), "repair", directory.write("barge </script>.obj", kBarge),
         directory.path("barge.ply"),    "--html", page};
     for (std::string& option : options) arguments.push_back(std::move(option));
-    const int exit_code = run_to_end(command_of(std::move(arguments)), kWaitTimeout).exit_code;
+    const int exit_code = run_to_end(command_of(std::move(arguments)), kWaitTimeout).exit_code.value_or(-1);
     browser().open_file(page);
     browser().wait_until("window.buoyancy_mesh !== undefined");
     return exit_code;
