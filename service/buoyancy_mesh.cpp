@@ -50,8 +50,9 @@ int repair(const CLI::App& app, const MeshPlan& plan, const MeshOptions& options
     return fail(*repaired.error);
   }
   const std::string output = plan.output.string();
-  if (const Expected<void> checked = check_as_written(*repaired.mesh, output); !checked)
-    return fail(checked.error());
+  Expected<CheckedMesh> written_mesh = as_written(std::move(repaired), output);
+  if (!written_mesh) return fail(written_mesh.error());
+  repaired = *std::move(written_mesh);
   if (const Expected<void> written = write_file(plan.output, export_mesh(*repaired.mesh, plan.format));
       !written) {
     return fail(written.error());

@@ -1,6 +1,7 @@
 #include "service/mesh/mesh_commands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/format.h"
@@ -172,9 +173,23 @@ std::string report_json(const std::vector<CheckedMesh>& meshes) {
   return text_of({{"meshes", std::move(list)}, {"usable", count_usable(meshes)}});
 }
 
-Expected<void> check_as_written(const TriangleMesh& mesh, const std::string& output) {
-  const MeshValidation validation = validate_mesh({as_imported(mesh), {}}, output, ValidationOptions{});
-  if (validation.mesh && validation.report.repair.steps.empty()) return {};
+Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output) {
+  constexpr int kMaxPasses = 6;
+  constexpr double kMaxChange = 1e-5;  // of the volume
+  const double volume = mesh.report->volume;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    MeshValidation validation = validate_mesh({as_imported(*mesh.mesh), {}}, mesh.name, ValidationOptions{});
+    if (!validation.mesh || !(std::abs(validation.report.volume - volume) <= kMaxChange * volume)) break;
+    if (validation.report.repair.steps.empty() && validation.mesh->mesh.triangles == mesh.mesh->triangles)
+      return mesh;
+    mesh.mesh = std::move(validation.mesh->mesh);
+    append(validation.report.repair, mesh.report->repair);
+    RepairReport repair = std::move(mesh.report->repair);
+    MeshSource source = std::move(mesh.report->source);
+    mesh.report = std::move(validation.report);
+    mesh.report->repair = std::move(repair);
+    mesh.report->source = std::move(source);
+  }
   return make_error({output, "the mesh is damaged where it is read in single precision",
                      "details larger than 1e-7 of the distance from the origin",
                      "the mesh lies far from its origin, or has details that are tiny against its size",

@@ -38,9 +38,10 @@ std::string report_text(const std::vector<CheckedMesh>& meshes);
 // or null.
 std::string report_json(const std::vector<CheckedMesh>& meshes);
 
-// Checks that the mesh is usable as the importer will read it back, which has single precision. Errors: the
-// rounding makes faults.
-Expected<void> check_as_written(const TriangleMesh& mesh, const std::string& output);
+// The mesh as it is written: one that the importer, which reads single precision, gives back as it is, so that no
+// further repair is made of it. Coordinates are rounded only if that takes it. mesh: usable. Errors: the
+// rounding makes faults that cannot be repaired, or that change the volume by more than 1e-5.
+Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output);
 
 // The report of the repaired mesh and where it was written.
 std::string repair_text(const CheckedMesh& repaired, const std::string& output);

@@ -120,10 +120,9 @@ class Attempt {
     if (!options_.rims.empty()) number_rims(boundary);
     const double outward = options_.freeboard > 0.0 && signed_volume_if_capped(mesh_) < 0.0 ? -1.0 : 1.0;
     close(boundary_loops(boundary), outward);
-    if (automatic && needs_repair(mesh_topology(mesh_))) {
-      append(repair_mesh(mesh_, false), report_);
-    }
+    if (automatic) repair();
     if (all_) close(find_loops(missing_edges(mesh_)), outward);
+    if (automatic) repair();  // caps may lie on walls inside, which then bound nothing
     solid_ = enclosed_solid(mesh_);
   }
 
@@ -147,6 +146,10 @@ class Attempt {
   RepairReport& report() { return report_; }
 
  private:
+  void repair() {
+    if (needs_repair(mesh_topology(mesh_))) append(repair_mesh(mesh_, false), report_);
+  }
+
   void number_rims(const std::vector<Edge>& boundary) {
     const std::vector<Hole> holes = find_holes(mesh_, boundary);
     for (std::size_t i = 0; i < holes.size(); ++i) {

@@ -45,8 +45,16 @@ class Numbers {
     at_ = end == std::string::npos ? text_.size() : end + 1;
   }
 
+  // Whether another number is next on this line, and not a note such as "(bow)".
+  bool has_number_on_line() {
+    const std::size_t start = at_;
+    const std::size_t line_end = std::min(text_.find('\n', at_), text_.size());
+    const bool has = text_.find_first_not_of(kSeparators, at_) < line_end && next().has_value();
+    at_ = start;
+    return has;
+  }
+
   std::optional<double> next() {
-    constexpr std::string_view kSeparators = " \t\r\n,";
     at_ = std::min(text_.find_first_not_of(kSeparators, at_), text_.size());
     const std::size_t end = std::min(text_.find_first_of(kSeparators, at_), text_.size());
     std::string word = text_.substr(at_, end - at_);
@@ -85,6 +93,8 @@ class Numbers {
   }
 
  private:
+  static constexpr std::string_view kSeparators = " \t\r\n,";
+
   static std::ptrdiff_t offset(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
 
   std::string text_;
@@ -129,6 +139,11 @@ Expected<StoredMesh> read_gdf(Numbers numbers, const ImportLimits& limits) {
   numbers.skip_line();
   const std::optional<std::int64_t> panels = numbers.next_count(kMaxCount);
   if (!panels) return make_error(fault(kFormat, numbers, "number of panels"));
+  if (numbers.has_number_on_line()) {
+    const std::optional<std::int64_t> kind = numbers.next_count(kMaxCount);  // IGDEF of high-order files
+    if (kind != 0)
+      return make_error(fault(kFormat, numbers, "flat panels: IGDEF is not 0, as for B-splines"));
+  }
   numbers.skip_line();
   if (*panels == 0) return make_error(no_triangles(0));
   const auto copies = static_cast<std::uint64_t>((1 + symmetries[0]) * (1 + symmetries[1]));
@@ -151,11 +166,15 @@ Expected<StoredMesh> read_gdf(Numbers numbers, const ImportLimits& limits) {
       corner = stored.mesh.add_vertex(is_in_feet ? Vec3(kFoot * *place) : *place);
     }
     stored.polygons.add(corners);
+    if (!numbers.has_number_on_line()) numbers.skip_line();
   }
-  if (numbers.next()) return make_error(fault(kFormat, numbers, "end after the last panel"));
   std::string& note = stored.source.note;
   if (*length != 1.0)
     note = "not scaled by ULEN, " + format_shortest(*length) + ", which is a reference length";
+  if (numbers.next()) {
+    if (!note.empty()) note += "; ";
+    note += "what follows the last panel is left out";
+  }
   if (is_in_feet && !note.empty()) note += "; ";
   if (is_in_feet) note += "scaled by 0.3048 from feet to metres, since GRAV is " + format_shortest(*gravity);
   for (int axis = 0; axis < 2; ++axis) {

@@ -1,4 +1,5 @@
 // Runs buoyancy-mesh as a program.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -167,11 +169,41 @@ TEST_F(MeshProgram, ComparesMeshes) {
   EXPECT_EQ(mesh({"compare", box, write("open.obj", open_box())}).exit_code, 1);
 }
 
+TEST_F(MeshProgram, WrapsWhatDoesNotClose) {
+  // The sides of a cube as six plates that do not meet.
+  TriangleMesh plates = cube_mesh();
+  plates = unwelded(plates);
+  for (std::size_t i = 0; i < plates.vertex_count(); ++i) {
+    for (std::vector<double>* coordinates : {&plates.x, &plates.y, &plates.z}) (*coordinates)[i] *= 0.5;
+  }
+  TriangleMesh apart;
+  for (const Triangle& t : plates.triangles) {
+    const Vec3 a = plates.vertex(t[0]);
+    const Vec3 normal = (plates.vertex(t[1]) - a).cross(plates.vertex(t[2]) - a).normalized();
+    Triangle moved{};
+    for (std::size_t i = 0; i < 3; ++i) moved[i] = apart.add_vertex(plates.vertex(t[i]) + 0.01 * normal);
+    apart.triangles.push_back(moved);
+  }
+  const std::string input = write("plates.obj", apart);
+  EXPECT_EQ(mesh({"repair", input, path("closed.ply"), "--rims"}).exit_code, 1);
+  const ProgramRun wrap = mesh({"repair", input, path("wrap.ply"), "--wrap", "0.05", "--json"});
+  if (wrap.error.find("built with OpenVDB") != std::string::npos) GTEST_SKIP() << wrap.error;
+  ASSERT_EQ(wrap.exit_code, 0) << wrap.error;
+  const Json json = Json::parse(wrap.output);
+  EXPECT_NEAR(json["volume"].get<double>(), std::pow(0.52, 3.0), 0.02 * std::pow(0.52, 3.0));
+  EXPECT_LT(json["wrap"]["distance_from_wrap"].get<double>(), 0.03);
+  EXPECT_EQ(mesh({"report", path("wrap.ply")}).exit_code, 0);
+  const ProgramRun too_fine = mesh({"repair", input, path("wrap.ply"), "--wrap", "1e-5"});
+  EXPECT_EQ(too_fine.exit_code, 1);
+  EXPECT_NE(too_fine.error.find("a finer grid than memory holds"), std::string::npos) << too_fine.error;
+}
+
 TEST_F(MeshProgram, RefusesOptionsThatDoNotBelongTogether) {
   const std::string box = write("box.obj", cube_mesh());
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"report", box, "--close"},
                                              {"report", box, "--poses", "3"},
+                                             {"report", box, "--wrap", "0.1"},
                                              {"repair", box},
                                              {"repair", box, path("box.3mf")},
                                              {"repair", box, box},

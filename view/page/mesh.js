@@ -121,7 +121,7 @@ function show() {
   document.getElementById('subtitle').textContent = data.summary;
   document.getElementById('report').textContent = data.report;
   document.getElementById('footer').textContent = `buoyancy-mesh ${data.version}`;
-  const view = { azimuth: 2.2, elevation: -0.4, zoom: 1, centre: data.centre, size: data.size };
+  const view = { azimuth: -0.9, elevation: 0.45, zoom: 1.2, centre: data.centre, size: data.size };
   const pictures = [new MeshPicture(document.getElementById('before'), data.before, view)];
   if (data.after) pictures.push(new MeshPicture(document.getElementById('after'), data.after, view));
   document.getElementById('after_figure').hidden = !data.after;
