@@ -2,7 +2,8 @@
 //
 //   options   1 byte: bit 0 open policy; bit 1 count intersecting pairs; bits 2-3 encoding of coordinates
 //             (0 an int8 each; 1 two int8, the second in units of 2^-26; 2 float32; 3 double); bit 4 faces
-//             are tetrahedra of four indices instead of triangles of three
+//             are tetrahedra of four indices instead of triangles of three; bit 5 close holes up to the
+//             volume of the mesh; bit 6 close all rims; bit 7 raise rims
 //   scale     1 int8 e: coordinates are multiplied by 2^(8 e)
 //   vertices  1 byte: their number, then their coordinates
 //   indices   1 byte each, modulo the number of vertices, to the end
@@ -40,8 +41,13 @@ inline FuzzMesh read_mesh(FuzzBytes bytes) {
   const unsigned options = bytes.byte();
   input.options.open = (options & 1U) != 0 ? OpenPolicy::kDryBoundary : OpenPolicy::kRefuse;
   input.options.count_intersecting_pairs = (options & 2U) != 0;
+  ClosingOptions& closing = input.options.closing;
+  closing.holes = (options & 32U) != 0;
+  closing.all_rims = (options & 64U) != 0;
+  if (closing.holes) closing.max_change = 1.0;
   const bool tetrahedra = (options & 16U) != 0;
   const int scale = 8 * bytes.small();
+  if ((options & 128U) != 0) closing.freeboard = std::ldexp(1.0, scale);
   const std::uint8_t vertices = bytes.byte();
   TriangleMesh& mesh = input.imported.mesh;
   for (int v = 0; v < vertices; ++v) {
