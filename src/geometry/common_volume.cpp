@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "geometry/swept_volume.h"
 
 namespace buoyancy {
 namespace {
@@ -236,10 +239,16 @@ double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer) {
       .volume;
 }
 
-double overlap_volume(const TriangleMesh& mesh) {
+std::optional<double> overlap_volume(const TriangleMesh& mesh) {
   const TriangleMesh none;
   const OffsetMesh only{&mesh, Vec3::Zero()};
   const BoundingBox box = box_of(only);
+  constexpr double kMaxLayers = 1'000.0;  // of the surface over the columns, on average
+  const Vec3 sides = box.max_B - box.min_B;
+  const double section = sides.prod() / sides.maxCoeff();
+  double area = 0.0;
+  for (const Triangle& face : mesh.triangles) area += area_of_face(mesh, face);
+  if (!(area <= kMaxLayers * section)) return std::nullopt;
   return volume_where(box, only, {&none, Vec3::Zero()}, along_longest_side(box),
                       [](int winding, int) { return std::max(winding - 1, 0); })
       .volume;

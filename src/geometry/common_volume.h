@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "geometry/triangle_mesh.h"
 
@@ -28,8 +29,9 @@ double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
 
 // [m^3], what the volume integrals of a closed mesh count more often than once, because its parts overlap or
-// lie in each other. Complexity: as common_volume().
-double overlap_volume(const TriangleMesh& mesh);
+// lie in each other; nullopt if the surface would cover its box more than a thousand times. Complexity: as
+// common_volume(), times the layers of the surface.
+std::optional<double> overlap_volume(const TriangleMesh& mesh);
 
 // How a box is cut into columns.
 struct ColumnLayout {

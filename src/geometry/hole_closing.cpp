@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "geometry/boundary_loops.h"
+#include "geometry/common_volume.h"
 #include "geometry/enclosed_solid.h"
 #include "geometry/loop_caps.h"
+#include "geometry/mesh_orientation.h"
 #include "geometry/mesh_repair.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/swept_volume.h"
@@ -17,6 +20,7 @@ namespace buoyancy {
 namespace {
 
 constexpr std::size_t kMaxForLeastArea = 1'000;       // edges
+constexpr double kMaxDoubtfulOverlap = 1e-2;          // of the volume
 constexpr std::int64_t kClosingWork = 1'000'000'000;  // of caps of least area, each some 5 ns
 
 // The area vector of a loop: it points out of a mesh whose normals do, where a cap fills a hole. [m^2]
@@ -109,6 +113,19 @@ double signed_volume_if_capped(const TriangleMesh& mesh) {
   return volume;
 }
 
+// [m^3]: what counts more than once where some components had to be turned outside out. An inner skin that
+// crosses the outer one looks like a solid of its own; what it encloses would count twice instead of not at
+// all.
+double doubtful_overlap(TriangleMesh mesh) {
+  const MeshTopology topology = mesh_topology(mesh);
+  std::vector<ComponentReport> components = describe_components(mesh, topology);
+  if (!orient_closed(mesh, topology, components)) return 0.0;
+  const auto is_flipped = [](const ComponentReport& component) { return component.flipped; };
+  const bool some = std::any_of(components.begin(), components.end(), is_flipped) &&
+                    !std::all_of(components.begin(), components.end(), is_flipped);
+  return some ? overlap_volume(mesh).value_or(std::numeric_limits<double>::infinity()) : 0.0;
+}
+
 // A copy of a mesh with closed holes, and what that took.
 class Attempt {
  public:
@@ -124,6 +141,7 @@ class Attempt {
     if (all_) close(find_loops(missing_edges(mesh_)), outward);
     if (automatic) repair();  // caps may lie on walls inside, which then bound nothing
     solid_ = enclosed_solid(mesh_);
+    if (solid_ && solid_->volume > 0.0) doubtful_share_ = doubtful_overlap(mesh_) / solid_->volume;
   }
 
   // What stands in the way, if something does.
@@ -133,6 +151,8 @@ class Attempt {
     };
     if (options_.freeboard > 0.0 && raised_ == 0) return skipped(RepairObstacle::kNoRim, 0.0);
     if (!solid_ || !(solid_->volume > 0.0)) return skipped(RepairObstacle::kStillOpen, 0.0);
+    if (!(doubtful_share_ <= kMaxDoubtfulOverlap))
+      return skipped(RepairObstacle::kSelfIntersection, doubtful_share_);
     const double bulge = bulge_of_holes_ / solid_->volume;
     if (!(bulge <= options_.max_change)) return skipped(RepairObstacle::kBulge, bulge);
     const double disagreement = report_.cap_disagreement / solid_->volume;
@@ -203,6 +223,7 @@ class Attempt {
   std::int64_t holes_ = 0;
   std::int64_t raised_ = 0;
   double bulge_of_holes_ = 0.0;  // [m^3], of those that are no rims
+  double doubtful_share_ = 0.0;  // of the volume
   std::int64_t work_left_ = kClosingWork;
 };
 
@@ -233,6 +254,10 @@ std::optional<ClosingEstimate> estimate_closing(const TriangleMesh& mesh) {
   Attempt attempt(mesh, all);
   attempt.run(true);
   if (!attempt.solid() || !(attempt.solid()->volume > 0.0)) return std::nullopt;
+  if (const auto obstacle = attempt.obstacle();
+      obstacle && obstacle->obstacle == RepairObstacle::kSelfIntersection) {
+    return std::nullopt;
+  }
   return ClosingEstimate{attempt.solid()->volume, attempt.report().cap_bulge,
                          attempt.report().cap_disagreement};
 }

@@ -52,9 +52,9 @@ struct ClosingEstimate {
 };
 
 // Closes the holes. If the limits are exceeded, or if holes are left that were not asked for, the mesh stays
-// as it is and report.skipped says why; likewise if most faces have open edges, as in a soup of triangles.
-// automatic: repair again after closing. mesh: welded. Complexity: O(n log n) for n faces, and the caps' n^3
-// up to some seconds.
+// as it is and report.skipped says why; likewise if faces have more than one open edge on average, as in a
+// soup of triangles. automatic: repair again after closing. mesh: welded. Complexity: O(n log n) for n faces,
+// and the caps' n^3 up to some seconds.
 void close_holes(TriangleMesh& mesh, const ClosingOptions& options, bool automatic, RepairReport& report);
 
 // Returns nullopt if the mesh encloses no volume even then. Complexity: that of close_holes().

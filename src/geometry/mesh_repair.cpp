@@ -26,6 +26,8 @@ constexpr double kMaxDiagonal = 1e50;   // [m]
 // A body of which moved vertices might have changed a larger share of the volume stays as it was given.
 constexpr double kMaxShareMoved = 1e-2;
 
+constexpr double kMinVolume = 1e-10;  // of a solid, of the cube of its diagonal
+
 constexpr int kMaxPasses = 3;
 
 // Removing a sheet or closing a hole can make it possible to tell inner faces from the surface.
@@ -91,6 +93,12 @@ bool only_walls_are_in_the_way(const TriangleMesh& mesh, const RepairReport& rep
                   (skipped.obstacle == RepairObstacle::kSelfIntersection ||
                    skipped.obstacle == RepairObstacle::kTooMany);
          });
+}
+
+// Copies count the volume of a part twice.
+bool removed_copies(const RepairReport& report) {
+  return std::any_of(report.steps.begin(), report.steps.end(),
+                     [](const RepairStep& step) { return step.kind == RepairKind::kRemoveDuplicates; });
 }
 
 void remove_unused_vertices(TriangleMesh& mesh) {
@@ -167,6 +175,12 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
     mesh = given;
     ladder.report() = {{}, std::move(ladder.report().skipped), 0.0, 0.0};
   }
+  // A solid that is open now, since two-sided faces that cancel were taken for parts of its surface.
+  if (given_solid && given_solid->volume > kMinVolume * diagonal * diagonal * diagonal &&
+      !ladder.is_closed() && !removed_copies(ladder.report())) {
+    mesh = given;
+    return {};
+  }
   if (!ladder.report().steps.empty()) remove_unused_vertices(mesh);
   return std::move(ladder.report());
 }
@@ -174,7 +188,7 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
 }  // namespace
 
 bool is_soup(const TriangleMesh& mesh, const MeshTopology& topology) {
-  return topology.boundary.size() > mesh.triangles.size() / 2;
+  return topology.boundary.size() > mesh.triangles.size();
 }
 
 bool needs_repair(const MeshTopology& topology) {

@@ -29,7 +29,7 @@ inline constexpr double kRepairTolerance = 1e-6;  // relative to the bounding-bo
 // Whether the automatic repair may improve a mesh with this topology.
 bool needs_repair(const MeshTopology& topology);
 
-// Whether most faces have open edges, so that holes are no faults of a surface.
+// Whether faces have more than one open edge on average, so that holes are no faults of a surface.
 bool is_soup(const TriangleMesh& mesh, const MeshTopology& topology);
 
 // Repairs the mesh. may_stay_open: if the mesh is not closed or balanced in the end, its inner faces, sheets

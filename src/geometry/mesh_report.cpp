@@ -163,15 +163,25 @@ std::string at_least(double share) {
   return format_number(std::ceil(share / unit * (1.0 - 1e-9)) * unit, 3);
 }
 
-// The axis across which the mesh looks like half a body, because much of its largest rim lies in a coordinate
-// plane at which it ends; empty if there is none. Ships are symmetric in y more often than in x.
+std::string quoted_for_shell(const std::string& path) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:=@%";
+  if (!path.empty() && path.find_first_not_of(kPlain) == std::string::npos) return path;
+  std::string quoted = "'";
+  for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+// The axis across which the mesh looks like half a body, because much of its largest rim lies in the plane x
+// = 0 or y = 0, at which it ends; empty if there is none. Ships are symmetric in y more often than in x, and
+// z = 0 is where panels end at the water.
 std::string half_body_axis(const MeshReport& report) {
   constexpr double kMinShare = 0.3;
   const double tolerance = 1e-6 * report.diagonal;
   const HoleReport& rim = report.holes.front();
   std::string axis;
   double longest = kMinShare * rim.perimeter;
-  for (const Eigen::Index i : {1, 0, 2}) {
+  for (const Eigen::Index i : {1, 0}) {
     const bool ends = report.box.min_B[i] >= -tolerance || report.box.max_B[i] <= tolerance;
     if (!ends || rim.length_in_planes[i] <= longest * (1.0 + 1e-9)) continue;
     longest = rim.length_in_planes[i];
@@ -186,8 +196,8 @@ std::string closing_advice(const MeshReport& report) {
   if (!report.closing || report.holes.empty()) return "";
   const double bulge = report.closing->bulge / report.closing->volume;
   const double disagreement = report.closing->disagreement / report.closing->volume;
-  const std::string repair = "buoyancy-mesh repair " + report.name + " OUTPUT.ply";
-  const std::string axis = disagreement > kDefaultMaxChange ? half_body_axis(report) : "";
+  const std::string repair = "buoyancy-mesh repair " + quoted_for_shell(report.name) + " OUTPUT.ply";
+  const std::string axis = half_body_axis(report);
   std::string advice;
   if (!axis.empty()) {
     advice = "If this is half a body: " + repair + " --mirror " + axis + " --rims, or mirror = \"" + axis +

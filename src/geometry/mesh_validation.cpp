@@ -170,7 +170,8 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report_components(std::move(components), report);
   if (options.count_intersecting_pairs) {
     report.intersecting_pairs = count_intersecting_pairs(mesh, &report.intersections_cut_off);
-    if (report.closed() && !validation.refusal) report.overlap_volume = overlap_volume(mesh);
+    if (report.closed() && !validation.refusal && !report.intersections_cut_off)
+      report.overlap_volume = overlap_volume(mesh);
   }
   if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
   return validation;

@@ -224,6 +224,38 @@ TEST(HoleClosing, TellsInnerWallsFromTheSurface) {
   EXPECT_NEAR(validation.report.volume, 8.0, 1e-13);
 }
 
+TEST(HoleClosing, RefusesAnInnerSkinThatCrossesTheOuterOne) {
+  // A shell of two skins with a hole in the outer one; the inner skin pierces the outer one at a corner.
+  TriangleMesh outer = box_mesh(Vec3::Zero(), Vec3::Constant(2.0));
+  outer = without_faces(outer, [](const Vec3& v) { return v.z() == 2.0; });
+  TriangleMesh inner = inside_out(box_mesh(Vec3::Constant(0.1), Vec3::Constant(1.9)));
+  const MeshValidation shell = closed(joined(outer, inner), all_rims());
+  ASSERT_TRUE(shell.mesh) << shell.refusal->message();
+  EXPECT_NEAR(shell.report.volume, 8.0 - 5.832, 1e-12);
+  inner.add_vertex({2.2, 2.2, 2.2});
+  const auto tip = static_cast<std::int32_t>(inner.vertex_count() - 1);
+  for (Triangle& face : inner.triangles) {
+    for (std::int32_t& v : face) {
+      if (v == 7) v = tip;
+    }
+  }
+  const MeshValidation crossing = closed(joined(outer, inner), all_rims());
+  EXPECT_FALSE(crossing.mesh);
+  EXPECT_FALSE(crossing.report.closing);
+}
+
+TEST(HoleClosing, AdvisesToMirrorAFlatHalf) {
+  TriangleMesh half = box_mesh({0.0, 0.0, -1.0}, {3.0, 1.0, 0.0});
+  half = without_faces(half, [](const Vec3& v) { return v.y() == 0.0; });
+  const MeshValidation refused = validate_mesh({half, {}}, "my half.obj", {});
+  ASSERT_FALSE(refused.mesh);
+  const std::string message = refused.refusal->message();
+  EXPECT_NE(message.find("buoyancy-mesh repair 'my half.obj' OUTPUT.ply --mirror y --rims"),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("Close them: "), std::string::npos) << message;
+}
+
 TEST(HoleClosing, MirrorsOnlyHalves) {
   TriangleMesh whole = cube_mesh();
   const Expected<RepairStep> both_sides = add_mirror_image(whole, Axis::kX, "cube.stl");

@@ -206,8 +206,8 @@ TEST(SceneFile, SuggestsNearestKeyInEveryTable) {
       {scene_with_crate("metod = \"exact\"\n"), "pool.toml:4: body 7: unknown key 'metod'"},
       {scene_with_crate("metod = \"exact\"\n"), "nearest known key is 'method'"},
       {scene_with_crate("metod = \"exact\"\n"),
-       "expected one of id, name, mesh, scale, shape, method, tolerance, open, reference_point, outputs, "
-       "drag, added_mass, part, compartment, tank, client."},
+       "expected one of id, name, mesh, scale, shape, repair, mirror, close_holes, freeboard, method, "
+       "tolerance, open, reference_point, outputs, drag, added_mass, part, compartment, tank, client."},
       {scene_with_crate("[body.clinet]\n"), "nearest known key is 'client'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},
@@ -244,8 +244,10 @@ TEST(SceneFile, RejectsWrongTypesAndRanges) {
        "expected one of refuse, dry_boundary. The nearest is 'refuse'."},
       {scene_with_crate("open = true\n"), "open = true"},
       {scene_with_crate("close_holes = 0.1\n"), "a repair and 'shape'"},
-      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nclose_holes = 0\n", "close_holes = 0; expected a number above 0"},
-      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nfreeboard = -1\n", "freeboard = -1; expected a number above 0"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nclose_holes = 0\n",
+       "close_holes = 0; expected a finite number above 0"},
+      {"[[body]]\nid = 1\nmesh = \"a.obj\"\nfreeboard = -1\n",
+       "freeboard = -1; expected a finite number above 0"},
       {"[[body]]\nid = 1\nmesh = \"a.obj\"\nmirror = \"w\"\n", "mirror = \"w\"; expected one of x, y, z"},
       {"[[body]]\nid = 1\nmesh = \"a.obj\"\nrepair = \"no\"\n", "expected one of automatic, none"},
       {scene_with_crate("outputs = [\"hydrostatics\"]\n"),

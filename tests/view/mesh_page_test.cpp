@@ -25,7 +25,7 @@ class MeshPage : public PageTest {
     const TempDir directory;
     const std::string page = directory.path("page.html");
     std::vector<std::string> arguments{
-        built_program("buoyancy-mesh"), "repair", directory.write("barge </script>.obj", kBarge),
+        built_program("buoyancy-mesh"), "repair", directory.write("barge <b>.obj", kBarge),
         directory.path("barge.ply"),    "--html", page};
     for (std::string& option : options) arguments.push_back(std::move(option));
     const int exit_code = run_to_end(command_of(std::move(arguments)), kWaitTimeout).exit_code.value_or(-1);
@@ -53,7 +53,7 @@ TEST_F(MeshPage, ShowsOpenEdgesBeforeAndCapsAfter) {
   EXPECT_EQ(open({"--rims"}), 0);
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(browser().run("return performance.getEntriesByType('resource').length"), 0);
-  EXPECT_EQ(browser().run("return document.getElementById('title').textContent"), "barge </script>.obj");
+  EXPECT_EQ(browser().run("return document.getElementById('title').textContent"), "barge <b>.obj");
   EXPECT_NE(browser()
                 .run("return document.getElementById('report').textContent")
                 .get<std::string>()
