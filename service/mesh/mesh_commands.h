@@ -38,9 +38,9 @@ std::string report_text(const std::vector<CheckedMesh>& meshes);
 // or null.
 std::string report_json(const std::vector<CheckedMesh>& meshes);
 
-// The mesh as it is written: one that the importer, which reads single precision, gives back as it is, so that no
-// further repair is made of it. Coordinates are rounded only if that takes it. mesh: usable. Errors: the
-// rounding makes faults that cannot be repaired, or that change the volume by more than 1e-5.
+// The mesh as it is written: one that the importer, which reads single precision, gives back as it is, so
+// that no further repair is made of it. Coordinates are rounded only if that takes it. mesh: usable. Errors:
+// the rounding makes faults that cannot be repaired, or that change the volume by more than 1e-5.
 Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output);
 
 // The report of the repaired mesh and where it was written.

@@ -46,7 +46,7 @@ class MeshPicture {
       const size = Math.hypot(uy * vz - uz * vy, uz * vx - ux * vz, facing) || 1;
       const light = 0.35 + 0.65 * Math.abs(facing) / size;
       const shade = facing < 0 ? light : 0.45 * light;  // the inside is darker
-      list.push({ depth: p[a + 2] + p[b + 2] + p[c + 2], at: [p[a], p[a + 1], p[b], p[b + 1], p[c], p[c + 1]],
+      list.push({ inside: facing >= 0, depth: p[a + 2] + p[b + 2] + p[c + 2], at: [p[a], p[a + 1], p[b], p[b + 1], p[c], p[c + 1]],
                   colour: `rgb(${part.colour.map((value) => Math.round(value * shade)).join()})` });
     }
   }
@@ -61,7 +61,8 @@ class MeshPicture {
     const scale = 0.85 * Math.min(width, height) / this.view.size * this.view.zoom;
     const list = [];
     for (const part of this.parts) this.triangles(part, scale, width, height, list);
-    list.sort((one, other) => one.depth - other.depth);
+    // The inside is seen through holes, behind all that faces the camera: large faces cross in depth.
+    list.sort((one, other) => other.inside - one.inside || one.depth - other.depth);
     for (const { at, colour } of list) {
       context.fillStyle = context.strokeStyle = colour;
       context.beginPath();
