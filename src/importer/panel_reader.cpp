@@ -168,13 +168,13 @@ Expected<StoredMesh> read_gdf(Numbers numbers, const ImportLimits& limits) {
     stored.polygons.add(corners);
     if (!numbers.has_number_on_line()) numbers.skip_line();
   }
+  // Some writers end with zeros or a note; other numbers mean that the panels were miscounted.
+  while (const std::optional<double> rest = numbers.next()) {
+    if (*rest != 0.0) return make_error(fault(kFormat, numbers, "end after the last panel"));
+  }
   std::string& note = stored.source.note;
   if (*length != 1.0)
     note = "not scaled by ULEN, " + format_shortest(*length) + ", which is a reference length";
-  if (numbers.next()) {
-    if (!note.empty()) note += "; ";
-    note += "what follows the last panel is left out";
-  }
   if (is_in_feet && !note.empty()) note += "; ";
   if (is_in_feet) note += "scaled by 0.3048 from feet to metres, since GRAV is " + format_shortest(*gravity);
   for (int axis = 0; axis < 2; ++axis) {

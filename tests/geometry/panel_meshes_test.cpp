@@ -91,6 +91,7 @@ TEST_F(PanelMeshes, NameFaultsWithTheirLine) {
   EXPECT_TRUE(contains(refusal_of("a.gdf", "title\nno numbers\n"), "(line 2: no ULEN and GRAV)"));
   EXPECT_TRUE(contains(refusal_of("b.gdf", gdf("1 9.8\n0 2\n")), "(line 3: no ISX and ISY, each 0 or 1)"));
   EXPECT_TRUE(contains(refusal_of("c.gdf", gdf("1 9.8\n0 0\n", kQuarter, 5)), "no corner of panel 5 of 5"));
+  EXPECT_TRUE(contains(refusal_of("d.gdf", gdf("1 9.8\n0 0\n", kQuarter, 3)), "no end after the last panel"));
   EXPECT_TRUE(
       contains(refusal_of("d.gdf", "title\n1 9.8\n0 0\n2 1\n4 2\n"), "no flat panels: IGDEF is not 0"));
   EXPECT_TRUE(contains(refusal_of("e.gdf", gdf("1 9.8\n0 0\n", "", 0)), "no triangles"));
