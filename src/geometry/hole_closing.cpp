@@ -96,6 +96,7 @@ Loop raise_rim(TriangleMesh& mesh, const Loop& rim, const Vec3& height, RepairSt
 // another kind.
 std::vector<Loop> boundary_loops(const std::vector<Edge>& boundary) {
   std::vector<Edge> wanted;
+  wanted.reserve(boundary.size());
   for (const auto& [from, to] : boundary) wanted.push_back({to, from});
   std::sort(wanted.begin(), wanted.end());
   std::vector<Loop> loops = find_loops(wanted);
