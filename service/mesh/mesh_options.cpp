@@ -82,6 +82,7 @@ void add_options(CLI::App& app, MeshOptions& options) {
                         .usage_error = "on invalid arguments"}));
   app.set_version_flag("--version", "buoyancy-mesh " BUOYANCY_VERSION);
   std::vector<std::string> commands;
+  commands.reserve(kCommands.size());
   for (const auto& [name, command] : kCommands) commands.emplace_back(name);
   app.add_option(
          "command", options.command,
