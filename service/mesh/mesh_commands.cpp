@@ -141,6 +141,10 @@ Expected<CheckedMesh> wrapped(const CheckedMesh& mesh, const MeshPlan& plan, dou
   } else {
     Expected<ImportedMesh> imported = import_mesh(plan.inputs.front());
     if (!imported) return make_error(std::move(imported.error()));
+    if (plan.preparation.mirror) {
+      const Expected<RepairStep> step = add_mirror_image(imported->mesh, *plan.preparation.mirror, mesh.name);
+      if (!step) return make_error(step.error());
+    }
     place(imported->mesh, plan.preparation.placement);
     given = weld(imported->mesh).mesh;
   }

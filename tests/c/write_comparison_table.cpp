@@ -16,7 +16,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <span>
@@ -27,6 +26,7 @@
 #include <vector>
 
 #include "c/buoyancy.h"
+#include "geometry/mesh_export.h"
 #include "geometry/shapes.h"
 #include "query/pose_evaluation.h"
 #include "query/query_mesh.h"
@@ -127,15 +127,6 @@ TriangleMesh shape_of(const std::string& shape) {
   return make_shape(std::get<Shape>(checked(parse_scene(text, "shape", {})).bodies[0].mesh.source));
 }
 
-void write_obj(const TriangleMesh& mesh, const std::string& path) {
-  std::ofstream file(path);
-  file << std::setprecision(17);
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
-    file << "v " << mesh.x[i] << ' ' << mesh.y[i] << ' ' << mesh.z[i] << '\n';
-  for (const Triangle& triangle : mesh.triangles)
-    file << "f " << triangle[0] + 1 << ' ' << triangle[1] + 1 << ' ' << triangle[2] + 1 << '\n';
-}
-
 PoseTable poses_with_times(std::uint64_t seed) {
   PoseTable poses = random_poses(kPoses, 1.0, seed);
   for (std::size_t i = 0; i < kPoses; ++i)
@@ -165,7 +156,7 @@ void write_meshes(const std::string& directory, TableWriter& table) {
     Case of;
     if (n % 2 == 1) {
       of.path = directory + "/mesh" + std::to_string(n) + ".obj";
-      write_obj(mesh, of.path);
+      std::ofstream(of.path) << export_mesh(mesh, ExportFormat::kObj);
     } else {
       for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
         of.vertices.insert(of.vertices.end(), {mesh.x[i], mesh.y[i], mesh.z[i]});

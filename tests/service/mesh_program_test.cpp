@@ -193,6 +193,19 @@ TEST_F(MeshProgram, WrapsWhatDoesNotClose) {
   EXPECT_NEAR(json["volume"].get<double>(), std::pow(0.52, 3.0), 0.02 * std::pow(0.52, 3.0));
   EXPECT_LT(json["wrap"]["distance_from_wrap"].get<double>(), 0.03);
   EXPECT_EQ(mesh({"report", path("wrap.ply")}).exit_code, 0);
+
+  // Half of a longer box, without the plate in its plane of symmetry.
+  TriangleMesh half = apart;
+  for (double& x : half.x) x += 0.25;
+  std::erase_if(half.triangles, [&half](const Triangle& t) {
+    return half.vertex(t[0]).x() < 0.0 && half.vertex(t[1]).x() < 0.0 && half.vertex(t[2]).x() < 0.0;
+  });
+  const ProgramRun whole = mesh(
+      {"repair", write("half.obj", half), path("whole.ply"), "--mirror", "x", "--wrap", "0.05", "--json"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.error;
+  const double expected = 1.02 * 0.52 * 0.52;
+  EXPECT_NEAR(Json::parse(whole.output)["volume"].get<double>(), expected, 0.02 * expected);
+
   const ProgramRun too_fine = mesh({"repair", input, path("wrap.ply"), "--wrap", "1e-5"});
   EXPECT_EQ(too_fine.exit_code, 1);
   EXPECT_NE(too_fine.error.find("a finer grid than memory holds"), std::string::npos) << too_fine.error;
