@@ -170,8 +170,12 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
   report_components(std::move(components), report);
   if (options.count_intersecting_pairs) {
     report.intersecting_pairs = count_intersecting_pairs(mesh, &report.intersections_cut_off);
-    if (report.closed() && !validation.refusal && !report.intersections_cut_off)
-      report.overlap_volume = overlap_volume(mesh);
+    if (report.closed() && !validation.refusal && !report.intersections_cut_off) {
+      // Surfaces that neither cross nor contain each other enclose nothing twice.
+      const bool may_overlap =
+          report.intersecting_pairs > 0 || std::ranges::any_of(report.components, &ComponentReport::nested);
+      report.overlap_volume = may_overlap ? overlap_volume(mesh) : 0.0;
+    }
   }
   if (!validation.refusal) validation.mesh = ValidatedMesh{std::move(mesh), boundary_vertices(topology)};
   return validation;
