@@ -1,0 +1,130 @@
+// buoyancy-record beside a run, and beside a sender that is faster than it.
+#include <csignal>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "messages/wire.h"
+#include "recording/event_log.h"
+#include "tests/e2e/closed_loop.h"
+#include "tests/support/build_paths.h"
+#include "tests/support/json.h"
+#include "tests/support/running_program.h"
+#include "tests/support/timeouts.h"
+#include "transport/lcm_connection.h"
+
+namespace buoyancy {
+namespace {
+
+class Record : public testing::Test {
+ protected:
+  ChildCommand recorder(const std::string& url = kServiceUrl) const {
+    return command_of({built_program("buoyancy-record"), log_, "-l", url});
+  }
+
+  // The ids of all requests of the log.
+  std::vector<RequestId> recorded_requests() const {
+    std::vector<RequestId> ids;
+    auto reader = EventLogReader::open(log_, only_channel(std::string(kStatesChannel))).value();
+    for (LogItem item = reader.next(); std::holds_alternative<RecordedEvent>(item); item = reader.next()) {
+      ids.push_back(peek_request_id(std::get<RecordedEvent>(item).bytes).value());
+    }
+    return ids;
+  }
+
+  // Ends the recorder as a user does. Returns its exit code.
+  static std::optional<int> end(RunningProgram& recorder) {
+    recorder.send_signal(SIGINT);
+    return recorder.wait(kWaitTimeout);
+  }
+
+  TempDir directory_;
+  std::string log_ = directory_.path("run.lcmlog");
+};
+
+TEST_F(Record, HasEveryMessageOfALockstepRun) {
+  const std::string scene = directory_.write("scene.toml", R"(
+[[body]]
+id = 1
+shape = { type = "box" }
+[body.client]
+density = 500
+position = [0, 0, 0.3]
+)");
+  const RunningProgram service(service_command(scene, {"-l", kServiceUrl}));
+  RunningProgram recording(recorder());
+  const nlohmann::json summary = simulate(scene, {"-l", kServiceUrl, "--duration", "5", "--step", "0.001"});
+  EXPECT_EQ(end(recording), 0) << recording.standard_output() << recording.standard_error();
+  EXPECT_NE(recording.standard_output().find(" 0 requests and 0 responses missing"), std::string::npos)
+      << recording.standard_output();
+  const auto sent = summary["requests"].get<std::int64_t>() + summary["retries"].get<std::int64_t>();
+  EXPECT_EQ(static_cast<std::int64_t>(recorded_requests().size()), sent);
+}
+
+// The recorder is stopped while requests arrive, more than its small receive buffer holds.
+TEST_F(Record, CountsWhatItMissed) {
+  RunningProgram recording(recorder("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=20000"));
+  LcmConnection sender = LcmConnection::open(kServiceUrl).value();
+  std::vector<std::uint8_t> bytes;
+  const auto send = [&](std::int64_t seq) {
+    encode(BorrowedRequest({1000 * seq, 5, seq}, 0.0, {}), bytes);
+    ASSERT_TRUE(sender.publish(std::string(kStatesChannel), bytes));
+  };
+  const auto is_recorded = [&](std::int64_t seq) {
+    for (const RequestId& id : recorded_requests()) {
+      if (id.seq == seq) return true;
+    }
+    return false;
+  };
+  // Until the message is on the disk.
+  const auto send_until_recorded = [&](std::int64_t seq) {
+    for (int i = 0; i < static_cast<int>(20 * kWaitTimeout) && !is_recorded(seq); ++i) {
+      send(seq);
+      usleep(50'000);
+    }
+    ASSERT_TRUE(is_recorded(seq));
+  };
+
+  send_until_recorded(0);
+  recording.send_signal(SIGSTOP);
+  for (std::string state; state != "T";) {
+    std::string pid;
+    std::string name;
+    std::ifstream("/proc/" + std::to_string(recording.pid()) + "/stat") >> pid >> name >> state;
+  }
+  constexpr std::int64_t kLast = 3000;
+  for (std::int64_t seq = 1; seq < kLast; ++seq) send(seq);
+  recording.send_signal(SIGCONT);
+  send_until_recorded(kLast);
+  EXPECT_EQ(end(recording), 1) << "an incomplete recording is a failure";
+
+  std::set<std::int64_t> recorded;
+  for (const RequestId& id : recorded_requests()) recorded.insert(id.seq);
+  const std::int64_t missing = kLast + 1 - static_cast<std::int64_t>(recorded.size());
+  EXPECT_GT(missing, 1000);
+  const std::string output = recording.standard_output();
+  EXPECT_NE(
+      output.find("; " + std::to_string(missing) + " requests and 0 responses missing; the kernel dropped "),
+      std::string::npos)
+      << missing << '\n'
+      << output;
+  EXPECT_NE(output.find("session 5: " + std::to_string(missing) + " requests missing, seq "),
+            std::string::npos)
+      << output;
+  EXPECT_NE(recording.standard_error().find("its receive buffer was full"), std::string::npos);
+}
+
+TEST_F(Record, RefusesWhatItCannotWrite) {
+  const FinishedProcess folder =
+      run_to_end(command_of({built_program("buoyancy-record"), directory_.path("")}), kWaitTimeout);
+  EXPECT_EQ(folder.exit_code, 1);
+  EXPECT_NE(folder.standard_error.find("buoyancy-record: "), std::string::npos);
+  const FinishedProcess twice = run_to_end(
+      command_of({built_program("buoyancy-record"), log_, "--channel", "A", "--channel", "A"}), kWaitTimeout);
+  EXPECT_EQ(twice.exit_code, 2);
+}
+
+}  // namespace
+}  // namespace buoyancy
