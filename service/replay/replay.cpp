@@ -53,6 +53,9 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
+    if (!event.channel.empty()) {
+      if (const auto id = peek_request_id(event.bytes)) summary.requests->add(id->session_id, id->seq);
+    }
     if (is_in_pose_session(task.poses, event.bytes)) ++summary.requests_in_pose_sessions;
   }
   if (!role.pose) return;
@@ -126,6 +129,7 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
                                const ReplayCallbacks& callbacks) {
   const auto start = std::chrono::steady_clock::now();
   ReplaySummary summary;
+  summary.requests.emplace();
   ThreadPool workers(task.jobs);
   const std::size_t count = workers.thread_count() == 1 ? 1 : kBatchesPerThread * workers.thread_count();
   std::array<Round, 3> rounds;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@
 #include "engine/condition_timeline.h"
 #include "engine/pose_request_adapter.h"
 #include "messages/status.h"
+#include "recording/sequence_gaps.h"
 #include "scene/scene.h"
 #include "service/replay/replay_channels.h"
 #include "service/replay/replay_comparison.h"
@@ -26,7 +28,8 @@ struct ReplaySummary {
   std::int64_t corrupt_sections = 0;  // of the input
   // Recorded requests in a session that the replay numbers itself: a part cannot have any (replay_part.h).
   std::int64_t requests_in_pose_sessions = 0;
-  const char* stopped_by = "";  // the name of a signal; empty: the end of the input
+  std::optional<SequenceGaps> requests;  // what the sessions of the input lack; nullopt: joined parts
+  const char* stopped_by = "";           // the name of a signal; empty: the end of the input
   double seconds = 0.0;
 
   // Does the output hold a response to every request of the input, with every sea and every condition of the

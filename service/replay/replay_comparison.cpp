@@ -66,30 +66,44 @@ bool ReplayComparison::Channel<Message>::read_one() {
       ++corrupt_sections;
       continue;
     }
-    if (!decode(event->bytes, ahead.emplace_back())) return true;
+    if (!decode(event->bytes, ahead.emplace_back())) {
+      baseline_gaps.add(ahead.back().id.session_id, ahead.back().id.seq);
+      return true;
+    }
     ahead.pop_back();
     ++invalid_messages;
   }
 }
 
 template <typename Message>
+void ReplayComparison::Channel<Message>::count_skipped(std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const RequestId& id = ahead[i].id;
+    ++(new_gaps.is_missing(id.session_id, id.seq) ? not_recorded : unmatched_baseline);
+  }
+}
+
+template <typename Message>
 std::optional<Message> ReplayComparison::Channel<Message>::pop_counterpart() {
+  new_gaps.add(now.id.session_id, now.id.seq);
   for (std::size_t i = 0; i < kMatchWindow; ++i) {
     if (i == ahead.size() && !read_one()) break;
     if (!same_id(ahead[i].id, now.id)) continue;
     std::optional<Message> found = std::move(ahead[i]);
-    unmatched_baseline += static_cast<std::int64_t>(i);
+    count_skipped(i);
     ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     return found;
   }
-  ++unmatched_new;
+  ++(baseline_gaps.is_missing(now.id.session_id, now.id.seq) ? not_recorded : unmatched_new);
   return std::nullopt;
 }
 
 template <typename Message>
 void ReplayComparison::Channel<Message>::finish() {
-  unmatched_baseline += static_cast<std::int64_t>(ahead.size());
-  for (ahead.clear(); read_one(); ahead.clear()) ++unmatched_baseline;
+  do {
+    count_skipped(ahead.size());
+    ahead.clear();
+  } while (read_one());
 }
 
 // Calls compare_body for each body at the same index in both messages.

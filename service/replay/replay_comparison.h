@@ -22,6 +22,7 @@
 #include "messages/request.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
+#include "recording/sequence_gaps.h"
 #include "scene/scene.h"
 #include "service/replay/replay_output.h"
 
@@ -64,12 +65,17 @@ class ReplayComparison {
   std::optional<Error> read_error() const;  // the baseline could not be read to its end
 
   const std::map<std::int32_t, BodyDifferences>& bodies() const { return bodies_; }  // by id
-  // Responses, hydrostatics and loads without a counterpart.
+  // Responses, hydrostatics and loads without a counterpart, other than those of not_recorded().
   std::int64_t unmatched_new() const {
     return responses_.unmatched_new + hydrostatics_.unmatched_new + loads_.unmatched_new;
   }
   std::int64_t unmatched_baseline() const {
     return responses_.unmatched_baseline + hydrostatics_.unmatched_baseline + loads_.unmatched_baseline;
+  }
+  // Messages without a counterpart whose numbers the other side lacks between others of their session: a
+  // recorder missed a request, or its response. They are no disagreement.
+  std::int64_t not_recorded() const {
+    return responses_.not_recorded + hydrostatics_.not_recorded + loads_.not_recorded;
   }
   // Corrupt sections and invalid messages of the baseline.
   std::int64_t decode_errors() const {
@@ -88,12 +94,15 @@ class ReplayComparison {
     EventLogReader baseline;
     std::deque<Message> ahead{};  // read but not yet matched; at most kMatchWindow
     Message now{};                // the new message; reused
+    SequenceGaps baseline_gaps{}, new_gaps{};
+    std::int64_t not_recorded = 0;
     std::int64_t unmatched_new = 0;
     std::int64_t unmatched_baseline = 0;
     std::int64_t corrupt_sections = 0;  // of the whole log: equal for all channels
     std::int64_t invalid_messages = 0;
 
-    bool read_one();  // into ahead; false: the log has ended
+    void count_skipped(std::size_t count);  // the first ones of ahead have no counterpart
+    bool read_one();                        // into ahead; false: the log has ended
     // Removes the counterpart of `now` and all messages before it from `ahead` and returns the counterpart.
     // nullopt: there is none, and `ahead` keeps its messages.
     std::optional<Message> pop_counterpart();

@@ -41,6 +41,7 @@ std::string comparison_text(const ReplayComparison& comparison) {
   const auto line = [&text](const char* what, std::int64_t count) {
     if (count > 0) text += fmt::format("{:>12} {}\n", count, what);
   };
+  line("messages were not recorded, between others of their session", comparison.not_recorded());
   line("new responses have no counterpart in the baseline", comparison.unmatched_new());
   line("responses of the baseline have no counterpart in this run", comparison.unmatched_baseline());
   line("sections or messages of the baseline could not be decoded", comparison.decode_errors());
@@ -73,6 +74,7 @@ nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
                       {"loads_worst_field", body.loads.worst_field}});
   }
   return {{"agrees", comparison.agrees()},
+          {"not_recorded", comparison.not_recorded()},
           {"unmatched_new", comparison.unmatched_new()},
           {"unmatched_baseline", comparison.unmatched_baseline()},
           {"decode_errors", comparison.decode_errors()},
@@ -90,6 +92,10 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   line("computed", counters.computed);
   line("retries", counters.retries);
   line("rejected", counters.rejected());
+  if (summary.requests && summary.requests->missing() > 0) {
+    line("not recorded", summary.requests->missing());
+    for (const std::string& gaps : gap_lines(*summary.requests, "requests")) text += "  " + gaps + "\n";
+  }
   text += fmt::format("{:<22}{:>12}\n", "bodies", count_bodies(counters));
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     if (i == 0 || counters.bodies[i] > 0) line(to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
@@ -161,6 +167,8 @@ ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
 
 std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
   nlohmann::ordered_json json = summary_to_json(summary);
+  if (summary.requests && summary.requests->missing() > 0)
+    json["requests_not_recorded"] = summary.requests->missing();
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }

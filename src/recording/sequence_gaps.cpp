@@ -1,6 +1,7 @@
 #include "recording/sequence_gaps.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace buoyancy {
@@ -56,6 +57,14 @@ void SequenceGaps::fill(State& session, std::int64_t seq) {
   if (first < seq) session.gaps.emplace(first, seq - 1);
   if (seq < last) session.gaps.emplace(seq + 1, last);
   --missing_;
+}
+
+bool SequenceGaps::is_missing(std::int64_t session_id, std::int64_t seq) const {
+  const auto session = sessions_.find(session_id);
+  if (session == sessions_.end()) return false;
+  const std::map<std::int64_t, std::int64_t>& gaps = session->second.gaps;
+  const auto gap = gaps.upper_bound(seq);
+  return gap != gaps.begin() && seq <= std::prev(gap)->second;
 }
 
 std::vector<SequenceGaps::Session> SequenceGaps::incomplete_sessions() const {

@@ -23,6 +23,10 @@ class SequenceGaps {
   // O(log(sessions) + log(gaps)); the longest of both is a scan of all sessions, when one is closed.
   void add(std::int64_t session_id, std::int64_t seq);
 
+  // Whether the number was not seen, though lower and higher ones of this session were. O(log(sessions) +
+  // log(gaps)).
+  bool is_missing(std::int64_t session_id, std::int64_t seq) const;
+
   // Of all sessions; at most the largest std::int64_t.
   std::int64_t missing() const { return missing_; }
 

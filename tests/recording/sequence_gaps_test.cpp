@@ -39,6 +39,11 @@ TEST(SequenceGaps, AgreesWithASetOverRandomArrivals) {
     }
     const std::int64_t missing = *seen.rbegin() - *seen.begin() + 1 - static_cast<std::int64_t>(seen.size());
     ASSERT_EQ(gaps.missing(), missing) << run;
+    for (std::int64_t seq = start - 5; seq < start + 305; ++seq) {
+      const bool between = seq > *seen.begin() && seq < *seen.rbegin();
+      EXPECT_EQ(gaps.is_missing(7, seq), between && !seen.contains(seq)) << seq;
+      EXPECT_FALSE(gaps.is_missing(8, seq));
+    }
     const auto incomplete = gaps.incomplete_sessions();
     ASSERT_EQ(incomplete.size(), missing > 0 ? 1U : 0U);
     if (missing == 0) continue;
